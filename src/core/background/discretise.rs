@@ -1,0 +1,1 @@
+//! discretise: being written.

@@ -1,0 +1,7 @@
+//! The background triangle mesh (spec 3): curves divided, loops made even, triangulated, adapted to the metric.
+
+pub mod parity;
+pub mod discretise;
+pub mod triangulate;
+pub mod import;
+pub mod adapt;

@@ -1,0 +1,1 @@
+//! triangulate: being written.

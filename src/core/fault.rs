@@ -1,0 +1,54 @@
+//! What is wrong with an input, where, and what to do about it: the one error type of `core`.
+
+use std::fmt;
+
+/// A refusal of bad input: what happened, where, and what to do, each a phrase that a person can read.
+///
+/// Displayed as one line: `place: what. remedy.` Bugs are assertions and never a `Fault`; a failed candidate inside the
+/// converter is an event and never a `Fault`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// What is wrong, a sentence without its full stop ("The loop \"hole\" has 27 segments").
+    pub what: String,
+    /// Where: a file with its line, the name of a curve, a point; empty where there is no such thing.
+    pub place: String,
+    /// What to do about it, a sentence without its full stop; may be empty.
+    pub remedy: String,
+}
+
+impl Fault {
+    /// A fault without a place or a remedy yet.
+    pub fn new(what: impl Into<String>) -> Self {
+        Fault { what: what.into(), place: String::new(), remedy: String::new() }
+    }
+
+    /// The same fault with its place; an outer place ("plate.toml, line 14") goes before an inner one.
+    #[must_use]
+    pub fn at(mut self, place: impl Into<String>) -> Self {
+        let outer = place.into();
+        self.place = if self.place.is_empty() { outer } else { format!("{outer}, {}", self.place) };
+        self
+    }
+
+    /// The same fault with what to do about it.
+    #[must_use]
+    pub fn remedy(mut self, remedy: impl Into<String>) -> Self {
+        self.remedy = remedy.into();
+        self
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.place.is_empty() {
+            write!(f, "{}: ", self.place)?;
+        }
+        write!(f, "{}.", self.what)?;
+        if !self.remedy.is_empty() {
+            write!(f, " {}.", self.remedy)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Fault {}

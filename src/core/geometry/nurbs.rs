@@ -1,0 +1,1 @@
+//! nurbs: being written.

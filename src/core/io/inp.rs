@@ -1,0 +1,1 @@
+//! inp: being written.

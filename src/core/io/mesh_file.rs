@@ -1,0 +1,55 @@
+//! A mesh as files know it: points and elements by index, with tags, groups and data; no connectivity.
+
+use glam::DVec3;
+
+use crate::core::metric::tensor::Metric3;
+
+/// A named group of elements (Gmsh's physical group).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// 0 points, 1 lines, 2 surfaces.
+    pub dimension: u8,
+    /// The tag that elements carry.
+    pub tag: u32,
+    /// Its name.
+    pub name: String,
+}
+
+/// One number for each point or each element, with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Data {
+    /// Name as files show it (`quality`, `live`).
+    pub name: String,
+    /// One value each: for elements, triangles come first and quadrilaterals after them.
+    pub values: Vec<f64>,
+}
+
+/// Points and elements of a surface mesh; indices are zero-based and have been checked against `points` by whoever
+/// made this.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshFile {
+    /// Coordinates in space.
+    pub points: Vec<DVec3>,
+    /// Boundary or curve segments.
+    pub lines: Vec<[u32; 2]>,
+    /// Triangles, anticlockwise seen from outside (in the plane: from +z).
+    pub triangles: Vec<[u32; 3]>,
+    /// Quadrilaterals, likewise.
+    pub quads: Vec<[u32; 4]>,
+    /// Tag of the group of each line; empty, or as long as `lines`.
+    pub line_tags: Vec<u32>,
+    /// Tag of the group of each triangle; empty, or as long as `triangles`.
+    pub triangle_tags: Vec<u32>,
+    /// Tag of the group of each quadrilateral; empty, or as long as `quads`.
+    pub quad_tags: Vec<u32>,
+    /// Names of the groups.
+    pub groups: Vec<Group>,
+    /// The metric at each point, where the file has one.
+    pub metric: Option<Vec<Metric3>>,
+    /// Numbers at points.
+    pub point_data: Vec<Data>,
+    /// Numbers at elements (triangles first, then quadrilaterals).
+    pub element_data: Vec<Data>,
+    /// Element types that the file has and that are not read, with their counts ("tetrahedron", 12).
+    pub skipped: Vec<(String, usize)>,
+}

@@ -1,0 +1,12 @@
+//! Files: cases, meshes, reports. Every file is written beside its place and renamed.
+
+pub mod mesh_file;
+pub mod save;
+pub mod scan;
+pub mod msh;
+pub mod medit;
+pub mod vtu;
+pub mod obj;
+pub mod inp;
+pub mod case;
+pub mod report;

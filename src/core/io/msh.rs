@@ -1,0 +1,1 @@
+//! msh: being written.

@@ -1,0 +1,1 @@
+//! obj: being written.

@@ -1,0 +1,1 @@
+//! vtu: being written.

@@ -1,0 +1,9 @@
+//! Triangles and quadrilaterals in one half-edge structure (spec 6), changed only by its operators.
+
+pub mod ids;
+pub mod triangle_set;
+pub mod half_edge;
+pub mod operators;
+pub mod check;
+pub mod quality;
+pub mod soundness;

@@ -1,0 +1,1 @@
+//! operators: being written.

@@ -1,0 +1,1 @@
+//! soundness: being written.

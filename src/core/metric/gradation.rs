@@ -1,0 +1,1 @@
+//! gradation: being written.

@@ -1,0 +1,7 @@
+//! The metric: tensors (eqs. 2, 3, 11), length and angle (eqs. 4, 5), and the fields that give a tensor at a place.
+
+pub mod tensor;
+pub mod measure;
+pub mod formula;
+pub mod field;
+pub mod gradation;

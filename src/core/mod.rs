@@ -1,0 +1,11 @@
+//! The converter and what it stands on. Deliberately absent: screens, clocks, threads' own state, unseeded randomness.
+
+pub mod fault;
+pub mod progress;
+pub mod geometry;
+pub mod metric;
+pub mod journal;
+pub mod mesh;
+pub mod background;
+pub mod convert;
+pub mod io;

@@ -1,0 +1,1 @@
+//! Turns a state of `core` into a picture, and a picture into vectors (pixels with the window). Never changes a state.
