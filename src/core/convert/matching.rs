@@ -13,6 +13,11 @@
 /// No vertex.
 const NONE: u32 = u32::MAX;
 
+/// How many vertices a search goes on along preferred edges before it turns to the reserve edges of the first of them.
+/// To exhaust the preferred ones first costs a walk through most of a large graph for each search: measured on two
+/// million triangles 0.14 s an augmentation, against 0.2 ms; this many leads to 3 % more reserve edges in the result.
+const PATIENCE: usize = 1024;
+
 /// A vertex in the tree of the running search at even distance from its root.
 const EVEN: u32 = 0;
 /// A vertex at odd distance.
@@ -215,7 +220,8 @@ impl Matching {
         self.queue.push(root);
         let (mut next, mut next_reserve) = (0, 0);
         loop {
-            let (v, range) = if let Some(&v) = self.queue.get(next) {
+            let patient = !with_reserve || next <= next_reserve + PATIENCE;
+            let (v, range) = if patient && let Some(&v) = self.queue.get(next) {
                 next += 1;
                 (v, self.begin[v as usize]..self.reserve[v as usize])
             } else if with_reserve && let Some(&v) = self.queue.get(next_reserve) {
