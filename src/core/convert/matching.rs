@@ -127,9 +127,9 @@ impl Matching {
         (mate != NONE).then_some(mate)
     }
 
-    /// The vertices without a partner, ascending.
-    pub fn unmatched(&self) -> Vec<u32> {
-        (0..self.mate.len() as u32).filter(|&v| self.mate[v as usize] == NONE).collect()
+    /// Number of vertices without a partner.
+    pub fn unmatched(&self) -> usize {
+        self.mate.iter().filter(|&&mate| mate == NONE).count()
     }
 
     /// The greedy start over the preferred edges, given again with their ranks (not NaN): vertices with a single free
@@ -441,7 +441,7 @@ mod tests {
             let mut matching = Matching::new(n as usize, preferred, reserve);
             matching.start(preferred, &rank);
             matching.augment(false);
-            let first = (n as usize - matching.unmatched().len()) / 2;
+            let first = (n as usize - matching.unmatched()) / 2;
             assert_eq!(first, petgraph_cardinality(n as usize, preferred), "round {round}");
             let more = matching.augment(true);
             assert_eq!(first + more, petgraph_cardinality(n as usize, &edges), "round {round}");
