@@ -2,4 +2,6 @@
 
 pub mod matching;
 pub mod last_resort;
+pub mod energy;
+pub mod clean_up;
 pub mod finish;
