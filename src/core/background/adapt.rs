@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 use crate::core::fault::Fault;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
-use crate::core::mesh::quality::{length_over, triangle_quality};
+use crate::core::mesh::quality::{length_over, quality_over};
 use crate::core::metric::field::{BadMetric, MetricSource};
 use crate::core::metric::tensor::Metric2;
 use crate::core::progress::{Stage, Watch};
@@ -313,7 +313,7 @@ impl Adapter<'_> {
             let place = here + (there - here) * step;
             let Ok(metric) = self.source.metric(place) else { continue };
             let after = star.iter().fold(f64::INFINITY, |least, &[b, c]| {
-                least.min(triangle_quality(
+                least.min(quality_over(
                     [place, mesh.uv(b), mesh.uv(c)],
                     [&metric, mesh.metric_ref(b), mesh.metric_ref(c)],
                 ))

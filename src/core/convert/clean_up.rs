@@ -213,12 +213,10 @@ impl CleanUp<'_> {
         let mut core = core_nodes(mesh, candidate);
         let (energy_before, quality_before) = self.patch(mesh, &core);
         let mark = mesh.mark();
-        let kept = self.apply(mesh, candidate, &mut core).is_ok()
-            && self.settle(mesh, &core)
-            && {
-                let (energy, quality) = self.patch(mesh, &core);
-                energy < energy_before - LEAST_GAIN && quality >= quality_before.min(LEAST_QUALITY)
-            };
+        let kept = self.apply(mesh, candidate, &mut core).is_ok() && self.settle(mesh, &core) && {
+            let (energy, quality) = self.patch(mesh, &core);
+            energy < energy_before - LEAST_GAIN && quality >= quality_before.min(LEAST_QUALITY)
+        };
         if !kept {
             mesh.take_back(mark);
             self.done.refused += 1;

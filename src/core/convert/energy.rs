@@ -89,30 +89,21 @@ impl<'a> Star<'a> {
             // At the node: both sides turn with it.
             let (to_b, to_d) = (*b - p, *d - p);
             let (numerator, x) = (m.norm2(to_b) + m.norm2(to_d), root * to_b.perp_dot(to_d));
-            sum += square_of_ratio(numerator, x, apply(m, to_b + to_d) * -2.0, perp(*d - *b) * root);
+            sum += square_of_ratio(numerator, x, m.times(to_b + to_d) * -2.0, perp(*d - *b) * root);
             // At b, between c and the node; at d, between the node and c: one side turns.
             let root_b = m_b.det().sqrt();
             let (to_c, to_p) = (*c - *b, p - *b);
             let numerator = m_b.norm2(to_c) + m_b.norm2(to_p);
-            sum += square_of_ratio(
-                numerator,
-                root_b * to_c.perp_dot(to_p),
-                apply(m_b, to_p) * 2.0,
-                perp(to_c) * root_b,
-            );
+            sum += square_of_ratio(numerator, root_b * to_c.perp_dot(to_p), m_b.times(to_p) * 2.0, perp(to_c) * root_b);
             let root_d = m_d.det().sqrt();
             let (to_p, to_c) = (p - *d, *c - *d);
             let numerator = m_d.norm2(to_p) + m_d.norm2(to_c);
-            sum += square_of_ratio(
-                numerator,
-                root_d * to_p.perp_dot(to_c),
-                apply(m_d, to_p) * 2.0,
-                -perp(to_c) * root_d,
-            );
+            sum +=
+                square_of_ratio(numerator, root_d * to_p.perp_dot(to_c), m_d.times(to_p) * 2.0, -perp(to_c) * root_d);
             // The edge to b.
             for m in [m, *m_b] {
                 let a = m.norm2(to_b);
-                sum += apply(m, to_b) * (-2.0 * LENGTH_WEIGHT * (1.0 - 1.0 / (a * a)));
+                sum += m.times(to_b) * (-2.0 * LENGTH_WEIGHT * (1.0 - 1.0 / (a * a)));
             }
         }
         sum
@@ -124,11 +115,6 @@ impl<'a> Star<'a> {
 fn square_of_ratio(n: f64, x: f64, gradient_n: DVec2, gradient_x: DVec2) -> DVec2 {
     let r = n / (2.0 * x);
     (gradient_n - gradient_x * (2.0 * r)) * (r / x)
-}
-
-#[inline]
-fn apply(m: &Metric2, d: DVec2) -> DVec2 {
-    DVec2::new(m.uu * d.x + m.uv * d.y, m.uv * d.x + m.vv * d.y)
 }
 
 /// The vector w with `w . q = d/dq` of a cross product: for f(p) = (b - p) x (d - p), grad f = perp(d - b).
@@ -175,19 +161,22 @@ pub fn relax(mesh: &mut Mesh, node: NodeId, source: &dyn MetricSource) -> f64 {
         return 0.0;
     }
     let newton = newton * (LONGEST_MOVE / length).min(1.0);
-    let mut step = 1.0;
+    let (mut step, mut found) = (1.0, None);
     for _ in 0..4 {
         let place = p + (e[0] * newton.x + e[1] * newton.y) * step;
         if let Ok(metric) = source.metric(place) {
             // The exact test comes last: it is the dearest and seldom fails where the energy is finite.
             if star.energy(place, &metric) < before - 1e-9 && mesh.can_move(node, place).is_ok() {
-                mesh.move_node(node, place, metric);
-                return newton.length() * step;
+                found = Some((place, metric));
+                break;
             }
         }
         step *= 0.5;
     }
-    0.0
+    drop(star);
+    let Some((place, metric)) = found else { return 0.0 };
+    mesh.move_node(node, place, metric);
+    newton.length() * step
 }
 
 #[cfg(test)]
@@ -197,7 +186,8 @@ mod tests {
     #[test]
     fn the_gradient_is_that_of_the_energy() {
         let metric = |uu, uv, vv| Metric2 { uu, uv, vv };
-        let (m, around) = (metric(2.0, 0.3, 1.0), [metric(1.5, -0.2, 0.8), metric(1.0, 0.0, 1.0), metric(2.2, 0.5, 1.3)]);
+        let (m, around) =
+            (metric(2.0, 0.3, 1.0), [metric(1.5, -0.2, 0.8), metric(1.0, 0.0, 1.0), metric(2.2, 0.5, 1.3)]);
         let corners = [DVec2::new(1.0, 0.1), DVec2::new(1.1, 1.0), DVec2::new(0.0, 0.9)];
         let quad = std::array::from_fn(|k| (corners[k], &around[k]));
         let star = Star { quads: SmallVec::from_iter([quad]) };

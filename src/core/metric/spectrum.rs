@@ -137,8 +137,7 @@ impl Metric2 {
     #[inline]
     pub fn min_size(&self) -> f64 {
         let half_difference = 0.5 * (self.uu - self.vv);
-        let largest =
-            0.5 * (self.uu + self.vv) + (half_difference * half_difference + self.uv * self.uv).sqrt();
+        let largest = 0.5 * (self.uu + self.vv) + (half_difference * half_difference + self.uv * self.uv).sqrt();
         1.0 / largest.sqrt()
     }
 

@@ -60,7 +60,9 @@ pub(super) fn check_sizes(h: &[f64]) -> Result<(), String> {
         (smallest, largest) = (smallest.min(h_i), largest.max(h_i));
     }
     if largest > LARGEST_ANISOTROPY * smallest {
-        return Err(format!("the sizes {smallest} and {largest} differ by a factor of more than {LARGEST_ANISOTROPY:e}"));
+        return Err(format!(
+            "the sizes {smallest} and {largest} differ by a factor of more than {LARGEST_ANISOTROPY:e}"
+        ));
     }
     Ok(())
 }
