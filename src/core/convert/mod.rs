@@ -4,4 +4,6 @@ pub mod component;
 pub mod matching;
 pub mod t_join;
 pub mod last_resort;
+pub mod energy;
+pub mod clean_up;
 pub mod finish;
