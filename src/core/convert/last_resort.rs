@@ -27,8 +27,8 @@ use super::t_join::t_join;
 use crate::core::geometry::predicates::{convex, firm};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::mesh::quality::quad_quality;
 use crate::core::metric::field::{BadMetric, MetricSource};
+use crate::core::metric::measure::quad_quality;
 use crate::core::metric::tensor::Metric2;
 
 /// What the last resort did.
@@ -489,7 +489,7 @@ impl<'a> Planner<'a> {
 
     #[inline]
     fn quality(&self, quad: [u32; 4]) -> f64 {
-        quad_quality(quad.map(|n| self.uv(n)), quad.map(NodeId).each_ref().map(|&n| self.mesh().metric_ref(n)))
+        quad_quality(quad.map(|n| self.mesh().metric_ref(NodeId(n))), quad.map(|n| self.uv(n)))
     }
 
     /// Coordinates of a node, of the mesh or of the plan.
