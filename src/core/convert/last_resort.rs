@@ -5,8 +5,8 @@
 //! 2. What it leaves over is matched over other inner edges, searches using as few of them as they can.
 //! 3. What is left over even then is linked by paths, so that every triangle has one or three edges in a T-join
 //!    ([`super::t_join`]).
-//! 4. A pair whose union is not convex is cut anew together with a convex pair beside it, where that gives two convex
-//!    quadrilaterals (an edge rotation; this is what swaps and matching again can reach, found directly).
+//! 4. A pair whose union is not convex is cut anew together with up to three pairs around it, where that gives convex
+//!    quadrilaterals (what swaps of edges and matching again would look for, found directly and at its best).
 //! 5. Two triangles that have only each other in the join and a convex union are merged. Every other edge of the join is
 //!    divided at its middle, and its triangles are filled by templates.
 //!
@@ -38,8 +38,8 @@ pub struct Outcome {
     pub triangles: usize,
     /// Quadrilaterals that are two merged triangles.
     pub merged: usize,
-    /// Edges rotated to make a pair that is not convex fit: each stands for two more quadrilaterals.
-    pub rotations: usize,
+    /// Quadrilaterals that were cut anew from several pairs, one of which was not convex.
+    pub recut: usize,
     /// Quadrilaterals of the templates.
     pub template_quads: usize,
     /// Edges divided.
@@ -53,7 +53,7 @@ pub struct Outcome {
 impl Outcome {
     /// All quadrilaterals made.
     pub fn quads(&self) -> usize {
-        self.merged + 2 * self.rotations + self.template_quads
+        self.merged + self.recut + self.template_quads
     }
 }
 
@@ -92,8 +92,8 @@ impl std::error::Error for Stuck {}
 pub enum Means {
     /// Two triangles merge.
     Merge,
-    /// Two pairs of triangles become two quadrilaterals, the edge between them rotated.
-    Rotation,
+    /// A few pairs of triangles become as many quadrilaterals, cut otherwise than the pairs.
+    Recut,
     /// Edges are divided and templates fill the triangles between them.
     Templates,
 }
@@ -115,7 +115,7 @@ pub fn last_resort(mesh: &mut Mesh, component: &[ElementId], source: &dyn Metric
     Ok(plan.outcome())
 }
 
-/// What is to be done, patch by patch: first the merges and rotations, then the templates.
+/// What is to be done, patch by patch: first the merges and recuts, then the templates.
 #[derive(Clone, Debug)]
 pub struct Plan {
     outcome: Outcome,
@@ -190,6 +190,22 @@ impl Plan {
     }
 }
 
+/// A crooked pair is cut anew with up to this many pairs in all, itself included.
+const MOST_PAIRS: usize = 4;
+/// Larger rings are not tried once the worst quadrilateral of a smaller one is this good.
+const GOOD: f64 = 0.2;
+
+type Quads = SmallVec<[[u32; 4]; MOST_PAIRS]>;
+
+/// The outline of some pairs of triangles that hang together.
+#[derive(Clone, Debug)]
+struct Ring {
+    /// Its nodes, anticlockwise, each with the side from it to the next.
+    corners: SmallVec<[(u32, u32); 2 * MOST_PAIRS + 2]>,
+    /// The pairs, by the lesser side of the edge between their triangles.
+    pairs: SmallVec<[u32; MOST_PAIRS]>,
+}
+
 /// A pair of triangles that have only each other in the join.
 #[derive(Clone, Copy, Debug)]
 struct Pair {
@@ -211,7 +227,7 @@ struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    /// `allowed` may forbid a merge, a match over another edge (`Templates`) or a rotation (given one triangle on each
+    /// `allowed` may forbid a merge, a match over another edge (`Templates`) or a recut (given one triangle on each
     /// side of the edge in question): the result must be right whatever is forbidden, and tests forbid at random.
     fn plan(
         mesh: &'a Mesh,
@@ -231,7 +247,7 @@ impl<'a> Planner<'a> {
         };
         let mut planner = Planner { dual, source, join: Vec::new(), done: vec![false; n], plan };
         planner.join(allowed)?;
-        planner.merge_and_rotate(allowed);
+        planner.merge_and_recut(allowed);
         planner.fill_with_templates()?;
         Ok(planner.plan)
     }
@@ -267,11 +283,13 @@ impl<'a> Planner<'a> {
     }
 
     /// Step 4 and the merges of step 5.
-    fn merge_and_rotate(&mut self, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) {
+    fn merge_and_recut(&mut self, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) {
         let mut crooked = Vec::new();
         let mut straight = Vec::new();
         for t in 0..self.dual.triangles.len() as u32 {
-            let Some(side) = self.partner_side(t).filter(|&side| side < self.dual.across[side as usize]) else { continue };
+            let Some(side) = self.partner_side(t).filter(|&side| side < self.dual.across[side as usize]) else {
+                continue;
+            };
             let pair = self.pair(side);
             let edge = [t, self.dual.across[side as usize] / 3];
             if pair.convex && allowed(Means::Merge, self.elements(edge)) {
@@ -282,7 +300,7 @@ impl<'a> Planner<'a> {
         }
         for side in crooked {
             if !self.done[(side / 3) as usize] {
-                self.rotate(side, allowed);
+                self.recut(side, allowed);
             }
         }
         for side in straight {
@@ -296,48 +314,107 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// Cuts the hexagon of a crooked pair and a straight one beside it the other way, at best of all possibilities.
-    ///
-    /// ```text
-    ///     q2-----q1                 q2-----q1
-    ///     /       \                 / \     \
-    ///    p0-------p3       =>      p0   \   p3        or from p1 to q1
-    ///     \    _-´/                 \    \ _/
-    ///      p1´--p2                   p1´--p2
-    /// ```
-    fn rotate(&mut self, side: u32, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) {
+    /// Cuts a crooked pair anew together with a few pairs around it: with one, and where that gives nothing good with
+    /// two, and so on.
+    fn recut(&mut self, side: u32, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) {
         let pair = self.pair(side);
-        let mut best: Option<(f64, [[u32; 4]; 2], u32)> = None;
-        for k in 0..4 {
-            let outline = pair.outline[(k + 3) % 4];
+        let start = Ring {
+            corners: (pair.nodes.into_iter().zip(pair.outline)).collect(),
+            pairs: SmallVec::from_slice(&[side]),
+        };
+        let mut rings = vec![start];
+        let mut best: Option<(f64, Ring, Quads)> = None;
+        for _ in 1..MOST_PAIRS {
+            rings = rings.iter().flat_map(|ring| self.grown(ring, allowed)).collect();
+            for ring in &rings {
+                let least = best.as_ref().map_or(0.0, |(quality, ..)| *quality);
+                if let Some((quality, quads)) = self.cut(ring, least) {
+                    best = Some((quality, ring.clone(), quads));
+                }
+            }
+            if best.as_ref().is_some_and(|(quality, ..)| *quality >= GOOD) {
+                break;
+            }
+        }
+        if let Some((_, ring, quads)) = best {
+            self.plan.outcome.recut += quads.len();
+            self.plan.quads.extend(quads);
+            let triangles: SmallVec<[u32; 8]> =
+                ring.pairs.iter().flat_map(|&side| [side / 3, self.dual.across[side as usize] / 3]).collect();
+            self.close_patch(Means::Recut, &triangles);
+        }
+    }
+
+    /// The ring with one more pair, for every pair beside it.
+    fn grown(&self, ring: &Ring, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Vec<Ring> {
+        let mut grown = Vec::new();
+        for k in 0..ring.corners.len() {
+            let outline = ring.corners[k].1;
             let across = self.dual.across[outline as usize];
             if across == NONE || self.done[(across / 3) as usize] {
                 continue;
             }
             let Some(inner) = self.partner_side(across / 3) else { continue };
             let inner = inner.min(self.dual.across[inner as usize]);
-            let beside = self.pair(inner);
-            if !beside.convex || !allowed(Means::Rotation, self.elements([outline / 3, across / 3])) {
+            if ring.pairs.contains(&inner) || !allowed(Means::Recut, self.elements([outline / 3, across / 3])) {
                 continue;
             }
-            let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|i| pair.nodes[(k + i) % 4]);
+            // The side k to k + 1 of the ring gives way to the other three of the pair.
+            let beside = self.pair(inner);
             let at = (beside.outline.iter().position(|&s| s == across)).expect("the pair beside has the shared side");
-            let (q1, q2) = (beside.nodes[(at + 2) % 4], beside.nodes[(at + 3) % 4]);
-            for quads in [[[p1, p2, p3, q1], [q1, q2, p0, p1]], [[p2, p3, q1, q2], [q2, p0, p1, p2]]] {
-                if quads.iter().all(|&quad| self.is_convex(quad)) {
-                    let quality = self.quality(quads[0]).min(self.quality(quads[1]));
-                    if best.is_none_or(|(least, ..)| quality > least) {
-                        best = Some((quality, quads, inner));
+            let mut more = ring.clone();
+            more.pairs.push(inner);
+            more.corners[k].1 = beside.outline[(at + 1) % 4];
+            more.corners.insert_many(k + 1, [2, 3].map(|i| (beside.nodes[(at + i) % 4], beside.outline[(at + i) % 4])));
+            grown.push(more);
+        }
+        grown
+    }
+
+    /// The best way to cut a ring into strictly convex quadrilaterals without new nodes, where the worst of them is
+    /// better than `least`: by dynamic programming over its stretches.
+    ///
+    /// Quadrilaterals that are positive, and whose sides cancel out but for the ring, cover each place as often as the
+    /// ring winds around it: once inside and never outside. So this is right also where the ring meets itself.
+    fn cut(&self, ring: &Ring, least: f64) -> Option<(f64, Quads)> {
+        let n = ring.corners.len();
+        // Of the stretch from i to j, closed by the chord between them: the worst quadrilateral of the best cut, and
+        // the other two corners of the one at the chord.
+        let mut best = [[(least, 0, 0); 2 * MOST_PAIRS + 2]; 2 * MOST_PAIRS + 2];
+        for i in 0..n - 1 {
+            best[i][i + 1].0 = f64::INFINITY;
+        }
+        for length in (3..n).step_by(2) {
+            for i in 0..n - length {
+                let j = i + length;
+                for a in (i + 1..j).step_by(2) {
+                    for b in (a + 1..j).step_by(2) {
+                        let parts = best[i][a].0.min(best[a][b].0).min(best[b][j].0);
+                        if parts > best[i][j].0 {
+                            let quad = [i, a, b, j].map(|k| ring.corners[k].0);
+                            let worst = if self.is_convex(quad) { parts.min(self.quality(quad)) } else { least };
+                            if worst > best[i][j].0 {
+                                best[i][j] = (worst, a, b);
+                            }
+                        }
                     }
                 }
             }
         }
-        if let Some((_, quads, inner)) = best {
-            self.plan.outcome.rotations += 1;
-            self.plan.quads.extend(quads);
-            let across = |side: u32| self.dual.across[side as usize] / 3;
-            self.close_patch(Means::Rotation, &[side / 3, across(side), inner / 3, across(inner)]);
+        let (worst, ..) = best[0][n - 1];
+        if worst <= least {
+            return None;
         }
+        let mut quads = Quads::new();
+        let mut open: SmallVec<[(usize, usize); 8]> = SmallVec::from_slice(&[(0, n - 1)]);
+        while let Some((i, j)) = open.pop() {
+            if j > i + 1 {
+                let (_, a, b) = best[i][j];
+                quads.push([i, a, b, j].map(|k| ring.corners[k].0));
+                open.extend([(i, a), (a, b), (b, j)]);
+            }
+        }
+        Some((worst, quads))
     }
 
     /// The templates of step 5, a patch for each part of the join that hangs together.
@@ -410,8 +487,7 @@ impl<'a> Planner<'a> {
             let m = middles[k];
             let [a, b, c] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
             let mut inner = [0; 4];
-            let weights =
-                [[0.5, 0.25, 0.25], [0.25, 0.5, 0.25], [0.25, 0.25, 0.5], [0.4375, 0.4375, 0.125]];
+            let weights = [[0.5, 0.25, 0.25], [0.25, 0.5, 0.25], [0.25, 0.25, 0.5], [0.4375, 0.4375, 0.125]];
             for (node, weights) in inner.iter_mut().zip(weights) {
                 *node = self.add_node(self.barycentric([a, b, c], weights))?;
             }
@@ -467,7 +543,8 @@ impl<'a> Planner<'a> {
 
     /// Of a triangle that has one edge in the join, and so has the neighbour over it: that side.
     fn partner_side(&self, t: u32) -> Option<u32> {
-        let lone = |t: u32| (self.join[t as usize].count_ones() == 1).then(|| 3 * t + self.join[t as usize].trailing_zeros());
+        let lone =
+            |t: u32| (self.join[t as usize].count_ones() == 1).then(|| 3 * t + self.join[t as usize].trailing_zeros());
         lone(t).filter(|&side| lone(self.dual.across[side as usize] / 3).is_some())
     }
 

@@ -123,10 +123,8 @@ fn carry_out_and_check(mesh: &mut Mesh, component: &[ElementId], plan: &Plan) {
     let area: f64 = component.iter().map(|&e| twice_area(mesh, e)).sum();
     let border = outline(mesh, component);
     let (elements, nodes) = (mesh.element_count(), mesh.node_count());
-    let outside: Vec<(ElementId, Vec<NodeId>)> = (mesh.elements())
-        .filter(|e| !component.contains(e))
-        .map(|e| (e, mesh.corners(e).collect()))
-        .collect();
+    let outside: Vec<(ElementId, Vec<NodeId>)> =
+        (mesh.elements()).filter(|e| !component.contains(e)).map(|e| (e, mesh.corners(e).collect())).collect();
     let mut made = Vec::new();
     for patch in 0..plan.patches() {
         made.extend(plan.carry_out(mesh, patch));
@@ -171,7 +169,7 @@ fn any_even_region_becomes_convex_quads_with_its_boundary_as_it_was() {
             let outcome = plan.outcome();
             total.triangles += outcome.triangles;
             total.merged += outcome.merged;
-            total.rotations += outcome.rotations;
+            total.recut += outcome.recut;
             total.template_quads += outcome.template_quads;
             total.divided += outcome.divided;
             total.unmatched += outcome.unmatched;
@@ -180,20 +178,23 @@ fn any_even_region_becomes_convex_quads_with_its_boundary_as_it_was() {
         });
     }
     println!("{regions} regions: {total:?}");
-    assert!(total.rotations > 0 && total.unmatched_at_all > 0 && total.template_quads > 0, "all means are used: {total:?}");
+    assert!(total.recut > 0 && total.unmatched_at_all > 0 && total.template_quads > 0, "all means are used: {total:?}");
 }
 
 #[test]
 fn whatever_is_forbidden_the_result_is_right() {
     for round in 0..rounds(300) {
         random_regions(round, &mut Random::new(1_000_000 + round), &mut |random, mesh, part| {
-            let forbid = [Means::Merge, Means::Rotation, Means::Templates]
+            let forbid = [Means::Merge, Means::Recut, Means::Templates]
                 .map(|_| [0.0, 0.0, 0.3, 0.8, 1.0][(5.0 * random.unit()) as usize]);
             let salt = u64::from(random.0.next_u32());
             // The same question gets the same answer.
             let allowed = |means: Means, [t, u]: [ElementId; 2]| {
                 let key = u64::from(t.0.min(u.0)) << 32 | u64::from(t.0.max(u.0));
-                let hash = (key ^ salt).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+                let hash = (key ^ salt)
+                    .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                    .rotate_left(29)
+                    .wrapping_mul(0xbf58_476d_1ce4_e5b9);
                 (hash >> 11) as f64 / (1_u64 << 53) as f64 >= forbid[means as usize]
             };
             let plan = Planner::plan(mesh, part, &Uniform, &allowed).expect("the region is even");
@@ -231,7 +232,7 @@ fn a_triangle_with_three_leaves_is_filled_from_its_middle() {
 }
 
 #[test]
-fn a_pair_that_is_not_convex_is_mended_by_rotation_where_it_can_be() {
+fn a_pair_that_is_not_convex_is_cut_anew_with_its_neighbour() {
     // The chevron 0-1-2-3 has its notch at 3; with the quadrilateral 1-0-4-5 beside it the cut 3-5 is better than 0-1.
     let uv = [(0.0, 0.0), (1.0, -2.0), (4.0, 1.0), (1.5, 0.0), (-1.5, -1.5), (-0.5, -3.0)];
     let uv = uv.map(|(x, y)| DVec2::new(x, y)).to_vec();
@@ -243,8 +244,8 @@ fn a_pair_that_is_not_convex_is_mended_by_rotation_where_it_can_be() {
     let mut mesh = mesh_of(uv, triangles);
     let component: Vec<ElementId> = mesh.elements().collect();
     let plan = Plan::new(&mesh, &component, &Uniform).expect("four is even");
-    assert_eq!((plan.outcome().rotations, plan.outcome().quads()), (1, 2));
-    assert_eq!(plan.means(0), Means::Rotation);
+    assert_eq!((plan.outcome().recut, plan.outcome().quads()), (2, 2));
+    assert_eq!(plan.means(0), Means::Recut);
     carry_out_and_check(&mut mesh, &component, &plan);
 }
 
