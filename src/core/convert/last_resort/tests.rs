@@ -118,6 +118,10 @@ fn outline(mesh: &Mesh, elements: &[ElementId]) -> Vec<[u64; 4]> {
     outline
 }
 
+fn carry_out(mesh: &mut Mesh, plan: &Plan) -> Vec<ElementId> {
+    (0..plan.patches()).flat_map(|patch| plan.carry_out(mesh, patch)).collect()
+}
+
 /// Carries out a plan and checks everything that the last resort promises.
 fn carry_out_and_check(mesh: &mut Mesh, component: &[ElementId], plan: &Plan) {
     let area: f64 = component.iter().map(|&e| twice_area(mesh, e)).sum();
@@ -125,10 +129,7 @@ fn carry_out_and_check(mesh: &mut Mesh, component: &[ElementId], plan: &Plan) {
     let (elements, nodes) = (mesh.element_count(), mesh.node_count());
     let outside: Vec<(ElementId, Vec<NodeId>)> =
         (mesh.elements()).filter(|e| !component.contains(e)).map(|e| (e, mesh.corners(e).collect())).collect();
-    let mut made = Vec::new();
-    for patch in 0..plan.patches() {
-        made.extend(plan.carry_out(mesh, patch));
-    }
+    let made = carry_out(mesh, plan);
     let outcome = plan.outcome();
     assert_eq!(mesh.check(), Ok(()));
     assert!(made.iter().all(|&e| mesh.is_quad(e)));
@@ -143,7 +144,7 @@ fn carry_out_and_check(mesh: &mut Mesh, component: &[ElementId], plan: &Plan) {
     assert!((new_area - area).abs() <= 1e-9 * area, "{area} became {new_area}");
 }
 
-/// Random even regions of a random grid; `forbid` is the share of things forbidden, by means.
+/// Random even regions of a random grid.
 fn random_regions(round: u32, random: &mut Random, check: &mut dyn FnMut(&mut Random, &mut Mesh, &[ElementId])) {
     let flat = [1.0, 1.0, 1e-3, 1e-5][round as usize % 4];
     let jitter = 0.49 * random.unit();
@@ -247,6 +248,37 @@ fn a_pair_that_is_not_convex_is_cut_anew_with_its_neighbour() {
     assert_eq!((plan.outcome().recut, plan.outcome().quads()), (2, 2));
     assert_eq!(plan.means(0), Means::Recut);
     carry_out_and_check(&mut mesh, &component, &plan);
+}
+
+#[test]
+fn no_template_is_inverted_by_rounding_while_triangles_are_firm() {
+    let mut tried = 0;
+    for round in 0..rounds(4000) {
+        let mut random = Random::new(2_000_000 + round);
+        let mut direction = || {
+            let angle = std::f64::consts::TAU * random.unit();
+            DVec2::new(libm::cos(angle), libm::sin(angle))
+        };
+        let (along, away) = (direction(), direction());
+        let far = if random.unit() < 0.5 { 0.0 } else { libm::exp(20.0 * random.unit()) };
+        // As flat as is allowed, give or take.
+        let height = (1e-7f64).max(256.0 * f64::EPSILON * (far + 1.0)) * (0.9 + random.unit());
+        let a = far * away;
+        let b = a + along;
+        let c = a + (1.2 * random.unit() - 0.1) * along + height * along.perp();
+        let uv = vec![a, b, c, b + c - a, c + a - b, a + b - c];
+        let triangles = vec![[0, 1, 2], [1, 3, 2], [2, 4, 0], [0, 5, 1]];
+        if triangles.iter().all(|t| firm(uv[t[0] as usize], uv[t[1] as usize], uv[t[2] as usize])) {
+            let mut mesh = mesh_of(uv, triangles);
+            let component: Vec<ElementId> = mesh.elements().collect();
+            let plan = Plan::new(&mesh, &component, &Uniform).expect("the triangles are firm");
+            assert_eq!(plan.outcome().template_quads, 18);
+            carry_out(&mut mesh, &plan);
+            assert_eq!(mesh.check(), Ok(()));
+            tried += 1;
+        }
+    }
+    assert!(tried > rounds(4000) / 4, "{tried} were firm");
 }
 
 #[test]
