@@ -482,9 +482,7 @@ impl<'a> Parser<'a> {
             return self.call(name, op, arity);
         }
         let value = self.names.iter().find(|n| n.0 == name).map(|n| n.1);
-        let value = value.or_else(|| {
-            CONSTANTS.iter().find(|c| c.0 == name).map(|c| self.graph.constant(c.1))
-        });
+        let value = value.or_else(|| CONSTANTS.iter().find(|c| c.0 == name).map(|c| self.graph.constant(c.1)));
         let Some(value) = value else { return Err(self.unknown(name)) };
         self.at += length;
         if self.peek() == Some('(') {
@@ -640,7 +638,11 @@ mod tests {
         assert_eq!(program.constant(0), None);
         assert_eq!(program.constant(2), Some(1.0));
         assert_eq!(program.constant(3), None);
-        assert!(program.slots < VARIABLES.len() + program.constants.len() + 5, "slots are given back: {}", program.slots);
+        assert!(
+            program.slots < VARIABLES.len() + program.constants.len() + 5,
+            "slots are given back: {}",
+            program.slots
+        );
     }
 
     #[test]
