@@ -8,5 +8,8 @@ pub mod medit;
 pub mod vtu;
 pub mod obj;
 pub mod inp;
+mod case_table;
+mod case_geometry;
+mod case_metric;
 pub mod case;
 pub mod report;
