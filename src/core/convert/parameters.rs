@@ -163,14 +163,19 @@ impl Parameters {
 
 /// The fault of a key that nobody knows: names the nearest known one, or all of them where none is near.
 pub fn unknown_key(key: &str, known: &[&str]) -> Fault {
-    // Jaro-Winkler favours a common start, which is where names of keys agree when they are mistyped.
-    let nearest =
-        known.iter().map(|k| (strsim::jaro_winkler(key, k), *k)).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(a.1)));
+    let nearest = nearest(key, known.iter().copied());
     let fault = Fault::new(format!("the key \"{key}\" is not known"));
     match nearest {
-        Some((likeness, near)) if likeness > 0.75 => fault.remedy(format!("The nearest known one is \"{near}\"")),
+        Some(near) => fault.remedy(format!("The nearest known one is \"{near}\"")),
         _ => fault.remedy(format!("Known here: {}", known.join(", "))),
     }
+}
+
+/// The name that is most like a mistyped one, where one is like it at all.
+pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let likeness = |k| strsim::normalized_damerau_levenshtein(name, k);
+    let likely = known.map(|k| (likeness(k), k)).filter(|(likeness, _)| *likeness >= 0.5);
+    likely.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(a.1))).map(|(_, k)| k)
 }
 
 fn number(key: &str, value: &str, least: f64, most: f64) -> Result<f64, Fault> {
@@ -231,8 +236,11 @@ fn degrees(radians: f64) -> String {
     ((radians.to_degrees() * 1e9).round() / 1e9).to_string()
 }
 
-/// A text in quotes (files pass texts with theirs); escapes keep a message on its one line.
+/// A value as a message shows it: texts in quotes (files pass texts with theirs); escapes keep a message on its one line.
 fn quoted(value: &str) -> String {
+    if value.parse::<f64>().is_ok() {
+        return value.to_owned();
+    }
     format!("\"{}\"", value.trim_matches('"').escape_debug())
 }
 

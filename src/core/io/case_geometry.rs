@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use super::case_table::{Table, Value};
+use crate::core::convert::parameters::nearest;
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::{CurveShape, CurveSpec, FaceSpec};
 
@@ -53,19 +54,15 @@ pub(super) fn known_curves(value: &Value<'_>, curves: &[CurveSpec]) -> Result<Ve
     }
     for name in &names {
         if !curves.iter().any(|c| c.name == *name) {
-            let nearest = curves.iter().max_by(|a, b| likeness(name, &a.name).total_cmp(&likeness(name, &b.name)));
+            let nearest = nearest(name, curves.iter().map(|c| c.name.as_str()));
             let fault = value.fault(format!("there is no curve \"{}\"", name.escape_debug()));
             return Err(match nearest {
-                Some(near) => fault.remedy(format!("The nearest name is \"{}\"", near.name)),
+                Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
                 None => fault.remedy("Add it as [[curve]]"),
             });
         }
     }
     Ok(names)
-}
-
-fn likeness(a: &str, b: &str) -> f64 {
-    strsim::jaro_winkler(a, b)
 }
 
 fn new_name(table: &Table<'_>, names: &mut BTreeSet<String>, what: &str) -> Result<String, Fault> {

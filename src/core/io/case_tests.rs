@@ -142,7 +142,7 @@ fn refusals_say_what_where_and_what_to_do() {
 
 #[test]
 fn an_arc_keeps_its_sense_and_a_full_turn_is_exact() {
-    let arc = |from: &str, to: &str| {
+    let arc = |from: &str, to: &str| -> Result<(f64, f64), Fault> {
         let text = format!("kind = \"arc\"\ncentre = [0.5, 0.5]\nfrom_angle = {from}\nto_angle = {to}");
         let case = parse(&PLATE.replacen("kind = \"circle\"\ncentre = [0.5, 0.5]", &text, 1))?;
         let DomainSource::Curves { curves, .. } = case.domain else { panic!() };
