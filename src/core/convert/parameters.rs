@@ -164,7 +164,7 @@ impl Parameters {
 /// The fault of a key that nobody knows: names the nearest known one, or all of them where none is near.
 pub fn unknown_key(key: &str, known: &[&str]) -> Fault {
     let nearest = nearest(key, known.iter().copied());
-    let fault = Fault::new(format!("the key \"{key}\" is not known"));
+    let fault = Fault::new(format!("The key \"{key}\" is not known"));
     match nearest {
         Some(near) => fault.remedy(format!("The nearest known one is \"{near}\"")),
         _ => fault.remedy(format!("Known here: {}", known.join(", "))),

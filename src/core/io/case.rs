@@ -68,9 +68,9 @@ impl Case {
     /// What the system says of the file, or see [`Case::parse`].
     pub fn read(path: &Path) -> Result<Case, Fault> {
         let place = path.display().to_string();
-        let refuse = |error: std::io::Error| Fault::new(format!("the case cannot be read ({error})")).at(place.clone());
+        let refuse = |error: std::io::Error| Fault::new(format!("The case cannot be read ({error})")).at(place.clone());
         if path.is_dir() {
-            return Err(Fault::new("this is a directory").at(place).remedy("Name a case file"));
+            return Err(Fault::new("This is a directory").at(place).remedy("Name a case file"));
         }
         let mut bytes = Vec::new();
         File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes)).map_err(refuse)?;
@@ -85,10 +85,10 @@ impl Case {
     /// Bytes that are not UTF-8 or far too many, or see [`Case::parse`].
     pub fn from_bytes(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
         if bytes.len() as u64 > LONGEST {
-            return Err(Fault::new("the file is far too long for a case").at(file).remedy("Name a case file"));
+            return Err(Fault::new("The file is far too long for a case").at(file).remedy("Name a case file"));
         }
         let text = std::str::from_utf8(bytes).map_err(|error| {
-            Fault::new(format!("the file is not text (byte {})", error.valid_up_to()))
+            Fault::new(format!("The file is not text (byte {})", error.valid_up_to()))
                 .at(file)
                 .remedy("Name a TOML case file; meshes are known by their extension")
         })?;
@@ -106,7 +106,7 @@ impl Case {
         let source = Source { file, text };
         let document = DeTable::parse(text).map_err(|error| {
             let place = error.span().map_or(file.to_owned(), |span| source.place(span.start));
-            Fault::new(format!("this is not TOML: {}", error.message().replace('\n', ", ")))
+            Fault::new(format!("This is not TOML: {}", error.message().replace('\n', ", ")))
                 .at(place)
                 .remedy("See assets/cases/README.md for how a case is written")
         })?;
@@ -162,7 +162,7 @@ impl Case {
 
 fn check_version(table: &Table<'_>) -> Result<(), Fault> {
     let value = table.get("version").ok_or_else(|| {
-        table.fault("the version of the case format is missing").remedy("Begin the file with version = 1")
+        table.fault("The version of the case format is missing").remedy("Begin the file with version = 1")
     })?;
     match value.count(1, u32::MAX)? {
         VERSION => Ok(()),
@@ -181,7 +181,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         for key in ["curve", "face"] {
             if let Some(value) = table.get(key) {
                 return Err(value
-                    .fault(format!("the case has a mesh and a {key}"))
+                    .fault(format!("The case has a mesh and a {key}"))
                     .remedy(format!("Leave out either mesh or every [[{key}]]")));
             }
         }
@@ -193,7 +193,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
     let curves = case_geometry::curves(table)?;
     let faces = case_geometry::faces(table, &curves)?;
     if faces.is_empty() {
-        return Err(table.fault("the case has no face").remedy("Add [[curve]] and [[face]], or mesh = \"...\""));
+        return Err(table.fault("The case has no face").remedy("Add [[curve]] and [[face]], or mesh = \"...\""));
     }
     Ok(DomainSource::Curves { curves, faces })
 }
@@ -201,10 +201,10 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
 fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) -> Result<(), Fault> {
     match domain {
         DomainSource::Curves { .. } if fields.is_empty() => Err(table
-            .fault("the case has no metric")
+            .fault("The case has no metric")
             .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1")),
         DomainSource::Mesh { sol: Some(_), .. } if !fields.is_empty() => {
-            Err(table.fault("the case has sol and [[metric]]").remedy("Leave one of them out"))
+            Err(table.fault("The case has sol and [[metric]]").remedy("Leave one of them out"))
         }
         _ => Ok(()),
     }

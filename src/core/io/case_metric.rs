@@ -6,9 +6,6 @@ use crate::core::fault::Fault;
 use crate::core::geometry::domain::CurveSpec;
 use crate::core::metric::field::FieldSpec;
 
-/// Names that formulas know already.
-const TAKEN: [&str; 7] = ["x", "y", "z", "u", "v", "pi", "e"];
-
 /// Reads the metric fields; boundary layers name curves that must be there.
 pub(super) fn fields(document: &Table<'_>, curves: &[CurveSpec]) -> Result<Vec<FieldSpec>, Fault> {
     document.tables("metric")?.iter().map(|table| field(table, curves)).collect()
@@ -59,16 +56,7 @@ fn formula(table: &Table<'_>) -> Result<FieldSpec, Fault> {
     let mut helpers: Vec<(String, String)> = Vec::new();
     if let Some(value) = table.get("let") {
         for entry in value.table()?.entries() {
-            let name = entry.key();
-            let mut letters = name.chars();
-            let is_name = letters.next().is_some_and(|c| c.is_ascii_alphabetic())
-                && letters.all(|c| c.is_ascii_alphanumeric() || c == '_');
-            if !is_name || TAKEN.contains(&name) {
-                return Err(entry
-                    .fault(format!("\"{}\" cannot be the name of a helper", name.escape_debug()))
-                    .remedy(format!("Use letters, digits and _, beginning with a letter; not {}", TAKEN.join(", "))));
-            }
-            helpers.push((name.to_owned(), entry.formula()?));
+            helpers.push((entry.key().to_owned(), entry.formula()?));
         }
     }
     table.need("h1", "\"0.1 + 0.05*x\"")?;

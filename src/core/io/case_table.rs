@@ -74,7 +74,7 @@ impl<'a> Table<'a> {
     /// The value of a key that must be there.
     pub fn need(&self, key: &str, example: &str) -> Result<Value<'a>, Fault> {
         self.get(key).ok_or_else(|| {
-            self.fault(format!("the key \"{key}\" is missing")).remedy(format!("Write for example {key} = {example}"))
+            self.fault(format!("The key \"{key}\" is missing")).remedy(format!("Write for example {key} = {example}"))
         })
     }
 

@@ -12,4 +12,5 @@ mod case_table;
 mod case_geometry;
 mod case_metric;
 pub mod case;
+pub mod built_in;
 pub mod report;
