@@ -41,7 +41,8 @@ pub fn firm(a: DVec2, b: DVec2, c: DVec2) -> bool {
     let coordinate = a.abs().max(b.abs()).max(c.abs()).max_element();
     twice_area > 0.0
         && twice_area >= 1e-7 * longest2
-        && twice_area * twice_area >= (256.0 * f64::EPSILON * coordinate) * (256.0 * f64::EPSILON * coordinate) * longest2
+        && twice_area * twice_area
+            >= (256.0 * f64::EPSILON * coordinate) * (256.0 * f64::EPSILON * coordinate) * longest2
 }
 
 #[cfg(test)]

@@ -370,8 +370,10 @@ impl Mesh {
         for (new, &old) in nodes.iter().enumerate() {
             new_node[old as usize] = new as u32;
         }
-        let mut elements: Vec<(u32, u32)> =
-            self.elements().map(|e| (self.corners(e).map(|n| new_node[n.index()]).min().unwrap_or(NONE), e.0)).collect();
+        let mut elements: Vec<(u32, u32)> = self
+            .elements()
+            .map(|e| (self.corners(e).map(|n| new_node[n.index()]).min().unwrap_or(NONE), e.0))
+            .collect();
         elements.sort_unstable();
         let mut new_element = vec![NONE; self.sides.len()];
         for (new, &(_, old)) in elements.iter().enumerate() {
