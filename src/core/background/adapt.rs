@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 use crate::core::fault::Fault;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
-use crate::core::mesh::quality::{length_over, triangle_quality};
+use crate::core::mesh::quality::{length_over, quality_over};
 use crate::core::metric::field::{BadMetric, MetricSource};
 use crate::core::metric::tensor::Metric2;
 use crate::core::progress::{Stage, Watch};
@@ -100,9 +100,14 @@ impl Adapter<'_> {
     /// Divides all edges longer than unit, longest first, until there are none; what a division makes is swapped to the
     /// Delaunay triangulation of the metric at once.
     fn refine(&mut self, watch: &mut dyn Watch) -> Result<(), Fault> {
+        let mut ordered = self.mesh.element_count();
         loop {
-            let sampled = self.mesh.element_count() < SAMPLED;
-            let found = self.long_edges(sampled)?;
+            // New nodes are strewn over memory; put in order as the mesh grows, all passes stay near linear.
+            if self.mesh.element_count() > 2 * ordered {
+                self.mesh = self.mesh.reordered();
+                ordered = self.mesh.element_count();
+            }
+            let found = self.long_edges(self.mesh.element_count() < SAMPLED)?;
             let expected = found.iter().map(|f| f.length as u64).sum::<u64>() * 2 + self.mesh.element_count() as u64;
             watch.tell(Stage::Adapt, self.mesh.element_count() as u64, expected);
             let before = self.done.divisions;
@@ -129,7 +134,7 @@ impl Adapter<'_> {
                 found.push(Found { length, h, from, to });
             }
         }
-        found.sort_unstable_by(|f, g| g.length.total_cmp(&f.length).then(f.h.cmp(&g.h)));
+        found.sort_unstable_by_key(|f| (std::cmp::Reverse(length_class(f.length)), f.h));
         Ok(found)
     }
 
@@ -235,7 +240,7 @@ impl Adapter<'_> {
             .map(|h| Found { length: mesh.length(h), h, from: mesh.origin(h), to: mesh.target(h) })
             .filter(|f| f.length < SHORT && !(mesh.is_fixed(f.from) && mesh.is_fixed(f.to)))
             .collect();
-        found.sort_unstable_by(|f, g| f.length.total_cmp(&g.length).then(f.h.cmp(&g.h)));
+        found.sort_unstable_by_key(|f| (length_class(f.length), f.h));
         for f in found {
             if !self.still_there(f) {
                 continue;
@@ -308,7 +313,7 @@ impl Adapter<'_> {
             let place = here + (there - here) * step;
             let Ok(metric) = self.source.metric(place) else { continue };
             let after = star.iter().fold(f64::INFINITY, |least, &[b, c]| {
-                least.min(triangle_quality(
+                least.min(quality_over(
                     [place, mesh.uv(b), mesh.uv(c)],
                     [&metric, mesh.metric_ref(b), mesh.metric_ref(c)],
                 ))
@@ -321,6 +326,12 @@ impl Adapter<'_> {
         }
         Ok(())
     }
+}
+
+/// Lengths within a quarter of an octave count as equal: what is nearly as urgent is done in the order of memory.
+fn length_class(length: f64) -> i64 {
+    // The exponent and the upper two bits of the fraction, as the number's own bits have them.
+    (length.to_bits() >> 50) as i64
 }
 
 /// A field that fails inside the domain, as a person is told of it.

@@ -3,4 +3,6 @@
 pub mod parameters;
 pub mod matching;
 pub mod last_resort;
+pub mod energy;
+pub mod clean_up;
 pub mod finish;

@@ -54,7 +54,7 @@ mod tests {
         let (a, c) = (DVec2::new(0.5, 0.5), DVec2::new(24.0, 24.0));
         for (i, j) in [(1.0, 0.0), (0.0, 1.0), (3.0, 2.0)] {
             let b = DVec2::new(12.0 + i * f64::EPSILON * 8.0, 12.0 + j * f64::EPSILON * 8.0);
-            assert_eq!(orient(a, b, c) > 0.0, j > i, "{i} {j}");
+            assert_eq!(orient(a, b, c) > 0.0, i > j, "{i} {j}");
             assert!(orient(a, b, c) != 0.0);
         }
         assert_eq!(orient(a, DVec2::splat(12.0), c), 0.0);

@@ -5,6 +5,7 @@ use glam::DVec2;
 
 use super::half_edge::Mesh;
 use super::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::metric::measure::{quad_quality, triangle_quality};
 use crate::core::metric::tensor::Metric2;
 
 /// Length of `d` over two metrics: the logarithmic mean of the lengths in each (spec 2.1), by the approximation
@@ -17,32 +18,13 @@ pub fn length_over(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
     (4.0 * (l_a * l_b).sqrt() + l_a + l_b) / 6.0
 }
 
-/// Quality of a triangle, 4 sqrt(3) A / (sum of squared side lengths), in the mean of its nodes' metrics; 1 for an
-/// equilateral one, negative for an inverted one. Independent of the size that the metrics ask for.
+/// Quality of a triangle in the mean of its nodes' metrics (quality does not depend on the size that a metric asks for,
+/// so that the sum serves).
 #[inline]
-pub fn triangle_quality(p: [DVec2; 3], m: [&Metric2; 3]) -> f64 {
-    let mean = mean3(m);
-    let (ab, bc, ca) = (p[1] - p[0], p[2] - p[1], p[0] - p[2]);
-    let area = 0.5 * ab.perp_dot(-ca) * mean.det().sqrt();
-    6.928_203_230_275_509 * area / (mean.norm2(ab) + mean.norm2(bc) + mean.norm2(ca))
-}
-
-#[inline]
-fn mean3(m: [&Metric2; 3]) -> Metric2 {
-    Metric2 { uu: m[0].uu + m[1].uu + m[2].uu, uv: m[0].uv + m[1].uv + m[2].uv, vv: m[0].vv + m[1].vv + m[2].vv }
-}
-
-/// Quality of a quadrilateral (spec 2.1.5): the least over its corners of 2 sqrt(det M) x(a, b) / (a M a + b M b), with
-/// the corner's metric M and its two sides a, b; 1 for a square of the metric, not positive for one that is not convex.
-#[inline]
-pub fn quad_quality(p: [DVec2; 4], m: [&Metric2; 4]) -> f64 {
-    let mut least = f64::INFINITY;
-    for k in 0..4 {
-        let (a, b) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
-        let q = 2.0 * m[k].det().sqrt() * a.perp_dot(b) / (m[k].norm2(a) + m[k].norm2(b));
-        least = least.min(q);
-    }
-    least
+pub fn quality_over(p: [DVec2; 3], m: [&Metric2; 3]) -> f64 {
+    let sum =
+        Metric2 { uu: m[0].uu + m[1].uu + m[2].uu, uv: m[0].uv + m[1].uv + m[2].uv, vv: m[0].vv + m[1].vv + m[2].vv };
+    triangle_quality(&sum, p[0], p[1], p[2])
 }
 
 impl Mesh {
@@ -58,20 +40,20 @@ impl Mesh {
         length_over(&self.metric(a), &self.metric(b), self.uv(b) - self.uv(a))
     }
 
-    /// Quality of an element: see [`triangle_quality`] and [`quad_quality`].
+    /// Quality of an element: [`quality_over`] for a triangle, [`quad_quality`] for a quadrilateral.
     pub fn quality(&self, e: ElementId) -> f64 {
         if self.is_triangle(e) {
             let n = self.triangle(e);
             self.triangle_quality(n)
         } else {
             let n = self.quad(e);
-            quad_quality(n.map(|n| self.uv(n)), n.each_ref().map(|&n| self.metric_ref(n)))
+            quad_quality(n.map(|n| self.metric_ref(n)), n.map(|n| self.uv(n)))
         }
     }
 
     /// Quality that a triangle of these nodes has or would have.
     #[inline]
     pub fn triangle_quality(&self, n: [NodeId; 3]) -> f64 {
-        triangle_quality(n.map(|n| self.uv(n)), n.each_ref().map(|&n| self.metric_ref(n)))
+        quality_over(n.map(|n| self.uv(n)), n.map(|n| self.metric_ref(n)))
     }
 }

@@ -1,4 +1,16 @@
 //! Symmetric positive definite tensors: the metric of the plane (eq. 3) and of space (eqs. 2, 11).
+//!
+//! Here: the types, how they are made, and their products. What needs eigenvalues (logarithms, intersection) is in
+//! [`super::spectrum`].
+
+use glam::{DVec2, DVec3};
+
+/// Largest ratio of two sizes in one tensor. Beyond it, the squares of the sizes differ by more than double precision can
+/// hold in one tensor whose axes are askew.
+pub const LARGEST_ANISOTROPY: f64 = 1e7;
+
+/// Sizes beyond these bounds would leave the range of numbers when squared and multiplied.
+const SIZE_RANGE: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
 /// A metric in the parametric plane: `M = [[uu, uv], [uv, vv]]` of eq. (3), units 1 / parametric length squared.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,30 +40,276 @@ pub struct Metric3 {
     pub zz: f64,
 }
 
+/// Refuses sizes that are not positive and finite, or too far apart; the names are those of eq. (11).
+#[inline]
+pub(super) fn check_sizes(h: &[f64]) -> Result<(), String> {
+    let (mut smallest, mut largest) = (f64::INFINITY, 0.0f64);
+    for (i, &h_i) in h.iter().enumerate() {
+        if !SIZE_RANGE.contains(&h_i) {
+            let why = if h_i.is_nan() || h_i.is_infinite() {
+                "is not finite"
+            } else if h_i <= 0.0 {
+                "is not positive"
+            } else if h_i < 1.0 {
+                "is too small"
+            } else {
+                "is too large"
+            };
+            return Err(format!("h{} = {h_i} {why}", i + 1));
+        }
+        (smallest, largest) = (smallest.min(h_i), largest.max(h_i));
+    }
+    if largest > LARGEST_ANISOTROPY * smallest {
+        return Err(format!(
+            "the sizes {smallest} and {largest} differ by a factor of more than {LARGEST_ANISOTROPY:e}"
+        ));
+    }
+    Ok(())
+}
+
+/// Orthonormal directions by Gram-Schmidt: the first keeps its direction, the second its plane with the first.
+///
+/// # Errors
+/// A direction that is zero, not finite, or lies in the span of those before it; the names are those of eq. (11).
+#[inline]
+pub fn orthonormal(g: [DVec3; 3]) -> Result<[DVec3; 3], String> {
+    let mut frame = [DVec3::ZERO; 3];
+    for i in 0..3 {
+        let length = g[i].length();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(format!("g{} = ({}, {}, {}) is no direction", i + 1, g[i].x, g[i].y, g[i].z));
+        }
+        let mut rest = g[i] / length;
+        for e in &frame[..i] {
+            rest -= rest.dot(*e) * *e;
+        }
+        let left = rest.length();
+        if left < 1e-9 {
+            let others = if i == 1 { "parallel to g1" } else { "in the plane of g1 and g2" };
+            return Err(format!("g{} = ({}, {}, {}) is {others}", i + 1, g[i].x, g[i].y, g[i].z));
+        }
+        rest /= left;
+        if left < 0.1 {
+            // Once more: what the subtraction left was mostly rounding.
+            for e in &frame[..i] {
+                rest -= rest.dot(*e) * *e;
+            }
+            rest = rest.normalize();
+        }
+        frame[i] = rest;
+    }
+    Ok(frame)
+}
+
 impl Metric2 {
-    /// d^T M d.
+    /// The same size `h` in all directions.
     #[inline]
-    pub fn norm2(&self, d: glam::DVec2) -> f64 {
-        self.inner(d, d)
+    pub fn isotropic(h: f64) -> Metric2 {
+        let lambda = 1.0 / (h * h);
+        Metric2 { uu: lambda, uv: 0.0, vv: lambda }
     }
-    /// a^T M b.
+
+    /// Eq. (11) in the plane: size `h[0]` in the direction `g1`, which need not be a unit vector, `h[1]` across it.
+    ///
+    /// # Errors
+    /// Sizes that are not positive and finite or more than [`LARGEST_ANISOTROPY`] apart; a direction that is zero or not
+    /// finite.
     #[inline]
-    pub fn inner(&self, a: glam::DVec2, b: glam::DVec2) -> f64 {
-        self.uu * a.x * b.x + self.uv * (a.x * b.y + a.y * b.x) + self.vv * a.y * b.y
+    pub fn from_sizes(h: [f64; 2], g1: DVec2) -> Result<Metric2, String> {
+        check_sizes(&h)?;
+        let length = g1.length();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(format!("g1 = ({}, {}) is no direction", g1.x, g1.y));
+        }
+        Ok(Metric2::from_eigen([1.0 / (h[0] * h[0]), 1.0 / (h[1] * h[1])], [g1 / length, (g1 / length).perp()]))
     }
+
+    /// `sum of lambda_k g_k g_k^T` for orthonormal `g`.
+    #[inline]
+    pub fn from_eigen(lambda: [f64; 2], g: [DVec2; 2]) -> Metric2 {
+        Metric2 {
+            uu: lambda[0] * g[0].x * g[0].x + lambda[1] * g[1].x * g[1].x,
+            uv: lambda[0] * g[0].x * g[0].y + lambda[1] * g[1].x * g[1].y,
+            vv: lambda[0] * g[0].y * g[0].y + lambda[1] * g[1].y * g[1].y,
+        }
+    }
+
     /// Determinant.
     #[inline]
     pub fn det(&self) -> f64 {
         self.uu * self.vv - self.uv * self.uv
     }
-    /// Positive definite.
+
+    /// Whether it is finite and positive definite.
     #[inline]
     pub fn is_spd(&self) -> bool {
-        self.uu > 0.0 && self.det() > 0.0 && self.uu.is_finite() && self.vv.is_finite()
+        let det = self.det();
+        self.uu > 0.0 && self.vv > 0.0 && det > 0.0 && det.is_finite()
     }
-    /// Smallest size.
-    pub fn min_size(&self) -> f64 {
-        let (m, r) = (0.5 * (self.uu + self.vv), 0.5 * (self.uu - self.vv));
-        1.0 / (m + (r * r + self.uv * self.uv).sqrt()).sqrt()
+
+    /// `M d`.
+    #[inline]
+    pub fn times(&self, d: DVec2) -> DVec2 {
+        DVec2::new(self.uu * d.x + self.uv * d.y, self.uv * d.x + self.vv * d.y)
+    }
+
+    /// Inner product `du^T M dv`.
+    #[inline]
+    pub fn inner(&self, du: DVec2, dv: DVec2) -> f64 {
+        du.dot(self.times(dv))
+    }
+
+    /// Squared length `d^T M d`.
+    #[inline]
+    pub fn norm2(&self, d: DVec2) -> f64 {
+        self.uu * d.x * d.x + 2.0 * self.uv * d.x * d.y + self.vv * d.y * d.y
+    }
+
+    /// All sizes multiplied by `size_factor` (positive).
+    #[inline]
+    #[must_use]
+    pub fn scaled(&self, size_factor: f64) -> Metric2 {
+        let s = 1.0 / (size_factor * size_factor);
+        Metric2 { uu: s * self.uu, uv: s * self.uv, vv: s * self.vv }
+    }
+}
+
+impl Metric3 {
+    /// The same size `h` in all directions.
+    #[inline]
+    pub fn isotropic(h: f64) -> Metric3 {
+        let lambda = 1.0 / (h * h);
+        Metric3 { xx: lambda, xy: 0.0, xz: 0.0, yy: lambda, yz: 0.0, zz: lambda }
+    }
+
+    /// Eq. (11): size `h[k]` in the direction `g[k]`; the directions are made orthonormal by [`orthonormal`].
+    ///
+    /// # Errors
+    /// Sizes that are not positive and finite or more than [`LARGEST_ANISOTROPY`] apart; directions that are zero, not finite,
+    /// parallel or in one plane.
+    #[inline]
+    pub fn from_sizes(h: [f64; 3], g: [DVec3; 3]) -> Result<Metric3, String> {
+        check_sizes(&h)?;
+        Ok(Metric3::from_eigen(h.map(|h| 1.0 / (h * h)), orthonormal(g)?))
+    }
+
+    /// `sum of lambda_k g_k g_k^T` for orthonormal `g`.
+    #[inline]
+    pub fn from_eigen(lambda: [f64; 3], g: [DVec3; 3]) -> Metric3 {
+        let [a, b, c] = [lambda[0] * g[0], lambda[1] * g[1], lambda[2] * g[2]];
+        Metric3 {
+            xx: a.x * g[0].x + b.x * g[1].x + c.x * g[2].x,
+            xy: a.x * g[0].y + b.x * g[1].y + c.x * g[2].y,
+            xz: a.x * g[0].z + b.x * g[1].z + c.x * g[2].z,
+            yy: a.y * g[0].y + b.y * g[1].y + c.y * g[2].y,
+            yz: a.y * g[0].z + b.y * g[1].z + c.y * g[2].z,
+            zz: a.z * g[0].z + b.z * g[1].z + c.z * g[2].z,
+        }
+    }
+
+    /// Determinant.
+    #[inline]
+    pub fn det(&self) -> f64 {
+        self.xx * (self.yy * self.zz - self.yz * self.yz) - self.xy * (self.xy * self.zz - self.yz * self.xz)
+            + self.xz * (self.xy * self.yz - self.yy * self.xz)
+    }
+
+    /// Whether it is finite and positive definite.
+    #[inline]
+    pub fn is_spd(&self) -> bool {
+        self.cholesky().is_some()
+    }
+
+    /// Whether z is an axis of the tensor, as it is in planar domains.
+    #[inline]
+    pub fn is_planar(&self) -> bool {
+        self.xz == 0.0 && self.yz == 0.0
+    }
+
+    /// The lower triangular L of `M = L L^T`; `None` where M is not positive definite and finite.
+    #[inline]
+    pub(super) fn cholesky(&self) -> Option<Lower3> {
+        let xx = self.xx.sqrt();
+        let (yx, zx) = (self.xy / xx, self.xz / xx);
+        let yy = (self.yy - yx * yx).sqrt();
+        let zy = (self.yz - zx * yx) / yy;
+        let zz = (self.zz - zx * zx - zy * zy).sqrt();
+        // The roots of what is not positive are NaN or zero, and what is not finite ends in the last pivot or is one.
+        let positive = xx > 0.0 && yy > 0.0 && zz > 0.0;
+        (positive && xx.is_finite() && yy.is_finite() && zz.is_finite()).then_some(Lower3 { xx, yx, yy, zx, zy, zz })
+    }
+
+    /// `M d`.
+    #[inline]
+    pub fn times(&self, d: DVec3) -> DVec3 {
+        DVec3::new(
+            self.xx * d.x + self.xy * d.y + self.xz * d.z,
+            self.xy * d.x + self.yy * d.y + self.yz * d.z,
+            self.xz * d.x + self.yz * d.y + self.zz * d.z,
+        )
+    }
+
+    /// Inner product `du^T M dv`.
+    #[inline]
+    pub fn inner(&self, du: DVec3, dv: DVec3) -> f64 {
+        du.dot(self.times(dv))
+    }
+
+    /// Squared length `d^T M d`.
+    #[inline]
+    pub fn norm2(&self, d: DVec3) -> f64 {
+        self.inner(d, d)
+    }
+
+    /// All sizes multiplied by `size_factor` (positive).
+    #[inline]
+    #[must_use]
+    pub fn scaled(&self, size_factor: f64) -> Metric3 {
+        self.times_number(1.0 / (size_factor * size_factor))
+    }
+
+    #[inline]
+    fn times_number(&self, s: f64) -> Metric3 {
+        Metric3 { xx: s * self.xx, xy: s * self.xy, xz: s * self.xz, yy: s * self.yy, yz: s * self.yz, zz: s * self.zz }
+    }
+
+    /// Eq. (3): `J^T M3D J` with `J = [r_u r_v]`.
+    #[inline]
+    pub fn pull_back(&self, r_u: DVec3, r_v: DVec3) -> Metric2 {
+        let m_v = self.times(r_v);
+        Metric2 { uu: self.norm2(r_u), uv: r_u.dot(m_v), vv: r_v.dot(m_v) }
+    }
+
+    /// Eq. (3) in the plane, where J is the identity above a zero row.
+    #[inline]
+    pub fn plane(&self) -> Metric2 {
+        Metric2 { uu: self.xx, uv: self.xy, vv: self.yy }
+    }
+}
+
+/// A lower triangular 3x3 matrix.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lower3 {
+    pub xx: f64,
+    pub yx: f64,
+    pub yy: f64,
+    pub zx: f64,
+    pub zy: f64,
+    pub zz: f64,
+}
+
+impl Lower3 {
+    /// `L^-1 b`.
+    #[inline]
+    pub fn solve(&self, b: DVec3) -> DVec3 {
+        let x = b.x / self.xx;
+        let y = (b.y - self.yx * x) / self.yy;
+        DVec3::new(x, y, (b.z - self.zx * x - self.zy * y) / self.zz)
+    }
+
+    /// `L b`.
+    #[inline]
+    pub fn times(&self, b: DVec3) -> DVec3 {
+        DVec3::new(self.xx * b.x, self.yx * b.x + self.yy * b.y, self.zx * b.x + self.zy * b.y + self.zz * b.z)
     }
 }
