@@ -1,5 +1,6 @@
 //! From triangles to quadrilaterals. For now the guarantee alone (spec 2.10) and what makes its mesh better (spec 10).
 
+pub mod parameters;
 pub mod matching;
 pub mod last_resort;
 pub mod energy;
