@@ -136,7 +136,15 @@ fn runs_along(corner: DVec2, p: DVec2, q: DVec2, tolerance: f64) -> bool {
 /// The first place where two pieces meet, by halving the one that bulges more.
 fn meet(a: Arc, b: Arc, shared: &[DVec2], limits: Limits) -> Option<Meeting> {
     let mut stack = vec![(a, b, 0)];
+    // After a first touch the search goes on for a while, to tell the place well or to find a crossing.
+    let (mut touch, mut patience): (Option<(f64, DVec2)>, u32) = (None, 500);
     while let Some((a, b, depth)) = stack.pop() {
+        if touch.is_some() {
+            patience -= 1;
+            if patience == 0 {
+                break;
+            }
+        }
         let distance = chord_distance(&a, &b);
         if distance > a.bulge + b.bulge + limits.tolerance {
             continue;
@@ -173,11 +181,11 @@ fn meet(a: Arc, b: Arc, shared: &[DVec2], limits: Limits) -> Option<Meeting> {
             continue;
         }
         let p = nearest_end(&a, &b);
-        if !near(p) {
-            return Some(Meeting::Touches(p));
+        if !near(p) && touch.is_none_or(|(least, _)| distance < least) {
+            touch = Some((distance, p));
         }
     }
-    None
+    touch.map(|(_, p)| Meeting::Touches(p))
 }
 
 /// Where two chords cross in their insides, exactly decided, the place rounded.
@@ -220,7 +228,7 @@ fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits) -
             let verb = if matches!(meeting, Meeting::Crosses(_)) { "crosses" } else { "touches" };
             (format!("The curve \"{}\" {verb} itself", a.name), "Move its points apart".to_owned())
         }
-        Meeting::Touches(_) if is_end(a) != is_end(b) => {
+        _ if is_end(a) != is_end(b) => {
             let (end, whole) = if is_end(a) { (a, b) } else { (b, a) };
             (
                 format!("The end of \"{}\" touches \"{}\" inside", end.name, whole.name),
@@ -232,7 +240,7 @@ fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits) -
             "Move one of them, or divide both there, so that they share an end point".to_owned(),
         ),
         Meeting::Touches(_) => (
-            format!("The curves \"{}\" and \"{}\" touch", a.name, b.name),
+            format!("The curves \"{}\" and \"{}\" touch or cross", a.name, b.name),
             "Keep them apart, or let them meet at end points only".to_owned(),
         ),
     };

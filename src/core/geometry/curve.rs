@@ -157,6 +157,18 @@ impl Curve {
         }
     }
 
+    /// Point and derivative by `t` at once.
+    pub fn at(&self, t: f64) -> (DVec2, DVec2) {
+        match &self.path {
+            Path::Nurbs(nurbs) => {
+                let (first, last) = nurbs.basis().domain();
+                let (p, d) = nurbs.at(knot_parameter(nurbs, t));
+                (p, (last - first) * d)
+            }
+            _ => (self.point(t), self.derivative(t)),
+        }
+    }
+
     /// Where it begins.
     pub fn start(&self) -> DVec2 {
         self.point(0.0)

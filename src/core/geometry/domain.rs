@@ -425,6 +425,12 @@ fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCurve>,
                 .remedy("Rename one of them"));
         }
     }
+    for face in faces {
+        if let Some(i) = std::iter::once(&face.outer).chain(&face.holes).position(Vec::is_empty) {
+            let what = format!("The {} has no curves", loop_name(face, i));
+            return Err(placed(Fault::new(what).remedy("Name the curves of a closed loop"), &face.place));
+        }
+    }
     // How each curve is used: its kind, and for an internal line the face.
     let mut used: Vec<Option<(CurveKind, u32)>> = vec![None; specs.len()];
     let mut loops_by_spec: Vec<Vec<Vec<usize>>> = Vec::new();

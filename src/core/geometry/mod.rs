@@ -9,4 +9,4 @@ pub mod crossing;
 pub mod inside;
 pub mod domain;
 #[cfg(test)]
-pub mod fixtures;
+pub(crate) mod fixtures;

@@ -1,4 +1,4 @@
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use super::super::fixtures::*;
 use super::*;
@@ -192,7 +192,7 @@ fn crossings_are_refused_and_placed() {
     let says = refusal(with(vec![segment("c", (0.5, 0.5), (1.5, 0.5))], SQUARE, &[], "c"));
     assert!(says.contains("\"east\" and \"c\" cross") && says.contains("(1, 0.5)"), "{says}");
     let says = refusal(with(vec![circle("h", (0.9, 0.5), 0.2)], SQUARE, &["h"], ""));
-    assert!(says.contains("\"east\" and \"h\" cross"), "{says}");
+    assert!(says.contains("\"east\" and \"h\"") && says.contains("cross"), "{says}");
     let eight = polyline("eight", &[(0.2, 0.2), (0.8, 0.8), (0.8, 0.2), (0.2, 0.8)], true);
     let says = refusal(with(vec![eight], SQUARE, &["eight"], ""));
     assert!(says.contains("\"eight\" crosses itself") && says.contains("(0.5, 0.5)"), "{says}");
@@ -202,7 +202,7 @@ fn crossings_are_refused_and_placed() {
 fn shallow_crossings_of_curves_are_found_though_their_chords_miss() {
     // The circle pokes through the side by a ten-millionth.
     let says = refusal(with(vec![circle("h", (0.5, 0.3 - 1e-7), 0.3)], SQUARE, &["h"], ""));
-    assert!(says.contains("\"south\" and \"h\" cross"), "{says}");
+    assert!(says.contains("\"south\" and \"h\"") && says.contains("cross"), "{says}");
     built(with(vec![circle("h", (0.5, 0.3 + 1e-7), 0.3)], SQUARE, &["h"], ""));
 }
 
@@ -295,9 +295,8 @@ fn many_curves_are_built_quickly() {
     points.extend([(19_999.0, -50.0), (0.0, -50.0)]);
     let mut curves = vec![polyline("comb", &points, true)];
     let holes: Vec<String> = (0..400).map(|i| format!("h{i}")).collect();
-    curves.extend(holes.iter().enumerate().map(|(i, n)| circle(n, (20.0 + 45.0 * i as f64, -25.0), 20.0)));
+    curves.extend(holes.iter().enumerate().map(|(i, n)| circle(n, (30.0 + 45.0 * i as f64, -25.0), 20.0)));
     let names: Vec<&str> = holes.iter().map(String::as_str).collect();
     let domain = built((curves, vec![face("f", "comb", &names, "", "")]));
     assert_eq!(domain.faces[0].walks.len(), 401);
-    let _ = TAU;
 }
