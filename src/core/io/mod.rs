@@ -3,10 +3,12 @@
 pub mod mesh_file;
 pub mod save;
 pub mod scan;
+pub mod numbering;
 pub mod msh;
 pub mod medit;
 pub mod vtu;
 pub mod obj;
 pub mod inp;
+pub mod format;
 pub mod case;
 pub mod report;
