@@ -1,12 +1,17 @@
 //! The numbers that files give to nodes and elements: sparse, in any order, from anywhere.
 
 /// From a file's numbers to indices.
-#[derive(Clone, Debug, Default)]
-pub struct Numbering {
-    /// Number and index, by number.
-    pairs: Vec<(u64, u32)>,
-    /// Whether the numbers are a run without gaps: then no search is needed.
-    run: bool,
+#[derive(Clone, Debug)]
+pub enum Numbering {
+    /// Thing `i` is called `first + i`, as nearly always.
+    Run {
+        /// The number of the first.
+        first: u64,
+        /// How many there are.
+        count: u32,
+    },
+    /// Number and index of each, by number.
+    Sparse(Vec<(u64, u32)>),
 }
 
 impl Numbering {
@@ -15,29 +20,32 @@ impl Numbering {
     /// # Errors
     /// The first number that is used twice.
     pub fn new(numbers: &[u64]) -> Result<Self, u64> {
-        let mut pairs: Vec<(u64, u32)> = (0u32..).zip(numbers).map(|(i, &number)| (number, i)).collect();
+        let first = numbers.first().copied().unwrap_or(0);
+        if numbers.iter().zip(0..).all(|(&number, i)| number.checked_sub(first) == Some(i)) {
+            return Ok(Numbering::Run { first, count: numbers.len() as u32 });
+        }
+        let mut pairs: Vec<(u64, u32)> = numbers.iter().copied().zip(0..).collect();
         if !pairs.is_sorted() {
             pairs.sort_unstable();
         }
-        if let Some(twice) = pairs.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            return Err(twice[0].0);
+        match pairs.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            Some(twice) => Err(twice[0].0),
+            None => Ok(Numbering::Sparse(pairs)),
         }
-        let run = match (pairs.first(), pairs.last()) {
-            (Some(first), Some(last)) => last.0 - first.0 == pairs.len() as u64 - 1,
-            _ => false,
-        };
-        Ok(Numbering { pairs, run })
     }
 
     /// The index of the thing called `number`.
     #[inline]
     pub fn index(&self, number: u64) -> Option<u32> {
-        let place = if self.run {
-            usize::try_from(number.checked_sub(self.pairs[0].0)?).ok()?
-        } else {
-            self.pairs.binary_search_by_key(&number, |pair| pair.0).ok()?
-        };
-        self.pairs.get(place).map(|pair| pair.1)
+        match self {
+            Numbering::Run { first, count } => {
+                let index = number.checked_sub(*first)?;
+                (index < u64::from(*count)).then_some(index as u32)
+            }
+            Numbering::Sparse(pairs) => {
+                pairs.binary_search_by_key(&number, |pair| pair.0).ok().map(|place| pairs[place].1)
+            }
+        }
     }
 }
 

@@ -104,6 +104,15 @@ impl<'a> Scanner<'a> {
         Some(rest[..long].trim_ascii())
     }
 
+    /// A scanner over what stands before the next `end` (or all of the rest), which is where this one goes.
+    pub fn part_before(&mut self, end: u8) -> Scanner<'a> {
+        let mut part = self.clone();
+        let long = self.bytes[self.at..].iter().position(|&b| b == end).unwrap_or(self.left());
+        self.at += long;
+        part.bytes = &self.bytes[..self.at];
+        part
+    }
+
     /// What stands before the next `end`, and on behind it; `None` when there is none.
     pub fn until(&mut self, end: u8) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
@@ -194,6 +203,18 @@ impl<'a> Scanner<'a> {
     pub fn real(&mut self, what: &str) -> Result<f64, Fault> {
         let word = self.need(what)?;
         parse_real(word).ok_or_else(|| self.unlike(word, what))
+    }
+
+    /// All words that are left as numbers of any kind.
+    ///
+    /// # Errors
+    /// When one is none.
+    pub fn reals(&mut self) -> Result<Vec<f64>, Fault> {
+        let mut values = Vec::new();
+        while let Some(word) = self.word() {
+            values.push(parse_real(word).ok_or_else(|| self.unlike(word, "a number"))?);
+        }
+        Ok(values)
     }
 
     /// The next word as a finite number.

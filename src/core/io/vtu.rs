@@ -157,7 +157,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
                     return Err(s.fault_at(mark, "The array is not inline text").remedy(AS_TEXT));
                 }
                 let components = attribute(tag, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
-                let values = values(&mut s)?;
+                let values = s.part_before(b'<').reals()?;
                 let name = attribute(tag, "Name").unwrap_or_default();
                 arrays.push(Array { room: room.clone(), name, components, values, mark });
             }
@@ -188,15 +188,6 @@ fn attribute(tag: &[u8], name: &str) -> Option<String> {
         }
         rest = after;
     }
-}
-
-/// The numbers up to the next tag.
-fn values(s: &mut Scanner) -> Result<Vec<f64>, Fault> {
-    let mut values = Vec::new();
-    while s.peek().is_some_and(|word| word[0] != b'<') {
-        values.push(s.real("a number")?);
-    }
-    Ok(values)
 }
 
 fn assemble(s: &Scanner, name: &str, arrays: Vec<Array>) -> Result<MeshFile, Fault> {

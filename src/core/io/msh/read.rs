@@ -305,15 +305,10 @@ impl Reader<'_> {
                 }
             }
         }
+        sort_by_number(&mut numbers, &mut self.file.points, &mut []);
         let numbering = Numbering::new(&numbers);
-        let Ok(_) = numbering else {
-            let twice = numbering.err().unwrap_or_default();
-            return Err(self.input.scanner.fault_at(start, format!("Node {twice} comes twice")));
-        };
-        if !numbers.is_sorted() {
-            sort_by_number(&mut numbers, &mut self.file.points, &mut []);
-        }
-        self.nodes = Numbering::new(&numbers).ok();
+        self.nodes =
+            Some(numbering.map_err(|twice| self.input.scanner.fault_at(start, format!("Node {twice} comes twice")))?);
         Ok(())
     }
 
