@@ -340,7 +340,8 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut XorShift) {
             return;
         }
         let at = random.below(bytes.len());
-        let to = (at + 1 + random.below(if random.below(4) == 0 { 40 } else { 2 })).min(bytes.len());
+        let longest = if random.below(4) == 0 { 40 } else { 2 };
+        let to = (at + 1 + random.below(longest)).min(bytes.len());
         match random.below(6) {
             0 => bytes[at] = random.below(256) as u8,
             1 => bytes[at] ^= 1 << random.below(8),
