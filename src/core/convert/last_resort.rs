@@ -27,8 +27,8 @@ use super::t_join::t_join;
 use crate::core::geometry::predicates::{convex, firm};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::metric::measure::quad_quality;
 use crate::core::metric::field::{BadMetric, MetricSource};
+use crate::core::metric::measure::quad_quality;
 use crate::core::metric::tensor::Metric2;
 
 /// What the last resort did.
@@ -51,6 +51,20 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// The sums of two outcomes.
+    #[must_use]
+    pub fn plus(&self, other: &Outcome) -> Outcome {
+        Outcome {
+            triangles: self.triangles + other.triangles,
+            merged: self.merged + other.merged,
+            rotations: self.rotations + other.rotations,
+            template_quads: self.template_quads + other.template_quads,
+            divided: self.divided + other.divided,
+            unmatched: self.unmatched + other.unmatched,
+            unmatched_at_all: self.unmatched_at_all + other.unmatched_at_all,
+        }
+    }
+
     /// All quadrilaterals made.
     pub fn quads(&self) -> usize {
         self.merged + 2 * self.rotations + self.template_quads

@@ -8,3 +8,4 @@ pub mod last_resort;
 pub mod energy;
 pub mod clean_up;
 pub mod finish;
+pub mod conversion;
