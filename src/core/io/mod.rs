@@ -13,4 +13,5 @@ mod case_geometry;
 mod case_metric;
 pub mod case;
 pub mod built_in;
+pub mod statistics;
 pub mod report;
