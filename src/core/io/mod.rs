@@ -3,6 +3,7 @@
 pub mod mesh_file;
 pub mod save;
 pub mod scan;
+pub mod numbering;
 pub mod msh;
 pub mod medit;
 pub mod vtu;
@@ -11,6 +12,7 @@ pub mod inp;
 mod case_table;
 mod case_geometry;
 mod case_metric;
+pub mod format;
 pub mod case;
 pub mod built_in;
 pub mod statistics;
