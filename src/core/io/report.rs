@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::io;
 
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
+use serde_json::ser::{Formatter, PrettyFormatter};
 
 use super::case::Case;
 use super::statistics::{Angles, Range, Statistics};
@@ -98,11 +100,13 @@ impl LastResort {
 }
 
 impl Report {
-    /// The report as indented JSON with a final line break.
+    /// The report as indented JSON, lists of numbers on one line, with a final line break.
     pub fn json(&self) -> String {
-        let mut text = serde_json::to_string_pretty(self).expect("a report has nothing that JSON has not");
-        text.push('\n');
-        text
+        let mut bytes = Vec::new();
+        let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, ListsOnOneLine::default());
+        self.serialize(&mut serializer).expect("a report has nothing that JSON has not");
+        bytes.push(b'\n');
+        String::from_utf8(bytes).expect("JSON is UTF-8")
     }
 
     /// The report in a few lines for people, with a final line break.
@@ -152,6 +156,32 @@ impl Report {
             row("time", times(&self.timing));
         }
         text
+    }
+}
+
+/// JSON with objects indented and arrays, which are histograms here, on one line.
+#[derive(Default)]
+struct ListsOnOneLine(PrettyFormatter<'static>);
+
+impl Formatter for ListsOnOneLine {
+    fn begin_object<W: ?Sized + io::Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.0.begin_object(out)
+    }
+
+    fn end_object<W: ?Sized + io::Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.0.end_object(out)
+    }
+
+    fn begin_object_key<W: ?Sized + io::Write>(&mut self, out: &mut W, first: bool) -> io::Result<()> {
+        self.0.begin_object_key(out, first)
+    }
+
+    fn begin_object_value<W: ?Sized + io::Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.0.begin_object_value(out)
+    }
+
+    fn end_object_value<W: ?Sized + io::Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.0.end_object_value(out)
     }
 }
 
