@@ -15,4 +15,5 @@ mod case_metric;
 pub mod format;
 pub mod case;
 pub mod built_in;
+pub mod statistics;
 pub mod report;
