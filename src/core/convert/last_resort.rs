@@ -51,6 +51,20 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// The sums of two outcomes.
+    #[must_use]
+    pub fn plus(&self, other: &Outcome) -> Outcome {
+        Outcome {
+            triangles: self.triangles + other.triangles,
+            merged: self.merged + other.merged,
+            recut: self.recut + other.recut,
+            template_quads: self.template_quads + other.template_quads,
+            divided: self.divided + other.divided,
+            unmatched: self.unmatched + other.unmatched,
+            unmatched_at_all: self.unmatched_at_all + other.unmatched_at_all,
+        }
+    }
+
     /// All quadrilaterals made.
     pub fn quads(&self) -> usize {
         self.merged + self.recut + self.template_quads

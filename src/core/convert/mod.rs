@@ -1,5 +1,6 @@
 //! From triangles to quadrilaterals. For now the guarantee alone (spec 2.10) and what makes its mesh better (spec 10).
 
+pub mod parameters;
 pub mod component;
 pub mod matching;
 mod t_join;
@@ -7,3 +8,4 @@ pub mod last_resort;
 pub mod energy;
 pub mod clean_up;
 pub mod finish;
+pub mod conversion;

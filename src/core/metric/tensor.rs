@@ -313,3 +313,126 @@ impl Lower3 {
         DVec3::new(self.xx * b.x, self.yx * b.x + self.yy * b.y, self.zx * b.x + self.zy * b.y + self.zz * b.z)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const DIAGONAL: [DVec3; 3] = [DVec3::new(-1.0, 1.0, 0.0), DVec3::new(3.0, 3.0, 0.0), DVec3::new(0.0, 0.0, 0.1)];
+
+    #[test]
+    fn eq_11_gives_each_size_along_its_direction() {
+        let m = Metric3::from_sizes([0.1, 2.0, 5.0], DIAGONAL).unwrap();
+        for (h, g) in [0.1, 2.0, 5.0].into_iter().zip(DIAGONAL) {
+            assert!((m.norm2(h * g.normalize()) - 1.0).abs() < 1e-12);
+        }
+        assert!(m.is_spd() && m.is_planar());
+        assert!((m.det() - 1.0).abs() < 1e-12);
+        let plane = Metric2::from_sizes([0.1, 2.0], DVec2::new(-1.0, 1.0)).unwrap();
+        assert!((m.plane().uu - plane.uu).abs() + (m.plane().uv - plane.uv).abs() < 1e-12);
+    }
+
+    #[test]
+    fn directions_along_axes_give_diagonal_tensors_exactly() {
+        let m = Metric3::from_sizes([0.5, 0.25, 2.0], [2.0 * DVec3::Y, -DVec3::X, DVec3::new(1.0, 5.0, 3.0)]).unwrap();
+        assert_eq!(m, Metric3 { xx: 16.0, xy: 0.0, xz: 0.0, yy: 4.0, yz: 0.0, zz: 0.25 });
+    }
+
+    #[test]
+    fn directions_are_made_orthonormal() {
+        let g = orthonormal([DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 1.0 + 1e-7, 0.0), DVec3::new(1.0, 0.0, 1e-5)])
+            .unwrap();
+        for i in 0..3 {
+            for j in 0..3 {
+                let expected = if i == j { 1.0 } else { 0.0 };
+                assert!((g[i].dot(g[j]) - expected).abs() < 1e-14, "{i} {j}");
+            }
+        }
+        assert!((g[0] - DVec3::new(1.0, 1.0, 0.0).normalize()).length() < 1e-15);
+    }
+
+    #[test]
+    fn parallel_zero_and_infinite_directions_are_refused_by_name() {
+        let unit = [DVec3::X, DVec3::Y, DVec3::Z];
+        let refusal = |i: usize, g: DVec3| {
+            let mut frame = unit;
+            frame[i] = g;
+            Metric3::from_sizes([1.0; 3], frame).unwrap_err()
+        };
+        assert!(refusal(1, DVec3::new(-3.0, 0.0, 0.0)).contains("g2 = (-3, 0, 0) is parallel to g1"));
+        assert!(refusal(2, DVec3::new(1.0, 1.0, 0.0)).contains("g3 = (1, 1, 0) is in the plane of g1 and g2"));
+        assert!(refusal(0, DVec3::ZERO).contains("g1"));
+        assert!(refusal(1, DVec3::NAN).contains("g2"));
+        assert!(refusal(2, DVec3::INFINITY).contains("g3"));
+        assert!(Metric2::from_sizes([1.0, 1.0], DVec2::ZERO).unwrap_err().contains("g1"));
+    }
+
+    #[test]
+    fn sizes_that_are_no_sizes_are_refused_by_name_and_value() {
+        for (h, message) in [
+            (0.0, "h2 = 0 is not positive"),
+            (-0.5, "h2 = -0.5 is not positive"),
+            (f64::NAN, "h2 = NaN is not finite"),
+            (f64::INFINITY, "h2 = inf is not finite"),
+            (f64::NEG_INFINITY, "h2 = -inf is not finite"),
+            (1e-200, "is too small"),
+            (1e200, "is too large"),
+            (1e-8, "differ by a factor"),
+        ] {
+            let error = Metric3::from_sizes([1.0, h, 1.0], [DVec3::X, DVec3::Y, DVec3::Z]).unwrap_err();
+            assert!(error.contains(message), "{error}");
+            assert!(Metric2::from_sizes([1.0, h], DVec2::X).unwrap_err().contains(message));
+        }
+    }
+
+    #[test]
+    fn what_is_not_positive_definite_is_told() {
+        let m = Metric2 { uu: 1.0, uv: 0.5, vv: 1.0 };
+        assert!(m.is_spd());
+        for bad in [
+            Metric2 { uv: 1.0, ..m },
+            Metric2 { uu: -1.0, vv: -1.0, ..m },
+            Metric2 { uu: f64::NAN, ..m },
+            Metric2 { uu: f64::INFINITY, ..m },
+            Metric2 { uu: 0.0, uv: 0.0, ..m },
+        ] {
+            assert!(!bad.is_spd(), "{bad:?}");
+        }
+        let m = Metric3::isotropic(2.0);
+        assert!(m.is_spd());
+        for bad in [
+            Metric3 { xy: 0.25, ..m },
+            Metric3 { yz: 0.3, ..m },
+            Metric3 { zz: -0.1, ..m },
+            Metric3 { xx: f64::NAN, ..m },
+            Metric3 { zz: f64::INFINITY, ..m },
+            Metric3 { xz: f64::NAN, ..m },
+        ] {
+            assert!(!bad.is_spd(), "{bad:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn eq_3_measures_tangent_vectors_as_space_does(
+            c in prop::array::uniform6(-2.0..2.0f64), d in prop::array::uniform2(-1.0..1.0f64), h in 0.01..3.0f64,
+        ) {
+            let (r_u, r_v) = (DVec3::new(c[0], c[1], c[2]), DVec3::new(c[3], c[4], c[5]));
+            let m3 = Metric3::from_sizes([h, 0.5, 2.0], [DVec3::new(1.0, 2.0, 3.0), DVec3::X, DVec3::Y]).unwrap();
+            let m2 = m3.pull_back(r_u, r_v);
+            let in_space = m3.norm2(d[0] * r_u + d[1] * r_v);
+            prop_assert!((m2.norm2(DVec2::from_array(d)) - in_space).abs() <= 1e-9 * in_space.max(1.0));
+            prop_assert_eq!(m3.pull_back(DVec3::X, DVec3::Y), m3.plane());
+        }
+
+        #[test]
+        fn scaling_multiplies_all_sizes(h in 0.01..10.0f64, ratio in 1.0..1e4f64, s in 0.01..100.0f64, t in 0.0..7.0f64) {
+            let m = Metric2::from_sizes([h, h * ratio], DVec2::from_angle(t)).unwrap();
+            let direct = Metric2::from_sizes([s * h, s * h * ratio], DVec2::from_angle(t)).unwrap();
+            let scaled = m.scaled(s);
+            let difference = (scaled.uu - direct.uu).abs() + (scaled.uv - direct.uv).abs() + (scaled.vv - direct.vv).abs();
+            prop_assert!(difference < 1e-12 * (direct.uu + direct.vv));
+        }
+    }
+}

@@ -167,14 +167,7 @@ fn any_even_region_becomes_convex_quads_with_its_boundary_as_it_was() {
         random_regions(round, &mut Random::new(round), &mut |_, mesh, part| {
             let plan = Plan::new(mesh, part, &Uniform).expect("the region is even and its triangles are firm");
             carry_out_and_check(mesh, part, &plan);
-            let outcome = plan.outcome();
-            total.triangles += outcome.triangles;
-            total.merged += outcome.merged;
-            total.recut += outcome.recut;
-            total.template_quads += outcome.template_quads;
-            total.divided += outcome.divided;
-            total.unmatched += outcome.unmatched;
-            total.unmatched_at_all += outcome.unmatched_at_all;
+            total = total.plus(&plan.outcome());
             regions += 1;
         });
     }
