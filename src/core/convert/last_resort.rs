@@ -1,13 +1,15 @@
 //! The last resort (spec 2.10): any component with an even number of positive triangles becomes strictly convex
 //! quadrilaterals, its boundary untouched.
 //!
-//! 1. A maximum matching of neighbouring triangles whose union is strictly convex ([`super::matching`]).
+//! 1. A maximum matching of neighbouring triangles whose union is strictly convex and not close to a triangle
+//!    ([`super::matching`]).
 //! 2. What it leaves over is matched over other inner edges, searches using as few of them as they can.
 //! 3. What is left over even then is linked by paths, so that every triangle has one or three edges in a T-join
 //!    (module `t_join`).
-//! 4. A pair whose union is not convex is cut anew together with up to three pairs around it, where that gives convex
-//!    quadrilaterals (what swaps of edges and matching again would look for, found directly and at its best).
-//! 5. Two triangles that have only each other in the join and a convex union are merged. Every other edge of the join is
+//! 4. A pair whose union is not such is cut anew together with up to three pairs around it, where that gives good
+//!    quadrilaterals (what swaps of edges and matching again would look for, found directly and at its best), or filled
+//!    together with them around one new node (`recut`).
+//! 5. Two triangles that have only each other in the join and such a union are merged. Every other edge of the join is
 //!    divided at its middle, and its triangles are filled by templates.
 //!
 //! Why this always succeeds: neighbours agree on which edges are divided; the templates are affine images of strictly
@@ -24,7 +26,7 @@ use smallvec::SmallVec;
 use super::component::{Dual, NONE};
 use super::matching::Matching;
 use super::t_join::t_join;
-use crate::core::geometry::predicates::{convex, firm};
+use crate::core::geometry::predicates::{convex, firm, orient};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::metric::field::{BadMetric, MetricSource};
@@ -38,7 +40,7 @@ pub struct Outcome {
     pub triangles: usize,
     /// Quadrilaterals that are two merged triangles.
     pub merged: usize,
-    /// Quadrilaterals that were cut anew from several pairs, one of which was not convex.
+    /// Quadrilaterals that were cut anew from several pairs, one of which could not be merged.
     pub recut: usize,
     /// Quadrilaterals of the templates.
     pub template_quads: usize,
@@ -106,7 +108,7 @@ impl std::error::Error for Stuck {}
 pub enum Means {
     /// Two triangles merge.
     Merge,
-    /// A few pairs of triangles become as many quadrilaterals, cut otherwise than the pairs.
+    /// A few pairs of triangles become as many quadrilaterals, or one more, cut otherwise than the pairs.
     Recut,
     /// Edges are divided and templates fill the triangles between them.
     Templates,
@@ -211,7 +213,23 @@ struct Pair {
     nodes: [u32; 4],
     /// The sides of the triangles that lie on the outline: `outline[k]` from `nodes[k]` to the next.
     outline: [u32; 4],
-    convex: bool,
+    /// Whether the two can be merged: see [`firm_quad`].
+    firm: bool,
+}
+
+/// Least share of a quadrilateral that the triangle at a corner must have, in halves of the whole.
+///
+/// A corner that is straight but for rounding (three points of an arc or of a straight side with a middle) makes a
+/// quadrilateral that is strictly convex by the letter, and that nothing can mend where its nodes are fixed. The share
+/// is 1 for a parallelogram, and affine maps keep it: the measure knows nothing of the metric, which may fit badly.
+const FLAT: f64 = 0.05;
+
+/// Whether a quadrilateral is strictly convex, exactly, and not close to a triangle.
+#[inline]
+fn firm_quad([a, b, c, d]: [DVec2; 4]) -> bool {
+    let (at_a, at_b, at_c, at_d) = (orient(d, a, b), orient(a, b, c), orient(b, c, d), orient(c, d, a));
+    let least = at_a.min(at_b).min(at_c).min(at_d);
+    least > 0.0 && 2.0 * least >= FLAT * (at_a + at_c)
 }
 
 struct Planner<'a> {
@@ -245,7 +263,7 @@ impl<'a> Planner<'a> {
         };
         let mut planner = Planner { dual, source, join: Vec::new(), done: vec![false; n], plan };
         planner.join(allowed)?;
-        planner.merge_and_recut(allowed);
+        planner.merge_and_recut(allowed)?;
         planner.fill_with_templates()?;
         Ok(planner.plan)
     }
@@ -253,7 +271,7 @@ impl<'a> Planner<'a> {
     /// Steps 1 to 3.
     fn join(&mut self, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
         let dual = &self.dual;
-        let (mut convex, mut rank, mut other) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut firm, mut rank, mut other) = (Vec::new(), Vec::new(), Vec::new());
         for side in 0..dual.across.len() as u32 {
             let across = dual.across[side as usize];
             if across == NONE || across < side {
@@ -261,15 +279,15 @@ impl<'a> Planner<'a> {
             }
             let edge = [side / 3, across / 3];
             let pair = self.pair(side);
-            if pair.convex && allowed(Means::Merge, self.elements(edge)) {
-                convex.push(edge);
+            if pair.firm && allowed(Means::Merge, self.elements(edge)) {
+                firm.push(edge);
                 rank.push(self.quality(pair.nodes) as f32);
             } else if allowed(Means::Templates, self.elements(edge)) {
                 other.push(edge);
             }
         }
-        let mut matching = Matching::new(dual.triangles.len(), &convex, &other);
-        matching.start(&convex, &rank);
+        let mut matching = Matching::new(dual.triangles.len(), &firm, &other);
+        matching.start(&firm, &rank);
         matching.augment(false);
         self.plan.outcome.unmatched = matching.unmatched();
         if self.plan.outcome.unmatched > 0 {
@@ -281,7 +299,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Step 4 and the merges of step 5.
-    fn merge_and_recut(&mut self, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) {
+    fn merge_and_recut(&mut self, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
         let mut crooked = Vec::new();
         let mut straight = Vec::new();
         for t in 0..self.dual.triangles.len() as u32 {
@@ -290,7 +308,7 @@ impl<'a> Planner<'a> {
             };
             let pair = self.pair(side);
             let edge = [t, self.dual.across[side as usize] / 3];
-            if pair.convex && allowed(Means::Merge, self.elements(edge)) {
+            if pair.firm && allowed(Means::Merge, self.elements(edge)) {
                 straight.push(side);
             } else {
                 crooked.push(side);
@@ -298,7 +316,7 @@ impl<'a> Planner<'a> {
         }
         for side in crooked {
             if !self.done[(side / 3) as usize] {
-                self.recut(side, allowed);
+                self.recut(side, allowed)?;
             }
         }
         for side in straight {
@@ -310,6 +328,7 @@ impl<'a> Planner<'a> {
                 self.close_patch(Means::Merge, &[t, self.dual.across[side as usize] / 3]);
             }
         }
+        Ok(())
     }
 
     /// The templates of step 5, a patch for each part of the join that hangs together.
@@ -397,7 +416,11 @@ impl<'a> Planner<'a> {
             ]);
         }
         self.plan.outcome.template_quads += self.plan.quads.len() - first;
-        if self.plan.quads[first..].iter().all(|&quad| self.is_convex(quad)) {
+        let is_convex = |quad: &[u32; 4]| {
+            let [a, b, c, d] = quad.map(|n| self.uv(n));
+            convex(a, b, c, d)
+        };
+        if self.plan.quads[first..].iter().all(is_convex) {
             return Ok(());
         }
         let element = self.dual.triangles[t as usize];
@@ -451,13 +474,12 @@ impl<'a> Planner<'a> {
         let after = |side: u32| side / 3 * 3 + (side + 1) % 3;
         let outline = [after(side), after(after(side)), after(across), after(after(across))];
         let nodes = outline.map(|s| self.mesh().origin(self.dual.half_edge(s)).0);
-        Pair { nodes, outline, convex: self.is_convex(nodes) }
+        Pair { nodes, outline, firm: self.is_firm(nodes) }
     }
 
     #[inline]
-    fn is_convex(&self, quad: [u32; 4]) -> bool {
-        let [a, b, c, d] = quad.map(|n| self.uv(n));
-        convex(a, b, c, d)
+    fn is_firm(&self, quad: [u32; 4]) -> bool {
+        firm_quad(quad.map(|n| self.uv(n)))
     }
 
     #[inline]

@@ -228,18 +228,40 @@ fn a_triangle_with_three_leaves_is_filled_from_its_middle() {
 #[test]
 fn a_pair_that_is_not_convex_is_cut_anew_with_its_neighbour() {
     // The chevron 0-1-2-3 has its notch at 3; with the quadrilateral 1-0-4-5 beside it the cut 3-5 is better than 0-1.
-    let uv = [(0.0, 0.0), (1.0, -2.0), (4.0, 1.0), (1.5, 0.0), (-1.5, -1.5), (-0.5, -3.0)];
+    let uv = [(-1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.8), (-1.0, 0.0), (0.0, -0.2)];
     let uv = uv.map(|(x, y)| DVec2::new(x, y)).to_vec();
-    let triangles = vec![[0, 1, 3], [1, 2, 3], [1, 0, 4], [1, 4, 5]];
-    assert!(triangles.iter().all(|t| {
-        let [a, b, c] = t.map(|n: u32| uv[n as usize]);
-        positive(a, b, c)
-    }));
-    let mut mesh = mesh_of(uv, triangles);
+    let mut mesh = mesh_of(uv, vec![[0, 1, 3], [1, 2, 3], [1, 0, 4], [1, 4, 5]]);
     let component: Vec<ElementId> = mesh.elements().collect();
     let plan = Plan::new(&mesh, &component, &Uniform).expect("four is even");
     assert_eq!((plan.outcome().recut, plan.outcome().quads()), (2, 2));
     assert_eq!(plan.means(0), Means::Recut);
+    carry_out_and_check(&mut mesh, &component, &plan);
+    assert!(mesh.are_joined(NodeId(3), NodeId(5)));
+}
+
+#[test]
+fn two_triangles_on_a_bulging_boundary_are_filled_around_a_new_node() {
+    // Both 0-1-5 and 1-2-5 stand on the boundary 0-1-2, which bulges at 1: no cut without a new node is convex.
+    let uv = [(-1.0, 0.0), (0.0, 0.1), (1.0, 0.0), (1.8, 1.0), (0.9, 1.9), (0.0, 1.0)];
+    let uv = uv.map(|(x, y)| DVec2::new(x, y)).to_vec();
+    let mut mesh = mesh_of(uv, vec![[0, 1, 5], [1, 2, 5], [5, 2, 3], [5, 3, 4]]);
+    let component: Vec<ElementId> = mesh.elements().collect();
+    let plan = Plan::new(&mesh, &component, &Uniform).expect("four is even");
+    assert_eq!((plan.outcome().recut, plan.outcome().quads()), (3, 3));
+    carry_out_and_check(&mut mesh, &component, &plan);
+    assert_eq!(mesh.node_count(), 7);
+}
+
+#[test]
+fn a_corner_that_is_straight_but_for_rounding_is_not_merged() {
+    // By the letter 0-1-2-3 is strictly convex: 1 lies an ulp beside the line from 0 to 2.
+    let bulge = 1.0 - f64::EPSILON;
+    let uv = vec![DVec2::ZERO, DVec2::new(1.0, bulge), DVec2::new(2.0, 2.0), DVec2::new(0.0, 2.0)];
+    assert!(convex(uv[0], uv[1], uv[2], uv[3]));
+    let mut mesh = mesh_of(uv, vec![[0, 1, 3], [1, 2, 3]]);
+    let component: Vec<ElementId> = mesh.elements().collect();
+    let plan = Plan::new(&mesh, &component, &Uniform).expect("two is even");
+    assert_eq!((plan.outcome().merged, plan.outcome().template_quads), (0, 10));
     carry_out_and_check(&mut mesh, &component, &plan);
 }
 
