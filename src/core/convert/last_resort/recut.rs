@@ -25,7 +25,7 @@ struct Cut {
     pairs: Pairs,
 }
 
-/// Pairs of triangles, each by the lesser side of the edge between the two.
+/// Pairs of triangles, each by the lesser side of the edge between the two; ascending.
 type Pairs = SmallVec<[u32; MOST_PAIRS]>;
 
 /// The outline of some pairs of triangles that hang together.
@@ -74,7 +74,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Appends a ring with one more pair for every pair beside the given one.
+    /// Appends a ring with one more pair for every pair beside the given one, where it is not there already.
     fn grow(&self, place: usize, rings: &mut Vec<Ring>, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) {
         let ring = rings[place].clone();
         for k in 0..ring.corners.len() {
@@ -93,6 +93,15 @@ impl Planner<'_> {
             let at = (beside.outline.iter().position(|&s| s == across)).expect("the pair beside has the shared side");
             let mut more = ring.clone();
             more.pairs.push(inner);
+            more.pairs.sort_unstable();
+            if rings
+                .iter()
+                .rev()
+                .take_while(|known| known.pairs.len() == more.pairs.len())
+                .any(|known| known.pairs == more.pairs)
+            {
+                continue;
+            }
             more.corners[k].1 = beside.outline[(at + 1) % 4];
             more.corners.insert_many(k + 1, [2, 3].map(|i| (beside.nodes[(at + i) % 4], beside.outline[(at + i) % 4])));
             rings.push(more);
