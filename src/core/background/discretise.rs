@@ -367,7 +367,12 @@ fn speed(curve: &DomainCurve, metric: &dyn MetricSource, t: f64) -> Result<f64, 
             Fault::new(bad.what.clone()).at(format!("on the curve \"{}\" at {}", curve.name, told(bad.place.uv))),
         )
     })?;
-    Ok((m.uu * d.x * d.x + 2.0 * m.uv * d.x * d.y + m.vv * d.y * d.y).max(0.0).sqrt())
+    let square = m.uu * d.x * d.x + 2.0 * m.uv * d.x * d.y + m.vv * d.y * d.y;
+    if !square.is_finite() {
+        let fault = Fault::new(format!("The curve \"{}\" is no finite number of target sizes long", curve.name));
+        return Err(about(curve, fault.at(format!("at {}", told(p))).remedy("Ask for larger sizes there")));
+    }
+    Ok(square.max(0.0).sqrt())
 }
 
 /// Metric length between two parameters by three-point Gauss quadrature.

@@ -90,9 +90,7 @@ pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<TriangleS
 
 fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Clash>> {
     let edges = Edges::new(domain, divided)?;
-    let mut cdt = load(domain, divided)?;
-    let mut handles = vec![FixedVertexHandle::from_index(0); divided.nodes.len()];
-    cdt.vertices().for_each(|v| handles[v.data().node as usize] = v.fix());
+    let (mut cdt, handles) = load(domain, divided)?;
     edges.constrain(&mut cdt, &handles)?;
     let faces = edges.flood(&cdt, &handles)?;
 
@@ -130,29 +128,45 @@ pub fn roomy([a, b, c]: [DVec2; 3], largest: f64) -> bool {
     doubled > 0.0 && altitude >= FLATTEST * longest && altitude >= 256.0 * f64::EPSILON * largest
 }
 
-/// The Delaunay triangulation of the nodes. Scaled by a power of two, so that signs are those of the given coordinates.
-fn load(domain: &Domain, divided: &DividedDomain) -> Result<Cdt, Box<Clash>> {
+/// The Delaunay triangulation of the nodes, and where each is in it. Scaled by a power of two, so that signs are those of
+/// the given coordinates.
+///
+/// Nodes are inserted from coarse to fine along each curve: every round halves the steps of the one before, so that each
+/// insertion changes little and begins beside the one before. (spade's bulk loaders need quadratic time for nodes that
+/// lie on a few lines, and the one that takes constraints walks a hash set of std, whose order differs between runs.)
+fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVertexHandle>), Box<Clash>> {
     let largest = divided.nodes.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let scale = libm::ldexp(1.0, -libm::ilogb(largest));
-    let vertices: Vec<Vertex> = divided
-        .nodes
-        .iter()
-        .zip(0..)
-        .map(|(p, node)| Vertex { at: spade::mitigate_underflow(Point2::new(p.x * scale, p.y * scale)), node })
-        .collect();
-    // The bulk loader that takes constraints too walks a hash set of std: its result may differ from run to run.
-    let cdt = Cdt::bulk_load(vertices).map_err(|e| {
-        Box::new(Clash { curves: Vec::new(), fault: Fault::new(format!("The nodes cannot be triangulated: {e}")) })
-    })?;
-    if cdt.num_vertices() == divided.nodes.len() {
-        return Ok(cdt);
+    let n = divided.nodes.len();
+    let mut cdt = Cdt::with_capacity(n, 3 * n, 2 * n);
+    let mut handles = vec![FixedVertexHandle::from_index(0); n];
+    let mut insert = |node: u32| {
+        let p = divided.nodes[node as usize];
+        let at = spade::mitigate_underflow(Point2::new(p.x * scale, p.y * scale));
+        let count = cdt.num_vertices();
+        let failed = |e| {
+            Box::new(Clash { curves: Vec::new(), fault: Fault::new(format!("The nodes cannot be triangulated: {e}")) })
+        };
+        let handle = cdt.insert(Vertex { at, node }).map_err(failed)?;
+        if cdt.num_vertices() == count {
+            // It has taken the place of another one.
+            let other = handles.iter().position(|&h| h == handle).unwrap_or(0) as u32;
+            return Err(clash(domain, curves_through(domain, divided, &[other, node]), "come to the same point", p));
+        }
+        handles[node as usize] = handle;
+        Ok(())
+    };
+    (0..domain.vertices.len() as u32).try_for_each(&mut insert)?;
+    let longest = divided.chains.iter().map(Vec::len).max().unwrap_or(0);
+    let mut step = longest.next_power_of_two();
+    while step > 0 {
+        for chain in &divided.chains {
+            // Odd multiples of the step, but for the end.
+            chain[..chain.len() - 1].iter().skip(step).step_by(2 * step).copied().try_for_each(&mut insert)?;
+        }
+        step /= 2;
     }
-    let mut order: Vec<u32> = (0..divided.nodes.len() as u32).collect();
-    let key = |n: u32| divided.nodes[n as usize] * scale;
-    order.sort_by(|&a, &b| key(a).x.total_cmp(&key(b).x).then(key(a).y.total_cmp(&key(b).y)).then(a.cmp(&b)));
-    let same = order.windows(2).find(|w| key(w[0]) == key(w[1])).map_or([0, 0], |w| [w[0], w[1]]);
-    let curves = curves_through(domain, divided, &same);
-    Err(clash(domain, curves, "come to the same point", divided.nodes[same[0] as usize]))
+    Ok((cdt, handles))
 }
 
 /// The edges of the divided curves.
