@@ -53,3 +53,34 @@ pub struct MeshFile {
     /// Element types that the file has and that are not read, with their counts ("tetrahedron", 12).
     pub skipped: Vec<(String, usize)>,
 }
+
+impl MeshFile {
+    /// Whether every point lies in the plane z = 0.
+    pub fn is_flat(&self) -> bool {
+        self.points.iter().all(|p| p.z == 0.0)
+    }
+
+    /// The name of a group.
+    pub fn group_name(&self, dimension: u8, tag: u32) -> Option<&str> {
+        self.groups
+            .iter()
+            .find(|group| group.dimension == dimension && group.tag == tag)
+            .map(|group| group.name.as_str())
+    }
+}
+
+/// The tensor back, if it is finite and positive definite.
+pub fn positive_definite(m: Metric3) -> Option<Metric3> {
+    let xx = m.xx.sqrt();
+    let (yx, zx) = (m.xy / xx, m.xz / xx);
+    let yy = (m.yy - yx * yx).sqrt();
+    let zy = (m.yz - zx * yx) / yy;
+    let zz = (m.zz - zx * zx - zy * zy).sqrt();
+    // The roots of what is not positive are NaN or zero.
+    [xx, yy, zz].iter().all(|root| *root > 0.0 && root.is_finite()).then_some(m)
+}
+
+/// The tag of element `i`, 0 where there are no tags.
+pub(super) fn tag_of(tags: &[u32], i: usize) -> u32 {
+    tags.get(i).copied().unwrap_or(0)
+}

@@ -3,10 +3,17 @@
 pub mod mesh_file;
 pub mod save;
 pub mod scan;
+pub mod numbering;
 pub mod msh;
 pub mod medit;
 pub mod vtu;
 pub mod obj;
 pub mod inp;
+mod case_table;
+mod case_geometry;
+mod case_metric;
+pub mod format;
 pub mod case;
+pub mod built_in;
+pub mod statistics;
 pub mod report;

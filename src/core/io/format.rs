@@ -1,0 +1,132 @@
+//! Which format a file has, and the one way in and out for meshes.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::mesh_file::MeshFile;
+use super::save::{load, save};
+use super::{inp, medit, msh, obj, vtu};
+use crate::core::fault::Fault;
+
+/// The formats of meshes, read and written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Gmsh, `.msh`.
+    Msh,
+    /// Medit, `.mesh`, with the metric in `.sol` beside it.
+    Medit,
+    /// VTK XML, `.vtu`.
+    Vtu,
+    /// Wavefront, `.obj`.
+    Obj,
+    /// Abaqus, `.inp`.
+    Inp,
+}
+
+/// How to write.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Gmsh's version 2.2 instead of 4.1.
+    pub msh2: bool,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Format; 5] = [Format::Msh, Format::Medit, Format::Vtu, Format::Obj, Format::Inp];
+
+    /// The extension of its files, without the dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Msh => "msh",
+            Format::Medit => "mesh",
+            Format::Vtu => "vtu",
+            Format::Obj => "obj",
+            Format::Inp => "inp",
+        }
+    }
+
+    /// The format of a file by its extension, in capitals or not.
+    ///
+    /// # Errors
+    /// For an unknown extension, or none: the fault lists the known ones.
+    pub fn from_path(path: &Path) -> Result<Format, Fault> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        if let Some(&format) = Format::ALL.iter().find(|format| format.extension() == extension) {
+            return Ok(format);
+        }
+        let place = path.display().to_string();
+        if extension == "meshb" || extension == "solb" {
+            let text = &extension[..extension.len() - 1];
+            return Err(Fault::new("Medit's binary form is not read or written")
+                .at(place)
+                .remedy(format!("Use its text form, .{text}")));
+        }
+        let known: Vec<String> = Format::ALL.iter().map(|format| format!(".{}", format.extension())).collect();
+        let what = if extension.is_empty() {
+            "The name has no extension to tell the format by".to_string()
+        } else {
+            format!("The format \".{extension}\" is not known")
+        };
+        Err(Fault::new(what).at(place).remedy(format!("Known are {}", known.join(", "))))
+    }
+}
+
+/// Reads a mesh in the format of its extension. The metric comes from `sol` when given, which may be the `.sol` to a mesh
+/// of any format; otherwise a `.mesh` takes the `.sol` of the same stem beside it if there is one.
+///
+/// # Errors
+/// One fault with file, line and remedy for whatever is wrong.
+pub fn read_mesh(path: &Path, sol: Option<&Path>) -> Result<MeshFile, Fault> {
+    let format = Format::from_path(path)?;
+    let mut mesh = read_bytes(&path.display().to_string(), &load(path)?, format)?;
+    let beside = path.with_extension("sol");
+    let sol = sol.or_else(|| (format == Format::Medit && beside.is_file()).then_some(beside.as_path()));
+    if let Some(sol) = sol {
+        let bytes = load(sol)?;
+        mesh.metric = Some(medit::read_metric(&sol.display().to_string(), &bytes, mesh.points.len())?);
+    }
+    Ok(mesh)
+}
+
+/// Reads a mesh from bytes; `name` is how messages call them.
+///
+/// # Errors
+/// One fault with name, line and remedy for whatever is wrong.
+pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
+    if bytes.trim_ascii().is_empty() {
+        return Err(Fault::new("The file is empty").at(name).remedy("Write it again"));
+    }
+    match format {
+        Format::Msh => msh::read(name, bytes),
+        Format::Medit => medit::read(name, bytes),
+        Format::Vtu => vtu::read(name, bytes),
+        Format::Obj => obj::read(name, bytes),
+        Format::Inp => inp::read(name, bytes),
+    }
+}
+
+/// Writes a mesh to a stream. The metric of Medit, which is a file of its own, is not written.
+///
+/// # Errors
+/// What `out` says.
+pub fn write_to(out: &mut dyn Write, format: Format, mesh: &MeshFile, options: WriteOptions) -> io::Result<()> {
+    match format {
+        Format::Msh => msh::write(out, mesh, if options.msh2 { msh::Version::V2 } else { msh::Version::V4 }),
+        Format::Medit => medit::write(out, mesh),
+        Format::Vtu => vtu::write(out, mesh),
+        Format::Obj => obj::write(out, mesh),
+        Format::Inp => inp::write(out, mesh),
+    }
+}
+
+/// Writes a mesh to a file, whole or not at all; for Medit the metric goes to the `.sol` of the same stem.
+///
+/// # Errors
+/// A fault that names the file and says why it cannot be written.
+pub fn write_mesh(path: &Path, format: Format, mesh: &MeshFile, options: WriteOptions) -> Result<(), Fault> {
+    save(path, |out| write_to(out, format, mesh, options))?;
+    if let (Format::Medit, Some(metric)) = (format, &mesh.metric) {
+        save(&path.with_extension("sol"), |out| medit::write_metric(out, mesh, metric))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,575 @@
+//! Reading MSH: one path for text and binary, both versions.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use super::{METRIC, Shape, shape};
+use crate::core::fault::Fault;
+use crate::core::io::mesh_file::{Data, Group, MeshFile, positive_definite};
+use crate::core::io::numbering::{Numbering, sort_by_number};
+use crate::core::io::scan::{ByteOrder, Scanner, parse_integer, shown};
+use crate::core::metric::tensor::Metric3;
+
+/// Reads a mesh from the bytes of an MSH file; `name` is how messages call it.
+///
+/// Points come in the order of their node tags, elements in the order of theirs. The tag of an element is that of its
+/// first physical group, 0 where it is in none. Node data called "metric" with nine components becomes the metric;
+/// data of one component is kept where it has a value for every node, or every triangle and quadrilateral.
+///
+/// # Errors
+/// A fault with the line for everything that is not MSH 2.x or 4.1, and for what MSH allows and we do not read
+/// (elements of higher order).
+pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
+    let mut reader = Reader {
+        input: Input { scanner: Scanner::new(name, bytes), binary: None },
+        version: None,
+        file: MeshFile::default(),
+        nodes: None,
+        has_elements: false,
+        physical: FxHashMap::default(),
+        numbers: Default::default(),
+        elements: None,
+        skipped: BTreeMap::new(),
+    };
+    while let Some(line) = reader.input.scanner.line() {
+        if line.is_empty() {
+            continue;
+        }
+        let Some(section) = line.strip_prefix(b"$") else {
+            return Err(reader
+                .input
+                .scanner
+                .fault(format!("\"{}\" stands where a section (\"$Nodes\", ...) is expected", shown(line))));
+        };
+        reader.section(section)?;
+    }
+    let scanner = &reader.input.scanner;
+    if reader.nodes.is_none() || !reader.has_elements {
+        let missing = if reader.nodes.is_none() { "$Nodes" } else { "$Elements" };
+        return Err(Fault::new(format!("There is no section {missing}"))
+            .at(scanner.name())
+            .remedy("Save it with nodes and elements, without parametric coordinates"));
+    }
+    reader.file.skipped = reader.skipped.into_iter().map(|(name, count)| (name.to_string(), count)).collect();
+    Ok(reader.file)
+}
+
+/// The two versions that differ in their sections.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Version {
+    Two,
+    Four,
+}
+
+/// Numbers from text or from binary, by what the header says.
+struct Input<'a> {
+    scanner: Scanner<'a>,
+    binary: Option<ByteOrder>,
+}
+
+impl Input<'_> {
+    /// A C `int`.
+    fn int(&mut self, what: &str) -> Result<i64, Fault> {
+        match self.binary {
+            None => self.scanner.integer(what),
+            Some(order) => self.scanner.binary_i32(order, what).map(i64::from),
+        }
+    }
+
+    /// A tag: an `int` that is not negative.
+    fn tag(&mut self, what: &str) -> Result<u64, Fault> {
+        let tag = self.int(what)?;
+        u64::try_from(tag).map_err(|_| self.scanner.fault(format!("{tag} stands where {what} is expected")))
+    }
+
+    /// A C `size_t`.
+    fn size(&mut self, what: &str) -> Result<u64, Fault> {
+        match self.binary {
+            None => self.scanner.whole(what),
+            Some(order) => self.scanner.binary_u64(order, what),
+        }
+    }
+
+    /// A C `double`, which must be finite.
+    fn finite(&mut self, what: &str) -> Result<f64, Fault> {
+        let value = self.real(what)?;
+        self.scanner.must_be_finite(value, what)
+    }
+
+    fn real(&mut self, what: &str) -> Result<f64, Fault> {
+        match self.binary {
+            None => self.scanner.real(what),
+            Some(order) => self.scanner.binary_f64(order, what),
+        }
+    }
+
+    /// Whether `count` things can still come: of `text` bytes at least in text, of `binary` bytes in binary.
+    fn fits(&self, count: u64, text: usize, binary: usize, what: &str) -> Result<usize, Fault> {
+        self.scanner.fits(count, if self.binary.is_some() { binary } else { text }, what)
+    }
+
+    /// The count that stands in text on a line of its own, in binary files of version 2 too.
+    fn count_line(&mut self, text: usize, binary: usize, what: &str) -> Result<usize, Fault> {
+        let line = self.scanner.line().unwrap_or_default();
+        let count = parse_integer(line).and_then(|count| u64::try_from(count).ok());
+        let Some(count) = count else {
+            return Err(self.scanner.fault(format!("\"{}\" stands where {what} is expected", shown(line))));
+        };
+        self.fits(count, text, binary, what)
+    }
+}
+
+struct Reader<'a> {
+    input: Input<'a>,
+    version: Option<Version>,
+    file: MeshFile,
+    /// From node tags to indices, as soon as the nodes have been read.
+    nodes: Option<Numbering>,
+    has_elements: bool,
+    /// Version 4: the first physical group of an entity, by dimension and tag.
+    physical: FxHashMap<(i64, i64), u32>,
+    /// Element tags of lines, triangles and quadrilaterals.
+    numbers: [Vec<u64>; 3],
+    /// From element tags to indices (triangles first), made when data asks for it; `None` inside: tags are not unique.
+    elements: Option<Option<Numbering>>,
+    skipped: BTreeMap<&'static str, usize>,
+}
+
+impl Reader<'_> {
+    fn section(&mut self, section: &[u8]) -> Result<(), Fault> {
+        if section == b"MeshFormat" {
+            self.format()?;
+            return self.end(section);
+        }
+        let Some(version) = self.version else {
+            if section == b"Comments" {
+                return self.skip(section);
+            }
+            return Err(self
+                .input
+                .scanner
+                .fault(format!("The section \"${}\" stands before $MeshFormat", shown(section)))
+                .remedy("Save it as MSH 2.2 or 4.1"));
+        };
+        match (section, version) {
+            (b"PhysicalNames", _) => self.physical_names()?,
+            (b"Entities", Version::Four) => self.entities()?,
+            (b"Nodes", _) => self.nodes(version)?,
+            (b"Elements", _) => self.elements(version)?,
+            (b"NodeData" | b"ElementData", _) if self.has_elements => return self.data(section),
+            _ => return self.skip(section),
+        }
+        self.end(section)
+    }
+
+    /// Goes behind a section that is not read.
+    fn skip(&mut self, section: &[u8]) -> Result<(), Fault> {
+        let start = self.input.scanner.mark();
+        let end = [b"$End", section].concat();
+        if !self.input.scanner.skip_past(&end) {
+            let what = format!("The section \"${}\" has no end", shown(section));
+            return Err(self.input.scanner.fault_at(start, what).remedy("It seems to be cut off: write it again"));
+        }
+        self.input.scanner.line();
+        Ok(())
+    }
+
+    /// The end of a section that has been read whole.
+    fn end(&mut self, section: &[u8]) -> Result<(), Fault> {
+        let end = format!("$End{}", shown(section));
+        let word = self.input.scanner.need(&end)?;
+        if word != end.as_bytes() {
+            return Err(self
+                .input
+                .scanner
+                .fault(format!("\"{}\" stands where {end} is expected", shown(word)))
+                .remedy("The counts of this section do not agree with what is in it"));
+        }
+        self.input.scanner.line();
+        Ok(())
+    }
+
+    fn format(&mut self) -> Result<(), Fault> {
+        let scanner = &mut self.input.scanner;
+        if self.version.is_some() {
+            return Err(scanner.fault("$MeshFormat comes twice"));
+        }
+        let version = scanner.need("a version")?;
+        self.version = Some(match version {
+            b"4.1" => Version::Four,
+            b"2" | b"2.0" | b"2.1" | b"2.2" => Version::Two,
+            _ => {
+                let what = format!("MSH version {} is not read", shown(version));
+                return Err(scanner.fault(what).remedy("Save it as MSH 4.1 or 2.2"));
+            }
+        });
+        let binary = scanner.whole("the file type (0 text, 1 binary)")?;
+        let size = scanner.whole("the size of a number")?;
+        scanner.line();
+        if binary > 1 || size != 8 {
+            return Err(scanner.fault(format!("File type {binary} with numbers of {size} bytes is not read")));
+        }
+        if binary == 1 {
+            self.input.binary = match scanner.binary_i32(ByteOrder::Little, "the byte order")? {
+                1 => Some(ByteOrder::Little),
+                0x0100_0000 => Some(ByteOrder::Big),
+                other => return Err(scanner.fault(format!("The byte order mark is {other} and not 1"))),
+            };
+        }
+        Ok(())
+    }
+
+    fn physical_names(&mut self) -> Result<(), Fault> {
+        let scanner = &mut self.input.scanner;
+        let count = scanner.count("a number of names", 6)?;
+        for _ in 0..count {
+            let dimension = scanner.whole("a dimension")?;
+            let tag = scanner.whole("a physical tag")?;
+            let name = scanner.line().unwrap_or_default();
+            let name = name.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\"")).unwrap_or(name);
+            let Ok(tag) = u32::try_from(tag) else {
+                return Err(scanner.fault(format!("The physical tag {tag} is too large")));
+            };
+            if dimension < 3 {
+                let name = String::from_utf8_lossy(name).into_owned();
+                self.file.groups.push(Group { dimension: dimension as u8, tag, name });
+            }
+        }
+        Ok(())
+    }
+
+    /// Version 4: which physical groups the entities are in.
+    fn entities(&mut self) -> Result<(), Fault> {
+        let mut counts = [0; 4];
+        for count in &mut counts {
+            let read = self.input.size("a number of entities")?;
+            *count = self.input.fits(read, 10, 36, "a number of entities")?;
+        }
+        for (dimension, count) in (0..).zip(counts) {
+            for _ in 0..count {
+                let tag = self.input.int("the tag of an entity")?;
+                for _ in 0..if dimension == 0 { 3 } else { 6 } {
+                    self.input.real("the box of an entity")?;
+                }
+                let groups = self.input.size("a number of physical tags")?;
+                for place in 0..self.input.fits(groups, 2, 4, "a number of physical tags")? {
+                    // The sign says which way the group runs through the entity.
+                    let group = self.input.int("a physical tag")?.unsigned_abs();
+                    if let (0, Ok(group)) = (place, u32::try_from(group)) {
+                        self.physical.insert((dimension, tag), group);
+                    }
+                }
+                if dimension > 0 {
+                    let bounds = self.input.size("a number of bounding entities")?;
+                    for _ in 0..self.input.fits(bounds, 2, 4, "a number of bounding entities")? {
+                        self.input.int("the tag of a bounding entity")?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn nodes(&mut self, version: Version) -> Result<(), Fault> {
+        let start = self.input.scanner.mark();
+        if self.nodes.is_some() {
+            return Err(self.input.scanner.fault("$Nodes comes twice").remedy("Save it unpartitioned, as one mesh"));
+        }
+        let mut numbers = Vec::new();
+        match version {
+            Version::Two => {
+                let count = self.input.count_line(8, 28, "a number of nodes")?;
+                numbers.reserve_exact(count);
+                self.file.points.reserve_exact(count);
+                for _ in 0..count {
+                    numbers.push(self.input.tag("the number of a node")?);
+                    self.point()?;
+                }
+            }
+            Version::Four => {
+                let blocks = self.input.size("a number of blocks")?;
+                let total = self.input.size("a number of nodes")?;
+                let total = self.input.fits(total, 8, 32, "a number of nodes")?;
+                self.input.size("the smallest node tag")?;
+                self.input.size("the largest node tag")?;
+                numbers.reserve_exact(total);
+                self.file.points.reserve_exact(total);
+                for _ in 0..blocks {
+                    self.node_block(total, &mut numbers)?;
+                }
+                if numbers.len() != total {
+                    let what = format!("{total} nodes are announced and {} come", numbers.len());
+                    return Err(self.input.scanner.fault_at(start, what));
+                }
+            }
+        }
+        sort_by_number(&mut numbers, &mut self.file.points, &mut []);
+        let numbering = Numbering::new(&numbers);
+        self.nodes =
+            Some(numbering.map_err(|twice| self.input.scanner.fault_at(start, format!("Node {twice} comes twice")))?);
+        Ok(())
+    }
+
+    fn node_block(&mut self, total: usize, numbers: &mut Vec<u64>) -> Result<(), Fault> {
+        let dimension = self.input.int("the dimension of a block")?;
+        self.input.int("the entity of a block")?;
+        let parametric = self.input.int("0 or 1 (parametric)")? != 0;
+        let count = self.input.size("a number of nodes")?;
+        let count = self.input.fits(count, 8, 32, "a number of nodes")?;
+        if numbers.len() + count > total {
+            return Err(self.input.scanner.fault(format!("More than the {total} nodes that are announced come")));
+        }
+        for _ in 0..count {
+            numbers.push(self.input.size("the tag of a node")?);
+        }
+        for _ in 0..count {
+            self.point()?;
+            for _ in 0..if parametric { dimension.clamp(0, 3) } else { 0 } {
+                self.input.real("a parametric coordinate")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn point(&mut self) -> Result<(), Fault> {
+        let x = self.input.finite("a coordinate")?;
+        let y = self.input.finite("a coordinate")?;
+        let z = self.input.finite("a coordinate")?;
+        self.file.points.push(DVec3::new(x, y, z));
+        Ok(())
+    }
+
+    fn elements(&mut self, version: Version) -> Result<(), Fault> {
+        if self.has_elements || self.nodes.is_none() {
+            let what = if self.has_elements { "$Elements comes twice" } else { "$Elements stands before $Nodes" };
+            return Err(self.input.scanner.fault(what).remedy("Save it unpartitioned, as one mesh"));
+        }
+        let start = self.input.scanner.mark();
+        let mut come = 0u64;
+        let total = match (version, self.input.binary) {
+            (Version::Two, None) => {
+                let total = self.input.count_line(8, 8, "a number of elements")? as u64;
+                while come < total {
+                    let number = self.input.tag("the number of an element")?;
+                    let kind = self.input.int("an element type")?;
+                    let group = self.tags_of_version_2(None)?;
+                    self.element(kind, number, group)?;
+                    come += 1;
+                }
+                total
+            }
+            (Version::Two, Some(_)) => {
+                let total = self.input.count_line(8, 8, "a number of elements")? as u64;
+                while come < total {
+                    let kind = self.input.int("an element type")?;
+                    let count = self.input.tag("a number of elements")?;
+                    let tags = self.input.tag("a number of tags")?;
+                    for _ in 0..self.input.fits(count, 8, 8, "a number of elements")? {
+                        let number = self.input.tag("the number of an element")?;
+                        let group = self.tags_of_version_2(Some(tags))?;
+                        self.element(kind, number, group)?;
+                    }
+                    come += count;
+                }
+                total
+            }
+            (Version::Four, _) => {
+                let blocks = self.input.size("a number of blocks")?;
+                let total = self.input.size("a number of elements")?;
+                self.input.size("the smallest element tag")?;
+                self.input.size("the largest element tag")?;
+                for _ in 0..blocks {
+                    let dimension = self.input.int("the dimension of a block")?;
+                    let entity = self.input.int("the entity of a block")?;
+                    let group = self.physical.get(&(dimension, entity)).copied().unwrap_or(0);
+                    let kind = self.input.int("an element type")?;
+                    let count = self.input.size("a number of elements")?;
+                    for _ in 0..self.input.fits(count, 4, 16, "a number of elements")? {
+                        let number = self.input.size("the tag of an element")?;
+                        self.element(kind, number, group)?;
+                    }
+                    come += count;
+                }
+                total
+            }
+        };
+        if come != total {
+            let what = format!("{total} elements are announced and {come} come");
+            return Err(self.input.scanner.fault_at(start, what));
+        }
+        let [lines, triangles, quads] = &mut self.numbers;
+        let file = &mut self.file;
+        sort_by_number(lines, &mut file.lines, &mut file.line_tags);
+        sort_by_number(triangles, &mut file.triangles, &mut file.triangle_tags);
+        sort_by_number(quads, &mut file.quads, &mut file.quad_tags);
+        for tags in [&mut file.line_tags, &mut file.triangle_tags, &mut file.quad_tags] {
+            if tags.iter().all(|&tag| tag == 0) {
+                *tags = Vec::new();
+            }
+        }
+        self.has_elements = true;
+        Ok(())
+    }
+
+    /// The tags of an element of version 2, the first of which is its physical group. Their number stands before them
+    /// unless the block has told it.
+    fn tags_of_version_2(&mut self, told: Option<u64>) -> Result<u32, Fault> {
+        let count = match told {
+            Some(count) => count,
+            None => self.input.tag("a number of tags")?,
+        };
+        let mut group = 0;
+        for place in 0..self.input.fits(count, 2, 4, "a number of tags")? {
+            let tag = self.input.int("a tag")?.unsigned_abs();
+            if place == 0 {
+                group = u32::try_from(tag).unwrap_or(0);
+            }
+        }
+        Ok(group)
+    }
+
+    fn element(&mut self, kind: i64, number: u64, group: u32) -> Result<(), Fault> {
+        let Some(shape) = shape(kind) else {
+            return Err(self.input.scanner.fault(format!("Element type {kind} is not known")));
+        };
+        match shape {
+            Shape::Point => {
+                self.corners::<1>()?;
+            }
+            Shape::Line => {
+                let corners = self.corners()?;
+                self.file.lines.push(corners);
+                self.file.line_tags.push(group);
+                self.numbers[0].push(number);
+            }
+            Shape::Triangle => {
+                let corners = self.corners()?;
+                self.file.triangles.push(corners);
+                self.file.triangle_tags.push(group);
+                self.numbers[1].push(number);
+            }
+            Shape::Quad => {
+                let corners = self.corners()?;
+                self.file.quads.push(corners);
+                self.file.quad_tags.push(group);
+                self.numbers[2].push(number);
+            }
+            Shape::HigherOrder => {
+                return Err(self
+                    .input
+                    .scanner
+                    .fault(format!("Elements of higher order (type {kind}) are not read"))
+                    .remedy("Save the mesh with elements of order 1 (in Gmsh: Mesh.ElementOrder = 1)"));
+            }
+            Shape::Volume(name, nodes) => {
+                for _ in 0..nodes {
+                    self.node()?;
+                }
+                *self.skipped.entry(name).or_default() += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn corners<const N: usize>(&mut self) -> Result<[u32; N], Fault> {
+        let mut corners = [0; N];
+        for corner in &mut corners {
+            *corner = self.node()?;
+        }
+        Ok(corners)
+    }
+
+    /// The index of a node of an element.
+    fn node(&mut self) -> Result<u32, Fault> {
+        let tag = match self.version {
+            Some(Version::Four) => self.input.size("the tag of a node")?,
+            _ => self.input.tag("the number of a node")?,
+        };
+        match self.nodes.as_ref().and_then(|nodes| nodes.index(tag)) {
+            Some(index) => Ok(index),
+            None => Err(self.input.scanner.fault(format!("An element has the node {tag}, which does not exist"))),
+        }
+    }
+
+    /// $NodeData or $ElementData.
+    fn data(&mut self, section: &[u8]) -> Result<(), Fault> {
+        let of_nodes = section == b"NodeData";
+        let scanner = &mut self.input.scanner;
+        let mut name = String::new();
+        let names = scanner.count("a number of names", 2)?;
+        scanner.line();
+        for place in 0..names {
+            let line = scanner.line().unwrap_or_default();
+            if place == 0 {
+                name = String::from_utf8_lossy(line).trim_matches('"').to_string();
+            }
+        }
+        for _ in 0..scanner.count("a number of real tags", 2)? {
+            scanner.real("a real tag")?;
+        }
+        let mut tags = [0; 3];
+        for place in 0..scanner.count("a number of integer tags", 2)? {
+            let tag = scanner.integer("an integer tag")?;
+            if let Some(slot) = tags.get_mut(place) {
+                *slot = tag;
+            }
+        }
+        scanner.line();
+        let [_, components, count] = tags;
+        let things = if of_nodes { self.file.points.len() } else { self.file.triangles.len() + self.file.quads.len() };
+        let (components, count) = (components.max(0) as u64, count.max(0) as u64);
+        let is_metric = of_nodes && components == 9 && name == METRIC;
+        // Data that cannot cover everything is left out; to make room for it could cost more than its bytes.
+        if things == 0 || (count as usize) < things || !(components == 1 || is_metric) {
+            return self.skip(section);
+        }
+        let components = components as usize;
+        let count = self.input.fits(count, 2 + 2 * components, 4 + 8 * components, "a number of values")?;
+        let mut values = vec![0.0; things * components];
+        let mut seen = vec![false; things];
+        for _ in 0..count {
+            let tag = self.input.tag("a node or element tag")?;
+            let index =
+                if of_nodes { self.nodes.as_ref().and_then(|nodes| nodes.index(tag)) } else { self.element_index(tag) };
+            let mut ignored = [0.0; 9];
+            let slots = match index.map(|index| index as usize) {
+                Some(index) => {
+                    seen[index] = true;
+                    &mut values[index * components..(index + 1) * components]
+                }
+                None => &mut ignored[..components],
+            };
+            for slot in slots {
+                *slot = self.input.real("a value")?;
+            }
+        }
+        let missing = seen.iter().position(|seen| !seen);
+        if is_metric {
+            if let Some(index) = missing {
+                return Err(self.input.scanner.fault(format!("The metric has no value for node {}", index + 1)));
+            }
+            let scanner = &self.input.scanner;
+            let metric = values.chunks_exact(9).zip(1u32..).map(|(m, node)| {
+                let metric = Metric3 { xx: m[0], xy: m[1], xz: m[2], yy: m[4], yz: m[5], zz: m[8] };
+                positive_definite(metric)
+                    .ok_or_else(|| scanner.fault(format!("The metric of node {node} is not positive definite")))
+            });
+            self.file.metric = Some(metric.collect::<Result<_, _>>()?);
+        } else if missing.is_none() {
+            let data = Data { name, values };
+            if of_nodes { self.file.point_data.push(data) } else { self.file.element_data.push(data) }
+        }
+        self.end(section)
+    }
+
+    /// The index of a triangle or quadrilateral by its tag.
+    fn element_index(&mut self, tag: u64) -> Option<u32> {
+        let numbers = &self.numbers;
+        self.elements
+            .get_or_insert_with(|| Numbering::new(&[&numbers[1][..], &numbers[2][..]].concat()).ok())
+            .as_ref()?
+            .index(tag)
+    }
+}

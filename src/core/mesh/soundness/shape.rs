@@ -1,0 +1,88 @@
+//! The shape of each element: area, orientation, convexity.
+
+use glam::{DVec2, DVec3};
+
+use super::faces::Faces;
+use super::{Defect, Found, Soundness};
+use crate::core::geometry::predicates::orient;
+
+/// An element whose area is below this part of its longest side squared has none.
+const NO_AREA: f64 = 1e-9;
+/// A corner of a curved quadrilateral whose sine is below this is not convex.
+const FLAT: f64 = 1e-12;
+
+/// Notes elements without area, inverted ones and quadrilaterals that are not strictly convex; fills in `planar` and
+/// `area`. Gives back the sense of the mesh in the plane: whether it runs anticlockwise as a whole.
+pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> bool {
+    let mut height = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut sum = 0.0;
+    for element in 0..faces.len() {
+        let corners = faces.corners(element);
+        for &node in corners {
+            let z = faces.point(node).z;
+            height = (height.0.min(z), height.1.max(z));
+        }
+        sum += normal(faces, corners).z;
+    }
+    soundness.planar = height.0 == height.1;
+    let anticlockwise = sum >= 0.0;
+    for element in 0..faces.len() {
+        let corners = faces.corners(element);
+        let double = normal(faces, corners);
+        let area = 0.5 * double.length();
+        soundness.area += area;
+        let defect = if area <= NO_AREA * longest_squared(faces, corners) {
+            Some(Defect::ZeroArea)
+        } else if soundness.planar {
+            in_plane(faces, corners, anticlockwise)
+        } else {
+            on_surface(faces, corners, double / (2.0 * area))
+        };
+        if let Some(defect) = defect {
+            found.note(defect, element, faces.point(corners[0]));
+        }
+    }
+    anticlockwise
+}
+
+/// Twice the (mean) area as a vector along the normal.
+fn normal(faces: &Faces, corners: &[u32]) -> DVec3 {
+    let p = |corner: usize| faces.point(corners[corner]);
+    if corners.len() == 3 { (p(1) - p(0)).cross(p(2) - p(0)) } else { (p(2) - p(0)).cross(p(3) - p(1)) }
+}
+
+fn longest_squared(faces: &Faces, corners: &[u32]) -> f64 {
+    let side = |i: usize| faces.point(corners[i]).distance_squared(faces.point(corners[(i + 1) % corners.len()]));
+    (0..corners.len()).map(side).fold(0.0, f64::max)
+}
+
+/// By the exact predicate at each corner.
+fn in_plane(faces: &Faces, corners: &[u32], anticlockwise: bool) -> Option<Defect> {
+    let count = corners.len();
+    let p = |corner: usize| -> DVec2 { faces.point(corners[corner % count]).truncate() };
+    let turns = |i: usize| {
+        let turn = orient(p(i), p(i + 1), p(i + 2));
+        if anticlockwise { turn } else { -turn }
+    };
+    let (left, not_left) = (0..count)
+        .map(turns)
+        .fold((0, 0), |(left, not), turn| if turn > 0.0 { (left + 1, not) } else { (left, not + 1) });
+    match (left, not_left) {
+        (_, 0) => None,
+        (0, _) => Some(Defect::Inverted),
+        // A reflex quadrilateral that runs the other way has one left turn; a bow-tie has two.
+        (1, 3) => Some(Defect::Inverted),
+        _ => Some(Defect::NotConvex),
+    }
+}
+
+/// By the normal of each corner against that of the quadrilateral.
+fn on_surface(faces: &Faces, corners: &[u32], normal: DVec3) -> Option<Defect> {
+    let count = corners.len();
+    let p = |corner: usize| faces.point(corners[corner % count]);
+    let convex = (0..count).all(|i| {
+        let (next, previous) = (p(i + 1) - p(i), p(i + count - 1) - p(i));
+        next.cross(previous).dot(normal) > FLAT * next.length() * previous.length()
+    });
+    (!convex).then_some(Defect::NotConvex)
+}
