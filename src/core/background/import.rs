@@ -10,10 +10,10 @@ use glam::DVec2;
 use rustc_hash::FxHashMap;
 
 use super::cut::{CutMesh, Sets, Side, cut, sorted_sides};
-use super::triangulate::{FLATTEST, roomy};
+use super::triangulate::too_thin;
 use crate::core::fault::Fault;
 use crate::core::geometry::place::{number, told};
-use crate::core::geometry::predicates::orient;
+use crate::core::geometry::predicates::{firm, orient};
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::spectrum::{LogMetric2, LogMetric3};
@@ -169,14 +169,12 @@ impl<'a> Import<'a> {
         places.windows(2).filter(|w| w[0] == w[1]).count()
     }
 
-    fn corners(&self, t: [u32; 3]) -> [DVec2; 3] {
-        t.map(|n| self.uv[n as usize])
+    fn firm(&self, [a, b, c]: [u32; 3]) -> bool {
+        firm(self.uv[a as usize], self.uv[b as usize], self.uv[c as usize])
     }
 
     /// All triangles anticlockwise and each once.
     fn orient_and_drop_duplicates(&mut self) -> Result<(), Fault> {
-        let largest =
-            self.file.triangles.iter().flatten().fold(0.0_f64, |m, &n| m.max(self.uv[n as usize].abs().max_element()));
         let mut clockwise = 0;
         for i in 0..self.triangles.len() {
             let t = &mut self.triangles[i];
@@ -185,15 +183,9 @@ impl<'a> Import<'a> {
                 clockwise += 1;
             }
             let t = self.triangles[i];
-            if !roomy(self.corners(t), largest) {
-                let [a, b, c] = self.corners(t);
-                let what = if orient(a, b, c) == 0.0 {
-                    format!("Triangle {} has no area", i + 1)
-                } else {
-                    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-                    let ratio = number(orient(a, b, c) / longest / longest);
-                    format!("Triangle {} is only {ratio} as high as it is long; {FLATTEST:e} is the least", i + 1)
-                };
+            let [a, b, c] = t.map(|n| self.uv[n as usize]);
+            if !firm(a, b, c) {
+                let what = format!("Triangle {} is {}", i + 1, too_thin(a, b, c));
                 return Err(Fault::new(what)
                     .at(format!("at {}, {}, {}", told(a), told(b), told(c)))
                     .remedy("Mend the mesh there: collapse or swap its longest side"));
@@ -291,12 +283,11 @@ impl<'a> Import<'a> {
         let (t, k) = (corner as usize / 3, corner as usize % 3);
         let [a, b, c] = [0, 1, 2].map(|i| self.triangles[t][(k + i) % 3]);
         let middle = self.uv[a as usize].midpoint(self.uv[b as usize]);
-        let largest = self.uv.iter().fold(0.0_f64, |m, p| if p.is_finite() { m.max(p.abs().max_element()) } else { m });
         let m = self.uv.len() as u32;
         self.uv.push(middle);
         self.origin.push([a, b]);
         let halves = [[a, m, c], [m, b, c]];
-        if halves.iter().any(|&h| !roomy(self.corners(h), largest)) {
+        if halves.iter().any(|&h| !self.firm(h)) {
             return Err(Fault::new(format!("Triangle {} is too thin to be divided", self.number[t]))
                 .at(format!("at {}", told(middle)))
                 .remedy("Divide another boundary segment of its part in the mesh"));

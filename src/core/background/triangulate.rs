@@ -12,12 +12,9 @@ use crate::core::fault::Fault;
 use crate::core::geometry::crossing::crossing_of;
 use crate::core::geometry::domain::{CurveId, CurveKind, Domain};
 use crate::core::geometry::place::{number, told};
-use crate::core::geometry::predicates::orient;
+use crate::core::geometry::predicates::{firm, orient};
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::MetricSource;
-
-/// No triangle may have a smaller altitude relative to its longest side (spec 2.10: the templates need the room).
-pub const FLATTEST: f64 = 1e-7;
 
 /// How often offending curves are divided more finely before the domain is refused.
 const ROUNDS: usize = 16;
@@ -47,8 +44,7 @@ pub fn divide_and_triangulate(
         match triangulate(domain, &divided) {
             Ok(set) => return Ok((divided, set)),
             Err(clash) => {
-                // No short circuit: all of them are refined.
-                let helped = clash.curves.iter().fold(false, |any, &id| division.refine(id) || any);
+                let helped = clash.curves.iter().filter(|id| division.refine(**id)).count() > 0;
                 if !helped || round >= ROUNDS {
                     return Err(clash.fault);
                 }
@@ -83,7 +79,11 @@ type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<TriangleSet, Box<Clash>> {
     let mesh = triangles(domain, divided)?;
     for nodes in mesh.loops() {
-        assert!(nodes.len() % 2 == 0, "the boundary loop through {} is odd", told(mesh.set.uv[nodes[0] as usize]));
+        assert!(
+            nodes.len().is_multiple_of(2),
+            "the boundary loop through {} is odd",
+            told(mesh.set.uv[nodes[0] as usize])
+        );
     }
     Ok(mesh.set)
 }
@@ -101,8 +101,7 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Cl
             region.push(f);
         }
     }
-    let largest = divided.nodes.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
-    if let Some(t) = kept.iter().find(|t| !roomy(t.map(|n| divided.nodes[n as usize]), largest)) {
+    if let Some(t) = kept.iter().find(|&&[a, b, c]| !firm(edges.at(a), edges.at(b), edges.at(c))) {
         return Err(edges.thin(t));
     }
     let lines: Vec<([u32; 2], Cut)> = domain
@@ -117,15 +116,6 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Cl
         .flat_map(|(kind, chain)| chain.windows(2).map(move |w| ([w[0], w[1]], kind)))
         .collect();
     Ok(cut(&divided.nodes, kept, region, &lines))
-}
-
-/// Whether a triangle is strictly positive and not thinner than spec 2.10 allows, where no coordinate is larger than
-/// `largest`.
-pub fn roomy([a, b, c]: [DVec2; 3], largest: f64) -> bool {
-    let doubled = orient(a, b, c);
-    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let altitude = doubled / longest;
-    doubled > 0.0 && altitude >= FLATTEST * longest && altitude >= 256.0 * f64::EPSILON * largest
 }
 
 /// The Delaunay triangulation of the nodes, and where each is in it. Scaled by a power of two, so that signs are those of
@@ -306,16 +296,28 @@ impl<'a> Edges<'a> {
         let curves = curves_through(self.domain, self.divided, triangle);
         let names: Vec<String> =
             curves.iter().map(|id| format!("\"{}\"", self.domain.curves[id.index()].name)).collect();
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let fault = Fault::new(format!(
-            "The nodes {}, {} and {} of {} make a triangle only {} as high as it is long; {FLATTEST:e} is the least",
+            "The nodes {}, {} and {} of {} make a triangle that is {}",
             told(a),
             told(b),
             told(c),
             names.join(", "),
-            number(orient(a, b, c) / longest / longest)
+            too_thin(a, b, c)
         ));
         Box::new(Clash { curves, fault: fault.remedy("Keep the curves further apart there, or ask for smaller sizes") })
+    }
+}
+
+/// What is amiss with a triangle that is not [`firm`], after "is".
+pub fn too_thin(a: DVec2, b: DVec2, c: DVec2) -> String {
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let ratio = orient(a, b, c) / longest / longest;
+    if ratio <= 0.0 {
+        "without area".to_owned()
+    } else if ratio < 1e-7 {
+        format!("only {} as high as it is long, where 1e-7 is the least", number(ratio))
+    } else {
+        "too small for coordinates so far from the origin".to_owned()
     }
 }
 

@@ -97,12 +97,12 @@ fn flat_triangles_are_refused_with_number_and_place() {
     let mut file = star();
     file.points[4] = DVec3::new(0.5, 0.0, 0.0);
     let says = refusal(&file);
-    assert!(says.contains("Triangle 1 has no area") && says.contains("(0.5, 0)"), "{says}");
+    assert!(says.contains("Triangle 1 is without area") && says.contains("(0.5, 0)"), "{says}");
     file.points[4].y = 1e-9;
     assert!(refusal(&file).contains("Triangle 1 is only 1e-9 as high"));
     let mut file = star();
     file.triangles[3] = [3, 3, 4];
-    assert!(refusal(&file).contains("Triangle 4 has no area"));
+    assert!(refusal(&file).contains("Triangle 4 is without area"));
 }
 
 #[test]
@@ -269,7 +269,7 @@ proptest! {
         file.triangle_tags = tags.map(|t| t[..triangles.len()].to_vec()).unwrap_or_default();
         if let Ok(imported) = import(&file, split) {
             let set = &imported.set;
-            prop_assert!(set.triangles.iter().all(|t| roomy(t.map(|n| set.uv[n as usize]), 5.0)));
+            prop_assert!(set.triangles.iter().all(|t| firm(set.uv[t[0] as usize], set.uv[t[1] as usize], set.uv[t[2] as usize])));
             prop_assert_eq!(set.triangles.len() % 2, 0);
             prop_assert!(implied_metric(set).iter().all(Metric2::is_spd));
         }
