@@ -15,6 +15,7 @@ use serde::Serialize;
 
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
+use crate::core::io::save::Shortest;
 use faces::Faces;
 
 /// Everything that can be wrong with a mesh, in the order in which it is told.
@@ -249,7 +250,7 @@ impl std::fmt::Display for Finding {
             count => write!(f, "{count} {many}")?,
         }
         if let Some(Offender { number, at: [x, y, z] }) = self.first.first() {
-            let thing = self.defect.thing();
+            let (thing, [x, y, z]) = (self.defect.thing(), [x, y, z].map(|x| Shortest(*x)));
             write!(f, " ({}{thing} {number} at {x}, {y}, {z})", if self.count > 1 { "first " } else { "" })?;
         }
         Ok(())

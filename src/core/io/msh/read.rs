@@ -50,7 +50,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
         let missing = if reader.nodes.is_none() { "$Nodes" } else { "$Elements" };
         return Err(Fault::new(format!("There is no section {missing}"))
             .at(scanner.name())
-            .remedy("Save it with nodes and elements, without parametric coordinates"));
+            .remedy("Save it with its nodes and elements"));
     }
     reader.file.skipped = reader.skipped.into_iter().map(|(name, count)| (name.to_string(), count)).collect();
     Ok(reader.file)
@@ -158,6 +158,10 @@ impl Reader<'_> {
             (b"Entities", Version::Four) => self.entities()?,
             (b"Nodes", _) => self.nodes(version)?,
             (b"Elements", _) => self.elements(version)?,
+            (b"ParametricNodes", _) => {
+                let fault = self.input.scanner.fault("Nodes with parametric coordinates are not read in this version");
+                return Err(fault.remedy("Save it without them (in Gmsh: Mesh.SaveParametric = 0), or as MSH 4.1"));
+            }
             (b"NodeData" | b"ElementData", _) if self.has_elements => return self.data(section),
             _ => return self.skip(section),
         }
@@ -212,6 +216,7 @@ impl Reader<'_> {
             return Err(scanner.fault(format!("File type {binary} with numbers of {size} bytes is not read")));
         }
         if binary == 1 {
+            scanner.set_binary();
             self.input.binary = match scanner.binary_i32(ByteOrder::Little, "the byte order")? {
                 1 => Some(ByteOrder::Little),
                 0x0100_0000 => Some(ByteOrder::Big),
