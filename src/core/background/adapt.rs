@@ -1,1 +1,368 @@
-//! adapt: being written.
+//! The background mesh made unit in the metric (spec 3): local remeshing by split, collapse, swap and smooth.
+//!
+//! Boundary edges and nodes are never touched. Every operation is judged first (exactly where it is topological) and then
+//! done; the metric only ranks. First a coarse mesh is refined from the longest edge down with Delaunay swaps in the
+//! metric, which makes nearly all nodes; then a few cycles of collapse, split, swap and smooth mend what is not unit.
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use crate::core::fault::Fault;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::quality::{length_over, quality_over};
+use crate::core::metric::field::MetricSource;
+use crate::core::metric::tensor::Metric2;
+use crate::core::progress::{Stage, Watch};
+
+/// Longest and shortest length of a unit edge.
+const LONG: f64 = std::f64::consts::SQRT_2;
+const SHORT: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// Below this many elements an edge is also measured at its middle, so that a thin zone of small sizes that no node has
+/// met yet is not jumped over.
+const SAMPLED: usize = 20_000;
+/// Cycles of collapse, split, swap and smooth after the refinement.
+const CYCLES: usize = 4;
+/// A collapse or a split must not make a triangle worse than this, or than the worst of those it replaces.
+const LEAST_QUALITY: f64 = 0.4;
+
+/// What the adaptation did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Adapted {
+    /// Edges divided.
+    pub divisions: usize,
+    /// Nodes removed by collapsing an edge.
+    pub collapses: usize,
+    /// Edges swapped.
+    pub swaps: usize,
+    /// Nodes moved.
+    pub moves: usize,
+}
+
+/// Adapts the mesh to the metric until its edges are unit, as far as the fixed boundary allows.
+///
+/// # Errors
+/// Where the field yields no metric inside the domain, or asks for more than `most_elements` triangles.
+pub fn adapt(
+    mesh: Mesh,
+    source: &dyn MetricSource,
+    most_elements: usize,
+    watch: &mut dyn Watch,
+) -> Result<(Mesh, Adapted), Fault> {
+    let mut adapter = Adapter { mesh, source, most_elements, done: Adapted::default(), stack: Vec::new() };
+    adapter.mesh.set_recording(false);
+    adapter.run(watch)?;
+    adapter.mesh.set_recording(true);
+    Ok((adapter.mesh, adapter.done))
+}
+
+struct Adapter<'a> {
+    mesh: Mesh,
+    source: &'a dyn MetricSource,
+    most_elements: usize,
+    done: Adapted,
+    /// Half-edges whose swap is to be looked at; kept for its memory.
+    stack: Vec<HalfEdgeId>,
+}
+
+/// An edge that was found too long or too short, to be met again after others have changed.
+#[derive(Clone, Copy)]
+struct Found {
+    length: f64,
+    h: HalfEdgeId,
+    from: NodeId,
+    to: NodeId,
+}
+
+impl Adapter<'_> {
+    fn run(&mut self, watch: &mut dyn Watch) -> Result<(), Fault> {
+        self.swap_where_better();
+        self.refine(watch)?;
+        self.mesh = self.mesh.reordered();
+        for cycle in 0..CYCLES {
+            watch.tell(Stage::Adapt, cycle as u64 + 1, CYCLES as u64 + 1);
+            self.collapse_short();
+            self.split_long(cycle == 0)?;
+            self.swap_where_better();
+            self.smooth()?;
+            if cycle == 0 {
+                self.mesh = self.mesh.reordered();
+            }
+        }
+        self.swap_where_better();
+        self.smooth()?;
+        self.mesh = self.mesh.reordered();
+        Ok(())
+    }
+
+    // ---- refinement ----
+
+    /// Divides all edges longer than unit, longest first, until there are none; what a division makes is swapped to the
+    /// Delaunay triangulation of the metric at once.
+    fn refine(&mut self, watch: &mut dyn Watch) -> Result<(), Fault> {
+        let mut ordered = self.mesh.element_count();
+        loop {
+            // New nodes are strewn over memory; put in order as the mesh grows, all passes stay near linear.
+            if self.mesh.element_count() > 2 * ordered {
+                self.mesh = self.mesh.reordered();
+                ordered = self.mesh.element_count();
+            }
+            let found = self.long_edges(self.mesh.element_count() < SAMPLED)?;
+            let expected = found.iter().map(|f| f.length as u64).sum::<u64>() * 2 + self.mesh.element_count() as u64;
+            watch.tell(Stage::Adapt, self.mesh.element_count() as u64, expected);
+            let before = self.done.divisions;
+            for f in found {
+                self.divide(f, 0.5)?;
+            }
+            if self.done.divisions == before {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Inner edges longer than unit, the longest first.
+    fn long_edges(&self, sampled: bool) -> Result<Vec<Found>, Fault> {
+        let mesh = &self.mesh;
+        let mut found = Vec::new();
+        for h in mesh.edges().filter(|&h| mesh.twin(h).is_some()) {
+            let (from, to) = (mesh.origin(h), mesh.target(h));
+            let mut length = mesh.distance(from, to);
+            if sampled && length <= 2.0 {
+                length = length.max(self.sampled_length(from, to)?);
+            }
+            if length > LONG {
+                found.push(Found { length, h, from, to });
+            }
+        }
+        found.sort_unstable_by_key(|f| (std::cmp::Reverse(length_class(f.length)), f.h));
+        Ok(found)
+    }
+
+    /// Length of a straight line by Simpson's rule, with the metric at its middle.
+    fn sampled_length(&self, from: NodeId, to: NodeId) -> Result<f64, Fault> {
+        let d = self.mesh.uv(to) - self.mesh.uv(from);
+        let middle = self.metric(self.mesh.uv(from) + 0.5 * d)?;
+        let end = |n: NodeId| self.mesh.metric_ref(n).norm2(d).sqrt();
+        Ok((end(from) + 4.0 * middle.norm2(d).sqrt() + end(to)) / 6.0)
+    }
+
+    /// Divides an edge that still is as it was found, unless the new node would come closer than `least` to the
+    /// opposite ones.
+    fn divide(&mut self, f: Found, least: f64) -> Result<(), Fault> {
+        let mesh = &self.mesh;
+        if !self.still_there(f) {
+            return Ok(());
+        }
+        let Some(twin) = mesh.twin(f.h) else { return Ok(()) };
+        let (c, d) = (mesh.origin(mesh.previous(f.h)), mesh.origin(mesh.previous(twin)));
+        let place = self.middle(f.from, f.to);
+        let metric = self.metric(place)?;
+        let near = |n: NodeId| length_over(&metric, mesh.metric_ref(n), mesh.uv(n) - place) < least;
+        if f.length < 2.0 && (near(c) || near(d)) {
+            return Ok(());
+        }
+        if mesh.element_count() + 2 > self.most_elements {
+            return Err(Fault::new(format!("The metric asks for more than {} triangles", self.most_elements))
+                .at(format!("near ({}, {}), where the smallest size is {}", place.x, place.y, metric.min_size()))
+                .remedy("Make the sizes larger there, or allow more by max_quads"));
+        }
+        if let Ok(m) = self.mesh.divide(f.h, place, metric) {
+            self.done.divisions += 1;
+            self.make_delaunay(m);
+        }
+        Ok(())
+    }
+
+    /// The place that halves the metric length of an edge when the size changes linearly along it.
+    fn middle(&self, from: NodeId, to: NodeId) -> DVec2 {
+        let (p, q) = (self.mesh.uv(from), self.mesh.uv(to));
+        let (l_p, l_q) = (self.mesh.metric_ref(from).norm2(q - p).sqrt(), self.mesh.metric_ref(to).norm2(q - p).sqrt());
+        let t = l_q.sqrt() / (l_p.sqrt() + l_q.sqrt());
+        p + (q - p) * t.clamp(0.2, 0.8)
+    }
+
+    fn still_there(&self, f: Found) -> bool {
+        self.mesh.has_element(f.h.element()) && self.mesh.origin(f.h) == f.from && self.mesh.target(f.h) == f.to
+    }
+
+    fn metric(&self, uv: DVec2) -> Result<Metric2, Fault> {
+        Ok(self.source.metric(uv)?)
+    }
+
+    /// Swaps edges opposite to a new node until they are Delaunay in the metric.
+    fn make_delaunay(&mut self, m: NodeId) {
+        let mesh = &mut self.mesh;
+        self.stack.extend(mesh.fan(m).map(|h| mesh.next(h)));
+        // The criterion takes its metric from four nodes, so that no order of swaps is sure to end: it is bounded.
+        let mut budget = 100;
+        while let Some(h) = self.stack.pop() {
+            if budget > 0 && !is_delaunay(mesh, h) && mesh.can_swap(h).is_ok() {
+                budget -= 1;
+                let h = mesh.swap(h);
+                let t = mesh.twin(h).expect("a swapped edge has two sides");
+                // T = (a, d, m) and U = (b, m, d): opposite to m lie a-d and d-b.
+                self.stack.push(mesh.previous(h));
+                self.stack.push(mesh.next(t));
+                self.done.swaps += 1;
+            }
+        }
+    }
+
+    // ---- the cycles ----
+
+    /// Swaps every edge whose swap raises the lesser quality of its two triangles, until there is none.
+    fn swap_where_better(&mut self) {
+        let mesh = &mut self.mesh;
+        self.stack.extend(mesh.edges());
+        self.stack.reverse();
+        let mut budget = 4 * self.stack.len();
+        while let Some(h) = self.stack.pop() {
+            if budget == 0 {
+                self.stack.clear();
+                return;
+            }
+            if !mesh.has_element(h.element()) || !swap_is_better(mesh, h) {
+                continue;
+            }
+            budget -= 1;
+            self.done.swaps += 1;
+            let h = mesh.swap(h);
+            let t = mesh.twin(h).expect("a swapped edge has two sides");
+            self.stack.extend([mesh.next(h), mesh.previous(h), mesh.next(t), mesh.previous(t)]);
+        }
+    }
+
+    /// Collapses edges shorter than unit onto their better end, the shortest first.
+    fn collapse_short(&mut self) {
+        let mesh = &self.mesh;
+        let mut found: Vec<Found> = mesh
+            .edges()
+            .map(|h| Found { length: mesh.length(h), h, from: mesh.origin(h), to: mesh.target(h) })
+            .filter(|f| f.length < SHORT && !(mesh.is_fixed(f.from) && mesh.is_fixed(f.to)))
+            .collect();
+        found.sort_unstable_by_key(|f| (length_class(f.length), f.h));
+        for f in found {
+            if !self.still_there(f) {
+                continue;
+            }
+            let Some(twin) = self.mesh.twin(f.h) else { continue };
+            let best = [f.h, twin]
+                .into_iter()
+                .filter_map(|h| self.quality_after_collapse(h).map(|q| (q, h)))
+                .max_by(|(q, h), (r, k)| q.total_cmp(r).then(k.cmp(h)));
+            if let Some((_, h)) = best {
+                let b = self.mesh.target(h);
+                let (at, metric) = (self.mesh.uv(b), self.mesh.metric(b));
+                self.mesh.collapse(h, at, metric);
+                self.done.collapses += 1;
+            }
+        }
+    }
+
+    /// The worst quality around b after a would be merged into it, if that is possible and good enough.
+    fn quality_after_collapse(&self, h_ab: HalfEdgeId) -> Option<f64> {
+        let mesh = &self.mesh;
+        let (a, b) = (mesh.origin(h_ab), mesh.target(h_ab));
+        if mesh.is_fixed(a) || mesh.neighbours(a).any(|n| n != b && mesh.distance(b, n) > LONG) {
+            return None;
+        }
+        let (mut before, mut after) = (f64::INFINITY, f64::INFINITY);
+        for h in mesh.fan(a) {
+            let n = mesh.triangle(h.element());
+            before = before.min(mesh.triangle_quality(n));
+            if !n.contains(&b) {
+                after = after.min(mesh.triangle_quality(n.map(|n| if n == a { b } else { n })));
+            }
+        }
+        let good = after >= before.min(LEAST_QUALITY) && mesh.can_collapse(h_ab, mesh.uv(b)).is_ok();
+        good.then_some(after)
+    }
+
+    /// Divides edges longer than unit again, where that makes no edge much too short.
+    fn split_long(&mut self, sampled: bool) -> Result<(), Fault> {
+        for f in self.long_edges(sampled)? {
+            self.divide(f, SHORT)?;
+        }
+        Ok(())
+    }
+
+    /// Moves every free node to the mean of the places at unit distance from its neighbours, where that is no harm.
+    fn smooth(&mut self) -> Result<(), Fault> {
+        for node in (0..self.mesh.node_slots() as u32).map(NodeId) {
+            if self.mesh.has_node(node) && !self.mesh.is_fixed(node) {
+                self.smooth_node(node)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn smooth_node(&mut self, node: NodeId) -> Result<(), Fault> {
+        let mesh = &self.mesh;
+        let here = mesh.uv(node);
+        let mut star: SmallVec<[[NodeId; 2]; 12]> = SmallVec::new();
+        let (mut sum, mut before) = (DVec2::ZERO, f64::INFINITY);
+        for h in mesh.fan(node) {
+            let (b, c) = (mesh.target(h), mesh.origin(mesh.previous(h)));
+            star.push([b, c]);
+            before = before.min(mesh.triangle_quality([node, b, c]));
+            let away = here - mesh.uv(b);
+            sum += mesh.uv(b) + away / mesh.distance(node, b);
+        }
+        let there = sum / star.len() as f64;
+        for step in [1.0, 0.5, 0.25] {
+            let place = here + (there - here) * step;
+            let Ok(metric) = self.source.metric(place) else { continue };
+            let after = star.iter().fold(f64::INFINITY, |least, &[b, c]| {
+                least.min(quality_over(
+                    [place, mesh.uv(b), mesh.uv(c)],
+                    [&metric, mesh.metric_ref(b), mesh.metric_ref(c)],
+                ))
+            });
+            if after >= before.min(0.6) && mesh.can_move(node, place).is_ok() {
+                self.mesh.move_node(node, place, metric);
+                self.done.moves += 1;
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Lengths within a quarter of an octave count as equal: what is nearly as urgent is done in the order of memory.
+fn length_class(length: f64) -> i64 {
+    // The exponent and the upper two bits of the fraction, as the number's own bits have them.
+    (length.to_bits() >> 50) as i64
+}
+
+/// Whether the edge is Delaunay in the mean shape of the metrics of its four nodes: the opposite angles sum to at most
+/// 180 degrees.
+#[inline]
+fn is_delaunay(mesh: &Mesh, h_ab: HalfEdgeId) -> bool {
+    let Some(h_ba) = mesh.twin(h_ab) else { return true };
+    let (a, b) = (mesh.origin(h_ab), mesh.origin(h_ba));
+    let (c, d) = (mesh.origin(mesh.previous(h_ab)), mesh.origin(mesh.previous(h_ba)));
+    let mut m = Metric2 { uu: 0.0, uv: 0.0, vv: 0.0 };
+    for n in [a, b, c, d] {
+        let n = mesh.metric_ref(n);
+        let weight = 1.0 / n.det().sqrt();
+        m = Metric2 { uu: m.uu + weight * n.uu, uv: m.uv + weight * n.uv, vv: m.vv + weight * n.vv };
+    }
+    let (a, b, c, d) = (mesh.uv(a), mesh.uv(b), mesh.uv(c), mesh.uv(d));
+    let at_c = (m.inner(a - c, b - c), (a - c).perp_dot(b - c));
+    let at_d = (m.inner(b - d, a - d), (b - d).perp_dot(a - d));
+    at_c.0 * at_d.1 + at_c.1 * at_d.0 >= 0.0
+}
+
+/// Whether swapping raises the lesser quality of the two triangles, by enough not to be undone by rounding.
+#[inline]
+fn swap_is_better(mesh: &Mesh, h_ab: HalfEdgeId) -> bool {
+    let Some(h_ba) = mesh.twin(h_ab) else { return false };
+    let (a, b) = (mesh.origin(h_ab), mesh.origin(h_ba));
+    let (c, d) = (mesh.origin(mesh.previous(h_ab)), mesh.origin(mesh.previous(h_ba)));
+    let before = mesh.triangle_quality([a, b, c]).min(mesh.triangle_quality([b, a, d]));
+    if before > 0.95 {
+        return false;
+    }
+    let after = mesh.triangle_quality([a, d, c]).min(mesh.triangle_quality([d, b, c]));
+    after > before + 1e-6 && mesh.can_swap(h_ab).is_ok()
+}

@@ -2,6 +2,7 @@
 
 pub mod parity;
 pub mod discretise;
+pub mod cut;
 pub mod triangulate;
 pub mod import;
 pub mod adapt;

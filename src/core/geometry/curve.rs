@@ -1,1 +1,486 @@
-//! curve: being written.
+//! Planar curves: segment, circular arc, polyline, NURBS, all with a parameter in [0, 1].
+//!
+//! Deliberately absent: names, and which curves meet where (see `domain`).
+
+use glam::DVec2;
+
+use super::domain::CurveShape;
+use super::nurbs::NurbsCurve;
+use super::place::{number, told};
+use crate::core::fault::Fault;
+
+/// Coordinates beyond this are refused, so that no square of one overflows.
+const LARGEST: f64 = 1e100;
+
+/// A curve that has been checked: all its numbers are finite, no straight piece is of zero length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    path: Path,
+    closed: bool,
+    corners: Vec<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Path {
+    Segment {
+        from: DVec2,
+        to: DVec2,
+    },
+    Arc {
+        centre: DVec2,
+        radius: f64,
+        from_angle: f64,
+        turn: f64,
+    },
+    /// The first point stands again at the end where the polyline is closed.
+    Polyline {
+        points: Vec<DVec2>,
+    },
+    Nurbs(NurbsCurve),
+}
+
+impl Curve {
+    /// The curve of a shape.
+    ///
+    /// # Errors
+    /// Numbers that are not finite or beyond 1e100, a radius that is not positive, an arc of no angle or of more than
+    /// a full turn, a polyline with fewer than two points or with two equal ones in a row, zero length, and what
+    /// [`NurbsCurve::new`] refuses.
+    pub fn new(shape: &CurveShape) -> Result<Curve, Fault> {
+        let mut closed = false;
+        let path = match shape {
+            CurveShape::Segment { from, to } => {
+                sound(&[*from, *to])?;
+                if from == to {
+                    return Err(Fault::new(format!("It has zero length: both its ends are {}", told(*from))));
+                }
+                Path::Segment { from: *from, to: *to }
+            }
+            CurveShape::Arc { centre, radius, from_angle, to_angle } => {
+                sound(&[*centre])?;
+                if !(*radius > 0.0 && *radius <= LARGEST) {
+                    return Err(Fault::new(format!("Its radius is {radius}")).remedy("Give a positive radius"));
+                }
+                let mut turn = to_angle - from_angle;
+                let full = std::f64::consts::TAU;
+                if !(turn.is_finite() && from_angle.abs() <= 1e6) {
+                    return Err(Fault::new(format!("Its angles are {from_angle} and {to_angle} radians")));
+                }
+                if turn == 0.0 {
+                    return Err(Fault::new("It has zero length: the arc begins and ends at the same angle")
+                        .remedy("For a circle let the last angle be a full turn more than the first"));
+                }
+                if (turn.abs() - full).abs() <= 1e-9 {
+                    turn = full * turn.signum();
+                    closed = true;
+                }
+                if turn.abs() > full {
+                    return Err(Fault::new(format!(
+                        "The arc turns by {} degrees, more than a full turn",
+                        number(turn.to_degrees())
+                    ))
+                    .remedy("Bring its angles to within 360 degrees of each other"));
+                }
+                Path::Arc { centre: *centre, radius: *radius, from_angle: *from_angle, turn }
+            }
+            CurveShape::Polyline { points, closed: close } => {
+                sound(points)?;
+                let mut points = points.clone();
+                if *close && points.len() > 1 && points.first() != points.last() {
+                    points.extend(points.first().copied());
+                }
+                if points.len() < if *close { 4 } else { 2 } {
+                    return Err(Fault::new(format!(
+                        "A {} polyline of {} points is no curve",
+                        if *close { "closed" } else { "plain" },
+                        points.len().saturating_sub(usize::from(*close))
+                    )));
+                }
+                if let Some(i) = (1..points.len()).find(|&i| points[i] == points[i - 1]) {
+                    return Err(Fault::new(format!(
+                        "Its points {i} and {} are the same, {}: a piece of zero length",
+                        i + 1,
+                        told(points[i])
+                    ))
+                    .remedy("Leave one of them out"));
+                }
+                closed = points.first() == points.last();
+                Path::Polyline { points }
+            }
+            CurveShape::Nurbs { degree, knots, weights, points } => {
+                sound(points)?;
+                if points.windows(2).all(|w| w[0] == w[1]) {
+                    return Err(Fault::new("It has zero length: all its control points are the same"));
+                }
+                Path::Nurbs(NurbsCurve::new(*degree, knots.clone(), weights, points)?)
+            }
+        };
+        let mut curve = Curve { path, closed, corners: Vec::new() };
+        curve.closed |= curve.start() == curve.end();
+        curve.corners = curve.find_corners();
+        Ok(curve)
+    }
+
+    /// The point at `t` in [0, 1].
+    pub fn point(&self, t: f64) -> DVec2 {
+        match &self.path {
+            // Both forms are exact at their ends.
+            Path::Segment { from, to } => lerp(*from, *to, t),
+            Path::Arc { centre, radius, from_angle, turn } => {
+                let (sin, cos) = libm::sincos(from_angle + if self.closed && t == 1.0 { 0.0 } else { t * turn });
+                *centre + *radius * DVec2::new(cos, sin)
+            }
+            Path::Polyline { points } => {
+                let (i, s) = piece(points.len() - 1, t);
+                lerp(points[i], points[i + 1], s)
+            }
+            Path::Nurbs(nurbs) => nurbs.at(knot_parameter(nurbs, t)).0,
+        }
+    }
+
+    /// The derivative by `t`; at a corner the one of the piece after it.
+    pub fn derivative(&self, t: f64) -> DVec2 {
+        match &self.path {
+            Path::Segment { from, to } => *to - *from,
+            Path::Arc { radius, from_angle, turn, .. } => {
+                let (sin, cos) = libm::sincos(from_angle + t * turn);
+                radius * turn * DVec2::new(-sin, cos)
+            }
+            Path::Polyline { points } => {
+                let (i, _) = piece(points.len() - 1, t);
+                (points.len() - 1) as f64 * (points[i + 1] - points[i])
+            }
+            Path::Nurbs(nurbs) => {
+                let (first, last) = nurbs.basis().domain();
+                (last - first) * nurbs.at(knot_parameter(nurbs, t)).1
+            }
+        }
+    }
+
+    /// Point and derivative by `t` at once.
+    pub fn at(&self, t: f64) -> (DVec2, DVec2) {
+        match &self.path {
+            Path::Nurbs(nurbs) => {
+                let (first, last) = nurbs.basis().domain();
+                let (p, d) = nurbs.at(knot_parameter(nurbs, t));
+                (p, (last - first) * d)
+            }
+            _ => (self.point(t), self.derivative(t)),
+        }
+    }
+
+    /// Where it begins.
+    pub fn start(&self) -> DVec2 {
+        self.point(0.0)
+    }
+
+    /// Where it ends.
+    pub fn end(&self) -> DVec2 {
+        self.point(1.0)
+    }
+
+    /// Whether it ends exactly where it begins.
+    pub fn closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Whether all its pieces are straight, so that dividing it more finely changes nothing of its course.
+    pub fn straight(&self) -> bool {
+        match &self.path {
+            Path::Segment { .. } | Path::Polyline { .. } => true,
+            Path::Arc { .. } => false,
+            Path::Nurbs(nurbs) => nurbs.basis().degree() == 1,
+        }
+    }
+
+    /// Whether its ends are numbers that were given, and not computed.
+    pub fn ends_given(&self) -> bool {
+        matches!(self.path, Path::Segment { .. } | Path::Polyline { .. })
+    }
+
+    /// Parameters strictly inside at which the direction jumps, ascending: they are kept as nodes.
+    pub fn corners(&self) -> &[f64] {
+        &self.corners
+    }
+
+    /// Parameters between which the curve is smooth, from 0 to 1: its corners, and the knots of a NURBS.
+    pub fn breaks(&self) -> Vec<f64> {
+        let mut breaks = vec![0.0];
+        match &self.path {
+            Path::Segment { .. } | Path::Arc { .. } => {}
+            Path::Polyline { .. } => breaks.extend(&self.corners),
+            Path::Nurbs(nurbs) => {
+                let (first, last) = nurbs.basis().domain();
+                breaks.extend(nurbs.basis().inner_knots().iter().map(|(k, _)| (k - first) / (last - first)));
+                breaks.retain(|&t| t < 1.0);
+                breaks.dedup();
+            }
+        }
+        breaks.push(1.0);
+        breaks
+    }
+
+    /// Lower and upper corner of its bounding box, to a millionth of its size.
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        let (low, high) = self.hull();
+        let tolerance = 1e-6 * (high - low).max_element();
+        self.polyline(tolerance)
+            .iter()
+            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, p)| (low.min(*p), high.max(*p)))
+    }
+
+    /// Points of the curve with their parameters, from 0 to 1, so dense that the chords are about `tolerance` from the
+    /// curve at most. All corners are among them. There are never more than about 65,000 between two breaks, however
+    /// small the tolerance.
+    pub fn polyline(&self, tolerance: f64) -> Vec<(f64, DVec2)> {
+        match &self.path {
+            Path::Segment { .. } | Path::Polyline { .. } => {
+                self.breaks().into_iter().map(|t| (t, self.point(t))).collect()
+            }
+            Path::Arc { radius, turn, .. } => {
+                // A chord over the angle 2a is r (1 - cos a), about r a^2 / 2, from its arc.
+                let step = (2.0 * (2.0 * tolerance.max(0.0) / radius).sqrt()).clamp(1e-4, std::f64::consts::FRAC_PI_6);
+                let n = (turn.abs() / step).ceil().max(1.0);
+                (0..=n as usize).map(|i| i as f64 / n).map(|t| (t, self.point(t))).collect()
+            }
+            Path::Nurbs(nurbs) => {
+                let degree = nurbs.basis().degree();
+                let (low, high) = self.hull();
+                let tolerance = tolerance.max(1e-9 * (high - low).max_element());
+                let breaks = self.breaks();
+                let mut points = vec![(0.0, self.point(0.0))];
+                for w in breaks.windows(2) {
+                    let parts = if degree == 1 { 1 } else { 2 * degree.min(16) };
+                    for i in 1..=parts {
+                        let t = if i == parts { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / parts as f64 };
+                        let before = points[points.len() - 1];
+                        self.refine(
+                            before,
+                            (t, self.point(t)),
+                            tolerance,
+                            if degree == 1 { 0 } else { 11 },
+                            &mut points,
+                        );
+                    }
+                }
+                points
+            }
+        }
+    }
+
+    /// Appends points after `a` up to and with `b`, halving while the curve leaves the chord by more than `tolerance`.
+    fn refine(&self, a: (f64, DVec2), b: (f64, DVec2), tolerance: f64, depth: u32, points: &mut Vec<(f64, DVec2)>) {
+        let at = |s: f64| a.0 + (b.0 - a.0) * s;
+        let middle = (at(0.5), self.point(at(0.5)));
+        let off = [self.point(at(0.25)), middle.1, self.point(at(0.75))]
+            .iter()
+            .any(|p| distance_to_segment(*p, a.1, b.1) > tolerance);
+        if depth == 0 || !off || middle.0 <= a.0 || middle.0 >= b.0 {
+            points.push(b);
+        } else {
+            self.refine(a, middle, tolerance, depth - 1, points);
+            self.refine(middle, b, tolerance, depth - 1, points);
+        }
+    }
+
+    /// A box that holds the curve, not always the smallest.
+    fn hull(&self) -> (DVec2, DVec2) {
+        match &self.path {
+            Path::Segment { from, to } => (from.min(*to), from.max(*to)),
+            Path::Arc { centre, radius, .. } => (*centre - DVec2::splat(*radius), *centre + DVec2::splat(*radius)),
+            Path::Polyline { points } => extent(points.iter().copied()),
+            Path::Nurbs(nurbs) => extent(nurbs.control_points()),
+        }
+    }
+
+    fn find_corners(&self) -> Vec<f64> {
+        match &self.path {
+            Path::Segment { .. } | Path::Arc { .. } => Vec::new(),
+            Path::Polyline { points } => {
+                let n = points.len() - 1;
+                (1..n).map(|i| i as f64 / n as f64).collect()
+            }
+            Path::Nurbs(nurbs) => {
+                let (first, last) = nurbs.basis().domain();
+                let degree = nurbs.basis().degree();
+                let knots = nurbs.basis().inner_knots();
+                let sharp = |&&(knot, times): &&(f64, usize)| {
+                    // Fewer repetitions leave the curve smooth; as many as the degree may break its direction.
+                    if times < degree {
+                        return false;
+                    }
+                    let before = nurbs.at_in(nurbs.basis().span(knot.next_down()), knot).1;
+                    let after = nurbs.at(knot).1;
+                    before.perp_dot(after).abs() > 1e-6 * before.length() * after.length() || before.dot(after) < 0.0
+                };
+                knots.iter().filter(sharp).map(|(k, _)| (k - first) / (last - first)).collect()
+            }
+        }
+    }
+}
+
+/// The distance of `p` from the straight line from `a` to `b`.
+pub fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let d = b - a;
+    let square = d.length_squared();
+    let s = if square > 0.0 { ((p - a).dot(d) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (p - (a + s * d)).length()
+}
+
+fn lerp(a: DVec2, b: DVec2, t: f64) -> DVec2 {
+    if t <= 0.5 { a + t * (b - a) } else { b - (1.0 - t) * (b - a) }
+}
+
+/// Which of `n` equal pieces of [0, 1] holds `t`, and where in it, exactly 0 or 1 at its ends.
+fn piece(n: usize, t: f64) -> (usize, f64) {
+    let x = t * n as f64;
+    let nearest = x.round();
+    // A corner's parameter i / n comes back as i.
+    if nearest / n as f64 == t {
+        let i = nearest as usize;
+        return if i >= n { (n - 1, 1.0) } else { (i, 0.0) };
+    }
+    let i = (x.floor().max(0.0) as usize).min(n - 1);
+    (i, x - i as f64)
+}
+
+fn knot_parameter(nurbs: &NurbsCurve, t: f64) -> f64 {
+    let (first, last) = nurbs.basis().domain();
+    if t >= 1.0 { last } else { (first + t * (last - first)).min(last) }
+}
+
+fn extent(points: impl Iterator<Item = DVec2>) -> (DVec2, DVec2) {
+    points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+}
+
+fn sound(points: &[DVec2]) -> Result<(), Fault> {
+    match points.iter().find(|p| !(p.is_finite() && p.abs().max_element() <= LARGEST)) {
+        Some(p) => Err(Fault::new(format!("Its point ({}, {}) is not finite or beyond 1e100", p.x, p.y))),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{PI, TAU};
+
+    fn polyline(points: &[(f64, f64)], closed: bool) -> Result<Curve, Fault> {
+        let points = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
+        Curve::new(&CurveShape::Polyline { points, closed })
+    }
+
+    fn arc(centre: DVec2, radius: f64, from_angle: f64, to_angle: f64) -> Result<Curve, Fault> {
+        Curve::new(&CurveShape::Arc { centre, radius, from_angle, to_angle })
+    }
+
+    #[test]
+    fn a_segment_is_exact_at_its_ends() {
+        let (from, to) = (DVec2::new(0.1, 1e9), DVec2::new(0.3, -0.7));
+        let curve = Curve::new(&CurveShape::Segment { from, to }).unwrap();
+        assert_eq!((curve.start(), curve.end()), (from, to));
+        assert!(!curve.closed() && curve.straight() && curve.corners().is_empty());
+    }
+
+    #[test]
+    fn a_full_arc_is_closed_and_a_part_is_not() {
+        let circle = arc(DVec2::new(3.0, 4.0), 0.5, 1.0, 1.0 + TAU).unwrap();
+        assert!(circle.closed());
+        assert_eq!(circle.start(), circle.end());
+        let (low, high) = circle.bounds();
+        assert!((low - DVec2::new(2.5, 3.5)).length() < 1e-5 && (high - DVec2::new(3.5, 4.5)).length() < 1e-5);
+        assert!(!arc(DVec2::ZERO, 1.0, 0.0, PI).unwrap().closed());
+    }
+
+    #[test]
+    fn chords_keep_to_the_tolerance_at_any_scale() {
+        for scale in [1e-90, 1e-9, 1.0, 1e9, 1e90] {
+            let nurbs = CurveShape::Nurbs {
+                degree: 3,
+                knots: vec![0.0, 0.0, 0.0, 0.0, 0.3, 1.0, 1.0, 1.0, 1.0],
+                weights: vec![1.0, 2.0, 0.5, 1.0, 1.0],
+                points: [(0.0, 0.0), (1.0, 2.0), (3.0, -1.0), (4.0, 0.5), (6.0, 6.0)]
+                    .map(|(x, y)| scale * DVec2::new(x, y))
+                    .to_vec(),
+            };
+            let arc = CurveShape::Arc { centre: DVec2::ZERO, radius: scale, from_angle: 0.0, to_angle: -5.0 };
+            for shape in [nurbs, arc] {
+                let curve = Curve::new(&shape).unwrap();
+                let points = curve.polyline(1e-4 * scale);
+                assert!(points.len() > 10 && points.len() < 2000, "{}", points.len());
+                assert_eq!((points[0].0, points[points.len() - 1].0), (0.0, 1.0));
+                for w in points.windows(2) {
+                    assert!(w[0].0 < w[1].0);
+                    for i in 1..8 {
+                        let p = curve.point(w[0].0 + (w[1].0 - w[0].0) * f64::from(i) / 8.0);
+                        assert!(distance_to_segment(p, w[0].1, w[1].1) < 1.3e-4 * scale);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_tolerance_of_nothing_gives_a_bounded_polyline() {
+        assert!(arc(DVec2::ZERO, 1.0, 0.0, TAU).unwrap().polyline(0.0).len() < 70_000);
+    }
+
+    #[test]
+    fn corners_of_polylines_come_back_exactly() {
+        let points: Vec<(f64, f64)> = (0..50).map(|i| (f64::from(i) * 0.1, f64::from(i % 2) * 0.3)).collect();
+        let curve = polyline(&points, false).unwrap();
+        assert_eq!(curve.corners().len(), 48);
+        for (i, &t) in curve.corners().iter().enumerate() {
+            assert_eq!(curve.point(t), DVec2::new(points[i + 1].0, points[i + 1].1));
+        }
+        let closed = polyline(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], true).unwrap();
+        assert!(closed.closed());
+        assert_eq!(closed.corners().len(), 2);
+        assert_eq!(closed, polyline(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, 0.0)], true).unwrap());
+    }
+
+    #[test]
+    fn only_sharp_knots_of_a_nurbs_are_corners() {
+        let curve = |y: f64| {
+            let points =
+                [(0.0, 0.0), (1.0, 1.0), (2.0, y), (3.0, 1.0), (4.0, 0.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
+            let knots = vec![0.0, 0.0, 0.0, 2.0, 2.0, 4.0, 4.0, 4.0];
+            Curve::new(&CurveShape::Nurbs { degree: 2, knots, weights: vec![], points }).unwrap()
+        };
+        assert_eq!(curve(1.0).corners(), &[] as &[f64]);
+        assert_eq!(curve(0.0).corners(), &[0.5]);
+        assert_eq!(curve(1.0).breaks(), &[0.0, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn derivatives_agree_with_differences() {
+        let curves = [
+            arc(DVec2::new(1.0, 2.0), 3.0, 0.5, -4.0).unwrap(),
+            polyline(&[(0.0, 0.0), (1.0, 3.0), (2.0, 1.0)], true).unwrap(),
+        ];
+        for curve in &curves {
+            for t in [0.1, 0.4, 0.9] {
+                let slope = (curve.point(t + 1e-6) - curve.point(t - 1e-6)) / 2e-6;
+                assert!((slope - curve.derivative(t)).length() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn bad_curves_are_refused() {
+        let says = |curve: Result<Curve, Fault>| curve.unwrap_err().to_string();
+        let p = DVec2::new(1.0, 2.0);
+        assert!(says(Curve::new(&CurveShape::Segment { from: p, to: p })).contains("zero length"));
+        assert!(says(Curve::new(&CurveShape::Segment { from: p, to: DVec2::NAN })).contains("not finite"));
+        assert!(says(Curve::new(&CurveShape::Segment { from: p, to: DVec2::new(1e200, 0.0) })).contains("1e100"));
+        assert!(says(arc(p, 0.0, 0.0, 1.0)).contains("radius is 0"));
+        assert!(says(arc(p, -1.0, 0.0, 1.0)).contains("radius is -1"));
+        assert!(says(arc(p, 1.0, 1.0, 1.0)).contains("zero length"));
+        assert!(says(arc(p, 1.0, 0.0, 7.0)).contains("more than a full turn"));
+        assert!(says(arc(p, 1.0, f64::NAN, 7.0)).contains("angles"));
+        assert!(says(polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.0)], false)).contains("points 2 and 3"));
+        assert!(says(polyline(&[(0.0, 0.0)], false)).contains("1 points"));
+        assert!(says(polyline(&[(0.0, 0.0), (1.0, 0.0)], true)).contains("2 points"));
+        assert!(says(polyline(&[], true)).contains("0 points"));
+    }
+}

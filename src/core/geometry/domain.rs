@@ -1,6 +1,15 @@
 //! Planar domains: outer loops and holes made of named curves, crack lines, repeated lines, several faces sharing curves.
 
 use glam::DVec2;
+use rstar::RTree;
+use rustc_hash::FxHashMap;
+
+use super::crossing::{self, Limits};
+use super::curve::Curve;
+use super::inside::{self, Chord};
+use super::loops;
+use super::place::told;
+use crate::core::fault::Fault;
 
 /// The shape of a curve as a case gives it; angles in radians.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,3 +81,469 @@ pub struct FaceSpec {
     /// Where it stands, for messages.
     pub place: String,
 }
+
+/// A curve of a [`Domain`]; dense from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CurveId(pub u32);
+
+impl CurveId {
+    /// The place of this id in the arrays.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A curve run from its start to its end, or back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DirectedCurve {
+    /// The curve.
+    pub curve: CurveId,
+    /// Whether from start to end.
+    pub forward: bool,
+}
+
+/// What a curve is to its faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveKind {
+    /// A side of outer loops or holes.
+    Boundary,
+    /// A crack line.
+    Crack,
+    /// A repeated line.
+    Repeated,
+}
+
+/// A curve in its place in the domain.
+#[derive(Clone, Debug)]
+pub struct DomainCurve {
+    /// Its name.
+    pub name: String,
+    /// Its course; at 0 and 1 the vertices hold, which may differ from it by the tolerance.
+    pub curve: Curve,
+    /// Number of segments where the case fixes it.
+    pub segments: Option<u32>,
+    /// Where the case has it, for messages.
+    pub place: String,
+    /// Vertices at its start and end.
+    pub ends: [u32; 2],
+    /// Faces on its left and right.
+    pub sides: [Option<u32>; 2],
+    /// What it is.
+    pub kind: CurveKind,
+    /// Points of a fine polyline with their parameters, from vertex to vertex.
+    pub fine: Vec<(f64, DVec2)>,
+}
+
+impl DomainCurve {
+    /// The vertex at its start.
+    pub fn first(&self) -> DVec2 {
+        self.fine[0].1
+    }
+
+    /// The vertex at its end.
+    pub fn last(&self) -> DVec2 {
+        self.fine[self.fine.len() - 1].1
+    }
+
+    /// The direction in which it leaves its start (or, `backwards`, its end): towards where it first is `radius` away.
+    pub fn leaves(&self, backwards: bool, radius: f64) -> DVec2 {
+        let n = self.fine.len() - 1;
+        let (origin, next) = if backwards { (self.fine[n], self.fine[n - 1]) } else { (self.fine[0], self.fine[1]) };
+        if self.curve.straight() {
+            return next.1 - origin.1;
+        }
+        let (mut near, mut far) = (origin.0, next.0);
+        for _ in 0..60 {
+            let t = 0.5 * (near + far);
+            if self.curve.point(t).distance(origin.1) < radius { near = t } else { far = t }
+        }
+        self.curve.point(far) - origin.1
+    }
+}
+
+/// A face in its place in the domain.
+#[derive(Clone, Debug)]
+pub struct DomainFace {
+    /// Its name.
+    pub name: String,
+    /// Outer loop, anticlockwise, then the holes, clockwise: the face lies on the left of each.
+    pub loops: Vec<Vec<DirectedCurve>>,
+    /// Its topological loops (spec 2.9): boundary walks with the face on their left, with the cracks and repeated lines
+    /// that hang on them; each must get an even number of segments.
+    pub walks: Vec<Vec<DirectedCurve>>,
+}
+
+/// Curves and faces that have been found sound: closed loops that neither cross nor touch, but at shared vertices.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    /// The curves that faces use.
+    pub curves: Vec<DomainCurve>,
+    /// Places of the vertices.
+    pub vertices: Vec<DVec2>,
+    /// The faces, in the order of the case.
+    pub faces: Vec<DomainFace>,
+    /// Larger side of the bounding box.
+    pub size: f64,
+    lower: DVec2,
+    upper: DVec2,
+    chords: RTree<Chord>,
+}
+
+impl Domain {
+    /// Puts curves and faces together; curves that no face uses are left out.
+    ///
+    /// # Errors
+    /// Names that are unknown, given twice, or used wrongly; curves that are no curves; loops that are open or of no
+    /// area; curves that cross or touch but at shared end points; holes, cracks and repeated lines outside of their
+    /// face; faces that overlap.
+    pub fn build(curves: Vec<CurveSpec>, faces: Vec<FaceSpec>) -> Result<Domain, Fault> {
+        let (mut curves, lists) = resolve(&curves, &faces)?;
+        let (lower, upper) = curves
+            .iter()
+            .map(|c| c.curve.bounds())
+            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (l, h)| (low.min(l), high.max(h)));
+        let size = (upper - lower).max_element();
+        let largest = lower.abs().max(upper.abs()).max_element();
+        if size < 1e-90 || size < 1e-9 * largest {
+            return Err(Fault::new(format!("The whole domain is only {size:e} across, at {}", told(lower)))
+                .remedy("Scale it up, and move it towards the origin"));
+        }
+        let tolerance = (1e-9 * size).max(8.0 * f64::EPSILON * largest);
+        let vertices = join_ends(&mut curves, size, tolerance)?;
+        let names: Vec<String> = faces.iter().map(|f| f.name.clone()).collect();
+        let mut chains = Vec::with_capacity(faces.len());
+        for (spec, list) in faces.iter().zip(&lists) {
+            let mut chain = Vec::with_capacity(list.loops.len());
+            for (i, ids) in list.loops.iter().enumerate() {
+                chain.push(loops::chain(&curves, ids, &loop_name(spec, i)).map_err(|f| placed(f, &spec.place))?);
+            }
+            chains.push(chain);
+        }
+        let chords = inside::chord_tree(&curves, |id, i| {
+            let curve = &curves[id.index()];
+            crossing::bulge(curve, curve.fine[i as usize], curve.fine[i as usize + 1]) + tolerance
+        });
+        crossing::check(&curves, &chords, Limits { tolerance, near: 1e-3 * size })?;
+        for (f, (spec, chain)) in faces.iter().zip(&mut chains).enumerate() {
+            for (i, steps) in chain.iter_mut().enumerate() {
+                let area = loops::doubled_area(&loops::polygon(&curves, steps));
+                if area.abs() <= tolerance * tolerance {
+                    return Err(placed(
+                        Fault::new(format!("The {} encloses no area", loop_name(spec, i))),
+                        &spec.place,
+                    ));
+                }
+                if (area > 0.0) != (i == 0) {
+                    steps.reverse();
+                    steps.iter_mut().for_each(|s| s.forward = !s.forward);
+                }
+                for step in steps {
+                    let curve = &mut curves[step.curve.index()];
+                    let side = &mut curve.sides[usize::from(!step.forward)];
+                    if let Some(other) = side.replace(f as u32) {
+                        return Err(placed(
+                            Fault::new(format!(
+                                "The faces \"{}\" and \"{}\" lie on the same side of the curve \"{}\"",
+                                names[other as usize], spec.name, curve.name
+                            ))
+                            .remedy("Faces may share curves and not area"),
+                            &spec.place,
+                        ));
+                    }
+                }
+            }
+        }
+        let mut domain = Domain { curves, vertices, faces: Vec::new(), size, lower, upper, chords };
+        domain.faces = names
+            .iter()
+            .zip(chains)
+            .map(|(name, loops)| DomainFace { name: name.clone(), loops, walks: Vec::new() })
+            .collect();
+        domain.check_nesting(&faces)?;
+        let walks = loops::walks(&domain.curves, &names, &domain.vertices)?;
+        for (face, walks) in domain.faces.iter_mut().zip(walks) {
+            face.walks = walks;
+        }
+        Ok(domain)
+    }
+
+    /// Holes lie inside the outer loop and outside each other, internal lines in their face, no face in another.
+    fn check_nesting(&self, specs: &[FaceSpec]) -> Result<(), Fault> {
+        // Which loops of which face each curve belongs to.
+        let mut loops_of = vec![Vec::new(); self.curves.len()];
+        for (f, face) in self.faces.iter().enumerate() {
+            for (i, steps) in face.loops.iter().enumerate() {
+                steps.iter().for_each(|s| loops_of[s.curve.index()].push((f, i)));
+            }
+        }
+        for (c, curve) in self.curves.iter().enumerate() {
+            let middle = curve.fine.len() / 2;
+            let p = if curve.fine.len() > 2 { curve.fine[middle].1 } else { curve.first().midpoint(curve.last()) };
+            // Loops around the point: those crossed an odd number of times.
+            let mut around: Vec<(usize, usize)> = self
+                .crossed(p)
+                .into_iter()
+                .filter(|id| id.index() != c)
+                .flat_map(|id| loops_of[id.index()].iter().copied())
+                .collect();
+            around.sort_unstable();
+            let around: Vec<(usize, usize)> =
+                around.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1).map(|g| g[0]).collect();
+            let holds = |f: usize| around.contains(&(f, 0)) && !around.iter().any(|&(g, i)| g == f && i > 0);
+            let refuse = |f: usize, what: String, remedy: &str| {
+                Err(placed(Fault::new(what).at(format!("at {}", told(p))).remedy(remedy), &specs[f].place))
+            };
+            for &(f, i) in &loops_of[c] {
+                let name = &self.faces[f].name;
+                if i > 0 && !around.contains(&(f, 0)) {
+                    let what = format!(
+                        "The curve \"{}\" of {} lies outside of the outer loop",
+                        curve.name,
+                        loop_name(&specs[f], i)
+                    );
+                    return refuse(f, what, "Move the hole inside, or take it out");
+                }
+                if let Some(&(_, j)) = around.iter().find(|&&(g, j)| g == f && j > 0 && j != i) {
+                    let what =
+                        format!("The curve \"{}\" of \"{name}\" lies within {}", curve.name, loop_name(&specs[f], j));
+                    return refuse(f, what, "A part inside a hole is a face of its own");
+                }
+            }
+            let inner = curve.kind != CurveKind::Boundary;
+            if let (true, Some(f)) = (inner, curve.sides[0])
+                && !holds(f as usize)
+            {
+                let what =
+                    format!("The line \"{}\" lies outside of its face \"{}\"", curve.name, self.faces[f as usize].name);
+                return refuse(f as usize, what, "Move it inside, or take it out");
+            }
+            let own = |f: usize| curve.sides.contains(&Some(f as u32));
+            let other = around.iter().map(|&(f, _)| f).find(|&f| !own(f) && holds(f));
+            if let Some(f) = other {
+                let owner = curve.sides.iter().flatten().next().map_or(f, |&f| f as usize);
+                let what = format!(
+                    "The faces \"{}\" and \"{}\" overlap: the curve \"{}\" lies in the latter",
+                    self.faces[owner].name, self.faces[f].name, curve.name
+                );
+                return refuse(owner, what, "Give the outer face a hole there, or keep the faces apart");
+            }
+        }
+        Ok(())
+    }
+
+    fn crossed(&self, p: DVec2) -> smallvec::SmallVec<[CurveId; 16]> {
+        inside::crossed_by_ray(&self.chords, &self.curves, p, self.lower.x - self.size)
+    }
+
+    /// The face that holds the point, judged by the fine polylines; `None` outside and in holes.
+    pub fn inside(&self, p: DVec2) -> Option<u32> {
+        let mut faces: smallvec::SmallVec<[u32; 16]> = self
+            .crossed(p)
+            .into_iter()
+            .map(|id| &self.curves[id.index()])
+            .filter(|c| c.kind == CurveKind::Boundary)
+            .flat_map(|c| c.sides.into_iter().flatten())
+            .collect();
+        faces.sort_unstable();
+        faces.chunk_by(|a, b| a == b).find(|g| g.len() % 2 == 1).map(|g| g[0])
+    }
+
+    /// About `n` points that cover the domain: a square grid of points inside, and points of all curves as dense.
+    pub fn sample_points(&self, n: usize) -> Vec<DVec2> {
+        let area: f64 = self
+            .faces
+            .iter()
+            .flat_map(|f| &f.loops)
+            .map(|l| 0.5 * loops::doubled_area(&loops::polygon(&self.curves, l)))
+            .sum();
+        let extent = self.upper - self.lower;
+        // A thin slanting domain fills little of its box: the grid is never more than 16 n points.
+        let n = n.max(1) as f64;
+        let spacing = (area / n).max(extent.x * extent.y / (16.0 * n)).sqrt().max(extent.max_element() / (16.0 * n));
+        let mut points = Vec::new();
+        for curve in &self.curves {
+            for w in curve.fine.windows(2) {
+                let parts = (w[0].1.distance(w[1].1) / spacing).ceil().clamp(1.0, 16.0 * n) as usize;
+                for i in 0..parts {
+                    points.push(curve.curve.point(w[0].0 + (w[1].0 - w[0].0) * i as f64 / parts as f64));
+                }
+            }
+            points.push(curve.last());
+        }
+        let (columns, rows) = ((extent.x / spacing).ceil() as usize, (extent.y / spacing).ceil() as usize);
+        for j in 0..rows {
+            for i in 0..columns {
+                let p = self.lower + spacing * DVec2::new(i as f64 + 0.5, j as f64 + 0.5);
+                if self.inside(p).is_some() {
+                    points.push(p);
+                }
+            }
+        }
+        points
+    }
+
+    /// The curve of this name.
+    pub fn curve(&self, name: &str) -> Option<&DomainCurve> {
+        self.curves.iter().find(|c| c.name == name)
+    }
+
+    /// Points of a fine polyline of the curve of this name, from start to end.
+    pub fn curve_polyline(&self, name: &str) -> Option<Vec<DVec2>> {
+        Some(self.curve(name)?.fine.iter().map(|&(_, p)| p).collect())
+    }
+}
+
+/// How messages call a loop of a face: its single curve where it has one, else its number.
+fn loop_name(spec: &FaceSpec, i: usize) -> String {
+    if i == 0 { format!("outer loop of \"{}\"", spec.name) } else { format!("hole {i} of \"{}\"", spec.name) }
+}
+
+fn placed(fault: Fault, place: &str) -> Fault {
+    if place.is_empty() { fault } else { fault.at(place) }
+}
+
+/// The curves of each face by id: outer loop and holes.
+struct Lists {
+    loops: Vec<Vec<CurveId>>,
+}
+
+/// Resolves the names of the faces; makes the curves that are used, in the order of the case.
+fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCurve>, Vec<Lists>), Fault> {
+    let mut by_name: FxHashMap<&str, usize> = FxHashMap::default();
+    for (i, spec) in specs.iter().enumerate() {
+        if by_name.insert(&spec.name, i).is_some() {
+            return Err(placed(Fault::new(format!("There are two curves \"{}\"", spec.name)), &spec.place)
+                .remedy("Rename one of them"));
+        }
+    }
+    if faces.is_empty() {
+        return Err(Fault::new("There is no face to mesh").remedy("Add a face with an outer loop"));
+    }
+    for (i, face) in faces.iter().enumerate() {
+        if faces[..i].iter().any(|f| f.name == face.name) {
+            return Err(placed(Fault::new(format!("There are two faces \"{}\"", face.name)), &face.place)
+                .remedy("Rename one of them"));
+        }
+    }
+    for face in faces {
+        if let Some(i) = std::iter::once(&face.outer).chain(&face.holes).position(Vec::is_empty) {
+            let what = format!("The {} has no curves", loop_name(face, i));
+            return Err(placed(Fault::new(what).remedy("Name the curves of a closed loop"), &face.place));
+        }
+    }
+    // How each curve is used: its kind, and for an internal line the face.
+    let mut used: Vec<Option<(CurveKind, u32)>> = vec![None; specs.len()];
+    let mut loops_by_spec: Vec<Vec<Vec<usize>>> = Vec::new();
+    for (f, face) in faces.iter().enumerate() {
+        let find = |name: &String| {
+            by_name.get(name.as_str()).copied().ok_or_else(|| {
+                let fault =
+                    Fault::new(format!("The face \"{}\" names the curve \"{name}\", which is not there", face.name));
+                let nearest = specs.iter().map(|s| (strsim::damerau_levenshtein(name, &s.name), &s.name)).min();
+                placed(
+                    match nearest {
+                        Some((_, near)) => fault.remedy(format!("The nearest known name is \"{near}\"")),
+                        None => fault.remedy("The case has no curves"),
+                    },
+                    &face.place,
+                )
+            })
+        };
+        let mut claim = |name: &String, kind: CurveKind| -> Result<usize, Fault> {
+            let i = find(name)?;
+            match used[i] {
+                Some((CurveKind::Boundary, _)) if kind == CurveKind::Boundary => {}
+                Some(_) => {
+                    let what = format!("The curve \"{name}\" is a crack or a repeated line and something else besides");
+                    return Err(placed(Fault::new(what), &face.place).remedy("Name it in one list only"));
+                }
+                None => used[i] = Some((kind, f as u32)),
+            }
+            Ok(i)
+        };
+        let mut of_face = Vec::new();
+        for list in std::iter::once(&face.outer).chain(&face.holes) {
+            of_face.push(list.iter().map(|name| claim(name, CurveKind::Boundary)).collect::<Result<Vec<_>, _>>()?);
+        }
+        for name in &face.cracks {
+            claim(name, CurveKind::Crack)?;
+        }
+        for name in &face.repeated {
+            claim(name, CurveKind::Repeated)?;
+        }
+        loops_by_spec.push(of_face);
+    }
+    let mut ids = vec![CurveId(u32::MAX); specs.len()];
+    let mut curves = Vec::new();
+    for (i, (spec, usage)) in specs.iter().zip(&used).enumerate() {
+        let Some((kind, face)) = *usage else { continue };
+        let named = |fault: Fault| placed(fault.at(format!("curve \"{}\"", spec.name)), &spec.place);
+        if spec.segments == Some(0) {
+            return Err(named(
+                Fault::new("It is to have 0 segments").remedy("Give at least 1, or leave the number out"),
+            ));
+        }
+        ids[i] = CurveId(curves.len() as u32);
+        let internal = (kind != CurveKind::Boundary).then_some(face);
+        curves.push(DomainCurve {
+            name: spec.name.clone(),
+            curve: Curve::new(&spec.shape).map_err(named)?,
+            segments: spec.segments,
+            place: spec.place.clone(),
+            ends: [0; 2],
+            sides: [internal; 2],
+            kind,
+            fine: Vec::new(),
+        });
+    }
+    let lists = loops_by_spec
+        .into_iter()
+        .map(|loops| Lists { loops: loops.into_iter().map(|l| l.into_iter().map(|i| ids[i]).collect()).collect() })
+        .collect();
+    Ok((curves, lists))
+}
+
+/// Joins ends that are within the tolerance into vertices, and makes the fine polylines between them.
+fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Result<Vec<DVec2>, Fault> {
+    // Ends that were given as numbers come first: where they meet computed ones, theirs is the place.
+    let mut ends: Vec<(bool, usize, usize, DVec2)> = Vec::new();
+    for (i, c) in curves.iter().enumerate() {
+        ends.push((!c.curve.ends_given(), i, 0, c.curve.start()));
+        ends.push((!c.curve.ends_given(), i, 1, c.curve.end()));
+    }
+    ends.sort_by_key(|e| (e.0, e.1, e.2));
+    let mut tree: RTree<rstar::primitives::GeomWithData<[f64; 2], u32>> = RTree::new();
+    let mut vertices: Vec<DVec2> = Vec::new();
+    for &(_, i, which, p) in &ends {
+        // The tree works on coordinates of order 1, so that no square underflows.
+        let q = [p.x / size, p.y / size];
+        let known =
+            tree.nearest_neighbor(q).filter(|v| vertices[v.data as usize].distance(p) <= tolerance).map(|v| v.data);
+        curves[i].ends[which] = known.unwrap_or_else(|| {
+            vertices.push(p);
+            tree.insert(rstar::primitives::GeomWithData::new(q, vertices.len() as u32 - 1));
+            vertices.len() as u32 - 1
+        });
+    }
+    for c in curves.iter_mut() {
+        c.fine = c.curve.polyline(1e-5 * size);
+        let last = c.fine.len() - 1;
+        c.fine[0].1 = vertices[c.ends[0] as usize];
+        c.fine[last].1 = vertices[c.ends[1] as usize];
+        let (low, high) = c.curve.bounds();
+        let short = c.fine.windows(2).find(|w| w[0].1.distance(w[1].1) <= tolerance && c.curve.straight());
+        if (high - low).max_element() <= tolerance || short.is_some() {
+            let p = short.map_or(c.first(), |w| w[0].1);
+            return Err(placed(
+                Fault::new(format!("The curve \"{}\" has (nearly) zero length", c.name))
+                    .at(format!("at {}", told(p)))
+                    .remedy("Take it, or the point too many, out"),
+                &c.place,
+            ));
+        }
+    }
+    Ok(vertices)
+}
+
+#[cfg(test)]
+mod tests;

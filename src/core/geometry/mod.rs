@@ -3,4 +3,10 @@
 pub mod predicates;
 pub mod nurbs;
 pub mod curve;
+pub mod place;
+pub mod loops;
+pub mod crossing;
+pub mod inside;
 pub mod domain;
+#[cfg(test)]
+pub(crate) mod fixtures;

@@ -31,3 +31,48 @@ pub fn convex(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
 fn coord(p: DVec2) -> robust::Coord<f64> {
     robust::Coord { x: p.x, y: p.y }
 }
+
+/// Whether a triangle is strictly positive and not so flat that a template of the last resort could be inverted by
+/// rounding (spec 2.10): altitude over longest edge at least 1e-7, altitude at least 256 ulp of the largest coordinate.
+#[inline]
+pub fn firm(a: DVec2, b: DVec2, c: DVec2) -> bool {
+    let twice_area = orient(a, b, c);
+    let longest2 = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+    let coordinate = a.abs().max(b.abs()).max(c.abs()).max_element();
+    twice_area > 0.0
+        && twice_area >= 1e-7 * longest2
+        && twice_area * twice_area
+            >= (256.0 * f64::EPSILON * coordinate) * (256.0 * f64::EPSILON * coordinate) * longest2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orientation_is_exact_where_rounding_lies() {
+        let (a, c) = (DVec2::new(0.5, 0.5), DVec2::new(24.0, 24.0));
+        for (i, j) in [(1.0, 0.0), (0.0, 1.0), (3.0, 2.0)] {
+            let b = DVec2::new(12.0 + i * f64::EPSILON * 8.0, 12.0 + j * f64::EPSILON * 8.0);
+            assert_eq!(orient(a, b, c) > 0.0, i > j, "{i} {j}");
+            assert!(orient(a, b, c) != 0.0);
+        }
+        assert_eq!(orient(a, DVec2::splat(12.0), c), 0.0);
+    }
+
+    #[test]
+    fn a_needle_is_positive_but_not_firm() {
+        let (a, b) = (DVec2::ZERO, DVec2::X);
+        assert!(positive(a, b, DVec2::new(0.5, 1e-8)) && !firm(a, b, DVec2::new(0.5, 1e-8)));
+        assert!(firm(a, b, DVec2::new(0.5, 1e-4)));
+        let far = DVec2::splat(1e6);
+        assert!(!firm(far, far + DVec2::X * 1e-9, far + DVec2::Y * 1e-9));
+    }
+
+    #[test]
+    fn a_quadrilateral_with_a_flat_corner_is_not_convex() {
+        let (a, b, c) = (DVec2::ZERO, DVec2::X, DVec2::new(1.0, 1.0));
+        assert!(convex(a, b, c, DVec2::Y));
+        assert!(!convex(a, b, c, DVec2::new(0.5, 0.5)));
+    }
+}

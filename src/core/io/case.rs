@@ -1,1 +1,237 @@
-//! case: being written.
+//! Case files: geometry, metric and parameters as one TOML file, strict and versioned; documented in
+//! `assets/cases/README.md`. Deliberately absent: what the words mean geometrically (`geometry::domain`) and whether a
+//! formula can be evaluated (`metric::formula`).
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use toml::de::DeTable;
+
+use super::case_table::{Source, Table};
+use super::{case_geometry, case_metric};
+use crate::core::convert::parameters::Parameters;
+use crate::core::fault::Fault;
+use crate::core::geometry::domain::{CurveSpec, FaceSpec};
+use crate::core::metric::field::FieldSpec;
+
+/// The version of case files that this program reads.
+pub const VERSION: u32 = 1;
+
+/// A case file may be this long, in bytes: what is longer is not a case.
+const LONGEST: u64 = 256 << 20;
+
+/// Where the domain of a case comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DomainSource {
+    /// Curves and the faces that they bound.
+    Curves {
+        /// All curves.
+        curves: Vec<CurveSpec>,
+        /// All faces, at least one.
+        faces: Vec<FaceSpec>,
+    },
+    /// A triangle mesh in a file is the background.
+    Mesh {
+        /// The mesh.
+        path: PathBuf,
+        /// Its metric at the nodes (Medit `.sol`).
+        sol: Option<PathBuf>,
+    },
+}
+
+/// A case: everything that a conversion starts from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Short name: that of the file without its extension.
+    pub name: String,
+    /// One line for people; the name where the file has none.
+    pub title: String,
+    /// Free text: where the case is from, which words are the paper's and which are ours.
+    pub notes: String,
+    /// Parameters, defaults where the file is silent.
+    pub parameters: Parameters,
+    /// Curves or a mesh.
+    pub domain: DomainSource,
+    /// Metric fields, intersected; empty only with a mesh, whose own metric is then taken.
+    pub fields: Vec<FieldSpec>,
+    /// Bound of the metric's gradation (spec 3, item 5), greater than 1; `None`: not bounded.
+    pub gradation: Option<f64>,
+    /// The file's own text, for reports; empty for a mesh without a case file.
+    pub text: String,
+}
+
+impl Case {
+    /// Reads a case file; a mesh that it names lies relative to it.
+    ///
+    /// # Errors
+    /// What the system says of the file, or see [`Case::parse`].
+    pub fn read(path: &Path) -> Result<Case, Fault> {
+        let place = path.display().to_string();
+        let refuse = |error: std::io::Error| Fault::new(format!("The case cannot be read ({error})")).at(place.clone());
+        if path.is_dir() {
+            return Err(Fault::new("This is a directory").at(place).remedy("Name a case file"));
+        }
+        let mut bytes = Vec::new();
+        File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes)).map_err(refuse)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Case::from_bytes(&bytes, &name, &place, folder)
+    }
+
+    /// A case from the bytes of a file: see [`Case::parse`].
+    ///
+    /// # Errors
+    /// Bytes that are not UTF-8 or far too many, or see [`Case::parse`].
+    pub fn from_bytes(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
+        if bytes.len() as u64 > LONGEST {
+            return Err(Fault::new("The file is far too long for a case").at(file).remedy("Name a case file"));
+        }
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            Fault::new(format!("The file is not text (byte {})", error.valid_up_to()))
+                .at(file)
+                .remedy("Name a TOML case file; meshes are known by their extension")
+        })?;
+        Case::parse(text, name, file, folder)
+    }
+
+    /// Parses the text of a case called `name`; messages call the file `file`, meshes lie relative to `folder`.
+    ///
+    /// # Errors
+    /// Text that is not TOML, another version, unknown or missing keys, values of the wrong kind or out of range, names
+    /// that are not there: with file and line.
+    pub fn parse(text: &str, name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
+        // A byte order mark is what some editors write first.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let source = Source { file, text };
+        let document = DeTable::parse(text).map_err(|error| {
+            let place = error.span().map_or(file.to_owned(), |span| source.place(span.start));
+            Fault::new(format!("This is not TOML: {}", error.message().replace('\n', ", ")))
+                .at(place)
+                .remedy("See assets/cases/README.md for how a case is written")
+        })?;
+        let table = Table::document(&source, &document);
+        check_version(&table)?;
+        table.only(&[
+            "version",
+            "title",
+            "notes",
+            "parameters",
+            "gradation",
+            "curve",
+            "face",
+            "metric",
+            "mesh",
+            "sol",
+        ])?;
+        let word = |key| table.get(key).map(|v| v.text()).transpose();
+        let domain = domain(&table, folder)?;
+        let curves = match &domain {
+            DomainSource::Curves { curves, .. } => curves.as_slice(),
+            DomainSource::Mesh { .. } => &[],
+        };
+        let fields = case_metric::fields(&table, curves)?;
+        check_fields(&table, &domain, &fields)?;
+        Ok(Case {
+            name: name.to_owned(),
+            title: word("title")?.unwrap_or(name).to_owned(),
+            notes: word("notes")?.unwrap_or_default().trim().to_owned(),
+            parameters: parameters(&table)?,
+            gradation: gradation(&table)?,
+            domain,
+            fields,
+            text: text.to_owned(),
+        })
+    }
+
+    /// The case that a mesh file without a case is: default parameters, the metric of `sol` or of its own triangles.
+    pub fn of_mesh(path: PathBuf, sol: Option<PathBuf>) -> Case {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Case {
+            title: format!("Mesh {}", path.display()),
+            name,
+            notes: String::new(),
+            parameters: Parameters::default(),
+            domain: DomainSource::Mesh { path, sol },
+            fields: Vec::new(),
+            gradation: None,
+            text: String::new(),
+        }
+    }
+}
+
+fn check_version(table: &Table<'_>) -> Result<(), Fault> {
+    let value = table.get("version").ok_or_else(|| {
+        table.fault("The version of the case format is missing").remedy("Begin the file with version = 1")
+    })?;
+    match value.count(1, u32::MAX)? {
+        VERSION => Ok(()),
+        newer => Err(value
+            .fault(format!("version = {newer} is newer than what this program reads"))
+            .remedy(format!("Use a newer quadfront, or write the case in version {VERSION}"))),
+    }
+}
+
+fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
+    let file = |key| {
+        let value = table.get(key);
+        value.map(|v| v.text().map(|name| folder.join(name))).transpose()
+    };
+    if let Some(path) = file("mesh")? {
+        for key in ["curve", "face"] {
+            if let Some(value) = table.get(key) {
+                return Err(value
+                    .fault(format!("The case has a mesh and a {key}"))
+                    .remedy(format!("Leave out either mesh or every [[{key}]]")));
+            }
+        }
+        return Ok(DomainSource::Mesh { path, sol: file("sol")? });
+    }
+    if let Some(value) = table.get("sol") {
+        return Err(value.fault("sol is given without mesh").remedy("Write mesh = \"...\" too"));
+    }
+    let curves = case_geometry::curves(table)?;
+    let faces = case_geometry::faces(table, &curves)?;
+    if faces.is_empty() {
+        return Err(table.fault("The case has no face").remedy("Add [[curve]] and [[face]], or mesh = \"...\""));
+    }
+    Ok(DomainSource::Curves { curves, faces })
+}
+
+fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) -> Result<(), Fault> {
+    match domain {
+        DomainSource::Curves { .. } if fields.is_empty() => Err(table
+            .fault("The case has no metric")
+            .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1")),
+        DomainSource::Mesh { sol: Some(_), .. } if !fields.is_empty() => {
+            Err(table.fault("The case has sol and [[metric]]").remedy("Leave one of them out"))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn parameters(table: &Table<'_>) -> Result<Parameters, Fault> {
+    let mut parameters = Parameters::default();
+    if let Some(value) = table.get("parameters") {
+        let own = value.table()?;
+        own.only(&Parameters::KEYS)?;
+        for entry in own.entries() {
+            parameters.set(entry.key(), &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?;
+        }
+    }
+    Ok(parameters)
+}
+
+fn gradation(table: &Table<'_>) -> Result<Option<f64>, Fault> {
+    let Some(value) = table.get("gradation") else { return Ok(None) };
+    let bound = value.number()?;
+    if bound > 1.0 && bound <= 100.0 {
+        Ok(Some(bound))
+    } else {
+        Err(value.wrong("greater than 1 and at most 100", "gradation = 1.3"))
+    }
+}
+
+#[cfg(test)]
+#[path = "case_tests.rs"]
+mod tests;

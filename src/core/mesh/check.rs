@@ -1,1 +1,95 @@
-//! check: being written.
+//! Structural and exact geometric checks of the half-edge mesh (spec 5): what must hold after every operation.
+
+use super::half_edge::Mesh;
+use super::ids::{ElementId, NodeId};
+use crate::core::geometry::predicates::{convex, positive};
+
+impl Mesh {
+    /// Checks the whole mesh: twins, walks, anchors, free lists, repeated nodes, exact positivity, metrics.
+    ///
+    /// # Errors
+    /// Says the first thing that does not hold, with ids and places. It is a bug of an operator.
+    pub fn check(&self) -> Result<(), String> {
+        let mut sides_at = vec![0_u32; self.node_slots()];
+        for e in self.elements() {
+            self.check_element(e)?;
+            self.corners(e).for_each(|n| sides_at[n.index()] += 1);
+        }
+        for node in self.nodes() {
+            self.check_node(node, sides_at[node.index()])?;
+        }
+        let (nodes, elements) = (self.nodes().count(), self.elements().count());
+        if nodes != self.node_count() || elements != self.element_count() {
+            return Err(format!(
+                "{nodes} nodes and {elements} elements are in use, but the free lists leave {} and {}",
+                self.node_count(),
+                self.element_count()
+            ));
+        }
+        Ok(())
+    }
+
+    /// Checks one element: its half-edges and twins agree, its nodes differ, it is strictly positive.
+    ///
+    /// # Errors
+    /// Says what does not hold.
+    pub fn check_element(&self, e: ElementId) -> Result<(), String> {
+        let nodes: Vec<NodeId> = self.corners(e).collect();
+        for (k, &n) in nodes.iter().enumerate() {
+            if !self.has_node(n) {
+                return Err(format!("{e:?} uses {n:?}, a tombstone"));
+            }
+            if nodes[..k].contains(&n) {
+                return Err(format!("{e:?} uses {n:?} twice"));
+            }
+        }
+        for h in self.half_edges(e) {
+            let Some(t) = self.twin(h) else {
+                if !(self.is_fixed(self.origin(h)) && self.is_fixed(self.target(h))) {
+                    return Err(format!("{h:?} of {e:?} has no twin, but its ends are not fixed"));
+                }
+                continue;
+            };
+            if self.twin(t) != Some(h) || !self.has_element(t.element()) || t.element() == e {
+                return Err(format!("{h:?} and {t:?} are not each other's twins"));
+            }
+            if self.origin(t) != self.target(h) || self.target(t) != self.origin(h) {
+                return Err(format!("{h:?} and {t:?} are twins with other ends"));
+            }
+        }
+        let p: Vec<_> = nodes.iter().map(|&n| self.uv(n)).collect();
+        let good = match p[..] {
+            [a, b, c] => positive(a, b, c),
+            [a, b, c, d] => convex(a, b, c, d),
+            _ => false,
+        };
+        if !good {
+            return Err(format!("{e:?} is not strictly positive and convex: {nodes:?} at {p:?}"));
+        }
+        Ok(())
+    }
+
+    fn check_node(&self, node: NodeId, sides_at: u32) -> Result<(), String> {
+        let mut seen = 0;
+        for h in self.fan(node) {
+            if self.origin(h) != node {
+                return Err(format!("the fan of {node:?} meets {h:?}, which starts elsewhere"));
+            }
+            seen += 1;
+            if seen > sides_at {
+                break;
+            }
+        }
+        if seen != sides_at {
+            return Err(format!("the fan of {node:?} sees {seen} of {sides_at} elements"));
+        }
+        let start = self.fan(node).next().and_then(|h| self.twin(h));
+        if self.is_fixed(node) != start.is_none() {
+            return Err(format!("{node:?} is fixed exactly where it lies on a boundary: {}", self.is_fixed(node)));
+        }
+        if !self.metric(node).is_spd() || !self.uv(node).is_finite() {
+            return Err(format!("{node:?} at {} has metric {:?}", self.uv(node), self.metric(node)));
+        }
+        Ok(())
+    }
+}

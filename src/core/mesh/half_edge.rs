@@ -1,1 +1,679 @@
-//! half_edge: being written.
+//! The mesh: triangles and quadrilaterals in one half-edge structure of plain arrays (spec 6).
+//!
+//! A half-edge is slot `4 * element + corner`; `next` and `previous` are arithmetic, only `origin` and `twin` are stored.
+//! Every node has one fan of elements (pinched nodes come in copies that share a `PointId`), and the fan of a node on a
+//! boundary is walked from its boundary half-edge, so that one turn anticlockwise sees all of it.
+//!
+//! All changes go through the private setters at the end, which write the old value into the journal. Public ways to
+//! change are the operators only (`operators.rs`).
+
+use glam::DVec2;
+
+use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
+use super::triangle_set::TriangleSet;
+use crate::core::journal::{Entry, Journal, Mark};
+use crate::core::metric::tensor::Metric2;
+
+/// Absence in the arrays; outside of them absence is `Option`.
+const NONE: u32 = u32::MAX;
+
+/// Triangles and quadrilaterals with their nodes.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    uv: Vec<DVec2>,
+    metric: Vec<Metric2>,
+    /// Where the walk around a node starts; `NONE` for a tombstone.
+    anchor: Vec<u32>,
+    /// Output point of a node that may not move; `NONE` for a free one.
+    point: Vec<u32>,
+    origin: Vec<u32>,
+    twin: Vec<u32>,
+    /// 3, 4, or 0 for a tombstone.
+    sides: Vec<u8>,
+    region: Vec<u32>,
+    /// Row of a quadrilateral, counted from the boundary (0 for a triangle).
+    level: Vec<u16>,
+    /// Whether the front segment in this slot is put off.
+    deferred: Vec<bool>,
+    free_nodes: Vec<NodeId>,
+    free_elements: Vec<ElementId>,
+    journal: Journal,
+}
+
+/// An element to be made: its nodes anticlockwise (three or four) and its region.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewElement {
+    nodes: [NodeId; 4],
+    sides: u8,
+    region: u32,
+}
+
+impl NewElement {
+    /// A triangle.
+    pub fn triangle(nodes: [NodeId; 3], region: u32) -> Self {
+        NewElement { nodes: [nodes[0], nodes[1], nodes[2], nodes[2]], sides: 3, region }
+    }
+
+    /// A quadrilateral.
+    pub fn quad(nodes: [NodeId; 4], region: u32) -> Self {
+        NewElement { nodes, sides: 4, region }
+    }
+
+    /// Its nodes, anticlockwise.
+    pub fn nodes(&self) -> &[NodeId] {
+        &self.nodes[..self.sides as usize]
+    }
+
+    /// Its region.
+    pub fn region(&self) -> u32 {
+        self.region
+    }
+}
+
+/// Walks the half-edges that leave a node, anticlockwise; see [`Mesh::fan`].
+pub struct Fan<'a> {
+    mesh: &'a Mesh,
+    start: HalfEdgeId,
+    next: Option<HalfEdgeId>,
+}
+
+impl Iterator for Fan<'_> {
+    type Item = HalfEdgeId;
+
+    #[inline]
+    fn next(&mut self) -> Option<HalfEdgeId> {
+        let h = self.next?;
+        self.next = self.mesh.twin(self.mesh.previous(h)).filter(|&n| n != self.start);
+        Some(h)
+    }
+}
+
+impl Mesh {
+    /// The mesh of a set of triangles, with the metric of each node. Nodes on a boundary become fixed.
+    ///
+    /// # Panics
+    /// Where the set breaks its promises (a side used twice in one direction, a node with two fans).
+    pub fn from_triangles(set: &TriangleSet, metric: Vec<Metric2>) -> Self {
+        assert_eq!(set.uv.len(), metric.len(), "one metric a node");
+        assert!(set.triangles.len() < (NONE / 4) as usize, "half-edge ids are 32 bits");
+        let elements = set.triangles.len();
+        let mut mesh = Mesh {
+            uv: set.uv.clone(),
+            metric,
+            anchor: vec![NONE; set.uv.len()],
+            point: vec![NONE; set.uv.len()],
+            origin: vec![NONE; 4 * elements],
+            twin: vec![NONE; 4 * elements],
+            sides: vec![3; elements],
+            region: set.region.clone(),
+            level: vec![0; elements],
+            deferred: vec![false; 4 * elements],
+            free_nodes: Vec::new(),
+            free_elements: Vec::new(),
+            journal: Journal::default(),
+        };
+        let mut by_side: Vec<(u64, u32)> = Vec::with_capacity(3 * elements);
+        for (element, nodes) in set.triangles.iter().enumerate() {
+            for corner in 0..3 {
+                let half_edge = (4 * element + corner) as u32;
+                let (a, b) = (nodes[corner], nodes[(corner + 1) % 3]);
+                mesh.origin[half_edge as usize] = a;
+                if mesh.anchor[a as usize] == NONE {
+                    mesh.anchor[a as usize] = half_edge;
+                }
+                by_side.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), half_edge));
+            }
+        }
+        by_side.sort_unstable();
+        let mut rest = by_side.as_slice();
+        while let [(side, h), tail @ ..] = rest {
+            let h = *h;
+            if let Some(&(_, t)) = tail.first().filter(|(other, _)| other == side) {
+                assert_ne!(mesh.origin[h as usize], mesh.origin[t as usize], "a side is used twice in one direction");
+                mesh.twin[h as usize] = t;
+                mesh.twin[t as usize] = h;
+                rest = &tail[1..];
+            } else {
+                let node = mesh.origin[h as usize] as usize;
+                assert_eq!(mesh.point[node], NONE, "node {node} has two fans");
+                mesh.anchor[node] = h;
+                mesh.point[node] = set.point[node].0;
+                rest = tail;
+            }
+        }
+        mesh
+    }
+
+    // ---- counts and walks ----
+
+    /// Number of node slots, tombstones included.
+    pub fn node_slots(&self) -> usize {
+        self.uv.len()
+    }
+
+    /// Number of element slots, tombstones included.
+    pub fn element_slots(&self) -> usize {
+        self.sides.len()
+    }
+
+    /// Number of nodes in use.
+    pub fn node_count(&self) -> usize {
+        self.uv.len() - self.free_nodes.len()
+    }
+
+    /// Number of elements in use.
+    pub fn element_count(&self) -> usize {
+        self.sides.len() - self.free_elements.len()
+    }
+
+    /// All nodes in use, by id.
+    pub fn nodes(&self) -> impl Iterator<Item = NodeId> + '_ {
+        (0..self.anchor.len() as u32).filter(|&n| self.anchor[n as usize] != NONE).map(NodeId)
+    }
+
+    /// All elements in use, by id.
+    pub fn elements(&self) -> impl Iterator<Item = ElementId> + '_ {
+        (0..self.sides.len() as u32).filter(|&e| self.sides[e as usize] != 0).map(ElementId)
+    }
+
+    /// One half-edge of every edge, by id: that of the smaller id, or the only one.
+    pub fn edges(&self) -> impl Iterator<Item = HalfEdgeId> + '_ {
+        self.elements().flat_map(|e| self.half_edges(e)).filter(|&h| self.twin(h).is_none_or(|t| h < t))
+    }
+
+    /// The half-edges of an element, anticlockwise.
+    #[inline]
+    pub fn half_edges(&self, e: ElementId) -> impl Iterator<Item = HalfEdgeId> + use<> {
+        (0..u32::from(self.sides[e.index()])).map(move |corner| e.half_edge(corner))
+    }
+
+    /// The half-edges that leave a node, anticlockwise; of a node on a boundary all of them, from boundary to boundary.
+    #[inline]
+    pub fn fan(&self, node: NodeId) -> Fan<'_> {
+        let start = HalfEdgeId(self.anchor[node.index()]);
+        debug_assert_ne!(start.0, NONE, "{node:?} is a tombstone");
+        Fan { mesh: self, start, next: Some(start) }
+    }
+
+    /// The neighbours of a node along edges, anticlockwise; of a node on a boundary from boundary to boundary.
+    #[inline]
+    pub fn neighbours(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
+        let mut last = None;
+        let mut fan = self.fan(node);
+        let mut done = false;
+        std::iter::from_fn(move || {
+            if let Some(h) = fan.next() {
+                last = Some(h);
+                return Some(self.target(h));
+            }
+            if done {
+                return None;
+            }
+            done = true;
+            let back = self.previous(last?);
+            self.twin(back).is_none().then(|| self.origin(back))
+        })
+    }
+
+    /// Number of edges at a node.
+    pub fn valence(&self, node: NodeId) -> usize {
+        self.neighbours(node).count()
+    }
+
+    // ---- elements and half-edges ----
+
+    /// Number of sides of an element: 3, 4, or 0 for a tombstone.
+    #[inline]
+    pub fn sides(&self, e: ElementId) -> usize {
+        self.sides[e.index()] as usize
+    }
+
+    /// Whether the element is a triangle.
+    #[inline]
+    pub fn is_triangle(&self, e: ElementId) -> bool {
+        self.sides[e.index()] == 3
+    }
+
+    /// Whether the element is a quadrilateral.
+    #[inline]
+    pub fn is_quad(&self, e: ElementId) -> bool {
+        self.sides[e.index()] == 4
+    }
+
+    /// The region (face of the case) of an element.
+    #[inline]
+    pub fn region(&self, e: ElementId) -> u32 {
+        self.region[e.index()]
+    }
+
+    /// The level of a quadrilateral: its row, counted from the boundary; 0 for a triangle.
+    #[inline]
+    pub fn level(&self, e: ElementId) -> u16 {
+        self.level[e.index()]
+    }
+
+    /// Whether the front segment is put off until something near it changes.
+    #[inline]
+    pub fn is_deferred(&self, h: HalfEdgeId) -> bool {
+        self.deferred[h.index()]
+    }
+
+    /// The node where a half-edge starts.
+    #[inline]
+    pub fn origin(&self, h: HalfEdgeId) -> NodeId {
+        NodeId(self.origin[h.index()])
+    }
+
+    /// The node where a half-edge ends.
+    #[inline]
+    pub fn target(&self, h: HalfEdgeId) -> NodeId {
+        self.origin(self.next(h))
+    }
+
+    /// The next half-edge of the same element.
+    #[inline]
+    pub fn next(&self, h: HalfEdgeId) -> HalfEdgeId {
+        if h.corner() + 1 == u32::from(self.sides[h.element().index()]) {
+            h.element().half_edge(0)
+        } else {
+            HalfEdgeId(h.0 + 1)
+        }
+    }
+
+    /// The previous half-edge of the same element.
+    #[inline]
+    pub fn previous(&self, h: HalfEdgeId) -> HalfEdgeId {
+        if h.corner() == 0 {
+            h.element().half_edge(u32::from(self.sides[h.element().index()]) - 1)
+        } else {
+            HalfEdgeId(h.0 - 1)
+        }
+    }
+
+    /// The same edge seen from the other element; none on a boundary.
+    #[inline]
+    pub fn twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
+        let t = self.twin[h.index()];
+        (t != NONE).then_some(HalfEdgeId(t))
+    }
+
+    /// The nodes of an element, anticlockwise.
+    #[inline]
+    pub fn corners(&self, e: ElementId) -> impl Iterator<Item = NodeId> + '_ {
+        self.half_edges(e).map(|h| self.origin(h))
+    }
+
+    /// The nodes of a triangle.
+    #[inline]
+    pub fn triangle(&self, e: ElementId) -> [NodeId; 3] {
+        debug_assert!(self.is_triangle(e));
+        let first = 4 * e.index();
+        [NodeId(self.origin[first]), NodeId(self.origin[first + 1]), NodeId(self.origin[first + 2])]
+    }
+
+    /// The nodes of a quadrilateral.
+    #[inline]
+    pub fn quad(&self, e: ElementId) -> [NodeId; 4] {
+        debug_assert!(self.is_quad(e));
+        let first = 4 * e.index();
+        [
+            NodeId(self.origin[first]),
+            NodeId(self.origin[first + 1]),
+            NodeId(self.origin[first + 2]),
+            NodeId(self.origin[first + 3]),
+        ]
+    }
+
+    /// The half-edge from one node to another, where they are joined.
+    pub fn half_edge_between(&self, from: NodeId, to: NodeId) -> Option<HalfEdgeId> {
+        self.fan(from).find(|&h| self.target(h) == to)
+    }
+
+    /// Whether the two nodes are joined by an edge (seen from either side).
+    pub fn are_joined(&self, a: NodeId, b: NodeId) -> bool {
+        self.neighbours(a).any(|n| n == b)
+    }
+
+    // ---- nodes ----
+
+    /// Whether the slot holds a node (and not a tombstone).
+    pub fn has_node(&self, node: NodeId) -> bool {
+        self.anchor.get(node.index()).is_some_and(|&h| h != NONE)
+    }
+
+    /// Whether the slot holds an element (and not a tombstone).
+    pub fn has_element(&self, e: ElementId) -> bool {
+        self.sides.get(e.index()).is_some_and(|&s| s != 0)
+    }
+
+    /// Coordinates of a node in the parametric plane.
+    #[inline]
+    pub fn uv(&self, node: NodeId) -> DVec2 {
+        self.uv[node.index()]
+    }
+
+    /// Metric of a node (eq. 3).
+    #[inline]
+    pub fn metric(&self, node: NodeId) -> Metric2 {
+        self.metric[node.index()]
+    }
+
+    /// Metric of a node (eq. 3), in place.
+    #[inline]
+    pub fn metric_ref(&self, node: NodeId) -> &Metric2 {
+        &self.metric[node.index()]
+    }
+
+    /// Whether the node lies on a boundary: it may not move or go.
+    #[inline]
+    pub fn is_fixed(&self, node: NodeId) -> bool {
+        self.point[node.index()] != NONE
+    }
+
+    /// The output point of a node on a boundary.
+    #[inline]
+    pub fn point(&self, node: NodeId) -> Option<PointId> {
+        let p = self.point[node.index()];
+        (p != NONE).then_some(PointId(p))
+    }
+
+    // ---- order ----
+
+    /// The same mesh without tombstones, its nodes and elements along a Hilbert curve: neighbours in the plane become
+    /// neighbours in memory, which is most of the speed of large meshes. The journal starts empty.
+    #[must_use]
+    pub fn reordered(&self) -> Mesh {
+        let nodes = hilbert_order(self.nodes().map(|n| (n.0, self.uv(n))).collect());
+        let mut new_node = vec![NONE; self.uv.len()];
+        for (new, &old) in nodes.iter().enumerate() {
+            new_node[old as usize] = new as u32;
+        }
+        let mut elements: Vec<(u32, u32)> = self
+            .elements()
+            .map(|e| (self.corners(e).map(|n| new_node[n.index()]).min().unwrap_or(NONE), e.0))
+            .collect();
+        elements.sort_unstable();
+        let mut new_element = vec![NONE; self.sides.len()];
+        for (new, &(_, old)) in elements.iter().enumerate() {
+            new_element[old as usize] = new as u32;
+        }
+        let half_edge = |h: u32| if h == NONE { NONE } else { new_element[(h >> 2) as usize] << 2 | (h & 3) };
+        let slot = |old: u32, corner: u32| (4 * old + corner) as usize;
+        let corners = || elements.iter().flat_map(|&(_, old)| (0..4).map(move |corner| (old, corner)));
+        let used = |old: u32, corner: u32| corner < u32::from(self.sides[old as usize]);
+        Mesh {
+            uv: nodes.iter().map(|&n| self.uv[n as usize]).collect(),
+            metric: nodes.iter().map(|&n| self.metric[n as usize]).collect(),
+            anchor: nodes.iter().map(|&n| half_edge(self.anchor[n as usize])).collect(),
+            point: nodes.iter().map(|&n| self.point[n as usize]).collect(),
+            origin: corners()
+                .map(|(e, k)| if used(e, k) { new_node[self.origin[slot(e, k)] as usize] } else { NONE })
+                .collect(),
+            twin: corners().map(|(e, k)| if used(e, k) { half_edge(self.twin[slot(e, k)]) } else { NONE }).collect(),
+            sides: elements.iter().map(|&(_, e)| self.sides[e as usize]).collect(),
+            region: elements.iter().map(|&(_, e)| self.region[e as usize]).collect(),
+            level: elements.iter().map(|&(_, e)| self.level[e as usize]).collect(),
+            deferred: corners().map(|(e, k)| self.deferred[slot(e, k)]).collect(),
+            ..Mesh::default()
+        }
+    }
+
+    // ---- journal ----
+
+    /// The present place of the journal, to take back to.
+    pub fn mark(&self) -> Mark {
+        self.journal.mark()
+    }
+
+    /// The journal.
+    pub fn journal(&self) -> &Journal {
+        &self.journal
+    }
+
+    /// Starts or stops recording; see [`Journal::set_recording`].
+    pub fn set_recording(&mut self, recording: bool) {
+        self.journal.set_recording(recording);
+    }
+
+    /// Keeps what was done and forgets how it was before.
+    pub fn commit(&mut self) {
+        self.journal.forget();
+    }
+
+    /// Takes back everything that was done after the mark, exactly: the arrays are the same to the last byte.
+    pub fn take_back(&mut self, mark: Mark) {
+        while let Some(entry) = self.journal.pop(mark) {
+            match entry {
+                Entry::Origin(h, old) => self.origin[h.index()] = old,
+                Entry::Twin(h, old) => self.twin[h.index()] = old,
+                Entry::Sides(e, old) => self.sides[e.index()] = old,
+                Entry::Region(e, old) => self.region[e.index()] = old,
+                Entry::Level(e, old) => self.level[e.index()] = old,
+                Entry::Deferred(h, old) => self.deferred[h.index()] = old,
+                Entry::Uv(n, old) => self.uv[n.index()] = old,
+                Entry::Metric(n, old) => self.metric[n.index()] = old,
+                Entry::Anchor(n, old) => self.anchor[n.index()] = old,
+                Entry::NodeAppended => {
+                    self.uv.pop();
+                    self.metric.pop();
+                    self.anchor.pop();
+                    self.point.pop();
+                }
+                Entry::ElementAppended => {
+                    let slots = 4 * (self.sides.len() - 1);
+                    self.origin.truncate(slots);
+                    self.twin.truncate(slots);
+                    self.deferred.truncate(slots);
+                    self.level.pop();
+                    self.sides.pop();
+                    self.region.pop();
+                }
+                Entry::NodeTaken(n) => self.free_nodes.push(n),
+                Entry::ElementTaken(e) => self.free_elements.push(e),
+                Entry::NodeFreed => {
+                    self.free_nodes.pop();
+                }
+                Entry::ElementFreed => {
+                    self.free_elements.pop();
+                }
+            }
+        }
+    }
+
+    /// Appends the canonical serialisation of the state: every array and both free lists, little-endian. Two meshes are
+    /// the same state exactly where these bytes are equal. (The journal is history, not state.)
+    pub fn write_state(&self, bytes: &mut Vec<u8>) {
+        let mut number = |n: u64| bytes.extend_from_slice(&n.to_le_bytes());
+        number(self.uv.len() as u64);
+        number(self.sides.len() as u64);
+        number(self.free_nodes.len() as u64);
+        number(self.free_elements.len() as u64);
+        for n in 0..self.uv.len() {
+            number(self.uv[n].x.to_bits());
+            number(self.uv[n].y.to_bits());
+            number(self.metric[n].uu.to_bits());
+            number(self.metric[n].uv.to_bits());
+            number(self.metric[n].vv.to_bits());
+            number(u64::from(self.anchor[n]) << 32 | u64::from(self.point[n]));
+        }
+        for h in 0..self.origin.len() {
+            number(u64::from(self.origin[h]) << 32 | u64::from(self.twin[h]));
+        }
+        for e in 0..self.sides.len() {
+            let deferred = (0..4).map(|k| u64::from(self.deferred[4 * e + k]) << k).sum::<u64>();
+            number(
+                u64::from(self.region[e]) << 28
+                    | u64::from(self.level[e]) << 12
+                    | deferred << 8
+                    | u64::from(self.sides[e]),
+            );
+        }
+        self.free_nodes.iter().for_each(|n| number(u64::from(n.0)));
+        self.free_elements.iter().for_each(|e| number(u64::from(e.0)));
+    }
+
+    // ---- the setters: every change passes here and is written down ----
+
+    #[inline]
+    pub(super) fn set_origin(&mut self, h: HalfEdgeId, node: NodeId) {
+        let old = std::mem::replace(&mut self.origin[h.index()], node.0);
+        self.journal.note(Entry::Origin(h, old));
+    }
+
+    #[inline]
+    fn set_twin(&mut self, h: HalfEdgeId, twin: Option<HalfEdgeId>) {
+        let old = std::mem::replace(&mut self.twin[h.index()], twin.map_or(NONE, |t| t.0));
+        self.journal.note(Entry::Twin(h, old));
+    }
+
+    /// Makes two half-edges each other's twins, or makes the first a boundary and the anchor of its node.
+    #[inline]
+    pub(super) fn hook(&mut self, h: HalfEdgeId, twin: Option<HalfEdgeId>) {
+        self.set_twin(h, twin);
+        match twin {
+            Some(t) => self.set_twin(t, Some(h)),
+            None => self.set_anchor(self.origin(h), h),
+        }
+    }
+
+    #[inline]
+    pub(super) fn set_sides(&mut self, e: ElementId, sides: u8) {
+        let old = std::mem::replace(&mut self.sides[e.index()], sides);
+        self.journal.note(Entry::Sides(e, old));
+    }
+
+    #[inline]
+    fn set_region(&mut self, e: ElementId, region: u32) {
+        let old = std::mem::replace(&mut self.region[e.index()], region);
+        self.journal.note(Entry::Region(e, old));
+    }
+
+    /// Gives a quadrilateral its level.
+    #[inline]
+    pub(in crate::core) fn set_level(&mut self, e: ElementId, level: u16) {
+        if self.level[e.index()] != level {
+            let old = std::mem::replace(&mut self.level[e.index()], level);
+            self.journal.note(Entry::Level(e, old));
+        }
+    }
+
+    /// Puts a front segment off, or takes it up again.
+    #[inline]
+    pub(in crate::core) fn set_deferred(&mut self, h: HalfEdgeId, deferred: bool) {
+        if self.deferred[h.index()] != deferred {
+            let old = std::mem::replace(&mut self.deferred[h.index()], deferred);
+            self.journal.note(Entry::Deferred(h, old));
+        }
+    }
+
+    #[inline]
+    fn set_anchor(&mut self, node: NodeId, h: HalfEdgeId) {
+        let old = std::mem::replace(&mut self.anchor[node.index()], h.0);
+        self.journal.note(Entry::Anchor(node, old));
+    }
+
+    /// Lets a free node be walked from a half-edge that leaves it; a fixed one keeps its boundary half-edge.
+    #[inline]
+    pub(super) fn reanchor(&mut self, h: HalfEdgeId) {
+        let node = self.origin(h);
+        if !self.is_fixed(node) {
+            self.set_anchor(node, h);
+        }
+    }
+
+    /// Moves a node and gives it the metric of its new place.
+    #[inline]
+    pub(super) fn set_place(&mut self, node: NodeId, uv: DVec2, metric: Metric2) {
+        let old = std::mem::replace(&mut self.uv[node.index()], uv);
+        self.journal.note(Entry::Uv(node, old));
+        let old = std::mem::replace(&mut self.metric[node.index()], metric);
+        self.journal.note(Entry::Metric(node, old));
+    }
+
+    /// Makes a free node that no element uses yet.
+    pub(super) fn new_node(&mut self, uv: DVec2, metric: Metric2) -> NodeId {
+        if let Some(node) = self.free_nodes.pop() {
+            self.journal.note(Entry::NodeTaken(node));
+            self.set_place(node, uv, metric);
+            return node;
+        }
+        self.uv.push(uv);
+        self.metric.push(metric);
+        self.anchor.push(NONE);
+        self.point.push(NONE);
+        self.journal.note(Entry::NodeAppended);
+        NodeId(self.uv.len() as u32 - 1)
+    }
+
+    /// Makes a tombstone of a free node that no element uses any more.
+    pub(super) fn free_node(&mut self, node: NodeId) {
+        debug_assert!(!self.is_fixed(node));
+        let old = std::mem::replace(&mut self.anchor[node.index()], NONE);
+        self.journal.note(Entry::Anchor(node, old));
+        self.free_nodes.push(node);
+        self.journal.note(Entry::NodeFreed);
+    }
+
+    /// Makes an element without nodes or twins yet.
+    pub(super) fn new_element(&mut self, sides: u8, region: u32) -> ElementId {
+        if let Some(e) = self.free_elements.pop() {
+            self.journal.note(Entry::ElementTaken(e));
+            self.set_sides(e, sides);
+            self.set_region(e, region);
+            self.set_level(e, 0);
+            return e;
+        }
+        self.origin.extend([NONE; 4]);
+        self.twin.extend([NONE; 4]);
+        self.sides.push(sides);
+        self.region.push(region);
+        self.level.push(0);
+        self.deferred.extend([false; 4]);
+        self.journal.note(Entry::ElementAppended);
+        ElementId(self.sides.len() as u32 - 1)
+    }
+
+    /// Makes a tombstone of an element.
+    pub(super) fn free_element(&mut self, e: ElementId) {
+        self.set_sides(e, 0);
+        self.free_elements.push(e);
+        self.journal.note(Entry::ElementFreed);
+    }
+}
+
+/// The ids sorted along a Hilbert curve through the bounding box of the places; equal cells keep the order of the ids.
+fn hilbert_order(places: Vec<(u32, DVec2)>) -> Vec<u32> {
+    const BITS: u32 = 26;
+    let low = places.iter().fold(DVec2::INFINITY, |low, (_, p)| low.min(*p));
+    let high = places.iter().fold(DVec2::NEG_INFINITY, |high, (_, p)| high.max(*p));
+    let extent = (high - low).max_element();
+    let scale = if extent > 0.0 { f64::from((1_u32 << BITS) - 1) / extent } else { 0.0 };
+    let mut keyed: Vec<(u64, u32)> = places
+        .iter()
+        .map(|&(id, p)| {
+            let cell = (p - low) * scale;
+            (hilbert_distance(BITS, cell.x as u32, cell.y as u32), id)
+        })
+        .collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, id)| id).collect()
+}
+
+/// Distance along the Hilbert curve of order `bits` at which the cell (x, y) comes.
+fn hilbert_distance(bits: u32, mut x: u32, mut y: u32) -> u64 {
+    let mut distance = 0;
+    for level in (0..bits).rev() {
+        let side = 1_u32 << level;
+        let (right, up) = (u32::from(x & side != 0), u32::from(y & side != 0));
+        distance = distance << 2 | u64::from((3 * right) ^ up);
+        // Turn the quadrant so that the curve inside it begins where the last one ended.
+        if up == 0 {
+            if right == 1 {
+                x = !x & (2 * side - 1);
+                y = !y & (2 * side - 1);
+            }
+            std::mem::swap(&mut x, &mut y);
+        }
+    }
+    distance
+}

@@ -4,6 +4,7 @@ pub mod ids;
 pub mod triangle_set;
 pub mod half_edge;
 pub mod operators;
+pub mod quad_operators;
 pub mod check;
 pub mod quality;
 pub mod soundness;

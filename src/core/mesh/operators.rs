@@ -1,1 +1,407 @@
-//! operators: being written.
+//! The elementary operations (paper 4.2, figs. 5-8) and the general replacement that the others are made of.
+//!
+//! Judge, then change: `can_…` says by exact predicates whether an operation keeps the mesh valid and changes nothing;
+//! the operation itself asserts nothing about geometry and writes what it replaces into the journal. Boundary edges are
+//! never changed and fixed nodes never move.
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use super::half_edge::{Mesh, NewElement};
+use super::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::geometry::predicates::{convex, firm};
+use crate::core::metric::tensor::Metric2;
+
+/// Why an operation cannot be done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// The edge lies on a boundary.
+    OnBoundary,
+    /// The node is fixed.
+    FixedNode,
+    /// The operation is for triangles, and an element is none.
+    NotTriangles,
+    /// An element would be inverted, flat, or not convex.
+    NotPositive,
+    /// The ends have a common neighbour besides the two opposite nodes, or an element holds both: merging them would
+    /// glue what is apart.
+    Link,
+    /// The nodes of the new edge are joined already.
+    Joined,
+    /// The node has not three or four triangles around it.
+    Valence,
+}
+
+impl Mesh {
+    // ---- edge swapping (paper 4.2.1, fig. 5) ----
+
+    /// Whether [`swap`](Mesh::swap) of the edge would give two positive triangles (both new angles below 180 degrees,
+    /// exactly, and no needle).
+    ///
+    /// # Errors
+    /// The refusal.
+    pub fn can_swap(&self, h_ab: HalfEdgeId) -> Result<(), Refusal> {
+        let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
+        if !self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()) {
+            return Err(Refusal::NotTriangles);
+        }
+        let (a, b) = (self.uv(self.origin(h_ab)), self.uv(self.origin(h_ba)));
+        let (c, d) = (self.uv(self.origin(self.previous(h_ab))), self.uv(self.origin(self.previous(h_ba))));
+        if firm(a, d, c) && firm(d, b, c) { Ok(()) } else { Err(Refusal::NotPositive) }
+    }
+
+    /// Replaces the edge shared by two triangles by the one that links the opposite nodes.
+    ///
+    /// ```text
+    ///          c                     c
+    ///        /   \                 / | \
+    ///       /  T  \               /  |  \
+    ///      a-------b     =>      a T | U b
+    ///       \  U  /               \  |  /
+    ///        \   /                 \ | /
+    ///          d                     d
+    /// ```
+    /// T keeps a, U keeps b; returns `h_dc`, which lies in T. [`can_swap`](Mesh::can_swap) must hold.
+    pub fn swap(&mut self, h_ab: HalfEdgeId) -> HalfEdgeId {
+        // Gather.
+        let h_ba = self.twin(h_ab).expect("an edge that can be swapped has two sides");
+        let (t, u) = (h_ab.element(), h_ba.element());
+        let (h_bc, h_ca) = (self.next(h_ab), self.previous(h_ab));
+        let (h_ad, h_db) = (self.next(h_ba), self.previous(h_ba));
+        let (a, b, c, d) = (self.origin(h_ab), self.origin(h_ba), self.origin(h_ca), self.origin(h_db));
+        let (t_bc, t_ca, t_ad, t_db) = (self.twin(h_bc), self.twin(h_ca), self.twin(h_ad), self.twin(h_db));
+        // Build: T = (a, d, c), U = (b, c, d).
+        for (corner, node) in (0..).zip([a, d, c]) {
+            self.set_origin(t.half_edge(corner), node);
+        }
+        for (corner, node) in (0..).zip([b, c, d]) {
+            self.set_origin(u.half_edge(corner), node);
+        }
+        // Hook up.
+        let h_dc = t.half_edge(1);
+        self.hook(t.half_edge(0), t_ad);
+        self.hook(h_dc, Some(u.half_edge(1)));
+        self.hook(t.half_edge(2), t_ca);
+        self.hook(u.half_edge(0), t_bc);
+        self.hook(u.half_edge(2), t_db);
+        self.reanchor(t.half_edge(0));
+        self.reanchor(u.half_edge(0));
+        self.reanchor(h_dc);
+        self.reanchor(u.half_edge(1));
+        h_dc
+    }
+
+    // ---- edge collapsing (paper 4.2.2, fig. 6) ----
+
+    /// Whether [`collapse`](Mesh::collapse) of a onto b, at the place `at`, would keep everything valid.
+    ///
+    /// # Errors
+    /// The refusal.
+    pub fn can_collapse(&self, h_ab: HalfEdgeId, at: DVec2) -> Result<(), Refusal> {
+        let (a, b) = (self.origin(h_ab), self.target(h_ab));
+        let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
+        let (t, u) = (h_ab.element(), h_ba.element());
+        if self.is_fixed(a) || (self.is_fixed(b) && at != self.uv(b)) {
+            return Err(Refusal::FixedNode);
+        }
+        if !self.is_triangle(t) || !self.is_triangle(u) {
+            return Err(Refusal::NotTriangles);
+        }
+        let (c, d) = (self.origin(self.previous(h_ab)), self.origin(self.previous(h_ba)));
+        let around_b: SmallVec<[NodeId; 12]> = self.neighbours(b).collect();
+        if self.neighbours(a).any(|n| n != c && n != d && around_b.contains(&n)) {
+            return Err(Refusal::Link);
+        }
+        let b_moves = at != self.uv(b);
+        for (node, moves) in [(a, true), (b, b_moves)] {
+            for h in self.fan(node) {
+                let e = h.element();
+                if e == t || e == u {
+                    continue;
+                }
+                if node == a && self.corners(e).any(|n| n == b) {
+                    return Err(Refusal::Link);
+                }
+                if moves && !self.stays_positive(e, node, at) {
+                    return Err(Refusal::NotPositive);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Merges node a into node b at the place `at`; the two triangles at the edge go.
+    ///
+    /// ```text
+    ///     \     c     /          \   c   /
+    ///      \  / | \  /            \  |  /
+    ///       a---|--->b     =>      \ | /
+    ///      /  \ | /  \          ---- b ----
+    ///     /     d     \            / | \
+    ///                             /  d  \
+    /// ```
+    /// [`can_collapse`](Mesh::can_collapse) must hold. The ids of a, T and U become tombstones; `metric` is that of `at`.
+    pub fn collapse(&mut self, h_ab: HalfEdgeId, at: DVec2, metric: Metric2) {
+        // Gather.
+        let h_ba = self.twin(h_ab).expect("an edge that can be collapsed has two sides");
+        let (a, b) = (self.origin(h_ab), self.origin(h_ba));
+        let around_a: SmallVec<[HalfEdgeId; 12]> = self.fan(a).collect();
+        let pairs = [(self.next(h_ab), self.previous(h_ab)), (self.previous(h_ba), self.next(h_ba))];
+        // Build: everything that started at a starts at b.
+        for &h in &around_a {
+            self.set_origin(h, b);
+        }
+        // Hook up: the outer sides of T and U become each other's twins.
+        for (b_side, a_side) in pairs {
+            let (x, y) = (self.twin(b_side), self.twin(a_side));
+            match (x, y) {
+                (Some(x), y) => self.hook(x, y),
+                (None, Some(y)) => self.hook(y, None),
+                (None, None) => unreachable!("the link condition keeps a triangle with two boundary sides at a"),
+            }
+            for h in [x, y].into_iter().flatten() {
+                self.reanchor(h);
+                let next = self.next(h);
+                self.reanchor(next);
+            }
+        }
+        self.free_element(h_ab.element());
+        self.free_element(h_ba.element());
+        self.free_node(a);
+        if at != self.uv(b) {
+            self.set_place(b, at, metric);
+        }
+    }
+
+    // ---- edge division (paper 4.2.3, fig. 7) ----
+
+    /// Divides an inner edge at `uv`, which must lie strictly inside the union of its two triangles.
+    ///
+    /// ```text
+    ///          c                     c
+    ///        /   \                 / | \
+    ///       /  T  \               / T|T'\
+    ///      a-------b     =>      a---m---b
+    ///       \  U  /               \ U|U'/
+    ///        \   /                 \ | /
+    ///          d                     d
+    /// ```
+    /// T and U keep a; returns m. The edges a-m, m-b, c-m and m-d leave m or end there.
+    ///
+    /// # Errors
+    /// Refused where an element is no triangle or would not be positive.
+    pub fn divide(&mut self, h_ab: HalfEdgeId, uv: DVec2, metric: Metric2) -> Result<NodeId, Refusal> {
+        // Gather.
+        let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
+        let (t, u) = (h_ab.element(), h_ba.element());
+        if !self.is_triangle(t) || !self.is_triangle(u) {
+            return Err(Refusal::NotTriangles);
+        }
+        let (h_bc, h_ca) = (self.next(h_ab), self.previous(h_ab));
+        let (h_ad, h_db) = (self.next(h_ba), self.previous(h_ba));
+        let (a, b, c, d) = (self.origin(h_ab), self.origin(h_ba), self.origin(h_ca), self.origin(h_db));
+        // Check.
+        let (p_a, p_b, p_c, p_d) = (self.uv(a), self.uv(b), self.uv(c), self.uv(d));
+        if !(firm(p_a, uv, p_c) && firm(uv, p_b, p_c) && firm(p_b, uv, p_d) && firm(uv, p_a, p_d)) {
+            return Err(Refusal::NotPositive);
+        }
+        let (t_bc, t_ca, t_ad, t_db) = (self.twin(h_bc), self.twin(h_ca), self.twin(h_ad), self.twin(h_db));
+        // Build: T = (a, m, c), T' = (m, b, c), U = (m, a, d), U' = (b, m, d).
+        let m = self.new_node(uv, metric);
+        let t_new = self.new_element(3, self.region(t));
+        let u_new = self.new_element(3, self.region(u));
+        for (e, nodes) in [(t, [a, m, c]), (t_new, [m, b, c]), (u, [m, a, d]), (u_new, [b, m, d])] {
+            for (corner, node) in (0..).zip(nodes) {
+                self.set_origin(e.half_edge(corner), node);
+            }
+        }
+        // Hook up.
+        self.hook(t.half_edge(0), Some(u.half_edge(0)));
+        self.hook(t.half_edge(1), Some(t_new.half_edge(2)));
+        self.hook(t.half_edge(2), t_ca);
+        self.hook(t_new.half_edge(0), Some(u_new.half_edge(0)));
+        self.hook(t_new.half_edge(1), t_bc);
+        self.hook(u.half_edge(1), t_ad);
+        self.hook(u.half_edge(2), Some(u_new.half_edge(1)));
+        self.hook(u_new.half_edge(2), t_db);
+        self.reanchor(u.half_edge(0));
+        self.reanchor(t.half_edge(0));
+        self.reanchor(u_new.half_edge(0));
+        self.reanchor(t.half_edge(2));
+        self.reanchor(u.half_edge(2));
+        Ok(m)
+    }
+
+    // ---- node deletion (paper 4.2.4, fig. 8) ----
+
+    /// What [`delete_node`](Mesh::delete_node) would put in place: one triangle, or two with the diagonal that is
+    /// shorter in the metric of the node, else with the other one.
+    ///
+    /// # Errors
+    /// Refused unless the node is free and surrounded by exactly three or four triangles, with positive results.
+    pub fn can_delete_node(&self, node: NodeId) -> Result<SmallVec<[NewElement; 2]>, Refusal> {
+        if self.is_fixed(node) {
+            return Err(Refusal::FixedNode);
+        }
+        let spokes: SmallVec<[HalfEdgeId; 8]> = self.fan(node).take(5).collect();
+        if !(3..=4).contains(&spokes.len()) {
+            return Err(Refusal::Valence);
+        }
+        if spokes.iter().any(|h| !self.is_triangle(h.element())) {
+            return Err(Refusal::NotTriangles);
+        }
+        let region = self.region(spokes[0].element());
+        let ring: SmallVec<[NodeId; 4]> = spokes.iter().map(|&h| self.target(h)).collect();
+        let sound = |n: [NodeId; 3]| firm(self.uv(n[0]), self.uv(n[1]), self.uv(n[2]));
+        if let [a, b, c] = ring[..] {
+            let whole = [a, b, c];
+            return if sound(whole) {
+                Ok(SmallVec::from_iter([NewElement::triangle(whole, region)]))
+            } else {
+                Err(Refusal::NotPositive)
+            };
+        }
+        let length2 = |i: usize, k: usize| self.metric(node).norm2(self.uv(ring[k]) - self.uv(ring[i]));
+        let first = if length2(0, 2) <= length2(1, 3) { 0 } else { 1 };
+        for start in [first, 1 - first] {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| ring[(start + k) % 4]);
+            if sound([a, b, c]) && sound([a, c, d]) {
+                if self.are_joined(a, c) {
+                    continue;
+                }
+                return Ok(SmallVec::from_iter([[a, b, c], [a, c, d]].map(|n| NewElement::triangle(n, region))));
+            }
+        }
+        Err(Refusal::NotPositive)
+    }
+
+    /// Removes a free node that has three or four triangles around it (fig. 8).
+    ///
+    /// ```text
+    ///        c                c             d---c            d---c
+    ///       /|\              / \            |\ /|            |  /|
+    ///      / x \     =>     /   \           | x |     =>     | / |
+    ///     / / \ \          /     \          |/ \|            |/  |
+    ///    a-------b        a-------b         a---b            a---b
+    /// ```
+    /// Returns the new elements.
+    ///
+    /// # Errors
+    /// As [`can_delete_node`](Mesh::can_delete_node).
+    pub fn delete_node(&mut self, node: NodeId) -> Result<SmallVec<[ElementId; 2]>, Refusal> {
+        let new = self.can_delete_node(node)?;
+        let old: SmallVec<[ElementId; 4]> = self.fan(node).map(|h| h.element()).collect();
+        let made = self.replace(&old, &new);
+        self.free_node(node);
+        Ok(SmallVec::from_slice(&made))
+    }
+
+    // ---- the general replacement ----
+
+    /// Replaces elements by others that cover the same part of the plane.
+    ///
+    /// Every side on the outside of the old elements must be a side of exactly one new one; sides between new elements
+    /// find each other. Ids of the old elements are reused in the order of the free list. Nodes that no element uses
+    /// afterwards must be released by [`release_node`](Mesh::release_node). Returns the new elements in their order.
+    ///
+    /// # Panics
+    /// Where the new elements do not fit into the hole of the old ones: a bug of the caller.
+    pub fn replace(&mut self, old: &[ElementId], new: &[NewElement]) -> SmallVec<[ElementId; 8]> {
+        type Side = (NodeId, NodeId, Option<HalfEdgeId>);
+        let mut sorted: SmallVec<[ElementId; 16]> = SmallVec::from_slice(old);
+        sorted.sort_unstable();
+        // Gather the sides seen from inside, with what lies beyond.
+        let mut outer: SmallVec<[Side; 32]> = SmallVec::new();
+        for &e in old {
+            for h in self.half_edges(e) {
+                let t = self.twin(h);
+                if t.is_none_or(|t| sorted.binary_search(&t.element()).is_err()) {
+                    outer.push((self.origin(h), self.target(h), t));
+                }
+            }
+        }
+        outer.sort_unstable_by_key(|&(a, b, _)| (a, b));
+        for &e in old {
+            self.free_element(e);
+        }
+        // Build.
+        let mut made = SmallVec::new();
+        let mut inner: SmallVec<[Side; 32]> = SmallVec::new();
+        for element in new {
+            let e = self.new_element(element.nodes().len() as u8, element.region());
+            made.push(e);
+            let nodes = element.nodes();
+            for (corner, &node) in nodes.iter().enumerate() {
+                let h = e.half_edge(corner as u32);
+                self.set_origin(h, node);
+                inner.push((node, nodes[(corner + 1) % nodes.len()], Some(h)));
+            }
+        }
+        inner.sort_unstable_by_key(|&(a, b, _)| (a, b));
+        // Hook up.
+        let find = |sides: &[Side], a, b| {
+            sides.binary_search_by_key(&(a, b), |&(a, b, _)| (a, b)).ok().map(|found| sides[found].2)
+        };
+        let mut hooked = 0;
+        for &(a, b, h) in &inner {
+            let h = h.expect("inner sides have half-edges");
+            if let Some(beyond) = find(&outer, a, b) {
+                hooked += 1;
+                self.hook(h, beyond);
+            } else {
+                let t = find(&inner, b, a).flatten().expect("a side of a new element meets another or the outside");
+                if h < t {
+                    self.hook(h, Some(t));
+                }
+            }
+            self.reanchor(h);
+        }
+        assert_eq!(hooked, outer.len(), "the new elements fill the hole of the old ones");
+        made
+    }
+
+    /// Makes a free node for [`replace`](Mesh::replace) to use.
+    pub fn add_node(&mut self, uv: DVec2, metric: Metric2) -> NodeId {
+        self.new_node(uv, metric)
+    }
+
+    /// Makes a tombstone of a free node that no element uses any more.
+    pub fn release_node(&mut self, node: NodeId) {
+        self.free_node(node);
+    }
+
+    // ---- moving ----
+
+    /// Whether every element around a free node stays positive and convex when the node moves to `uv`.
+    ///
+    /// # Errors
+    /// The refusal.
+    pub fn can_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
+        if self.is_fixed(node) {
+            return Err(Refusal::FixedNode);
+        }
+        if self.fan(node).all(|h| self.stays_positive(h.element(), node, uv)) {
+            Ok(())
+        } else {
+            Err(Refusal::NotPositive)
+        }
+    }
+
+    /// Moves a free node; [`can_move`](Mesh::can_move) must hold. `metric` is that of the new place.
+    pub fn move_node(&mut self, node: NodeId, uv: DVec2, metric: Metric2) {
+        debug_assert!(!self.is_fixed(node));
+        self.set_place(node, uv, metric);
+    }
+
+    /// Whether an element stays positive (a triangle firm, a quadrilateral strictly convex) with one corner elsewhere.
+    pub fn stays_positive(&self, e: ElementId, node: NodeId, uv: DVec2) -> bool {
+        let place = |n: NodeId| if n == node { uv } else { self.uv(n) };
+        if self.is_triangle(e) {
+            let [a, b, c] = self.triangle(e).map(place);
+            firm(a, b, c)
+        } else {
+            let [a, b, c, d] = self.quad(e).map(place);
+            convex(a, b, c, d)
+        }
+    }
+}

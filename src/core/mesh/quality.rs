@@ -1,1 +1,59 @@
-//! quality: being written.
+//! Lengths and qualities of the mesh's own edges and elements, from the metrics of their nodes: these rank, they never
+//! decide about validity.
+
+use glam::DVec2;
+
+use super::half_edge::Mesh;
+use super::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::metric::measure::{quad_quality, triangle_quality};
+use crate::core::metric::tensor::Metric2;
+
+/// Length of `d` over two metrics: the logarithmic mean of the lengths in each (spec 2.1), by the approximation
+/// (4 sqrt(la lb) + la + lb) / 6, which is within 0.2 % of it where one is up to four times the other and costs no
+/// logarithm.
+#[inline]
+pub fn length_over(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
+    let (l2_a, l2_b) = (m_a.norm2(d), m_b.norm2(d));
+    let (l_a, l_b) = (l2_a.sqrt(), l2_b.sqrt());
+    (4.0 * (l_a * l_b).sqrt() + l_a + l_b) / 6.0
+}
+
+/// Quality of a triangle in the mean of its nodes' metrics (quality does not depend on the size that a metric asks for,
+/// so that the sum serves).
+#[inline]
+pub fn quality_over(p: [DVec2; 3], m: [&Metric2; 3]) -> f64 {
+    let sum =
+        Metric2 { uu: m[0].uu + m[1].uu + m[2].uu, uv: m[0].uv + m[1].uv + m[2].uv, vv: m[0].vv + m[1].vv + m[2].vv };
+    triangle_quality(&sum, p[0], p[1], p[2])
+}
+
+impl Mesh {
+    /// Metric length of an edge over the metrics of its two ends.
+    #[inline]
+    pub fn length(&self, h: HalfEdgeId) -> f64 {
+        self.distance(self.origin(h), self.target(h))
+    }
+
+    /// Metric length of the straight line between two nodes, over the metrics of both.
+    #[inline]
+    pub fn distance(&self, a: NodeId, b: NodeId) -> f64 {
+        length_over(&self.metric(a), &self.metric(b), self.uv(b) - self.uv(a))
+    }
+
+    /// Quality of an element: [`quality_over`] for a triangle, [`quad_quality`] for a quadrilateral.
+    pub fn quality(&self, e: ElementId) -> f64 {
+        if self.is_triangle(e) {
+            let n = self.triangle(e);
+            self.triangle_quality(n)
+        } else {
+            let n = self.quad(e);
+            quad_quality(n.map(|n| self.metric_ref(n)), n.map(|n| self.uv(n)))
+        }
+    }
+
+    /// Quality that a triangle of these nodes has or would have.
+    #[inline]
+    pub fn triangle_quality(&self, n: [NodeId; 3]) -> f64 {
+        quality_over(n.map(|n| self.uv(n)), n.map(|n| self.metric_ref(n)))
+    }
+}

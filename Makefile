@@ -1,0 +1,45 @@
+# Every target sets up what it needs: on a fresh machine a Rust toolchain and make are enough.
+.PHONY: help run test check bench soak licenses
+
+help:
+	@echo "make run       convert example 1; says where mesh, report and picture lie"
+	@echo "make test      all tests"
+	@echo "make check     formatting, clippy and rustdoc; warnings are errors"
+	@echo "make bench     timings"
+	@echo "make soak      the long property runs"
+	@echo "make licenses  licences and duplicates of the dependencies"
+
+run:
+	@tools/setup build
+	@mkdir -p out
+	cargo run --locked --release --no-default-features -- convert example1 \
+		--out out/example1.msh --report out/example1.json --picture out/example1.svg
+	@echo "mesh:    out/example1.msh"
+	@echo "report:  out/example1.json"
+	@echo "picture: out/example1.svg"
+
+test:
+	@tools/setup build
+	cargo test --locked
+	cargo test --locked --no-default-features --lib
+
+check:
+	@tools/setup build check
+	cargo fmt --check
+	cargo clippy --locked --all-targets -- -D warnings
+	cargo clippy --locked --no-default-features --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
+
+bench:
+	@tools/setup build
+	cargo bench --locked --no-default-features
+
+# Properties run this many cases here, and 100 in `make test`.
+soak: export PROPTEST_CASES = 10000
+soak:
+	@tools/setup build
+	cargo test --locked --release --no-default-features -- --include-ignored
+
+licenses:
+	@tools/setup build licenses
+	PATH="$(CURDIR)/target/tools/bin:$$PATH" cargo deny --all-features check licenses bans sources

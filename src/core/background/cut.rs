@@ -1,0 +1,263 @@
+//! Cutting triangles apart along everything that may not be changed: boundaries between regions, cracks and repeated
+//! lines. A node becomes one node for each fan of triangles around it; its point is doubled across cracks only.
+
+use glam::DVec2;
+use rustc_hash::FxHashMap;
+
+use crate::core::mesh::ids::PointId;
+use crate::core::mesh::triangle_set::TriangleSet;
+
+/// A line of edges inside a region along which the triangles are cut apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// The two sides get points of their own, but at the ends inside.
+    Crack,
+    /// The two sides share their points.
+    Repeated,
+}
+
+/// Triangles that have been cut apart.
+#[derive(Clone, Debug)]
+pub struct CutMesh {
+    /// The triangles with their new nodes, in the given order.
+    pub set: TriangleSet,
+    /// The given node that each new one is a copy of.
+    pub origin: Vec<u32>,
+    /// Sides of triangles with no neighbour, from node to node with the triangle on the left, in the triangles' order.
+    pub sides: Vec<[u32; 2]>,
+}
+
+/// A side of a triangle: its nodes in ascending order, and `3 * triangle + corner` with the corner at which it starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Side {
+    /// The lower node.
+    pub low: u32,
+    /// The higher node.
+    pub high: u32,
+    /// `3 * triangle + corner`.
+    pub corner: u32,
+}
+
+/// All sides of the triangles, sorted, so that those between the same two nodes stand together. Linear but for hubs.
+pub fn sorted_sides(nodes: usize, triangles: &[[u32; 3]]) -> Vec<Side> {
+    let side = |corner: u32| {
+        let t = &triangles[corner as usize / 3];
+        let (a, b) = (t[corner as usize % 3], t[(corner as usize + 1) % 3]);
+        Side { low: a.min(b), high: a.max(b), corner }
+    };
+    let corners = 3 * triangles.len() as u32;
+    let mut start = vec![0_u32; nodes + 1];
+    for corner in 0..corners {
+        start[side(corner).low as usize + 1] += 1;
+    }
+    for i in 0..nodes {
+        start[i + 1] += start[i];
+    }
+    let mut sorted = vec![Side { low: 0, high: 0, corner: 0 }; corners as usize];
+    let mut next = start.clone();
+    for corner in 0..corners {
+        let s = side(corner);
+        let slot = &mut next[s.low as usize];
+        sorted[*slot as usize] = s;
+        *slot += 1;
+    }
+    for w in start.windows(2) {
+        sorted[w[0] as usize..w[1] as usize].sort_unstable();
+    }
+    sorted
+}
+
+/// Cuts triangles apart: where two regions meet, along `lines` (edges, either direction), and at nodes where fans of
+/// triangles meet in a point only. Nodes without triangles are dropped; new nodes stand in the order of the given ones.
+///
+/// The triangles must be anticlockwise and no side may be one of more than two triangles.
+pub fn cut(uv: &[DVec2], triangles: Vec<[u32; 3]>, region: Vec<u32>, lines: &[([u32; 2], Cut)]) -> CutMesh {
+    let lines: FxHashMap<(u32, u32), Cut> = lines.iter().map(|&([a, b], cut)| ((a.min(b), a.max(b)), cut)).collect();
+    let next = |c: u32| if c % 3 == 2 { c - 2 } else { c + 1 };
+    let corners = 3 * triangles.len();
+    let node_of = |c: u32| triangles[c as usize / 3][c as usize % 3];
+    let (mut fans, mut sectors) = (Sets::new(corners), Sets::new(corners));
+    let mut joined = vec![false; corners];
+    let mut cracked = vec![false; uv.len()];
+    for pair in sorted_sides(uv.len(), &triangles).chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
+        let [a, b] = pair else { continue };
+        let line = if lines.is_empty() { None } else { lines.get(&(a.low, a.high)) };
+        // The corners of the two triangles at the same node.
+        let facing = [(a.corner, next(b.corner)), (next(a.corner), b.corner)];
+        if line == Some(&Cut::Crack) {
+            cracked[a.low as usize] = true;
+            cracked[a.high as usize] = true;
+        } else {
+            facing.iter().for_each(|&(c, d)| sectors.join(c, d));
+        }
+        if line.is_none() && region[a.corner as usize / 3] == region[b.corner as usize / 3] {
+            facing.iter().for_each(|&(c, d)| fans.join(c, d));
+            joined[a.corner as usize] = true;
+            joined[b.corner as usize] = true;
+        }
+    }
+    // Corners by node, each node's in ascending order.
+    let mut start = vec![0_u32; uv.len() + 1];
+    (0..corners as u32).for_each(|c| start[node_of(c) as usize + 1] += 1);
+    for i in 0..uv.len() {
+        start[i + 1] += start[i];
+    }
+    let mut by_node = vec![0_u32; corners];
+    for c in 0..corners as u32 {
+        let slot = &mut start[node_of(c) as usize];
+        by_node[*slot as usize] = c;
+        *slot += 1;
+    }
+    const NONE: u32 = u32::MAX;
+    let (mut node_of_fan, mut point_of_sector) = (vec![NONE; corners], vec![NONE; corners]);
+    let mut set = TriangleSet { triangles: vec![[0; 3]; triangles.len()], region, ..TriangleSet::default() };
+    let mut origin = Vec::with_capacity(uv.len());
+    let mut points = 0;
+    for group in by_node.chunk_by(|&c, &d| node_of(c) == node_of(d)) {
+        let node = node_of(group[0]);
+        // Without a crack all fans of a node are at one point (the node may be one where regions meet, or pinched).
+        let shared = points;
+        let mut shared_used = false;
+        for &c in group {
+            let fan = fans.find(c) as usize;
+            if node_of_fan[fan] == NONE {
+                node_of_fan[fan] = set.uv.len() as u32;
+                set.uv.push(uv[node as usize]);
+                origin.push(node);
+                let point = if cracked[node as usize] {
+                    let sector = &mut point_of_sector[sectors.find(c) as usize];
+                    if *sector == NONE {
+                        *sector = points;
+                        points += 1;
+                    }
+                    *sector
+                } else {
+                    if !shared_used {
+                        points += 1;
+                        shared_used = true;
+                    }
+                    shared
+                };
+                set.point.push(PointId(point));
+            }
+            set.triangles[c as usize / 3][c as usize % 3] = node_of_fan[fan];
+        }
+    }
+    let sides = (0..corners)
+        .filter(|&c| !joined[c])
+        .map(|c| [set.triangles[c / 3][c % 3], set.triangles[c / 3][(c + 1) % 3]])
+        .collect();
+    CutMesh { set, origin, sides }
+}
+
+impl CutMesh {
+    /// The boundary loops, each the nodes in their order with the triangles on the left. Every node has one fan, so
+    /// that it starts one side at most.
+    pub fn loops(&self) -> Vec<Vec<u32>> {
+        const NONE: u32 = u32::MAX;
+        let mut next = vec![NONE; self.set.uv.len()];
+        for &[a, b] in &self.sides {
+            assert_eq!(next[a as usize], NONE, "a node has one fan");
+            next[a as usize] = b;
+        }
+        let mut loops = Vec::new();
+        for &[start, _] in &self.sides {
+            let (mut nodes, mut at) = (Vec::new(), start);
+            while next[at as usize] != NONE {
+                nodes.push(at);
+                at = std::mem::replace(&mut next[at as usize], NONE);
+            }
+            if !nodes.is_empty() {
+                debug_assert_eq!(at, start, "the boundary of a fan goes in and out");
+                loops.push(nodes);
+            }
+        }
+        loops
+    }
+}
+
+/// Disjoint sets of corners.
+struct Sets(Vec<u32>);
+
+impl Sets {
+    fn new(n: usize) -> Self {
+        Sets((0..n as u32).collect())
+    }
+
+    fn find(&mut self, mut x: u32) -> u32 {
+        while self.0[x as usize] != x {
+            self.0[x as usize] = self.0[self.0[x as usize] as usize];
+            x = self.0[x as usize];
+        }
+        x
+    }
+
+    /// The lowest corner stands for its set.
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of four triangles around its centre, node 4.
+    fn star() -> (Vec<DVec2>, Vec<[u32; 3]>) {
+        let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.5)].map(DVec2::from).to_vec();
+        (uv, vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    }
+
+    fn counts(mesh: &CutMesh) -> (usize, usize, Vec<usize>) {
+        let points = mesh.set.point.iter().map(|p| p.0 + 1).max().unwrap_or(0) as usize;
+        (mesh.set.uv.len(), points, mesh.loops().iter().map(Vec::len).collect())
+    }
+
+    #[test]
+    fn without_lines_nothing_is_cut() {
+        let (uv, triangles) = star();
+        let mesh = cut(&uv, triangles.clone(), vec![0; 4], &[]);
+        assert_eq!(mesh.set.triangles, triangles);
+        assert_eq!(counts(&mesh), (5, 5, vec![4]));
+    }
+
+    #[test]
+    fn a_crack_from_the_border_opens_there_and_not_at_its_tip() {
+        let (uv, triangles) = star();
+        let mesh = cut(&uv, triangles, vec![0; 4], &[([4, 0], Cut::Crack)]);
+        assert_eq!(counts(&mesh), (6, 6, vec![6]));
+        assert_eq!(mesh.origin, [0, 0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn a_repeated_line_keeps_its_points() {
+        let (uv, triangles) = star();
+        let mesh = cut(&uv, triangles, vec![0; 4], &[([0, 4], Cut::Repeated), ([4, 2], Cut::Repeated)]);
+        assert_eq!(counts(&mesh), (8, 5, vec![4, 4]));
+    }
+
+    #[test]
+    fn regions_are_cut_apart_and_share_points() {
+        let (uv, triangles) = star();
+        let mesh = cut(&uv, triangles, vec![0, 0, 1, 1], &[]);
+        assert_eq!(counts(&mesh), (8, 5, vec![4, 4]));
+    }
+
+    #[test]
+    fn a_crack_that_ends_on_another_region_does_not_open_there() {
+        // Two stars side by side; the crack runs from the border of the left one to the shared side.
+        let uv = [(0.0, 0.0), (1.0, -1.0), (1.0, 0.0), (1.0, 1.0), (2.0, 0.0)].map(DVec2::from);
+        let triangles = vec![[0, 1, 2], [0, 2, 3], [4, 2, 1], [4, 3, 2]];
+        let mesh = cut(&uv, triangles, vec![0, 0, 1, 1], &[([0, 2], Cut::Crack)]);
+        // Node 0 is doubled with its point; node 2 has three nodes and one point.
+        assert_eq!(counts(&mesh), (2 + 2 + 3 + 2 + 1, 6, vec![3, 3, 4]));
+    }
+
+    #[test]
+    fn pinched_nodes_get_a_node_for_each_fan_and_keep_their_point() {
+        let (uv, triangles) = star();
+        let mesh = cut(&uv, vec![triangles[0], triangles[2]], vec![0, 0], &[]);
+        assert_eq!(counts(&mesh), (6, 5, vec![3, 3]));
+    }
+}

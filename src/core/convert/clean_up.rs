@@ -1,0 +1,366 @@
+//! Clean-up of the structure around irregular nodes (spec 10, 2.11): diamond collapse, edge rotation, vertex opening and
+//! the removal of doublets, each tried as a transaction and kept when the local energy falls.
+//!
+//! A worklist, not sweeps: the nodes whose valence is not ideal, and again the neighbours of whatever changed.
+
+use std::collections::VecDeque;
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use super::energy;
+use crate::core::geometry::predicates::convex;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::operators::Refusal;
+use crate::core::metric::field::MetricSource;
+use crate::core::metric::measure::angle;
+
+/// A kept change must leave every element around at least this quality, or not worse than the worst before.
+const LEAST_QUALITY: f64 = 0.2;
+/// The energy must fall by this much: differences below it are noise of the relaxation.
+const LEAST_GAIN: f64 = 1e-2;
+/// Rounds of relaxation of the nodes around a trial.
+const RELAX_ROUNDS: usize = 4;
+/// Candidates tried at one node, best valence gain first.
+const MOST_TRIALS: usize = 10;
+
+/// What the clean-up did, by operation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CleanedUp {
+    /// Diamonds collapsed.
+    pub collapses: usize,
+    /// Edges rotated.
+    pub rotations: usize,
+    /// Vertices opened.
+    pub openings: usize,
+    /// Doublets removed.
+    pub doublets: usize,
+    /// Trials taken back.
+    pub refused: usize,
+}
+
+/// One change to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Candidate {
+    Doublet(NodeId),
+    Collapse(HalfEdgeId),
+    Rotate(HalfEdgeId, usize),
+    Open(HalfEdgeId, HalfEdgeId),
+}
+
+/// Cleans up an all-quadrilateral mesh until no candidate lowers the energy, within a budget linear in its size.
+pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource) -> CleanedUp {
+    let ideal = boundary_ideals(mesh);
+    let mut work = CleanUp { source, ideal, queue: VecDeque::new(), queued: Vec::new(), done: CleanedUp::default() };
+    let nodes: Vec<NodeId> = mesh.nodes().collect();
+    for node in nodes {
+        work.enqueue(mesh, node);
+    }
+    // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
+    let mut budget = 20 * mesh.node_count() + 1000;
+    while let Some(node) = work.queue.pop_front() {
+        work.queued[node.index()] = false;
+        if budget == 0 {
+            break;
+        }
+        budget -= 1;
+        if mesh.has_node(node) {
+            work.mend(mesh, node);
+            mesh.commit();
+        }
+    }
+    work.done
+}
+
+/// Valence that fits the angle of the domain at each fixed node: round(theta / 90 degrees) + 1; 0 for free nodes.
+fn boundary_ideals(mesh: &Mesh) -> Vec<u8> {
+    let mut ideal = vec![0; mesh.node_slots()];
+    for node in mesh.nodes().filter(|&n| mesh.is_fixed(n)) {
+        let p = mesh.uv(node);
+        let theta: f64 = mesh
+            .fan(node)
+            .map(|h| {
+                let (next, previous) = (mesh.target(h), mesh.origin(mesh.previous(h)));
+                angle(mesh.metric_ref(node), mesh.uv(next) - p, mesh.uv(previous) - p)
+            })
+            .sum();
+        ideal[node.index()] = (theta / std::f64::consts::FRAC_PI_2).round().max(1.0) as u8 + 1;
+    }
+    ideal
+}
+
+struct CleanUp<'a> {
+    source: &'a dyn MetricSource,
+    /// Ideal valence of fixed nodes.
+    ideal: Vec<u8>,
+    queue: VecDeque<NodeId>,
+    queued: Vec<bool>,
+    done: CleanedUp,
+}
+
+type Nodes = SmallVec<[NodeId; 12]>;
+
+impl CleanUp<'_> {
+    fn ideal(&self, mesh: &Mesh, node: NodeId) -> i32 {
+        if mesh.is_fixed(node) { i32::from(self.ideal[node.index()]) } else { 4 }
+    }
+
+    /// Valence less the ideal one.
+    fn excess(&self, mesh: &Mesh, node: NodeId) -> i32 {
+        mesh.valence(node) as i32 - self.ideal(mesh, node)
+    }
+
+    fn enqueue(&mut self, mesh: &Mesh, node: NodeId) {
+        if self.queued.len() <= node.index() {
+            self.queued.resize(mesh.node_slots(), false);
+        }
+        if !self.queued[node.index()] && self.excess(mesh, node) != 0 {
+            self.queued[node.index()] = true;
+            self.queue.push_back(node);
+        }
+    }
+
+    /// Tries the candidates around one irregular node, best valence gain first, and keeps the first that is good.
+    fn mend(&mut self, mesh: &mut Mesh, node: NodeId) {
+        let mut candidates = self.candidates(mesh, node);
+        candidates.sort_unstable();
+        candidates.truncate(MOST_TRIALS);
+        for (_, candidate) in candidates {
+            if let Some(touched) = self.attempt(mesh, candidate) {
+                for node in touched {
+                    let around: Nodes = mesh.neighbours(node).collect();
+                    for n in around {
+                        self.enqueue(mesh, n);
+                    }
+                    self.enqueue(mesh, node);
+                }
+                return;
+            }
+        }
+    }
+
+    /// Changes around a node that do not raise the sum of squared excesses, with their gain (negative is better).
+    fn candidates(&self, mesh: &Mesh, node: NodeId) -> SmallVec<[(i32, Candidate); 32]> {
+        let mut found = SmallVec::new();
+        if !mesh.is_fixed(node) && mesh.fan(node).count() == 2 {
+            found.push((-100, Candidate::Doublet(node)));
+            return found;
+        }
+        let change = |n: NodeId, by: i32| {
+            let e = self.excess(mesh, n);
+            (e + by) * (e + by) - e * e
+        };
+        let mut push = |gain: i32, candidate: Candidate| {
+            if gain <= 0 {
+                found.push((gain, candidate));
+            }
+        };
+        let spokes: SmallVec<[HalfEdgeId; 8]> = mesh.fan(node).collect();
+        for &h in &spokes {
+            let e = h.element();
+            if !mesh.is_quad(e) {
+                continue;
+            }
+            // Both diagonals of the element, both directions.
+            for h_ab in mesh.half_edges(e) {
+                let h_bc = mesh.next(h_ab);
+                let (a, b, c, d) =
+                    (mesh.origin(h_ab), mesh.origin(h_bc), mesh.target(h_bc), mesh.origin(mesh.previous(h_ab)));
+                if !mesh.is_fixed(a) && (mesh.is_fixed(c) || a < c || mesh.is_fixed(a)) {
+                    let (e_a, e_c) = (self.excess(mesh, a), self.excess(mesh, c));
+                    let merged = e_c + mesh.valence(a) as i32 - 2;
+                    push(
+                        merged * merged - e_a * e_a - e_c * e_c + change(b, -1) + change(d, -1),
+                        Candidate::Collapse(h_ab),
+                    );
+                }
+                if let Ok(n) = mesh.hexagon(h_ab) {
+                    // An edge between two elements of the star is met from both sides: once is enough.
+                    let away = change(n[0], -1) + change(n[3], -1);
+                    push(away + change(n[1], 1) + change(n[4], 1), Candidate::Rotate(h_ab, 1));
+                    push(away + change(n[2], 1) + change(n[5], 1), Candidate::Rotate(h_ab, 2));
+                }
+            }
+        }
+        // Openings of a node with too many edges.
+        if self.excess(mesh, node) > 0 {
+            let n = spokes.len();
+            for i in 0..n {
+                for count in 2..n.saturating_sub(1) {
+                    let k = i + count;
+                    if k >= n && mesh.is_fixed(node) {
+                        break;
+                    }
+                    let (h_vp, h_vq) = (spokes[i], spokes[k % n]);
+                    let (e_v, handed) = (self.excess(mesh, node), count as i32);
+                    // v keeps n - count elements and gains the new one; w has count + 1 of them.
+                    let v_after = e_v - handed + 1;
+                    let w_after = handed + 1 - 4;
+                    let gain = v_after * v_after + w_after * w_after - e_v * e_v
+                        + change(mesh.target(h_vp), 1)
+                        + change(mesh.target(h_vq), 1);
+                    push(gain, Candidate::Open(h_vp, h_vq));
+                }
+            }
+        }
+        found
+    }
+
+    /// Does a candidate, relaxes the nodes around, and keeps it if the energy falls; else takes all of it back.
+    /// Returns the nodes whose surroundings changed.
+    fn attempt(&mut self, mesh: &mut Mesh, candidate: Candidate) -> Option<Nodes> {
+        let mut core = core_nodes(mesh, candidate);
+        let (energy_before, quality_before) = self.patch(mesh, &core);
+        let mark = mesh.mark();
+        let kept = self.apply(mesh, candidate, &mut core).is_ok() && self.settle(mesh, &core) && {
+            let (energy, quality) = self.patch(mesh, &core);
+            energy < energy_before - LEAST_GAIN && quality >= quality_before.min(LEAST_QUALITY)
+        };
+        if !kept {
+            mesh.take_back(mark);
+            self.done.refused += 1;
+            return None;
+        }
+        match candidate {
+            Candidate::Doublet(_) => self.done.doublets += 1,
+            Candidate::Collapse(_) => self.done.collapses += 1,
+            Candidate::Rotate(..) => self.done.rotations += 1,
+            Candidate::Open(..) => self.done.openings += 1,
+        }
+        Some(core)
+    }
+
+    /// Does the change of structure; `core` becomes the nodes that it leaves.
+    fn apply(&self, mesh: &mut Mesh, candidate: Candidate, core: &mut Nodes) -> Result<(), Refusal> {
+        match candidate {
+            Candidate::Doublet(node) => {
+                mesh.remove_doublet(node)?;
+                core.retain(|n| *n != node);
+            }
+            Candidate::Collapse(h_ab) => {
+                let (a, c) = (mesh.origin(h_ab), mesh.target(mesh.next(h_ab)));
+                let middle = 0.5 * (mesh.uv(a) + mesh.uv(c));
+                mesh.collapse_diamond(h_ab)?;
+                core.retain(|n| *n != a);
+                if !mesh.is_fixed(c) {
+                    self.put(mesh, c, middle)?;
+                }
+            }
+            Candidate::Rotate(h, by) => mesh.rotate_edge(h, by)?,
+            Candidate::Open(h_vp, h_vq) => {
+                let (v, p, q) = (mesh.origin(h_vp), mesh.target(h_vp), mesh.target(h_vq));
+                let here = mesh.uv(v);
+                let w = mesh.open_vertex(h_vp, h_vq, here, mesh.metric(v))?;
+                // Each half goes a little towards the middle of its own neighbours.
+                for node in [w, v] {
+                    if mesh.is_fixed(node) {
+                        continue;
+                    }
+                    let own: Nodes = mesh.neighbours(node).filter(|&n| n != p && n != q).collect();
+                    let middle = own.iter().fold(DVec2::ZERO, |s, &n| s + mesh.uv(n)) / own.len().max(1) as f64;
+                    self.put(mesh, node, here + (middle - here) * 0.33)?;
+                }
+                core.push(w);
+            }
+        }
+        Ok(())
+    }
+
+    /// Places a node without asking whether its elements are positive: [`settle`](CleanUp::settle) does.
+    fn put(&self, mesh: &mut Mesh, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
+        let metric = self.source.metric(uv).map_err(|_| Refusal::NotPositive)?;
+        mesh.move_node(node, uv, metric);
+        Ok(())
+    }
+
+    /// Relaxes the core nodes; where elements are inverted first moves them to the middle of their neighbours. True
+    /// when every element around is strictly convex in the end.
+    fn settle(&self, mesh: &mut Mesh, core: &Nodes) -> bool {
+        for _ in 0..3 {
+            if all_convex(mesh, core) {
+                break;
+            }
+            for &node in core.iter().filter(|&&n| !mesh.is_fixed(n)).collect::<SmallVec<[_; 12]>>() {
+                let around: Nodes = mesh.neighbours(node).collect();
+                let middle = around.iter().fold(DVec2::ZERO, |s, &n| s + mesh.uv(n)) / around.len() as f64;
+                if self.put(mesh, node, middle).is_err() {
+                    return false;
+                }
+            }
+        }
+        if !all_convex(mesh, core) {
+            return false;
+        }
+        for _ in 0..RELAX_ROUNDS {
+            let mut moved: f64 = 0.0;
+            for &node in core {
+                moved = moved.max(energy::relax(mesh, node, self.source));
+            }
+            if moved < 0.02 {
+                break;
+            }
+        }
+        true
+    }
+
+    /// Energy of everything that depends on the core nodes, and the worst quality of the elements there.
+    fn patch(&self, mesh: &Mesh, core: &Nodes) -> (f64, f64) {
+        let (mut sum, mut quality) = (0.0, f64::INFINITY);
+        for e in elements_around(mesh, core) {
+            sum += energy::of_element(mesh, e);
+            quality = quality.min(mesh.quality(e));
+        }
+        for (k, &node) in core.iter().enumerate() {
+            let excess = f64::from(self.excess(mesh, node));
+            sum += excess * excess;
+            for n in mesh.neighbours(node) {
+                if !core[..k].contains(&n) {
+                    sum += energy::of_edge(mesh, node, n);
+                }
+            }
+        }
+        (sum, quality)
+    }
+}
+
+/// The nodes whose elements a candidate changes: those are relaxed, and compared before and after.
+fn core_nodes(mesh: &Mesh, candidate: Candidate) -> Nodes {
+    let mut core = Nodes::new();
+    let mut add = |n: NodeId| {
+        if !core.contains(&n) {
+            core.push(n);
+        }
+    };
+    match candidate {
+        Candidate::Doublet(node) => {
+            mesh.fan(node).for_each(|h| mesh.corners(h.element()).for_each(&mut add));
+        }
+        Candidate::Collapse(h) => mesh.corners(h.element()).for_each(add),
+        Candidate::Rotate(h, _) => {
+            mesh.corners(h.element()).for_each(&mut add);
+            mesh.twin(h).into_iter().for_each(|t| mesh.corners(t.element()).for_each(&mut add));
+        }
+        Candidate::Open(h_vp, h_vq) => {
+            add(mesh.origin(h_vp));
+            add(mesh.target(h_vp));
+            add(mesh.target(h_vq));
+        }
+    }
+    core
+}
+
+fn elements_around(mesh: &Mesh, nodes: &Nodes) -> SmallVec<[ElementId; 24]> {
+    let mut elements: SmallVec<[ElementId; 24]> =
+        nodes.iter().flat_map(|&n| mesh.fan(n)).map(|h| h.element()).collect();
+    elements.sort_unstable();
+    elements.dedup();
+    elements
+}
+
+fn all_convex(mesh: &Mesh, core: &Nodes) -> bool {
+    elements_around(mesh, core).iter().all(|&e| {
+        let [a, b, c, d] = mesh.quad(e).map(|n| mesh.uv(n));
+        convex(a, b, c, d)
+    })
+}

@@ -1,0 +1,204 @@
+//! Operations on quadrilaterals that change their structure (spec 2.11, 10): diamond collapse, edge rotation, vertex
+//! opening and its inverse, and the removal of doublets.
+//!
+//! These judge the topology only: what comes out is conforming and manifold, but its elements may be inverted until the
+//! nodes around are relaxed. They are for use inside a transaction that ends with an exact check, or is taken back.
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use super::half_edge::{Mesh, NewElement};
+use super::ids::{ElementId, HalfEdgeId, NodeId};
+use super::operators::Refusal;
+use crate::core::metric::tensor::Metric2;
+
+impl Mesh {
+    /// Whether the node has more edges than the least that a structure allows: three inside, two on a boundary.
+    fn can_lose_an_edge(&self, node: NodeId) -> bool {
+        self.valence(node) > if self.is_fixed(node) { 2 } else { 3 }
+    }
+
+    /// Merges the corner a of a quadrilateral into the opposite corner c; the quadrilateral goes.
+    ///
+    /// ```text
+    ///        d                 d
+    ///      /   \               |
+    ///     a     c      =>      c
+    ///      \   /               |
+    ///        b                 b
+    /// ```
+    /// `h_ab` starts at a, which must be free. Node a becomes a tombstone; c stays where it is.
+    ///
+    /// # Errors
+    /// Refused where a is fixed, where a and c meet elsewhere too, or where b or d would keep too few edges.
+    pub fn collapse_diamond(&mut self, h_ab: HalfEdgeId) -> Result<(), Refusal> {
+        let q = h_ab.element();
+        if !self.is_quad(q) {
+            return Err(Refusal::NotTriangles);
+        }
+        let (h_bc, h_da) = (self.next(h_ab), self.previous(h_ab));
+        let (a, b, c, d) = (self.origin(h_ab), self.origin(h_bc), self.target(h_bc), self.origin(h_da));
+        if self.is_fixed(a) {
+            return Err(Refusal::FixedNode);
+        }
+        if !self.can_lose_an_edge(b) || !self.can_lose_an_edge(d) {
+            return Err(Refusal::Valence);
+        }
+        let around_c: SmallVec<[NodeId; 8]> = self.neighbours(c).collect();
+        if around_c.contains(&a) || self.neighbours(a).any(|n| n != b && n != d && around_c.contains(&n)) {
+            return Err(Refusal::Link);
+        }
+        let old: SmallVec<[ElementId; 8]> = self.fan(a).map(|h| h.element()).collect();
+        if old.iter().any(|&e| e != q && self.corners(e).any(|n| n == c)) {
+            return Err(Refusal::Link);
+        }
+        let new: SmallVec<[NewElement; 8]> =
+            old.iter().filter(|&&e| e != q).map(|&e| self.with_node_replaced(e, a, c)).collect();
+        self.replace(&old, &new);
+        self.release_node(a);
+        Ok(())
+    }
+
+    /// The six nodes around an edge between two quadrilaterals, anticlockwise from the origin of `h_ab`'s element side:
+    /// the edge runs from the first to the fourth.
+    ///
+    /// ```text
+    ///     n2---n1                 n2---n1
+    ///     |     |                 |   / |
+    ///     n3---n0   rotate(1):    n3 /  n0     rotate(2): n2 to n5
+    ///     |     |                 | /   |
+    ///     n4---n5                 n4---n5
+    /// ```
+    ///
+    /// # Errors
+    /// Refused on a boundary and where an element is no quadrilateral.
+    pub fn hexagon(&self, h: HalfEdgeId) -> Result<[NodeId; 6], Refusal> {
+        let t = self.twin(h).ok_or(Refusal::OnBoundary)?;
+        if !self.is_quad(h.element()) || !self.is_quad(t.element()) {
+            return Err(Refusal::NotTriangles);
+        }
+        // The element left of the edge n3 -> n0 holds n1 and n2.
+        let n0 = self.origin(t);
+        let n1 = self.target(self.next(h));
+        let n2 = self.origin(self.previous(h));
+        let n3 = self.origin(h);
+        let n4 = self.target(self.next(t));
+        let n5 = self.origin(self.previous(t));
+        Ok([n0, n1, n2, n3, n4, n5])
+    }
+
+    /// Rotates the edge between two quadrilaterals by one or two nodes of their hexagon; see [`hexagon`](Mesh::hexagon).
+    ///
+    /// # Errors
+    /// Refused on a boundary, where the new ends are joined already, where the hexagon has fewer than six nodes, and
+    /// where an end of the old edge would keep too few edges.
+    pub fn rotate_edge(&mut self, h: HalfEdgeId, by: usize) -> Result<(), Refusal> {
+        let n = self.hexagon(h)?;
+        if (1..6).any(|k| n[..k].contains(&n[k])) {
+            return Err(Refusal::Link);
+        }
+        if !self.can_lose_an_edge(n[0]) || !self.can_lose_an_edge(n[3]) {
+            return Err(Refusal::Valence);
+        }
+        if self.are_joined(n[by], n[by + 3]) {
+            return Err(Refusal::Joined);
+        }
+        let t = self.twin(h).ok_or(Refusal::OnBoundary)?;
+        let region = self.region(h.element());
+        let at = |k: usize| n[(by + k) % 6];
+        let new =
+            [[at(0), at(1), at(2), at(3)], [at(3), at(4), at(5), at(0)]].map(|nodes| NewElement::quad(nodes, region));
+        self.replace(&[h.element(), t.element()], &new);
+        Ok(())
+    }
+
+    /// Opens a node along two of its edges into a new quadrilateral: the elements met anticlockwise from `h_vp` to
+    /// `h_vq` go to a new node w.
+    ///
+    /// ```text
+    ///      \   p   /            \    p    /
+    ///       \  |  /              \  / \  /
+    ///     --   v   --    =>     --w     v--
+    ///       /  |  \              /  \ /  \
+    ///      /   q   \            /    q    \
+    /// ```
+    /// The new quadrilateral is (v, p, w, q). Returns w, which stands at `uv`.
+    ///
+    /// # Errors
+    /// Refused where an edge lies on a boundary, where a fixed v would hand over a boundary edge, and where either node
+    /// would have fewer than three edges.
+    pub fn open_vertex(
+        &mut self,
+        h_vp: HalfEdgeId,
+        h_vq: HalfEdgeId,
+        uv: DVec2,
+        metric: Metric2,
+    ) -> Result<NodeId, Refusal> {
+        let v = self.origin(h_vp);
+        debug_assert_eq!(v, self.origin(h_vq));
+        if self.twin(h_vp).is_none() || self.twin(h_vq).is_none() {
+            return Err(Refusal::OnBoundary);
+        }
+        let (p, q) = (self.target(h_vp), self.target(h_vq));
+        let mut handed: SmallVec<[ElementId; 8]> = SmallVec::new();
+        let mut h = h_vp;
+        while h != h_vq {
+            handed.push(h.element());
+            h = self.twin(self.previous(h)).ok_or(Refusal::OnBoundary)?;
+        }
+        let kept = self.fan(v).count() - handed.len();
+        // A node of n elements inside has n edges, and one more of the new quadrilateral's.
+        if p == q || handed.len() < 2 || (!self.is_fixed(v) && kept < 2) {
+            return Err(Refusal::Valence);
+        }
+        let region = self.region(h_vp.element());
+        let w = self.add_node(uv, metric);
+        let mut new: SmallVec<[NewElement; 8]> = handed.iter().map(|&e| self.with_node_replaced(e, v, w)).collect();
+        new.push(NewElement::quad([v, p, w, q], region));
+        // The sides v-p and q-v of the handed sector lie outside of it: the new quadrilateral takes them up.
+        self.replace(&handed, &new);
+        Ok(w)
+    }
+
+    /// Merges the two quadrilaterals at a free node that has no other element.
+    ///
+    /// ```text
+    ///        c                 c
+    ///      / | \             /   \
+    ///     x  v  y     =>    x     y
+    ///      \ | /             \   /
+    ///        a                 a
+    /// ```
+    ///
+    /// # Errors
+    /// Refused where the node is fixed or is no doublet of two quadrilaterals.
+    pub fn remove_doublet(&mut self, v: NodeId) -> Result<ElementId, Refusal> {
+        if self.is_fixed(v) {
+            return Err(Refusal::FixedNode);
+        }
+        let spokes: SmallVec<[HalfEdgeId; 3]> = self.fan(v).take(3).collect();
+        let [h_va, h_vc] = spokes[..] else { return Err(Refusal::Valence) };
+        if !self.is_quad(h_va.element()) || !self.is_quad(h_vc.element()) {
+            return Err(Refusal::NotTriangles);
+        }
+        let (a, c) = (self.target(h_va), self.target(h_vc));
+        let (x, y) = (self.target(self.next(h_va)), self.target(self.next(h_vc)));
+        if x == y {
+            return Err(Refusal::Link);
+        }
+        let new = NewElement::quad([a, x, c, y], self.region(h_va.element()));
+        let made = self.replace(&[h_va.element(), h_vc.element()], &[new]);
+        self.release_node(v);
+        Ok(made[0])
+    }
+
+    /// An element like `e` with one corner exchanged.
+    fn with_node_replaced(&self, e: ElementId, from: NodeId, to: NodeId) -> NewElement {
+        let swap = |n: NodeId| if n == from { to } else { n };
+        if self.is_triangle(e) {
+            NewElement::triangle(self.triangle(e).map(swap), self.region(e))
+        } else {
+            NewElement::quad(self.quad(e).map(swap), self.region(e))
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Nearest of many small things in the plane, by a tree of their boxes.
+//!
+//! What a field needs and a general index does not promise: the answer is a pure function of the query (equal distances go
+//! to the lowest number, whatever was asked before), nothing is allocated, and strongly graded sets cost no more than even ones.
+
+use glam::DVec2;
+
+/// Things in one leaf at most.
+const LEAF: usize = 4;
+
+/// A tree over things that are known by their boxes. It renumbers them so that those of one leaf are together.
+#[derive(Clone, Debug)]
+pub(super) struct BoxTree {
+    root: Branch,
+    /// Both branches of an inner node side by side: choosing between them takes one look at memory.
+    nodes: Vec<[Branch; 2]>,
+}
+
+/// A box with what is in it.
+#[derive(Clone, Copy, Debug)]
+struct Branch {
+    low: DVec2,
+    high: DVec2,
+    /// A leaf's first thing; the place in `nodes` otherwise.
+    at: u32,
+    /// Things of a leaf; 0: an inner node.
+    count: u32,
+}
+
+impl Branch {
+    #[inline]
+    fn distance2(&self, p: DVec2) -> f64 {
+        (self.low - p).max(p - self.high).max(DVec2::ZERO).length_squared()
+    }
+}
+
+impl BoxTree {
+    /// Builds the tree over boxes (lowest and highest corner, finite), at least one. With it comes the order that its numbers
+    /// mean: its thing `k` is the box `order[k]`. Cost O(n log n).
+    pub fn new(boxes: &[(DVec2, DVec2)]) -> (BoxTree, Vec<u32>) {
+        assert!(!boxes.is_empty(), "a tree stands over something");
+        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        let mut nodes = Vec::new();
+        let root = branch(&mut nodes, boxes, &mut order, 0);
+        (BoxTree { root, nodes }, order)
+    }
+
+    /// The thing with the least `distance2` from `p` (squared; its box must not be farther), the lowest number among equals,
+    /// and that squared distance. `None` when `p` is not finite.
+    #[inline]
+    pub fn nearest(&self, p: DVec2, distance2: impl Fn(u32) -> f64) -> Option<(u32, f64)> {
+        if !p.is_finite() {
+            return None;
+        }
+        // Halving 2^32 things ends after 32 levels, and each leaves one branch waiting.
+        let mut waiting = [(0u32, 0u32, 0.0f64); 40];
+        waiting[0] = (self.root.at, self.root.count, 0.0);
+        let mut waiting_count = 1;
+        let (mut best, mut best_distance) = (u32::MAX, f64::INFINITY);
+        while waiting_count > 0 {
+            waiting_count -= 1;
+            let (at, count, lower_bound) = waiting[waiting_count];
+            if lower_bound > best_distance {
+                continue;
+            }
+            if count > 0 {
+                for id in at..at + count {
+                    let d = distance2(id);
+                    if d < best_distance || (d == best_distance && id < best) {
+                        (best, best_distance) = (id, d);
+                    }
+                }
+                continue;
+            }
+            let [left, right] = &self.nodes[at as usize];
+            let (left, right) = ((left, left.distance2(p)), (right, right.distance2(p)));
+            let (near, far) = if left.1 <= right.1 { (left, right) } else { (right, left) };
+            for (child, bound) in [far, near] {
+                if bound <= best_distance {
+                    waiting[waiting_count] = (child.at, child.count, bound);
+                    waiting_count += 1;
+                }
+            }
+        }
+        (best != u32::MAX).then_some((best, best_distance))
+    }
+}
+
+/// The branch over the things `order`, whose first number is `first`.
+fn branch(nodes: &mut Vec<[Branch; 2]>, boxes: &[(DVec2, DVec2)], order: &mut [u32], first: u32) -> Branch {
+    let whole = |(low, high): (DVec2, DVec2), &i: &u32| {
+        let b = boxes[i as usize];
+        (low.min(b.0), high.max(b.1))
+    };
+    let (low, high) = order.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), whole);
+    if order.len() <= LEAF {
+        return Branch { low, high, at: first, count: order.len() as u32 };
+    }
+    // The median of the doubled centres along the longer side; ids break ties, so that the tree is one only.
+    let along_x = high.x - low.x >= high.y - low.y;
+    let centre = |i: u32| {
+        let (low, high) = boxes[i as usize];
+        if along_x { low.x + high.x } else { low.y + high.y }
+    };
+    let half = order.len() / 2;
+    order.select_nth_unstable_by(half, |&i, &j| centre(i).total_cmp(&centre(j)).then(i.cmp(&j)));
+    let here = nodes.len();
+    nodes.push([Branch { low, high, at: 0, count: 0 }; 2]);
+    let (left, right) = order.split_at_mut(half);
+    nodes[here][0] = branch(nodes, boxes, left, first);
+    nodes[here][1] = branch(nodes, boxes, right, first + half as u32);
+    Branch { low, high, at: here as u32, count: 0 }
+}
+
+/// The share of the way from `a` to `b`, in [0, 1], of the point of that segment that is nearest to `p`.
+#[inline]
+pub(super) fn share_along(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let d = b - a;
+    let squared = d.length_squared();
+    if squared > 0.0 { ((p - a).dot(d) / squared).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_is_that_of_a_search_through_all_and_ties_go_to_the_lowest_id() {
+        // A lattice graded by 1e6, each point twice, and queries on and between the points.
+        let at = |i: usize| if i < 20 { 1e-6 * i as f64 } else { 0.05 * (i - 19) as f64 };
+        let mut points = Vec::new();
+        for i in 0..40 {
+            for j in 0..40 {
+                points.extend([DVec2::new(at(i), at(j)); 2]);
+            }
+        }
+        let (tree, order) = BoxTree::new(&points.iter().map(|&p| (p, p)).collect::<Vec<_>>());
+        let mut all = order.clone();
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..points.len() as u32));
+        let points: Vec<DVec2> = order.into_iter().map(|i| points[i as usize]).collect();
+        for k in 0..2000 {
+            let q = DVec2::new(at(k % 37), at(k / 37)) * if k % 2 == 0 { 1.0 } else { 0.97 };
+            let by_hand = (0..points.len() as u32)
+                .map(|i| (i, points[i as usize].distance_squared(q)))
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .unwrap();
+            assert_eq!(tree.nearest(q, |i| points[i as usize].distance_squared(q)), Some(by_hand));
+        }
+    }
+
+    #[test]
+    fn nothing_is_nearest_to_no_place() {
+        let (one, _) = BoxTree::new(&[(DVec2::ZERO, DVec2::ONE)]);
+        assert_eq!(one.nearest(DVec2::NAN, |_| f64::NAN), None);
+        assert_eq!(one.nearest(DVec2::new(0.0, f64::INFINITY), |_| f64::INFINITY), None);
+        assert_eq!(one.nearest(DVec2::ONE, |_| 0.0), Some((0, 0.0)));
+    }
+}

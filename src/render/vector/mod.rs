@@ -1,0 +1,3 @@
+//! Pictures as vectors.
+
+pub mod svg;

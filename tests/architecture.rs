@@ -1,0 +1,150 @@
+//! The arrows of ARCHITECTURE.md, read from the sources: app -> render -> core and never back, and what core may not know.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What no source of a room may mention, with the reason.
+const FORBIDDEN: [(&str, &[(&str, &str)]); 2] = [
+    (
+        "core",
+        &[
+            ("crate::render", "core knows no picture"),
+            ("crate::app", "core knows no application"),
+            ("egui", "core knows no screen"),
+            ("eframe", "core knows no screen"),
+            ("wgpu", "core knows no screen"),
+            ("winit", "core knows no screen"),
+            ("indicatif", "core knows no terminal"),
+            ("clap", "core knows no command line"),
+            ("std::time", "core knows no clock"),
+            ("Instant", "core knows no clock"),
+            ("SystemTime", "core knows no clock"),
+            ("std::thread", "core has no state of a thread"),
+            ("thread_local", "core has no state of a thread"),
+            ("std::env", "a run depends on nothing around it"),
+            (
+                "HashMap",
+                "its order differs from run to run: BTreeMap, or FxHashMap that is only asked and never walked",
+            ),
+            (
+                "HashSet",
+                "its order differs from run to run: BTreeSet, or FxHashSet that is only asked and never walked",
+            ),
+            ("RandomState", "its order differs from run to run"),
+            ("println", "core does not print"),
+            ("eprintln", "core does not print"),
+        ],
+    ),
+    ("render", &[("crate::app", "render knows no application"), ("std::time", "a picture depends on no clock")]),
+];
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    let mut entries: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The lines that the program is made of: without comments, and without tests, which may know what they like.
+fn code(text: &str) -> Vec<(usize, String)> {
+    let mut lines = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        if line.trim_start().starts_with("#[cfg(test)]") && !line.contains("use ") {
+            let next = text.lines().skip(i + 1).find(|l| !l.trim_start().starts_with("#[")).unwrap_or_default();
+            // Tests stand last in a file; a test-only item before them is skipped by its one line.
+            if next.trim_start().starts_with("mod tests {") {
+                break;
+            }
+        }
+        lines.push((i + 1, without_comment(line)));
+    }
+    lines
+}
+
+/// A line without its comment and without its texts: a word within quotes is no use of a thing.
+fn without_comment(line: &str) -> String {
+    let mut kept = String::new();
+    let mut quoted = false;
+    let mut characters = line.chars().peekable();
+    while let Some(c) = characters.next() {
+        match c {
+            '\\' if quoted => drop(characters.next()),
+            '"' => quoted = !quoted,
+            '/' if !quoted && characters.peek() == Some(&'/') => break,
+            c if !quoted => kept.push(c),
+            _ => {}
+        }
+    }
+    kept
+}
+
+/// Whether a line has the word, not as a part of a longer one.
+fn mentions(line: &str, word: &str) -> bool {
+    let part = |c: char| c.is_alphanumeric() || c == '_';
+    line.match_indices(word).any(|(at, _)| {
+        !line[..at].chars().next_back().is_some_and(part) && !line[at + word.len()..].chars().next().is_some_and(part)
+    })
+}
+
+fn offences(room: &str, path: &str, text: &str) -> Vec<String> {
+    let (_, forbidden) = FORBIDDEN.iter().find(|(name, _)| *name == room).unwrap();
+    let mut found = Vec::new();
+    for (number, line) in code(text) {
+        // `use crate::{render, core}` names the room without its path.
+        let line = if line.contains("crate::{") {
+            line.replace("render", "crate::render").replace("app", "crate::app")
+        } else {
+            line
+        };
+        for (word, reason) in *forbidden {
+            if mentions(&line, word) {
+                found.push(format!("{path}:{number}: {word}: {reason}"));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn the_rooms_know_only_what_they_may() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = Vec::new();
+    for (room, _) in FORBIDDEN {
+        let mut files = Vec::new();
+        sources(&root.join(room), &mut files);
+        assert!(!files.is_empty(), "{room} has sources");
+        for file in files {
+            if file.file_stem().is_some_and(|stem| stem.to_string_lossy().ends_with("_tests")) {
+                continue;
+            }
+            let path = file.strip_prefix(&root).unwrap().display().to_string();
+            found.extend(offences(room, &path, &fs::read_to_string(&file).unwrap()));
+        }
+    }
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+#[test]
+fn an_arrow_that_runs_back_is_seen() {
+    for line in [
+        "use crate::render::picture::Picture;",
+        "use crate::{app, core};",
+        "let t = std::time::Instant::now();",
+        "use std::collections::{BTreeMap, HashMap};",
+    ] {
+        assert!(!offences("core", "a.rs", line).is_empty(), "{line}");
+    }
+    for line in [
+        "/// unlike std::time, this ...",
+        "let s = \"HashMap\"; // HashMap",
+        "use rustc_hash::FxHashMap;",
+        "#[cfg(test)]\nmod tests {\n    use std::time::Instant;\n}",
+    ] {
+        assert!(offences("core", "a.rs", line).is_empty(), "{line}");
+    }
+}
