@@ -124,7 +124,8 @@ pub struct Soundness {
     pub findings: Vec<Finding>,
 }
 
-/// Examines a mesh. O(n log n); about a second for a million quadrilaterals.
+/// Examines a mesh. O(n log n), about half a second for a million quadrilaterals; more only where they are many separate
+/// pieces in rows, between which `overlap` looks far.
 ///
 /// Where nodes do not exist or are not finite, nothing else is examined.
 pub fn examine(mesh: &MeshFile) -> Soundness {
