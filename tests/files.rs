@@ -228,7 +228,7 @@ fn what_is_broken_is_refused_with_its_line_and_a_reason() {
         (
             Format::Medit,
             format!("{sol}0 0 0\nTriangles 1\n1 1 2 0\n"),
-            "line 5: An element has the vertex 2, and there are 1",
+            "line 6: An element has the vertex 2, and there are 1",
         ),
         (Format::Medit, format!("{sol}0 0 0\nEdges 1\n0 1 0\n"), "An element has the vertex 0"),
         (Format::Medit, format!("{sol}0 0 0\nTrianglesP2 1\n"), "Elements of higher order (TrianglesP2)"),

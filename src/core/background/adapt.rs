@@ -11,7 +11,7 @@ use crate::core::fault::Fault;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::quality::{length_over, quality_over};
-use crate::core::metric::field::{BadMetric, MetricSource};
+use crate::core::metric::field::MetricSource;
 use crate::core::metric::tensor::Metric2;
 use crate::core::progress::{Stage, Watch};
 
@@ -186,7 +186,7 @@ impl Adapter<'_> {
     }
 
     fn metric(&self, uv: DVec2) -> Result<Metric2, Fault> {
-        self.source.metric(uv).map_err(|bad| refuse(&bad))
+        Ok(self.source.metric(uv)?)
     }
 
     /// Swaps edges opposite to a new node until they are Delaunay in the metric.
@@ -332,14 +332,6 @@ impl Adapter<'_> {
 fn length_class(length: f64) -> i64 {
     // The exponent and the upper two bits of the fraction, as the number's own bits have them.
     (length.to_bits() >> 50) as i64
-}
-
-/// A field that fails inside the domain, as a person is told of it.
-pub fn refuse(bad: &BadMetric) -> Fault {
-    let p = bad.place.xyz;
-    Fault::new(format!("The metric cannot be used: {}", bad.what))
-        .at(format!("at ({}, {}, {})", p.x, p.y, p.z))
-        .remedy("Sizes must be finite and positive everywhere in the domain")
 }
 
 /// Whether the edge is Delaunay in the mean shape of the metrics of its four nodes: the opposite angles sum to at most

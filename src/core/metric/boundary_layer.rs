@@ -13,8 +13,9 @@ const UNBOUNDED: f64 = 1e3;
 /// The curves as segments and the sizes about them.
 #[derive(Clone, Debug)]
 pub(super) struct BoundaryLayer {
-    segments: Vec<[DVec2; 2]>,
     tree: BoxTree,
+    /// In the tree's order.
+    segments: Vec<[DVec2; 2]>,
     /// Diagonal of the box about all curves.
     extent: f64,
     first: f64,
@@ -67,9 +68,10 @@ impl BoundaryLayer {
         if !(extent > 0.0 && extent.is_finite()) {
             return Err(Fault::new("The curves of a boundary layer have no length"));
         }
-        let tree = BoxTree::new(&boxes);
+        let (tree, order) = BoxTree::new(&boxes);
+        let segments = order.into_iter().map(|i| segments[i as usize]).collect();
         let far = far.unwrap_or(UNBOUNDED * extent.max(first));
-        Ok(BoundaryLayer { segments, tree, extent, first, slope: growth - 1.0, along, far })
+        Ok(BoundaryLayer { tree, segments, extent, first, slope: growth - 1.0, along, far })
     }
 
     /// Whether it gives a tensor of itself; if not, it only cuts back those of others.

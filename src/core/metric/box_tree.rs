@@ -1,33 +1,33 @@
 //! Nearest of many small things in the plane, by a tree of their boxes.
 //!
 //! What a field needs and a general index does not promise: the answer is a pure function of the query (equal distances go
-//! to the lowest id, whatever was asked before), nothing is allocated, and strongly graded sets cost no more than even ones.
+//! to the lowest number, whatever was asked before), nothing is allocated, and strongly graded sets cost no more than even ones.
 
 use glam::DVec2;
 
 /// Things in one leaf at most.
 const LEAF: usize = 4;
 
-/// A tree over things `0..n` that are known by their boxes.
+/// A tree over things that are known by their boxes. It renumbers them so that those of one leaf are together.
 #[derive(Clone, Debug)]
 pub(super) struct BoxTree {
-    nodes: Vec<Node>,
-    /// Ids of the things, those of one leaf together.
-    ids: Vec<u32>,
+    root: Branch,
+    /// Both branches of an inner node side by side: choosing between them takes one look at memory.
+    nodes: Vec<[Branch; 2]>,
 }
 
-/// A node in preorder: the left child of an inner node is the next one.
+/// A box with what is in it.
 #[derive(Clone, Copy, Debug)]
-struct Node {
+struct Branch {
     low: DVec2,
     high: DVec2,
-    /// A leaf's first place in `ids`; an inner node's right child.
+    /// A leaf's first thing; the place in `nodes` otherwise.
     at: u32,
     /// Things of a leaf; 0: an inner node.
     count: u32,
 }
 
-impl Node {
+impl Branch {
     #[inline]
     fn distance2(&self, p: DVec2) -> f64 {
         (self.low - p).max(p - self.high).max(DVec2::ZERO).length_squared()
@@ -35,63 +35,36 @@ impl Node {
 }
 
 impl BoxTree {
-    /// Builds the tree over boxes (lowest and highest corner, finite). Cost O(n log n).
-    pub fn new(boxes: &[(DVec2, DVec2)]) -> BoxTree {
-        let mut tree = BoxTree { nodes: Vec::new(), ids: (0..boxes.len() as u32).collect() };
-        let mut ids = std::mem::take(&mut tree.ids);
-        if !ids.is_empty() {
-            tree.split(boxes, &mut ids, 0);
-        }
-        tree.ids = ids;
-        tree
+    /// Builds the tree over boxes (lowest and highest corner, finite), at least one. With it comes the order that its numbers
+    /// mean: its thing `k` is the box `order[k]`. Cost O(n log n).
+    pub fn new(boxes: &[(DVec2, DVec2)]) -> (BoxTree, Vec<u32>) {
+        assert!(!boxes.is_empty(), "a tree stands over something");
+        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+        let mut nodes = Vec::new();
+        let root = branch(&mut nodes, boxes, &mut order, 0);
+        (BoxTree { root, nodes }, order)
     }
 
-    fn split(&mut self, boxes: &[(DVec2, DVec2)], ids: &mut [u32], offset: u32) {
-        let whole = |(low, high): (DVec2, DVec2), &i: &u32| {
-            let b = boxes[i as usize];
-            (low.min(b.0), high.max(b.1))
-        };
-        let (low, high) = ids.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), whole);
-        let here = self.nodes.len();
-        let count = if ids.len() <= LEAF { ids.len() as u32 } else { 0 };
-        self.nodes.push(Node { low, high, at: offset, count });
-        if count > 0 {
-            return;
-        }
-        // The median of the doubled centres along the longer side; ids break ties, so that the tree is one only.
-        let along_x = high.x - low.x >= high.y - low.y;
-        let centre = |i: u32| {
-            let (low, high) = boxes[i as usize];
-            if along_x { low.x + high.x } else { low.y + high.y }
-        };
-        let half = ids.len() / 2;
-        ids.select_nth_unstable_by(half, |&i, &j| centre(i).total_cmp(&centre(j)).then(i.cmp(&j)));
-        let (left, right) = ids.split_at_mut(half);
-        self.split(boxes, left, offset);
-        self.nodes[here].at = self.nodes.len() as u32;
-        self.split(boxes, right, offset + half as u32);
-    }
-
-    /// The thing with the least `distance2` from `p` (squared; its box must not be farther), the lowest id among equals, and
-    /// that squared distance. `None` when there are no things or `p` is not finite.
+    /// The thing with the least `distance2` from `p` (squared; its box must not be farther), the lowest number among equals,
+    /// and that squared distance. `None` when `p` is not finite.
     #[inline]
     pub fn nearest(&self, p: DVec2, distance2: impl Fn(u32) -> f64) -> Option<(u32, f64)> {
         if !p.is_finite() {
             return None;
         }
-        // Halving 2^32 things ends after 32 levels, and each leaves one node waiting.
-        let mut waiting = [(0u32, 0.0f64); 40];
-        let mut count = usize::from(!self.nodes.is_empty());
+        // Halving 2^32 things ends after 32 levels, and each leaves one branch waiting.
+        let mut waiting = [(0u32, 0u32, 0.0f64); 40];
+        waiting[0] = (self.root.at, self.root.count, 0.0);
+        let mut waiting_count = 1;
         let (mut best, mut best_distance) = (u32::MAX, f64::INFINITY);
-        while count > 0 {
-            count -= 1;
-            let (i, lower_bound) = waiting[count];
+        while waiting_count > 0 {
+            waiting_count -= 1;
+            let (at, count, lower_bound) = waiting[waiting_count];
             if lower_bound > best_distance {
                 continue;
             }
-            let node = &self.nodes[i as usize];
-            if node.count > 0 {
-                for &id in &self.ids[node.at as usize..(node.at + node.count) as usize] {
+            if count > 0 {
+                for id in at..at + count {
                     let d = distance2(id);
                     if d < best_distance || (d == best_distance && id < best) {
                         (best, best_distance) = (id, d);
@@ -99,18 +72,44 @@ impl BoxTree {
                 }
                 continue;
             }
-            let left = (i + 1, self.nodes[i as usize + 1].distance2(p));
-            let right = (node.at, self.nodes[node.at as usize].distance2(p));
+            let [left, right] = &self.nodes[at as usize];
+            let (left, right) = ((left, left.distance2(p)), (right, right.distance2(p)));
             let (near, far) = if left.1 <= right.1 { (left, right) } else { (right, left) };
-            for child in [far, near] {
-                if child.1 <= best_distance {
-                    waiting[count] = child;
-                    count += 1;
+            for (child, bound) in [far, near] {
+                if bound <= best_distance {
+                    waiting[waiting_count] = (child.at, child.count, bound);
+                    waiting_count += 1;
                 }
             }
         }
         (best != u32::MAX).then_some((best, best_distance))
     }
+}
+
+/// The branch over the things `order`, whose first number is `first`.
+fn branch(nodes: &mut Vec<[Branch; 2]>, boxes: &[(DVec2, DVec2)], order: &mut [u32], first: u32) -> Branch {
+    let whole = |(low, high): (DVec2, DVec2), &i: &u32| {
+        let b = boxes[i as usize];
+        (low.min(b.0), high.max(b.1))
+    };
+    let (low, high) = order.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), whole);
+    if order.len() <= LEAF {
+        return Branch { low, high, at: first, count: order.len() as u32 };
+    }
+    // The median of the doubled centres along the longer side; ids break ties, so that the tree is one only.
+    let along_x = high.x - low.x >= high.y - low.y;
+    let centre = |i: u32| {
+        let (low, high) = boxes[i as usize];
+        if along_x { low.x + high.x } else { low.y + high.y }
+    };
+    let half = order.len() / 2;
+    order.select_nth_unstable_by(half, |&i, &j| centre(i).total_cmp(&centre(j)).then(i.cmp(&j)));
+    let here = nodes.len();
+    nodes.push([Branch { low, high, at: 0, count: 0 }; 2]);
+    let (left, right) = order.split_at_mut(half);
+    nodes[here][0] = branch(nodes, boxes, left, first);
+    nodes[here][1] = branch(nodes, boxes, right, first + half as u32);
+    Branch { low, high, at: here as u32, count: 0 }
 }
 
 /// The share of the way from `a` to `b`, in [0, 1], of the point of that segment that is nearest to `p`.
@@ -135,7 +134,11 @@ mod tests {
                 points.extend([DVec2::new(at(i), at(j)); 2]);
             }
         }
-        let tree = BoxTree::new(&points.iter().map(|&p| (p, p)).collect::<Vec<_>>());
+        let (tree, order) = BoxTree::new(&points.iter().map(|&p| (p, p)).collect::<Vec<_>>());
+        let mut all = order.clone();
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..points.len() as u32));
+        let points: Vec<DVec2> = order.into_iter().map(|i| points[i as usize]).collect();
         for k in 0..2000 {
             let q = DVec2::new(at(k % 37), at(k / 37)) * if k % 2 == 0 { 1.0 } else { 0.97 };
             let by_hand = (0..points.len() as u32)
@@ -147,10 +150,10 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_nearest_among_nothing_or_to_no_place() {
-        assert_eq!(BoxTree::new(&[]).nearest(DVec2::ZERO, |_| 0.0), None);
-        let one = BoxTree::new(&[(DVec2::ZERO, DVec2::ONE)]);
+    fn nothing_is_nearest_to_no_place() {
+        let (one, _) = BoxTree::new(&[(DVec2::ZERO, DVec2::ONE)]);
         assert_eq!(one.nearest(DVec2::NAN, |_| f64::NAN), None);
         assert_eq!(one.nearest(DVec2::new(0.0, f64::INFINITY), |_| f64::INFINITY), None);
+        assert_eq!(one.nearest(DVec2::ONE, |_| 0.0), Some((0, 0.0)));
     }
 }

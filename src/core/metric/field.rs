@@ -57,6 +57,7 @@ pub trait MetricSource {
 
 /// One field as a case gives it; several are intersected.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a case has a handful of them")]
 pub enum FieldSpec {
     /// The same size everywhere, in all directions.
     Uniform {

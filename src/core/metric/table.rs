@@ -10,11 +10,13 @@ use crate::core::fault::Fault;
 /// The mesh, the logarithms at its nodes, and what finds a triangle.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
-    points: Vec<DVec2>,
-    /// Anticlockwise.
-    triangles: Vec<[u32; 3]>,
-    logarithms: Vec<LogMetric3>,
     tree: BoxTree,
+    /// Corners of the triangles, anticlockwise, in the tree's order.
+    corners: Vec<[DVec2; 3]>,
+    /// Their nodes.
+    nodes: Vec<[u32; 3]>,
+    /// By node.
+    logarithms: Vec<LogMetric3>,
 }
 
 impl Table {
@@ -56,48 +58,44 @@ impl Table {
             anticlockwise.push(if area > 0.0 { [a, b, c] } else { [a, c, b] });
             boxes.push((p.min(q).min(r), p.max(q).max(r)));
         }
-        Ok(Table {
-            points: points.to_vec(),
-            triangles: anticlockwise,
-            logarithms: metrics.iter().map(Metric3::ln).collect(),
-            tree: BoxTree::new(&boxes),
-        })
+        let (tree, order) = BoxTree::new(&boxes);
+        let nodes: Vec<[u32; 3]> = order.into_iter().map(|i| anticlockwise[i as usize]).collect();
+        let corners = nodes.iter().map(|t| t.map(|k| points[k as usize])).collect();
+        Ok(Table { tree, corners, nodes, logarithms: metrics.iter().map(Metric3::ln).collect() })
     }
 
     /// The metric at `p`; outside the mesh, that of the nearest point of the mesh. `None` when `p` is not finite.
     #[inline]
     pub fn metric(&self, p: DVec2) -> Option<Metric3> {
-        let (id, _) = self.tree.nearest(p, |id| self.in_triangle(id, p).1)?;
-        let weights = self.in_triangle(id, p).0;
-        let nodes = self.triangles[id as usize];
+        let (id, _) = self.tree.nearest(p, |id| in_triangle(&self.corners[id as usize], p).1)?;
+        let weights = in_triangle(&self.corners[id as usize], p).0;
         let mut sum = LogMetric3::ZERO;
-        for (weight, node) in weights.into_iter().zip(nodes) {
+        for (weight, node) in weights.into_iter().zip(self.nodes[id as usize]) {
             sum = sum.plus(weight, &self.logarithms[node as usize]);
         }
         Some(sum.exp())
     }
+}
 
-    /// Barycentric weights of the point of a triangle that is nearest to `p`, and its squared distance.
-    #[inline]
-    fn in_triangle(&self, id: u32, p: DVec2) -> ([f64; 3], f64) {
-        let corners = self.triangles[id as usize].map(|k| self.points[k as usize]);
-        let [a, b, c] = corners.map(|corner| corner - p);
-        // Twice the areas opposite to the corners.
-        let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
-        if areas.iter().all(|&area| area >= 0.0) {
-            let whole = areas[0] + areas[1] + areas[2];
-            return (areas.map(|area| area / whole), 0.0);
-        }
-        let mut nearest = ([0.0; 3], f64::INFINITY);
-        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-            let share = share_along(p, corners[i], corners[j]);
-            let distance2 = corners[i].lerp(corners[j], share).distance_squared(p);
-            if distance2 < nearest.1 {
-                let mut weights = [0.0; 3];
-                (weights[i], weights[j]) = (1.0 - share, share);
-                nearest = (weights, distance2);
-            }
-        }
-        nearest
+/// Barycentric weights of the point of a triangle that is nearest to `p`, and its squared distance.
+#[inline]
+fn in_triangle(corners: &[DVec2; 3], p: DVec2) -> ([f64; 3], f64) {
+    let [a, b, c] = corners.map(|corner| corner - p);
+    // Twice the areas opposite to the corners.
+    let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
+    if areas.iter().all(|&area| area >= 0.0) {
+        let whole = areas[0] + areas[1] + areas[2];
+        return (areas.map(|area| area / whole), 0.0);
     }
+    let mut nearest = ([0.0; 3], f64::INFINITY);
+    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+        let share = share_along(p, corners[i], corners[j]);
+        let distance2 = corners[i].lerp(corners[j], share).distance_squared(p);
+        if distance2 < nearest.1 {
+            let mut weights = [0.0; 3];
+            (weights[i], weights[j]) = (1.0 - share, share);
+            nearest = (weights, distance2);
+        }
+    }
+    nearest
 }

@@ -26,18 +26,52 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Resu
     let number = if version == Version::V2 { "2.2" } else { "4.1" };
     writeln!(out, "$MeshFormat\n{number} 0 8\n$EndMeshFormat")?;
     physical_names(out, &mesh.groups)?;
-    match version {
-        Version::V2 => {
+    let entities = (version == Version::V4).then(|| Entities::of(mesh));
+    match &entities {
+        None => {
             nodes_2(out, mesh)?;
             elements_2(out, mesh)?;
         }
-        Version::V4 => {
-            let entities = Entities::of(mesh);
+        Some(entities) => {
             entities.write(out, mesh)?;
             entities.write_nodes(out, mesh)?;
             entities.write_elements(out, mesh)?;
         }
     }
+    point_data(out, mesh)?;
+    for data in &mesh.element_data {
+        data_header(out, "ElementData", &data.name, 1, mesh.lines.len() + data.values.len())?;
+        // Readers that go by the order of the elements instead of their tags (meshio) want a value for the lines too,
+        // in the order in which the elements stand. Gmsh passes over what is not a number.
+        let mut value = |kind: usize, i: usize| match kind {
+            0 => writeln!(out, "{} NaN", i + 1),
+            1 => writeln!(out, "{} {}", mesh.lines.len() + i + 1, Shortest(data.values[i])),
+            _ => {
+                let i = mesh.triangles.len() + i;
+                writeln!(out, "{} {}", mesh.lines.len() + i + 1, Shortest(data.values[i]))
+            }
+        };
+        match &entities {
+            None => {
+                for (kind, elements) in Kind::all(mesh).iter().enumerate() {
+                    (0..elements.count).try_for_each(|i| value(kind, i))?;
+                }
+            }
+            Some(entities) => {
+                for (entity, lists) in entities.list.iter().zip(&entities.elements) {
+                    for (place, list) in lists.iter().enumerate() {
+                        let kind = if entity.0 == 1 { 0 } else { 1 + place };
+                        list.iter().try_for_each(|&i| value(kind, i as usize))?;
+                    }
+                }
+            }
+        }
+        writeln!(out, "$EndElementData")?;
+    }
+    Ok(())
+}
+
+fn point_data(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     if let Some(metric) = &mesh.metric {
         data_header(out, "NodeData", METRIC, 9, metric.len())?;
         for (m, node) in metric.iter().zip(1..) {
@@ -50,16 +84,12 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Resu
         }
         writeln!(out, "$EndNodeData")?;
     }
-    for (section, data, before) in
-        [("NodeData", &mesh.point_data, 0), ("ElementData", &mesh.element_data, mesh.lines.len())]
-    {
-        for data in data {
-            data_header(out, section, &data.name, 1, data.values.len())?;
-            for (value, number) in data.values.iter().zip(before + 1..) {
-                writeln!(out, "{number} {}", Shortest(*value))?;
-            }
-            writeln!(out, "$End{section}")?;
+    for data in &mesh.point_data {
+        data_header(out, "NodeData", &data.name, 1, data.values.len())?;
+        for (value, node) in data.values.iter().zip(1..) {
+            writeln!(out, "{node} {}", Shortest(*value))?;
         }
+        writeln!(out, "$EndNodeData")?;
     }
     Ok(())
 }

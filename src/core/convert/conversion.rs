@@ -1,0 +1,156 @@
+//! From a case to its background mesh, and on to quadrilaterals: the order of the parts, and nothing of their insides.
+
+use glam::DVec2;
+
+use super::component::live_components;
+use super::finish::{Finished, finish};
+use super::last_resort::{Outcome, last_resort};
+use crate::core::background::adapt::{Adapted, adapt};
+use crate::core::background::triangulate::divide_and_triangulate;
+use crate::core::fault::Fault;
+use crate::core::geometry::domain::{CurveSpec, Domain, FaceSpec};
+use crate::core::geometry::predicates::firm;
+use crate::core::io::case::{Case, DomainSource};
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::NodeId;
+use crate::core::metric::field::{Field, MetricSource, Place, Sizing};
+use crate::core::metric::gradation::bound_gradation;
+use crate::core::progress::{Stage, Watch};
+
+/// Points at which the metric is looked over before anything is made from it.
+const SURVEYED: usize = 20_000;
+
+/// The background triangle mesh of a case with its metric.
+#[derive(Clone, Debug)]
+pub struct Background {
+    /// Triangles; every node with its metric.
+    pub mesh: Mesh,
+    /// What gives the metric anywhere.
+    pub sizing: Sizing,
+    /// Names of the regions.
+    pub regions: Vec<String>,
+    /// What the adaptation did; nothing for a mesh that was given.
+    pub adapted: Adapted,
+    /// What was mended in a mesh that was given, for people.
+    pub repairs: Vec<String>,
+}
+
+/// The quadrilaterals of a case.
+#[derive(Clone, Debug)]
+pub struct Converted {
+    /// All quadrilaterals.
+    pub mesh: Mesh,
+    /// What gives the metric anywhere.
+    pub sizing: Sizing,
+    /// Names of the regions.
+    pub regions: Vec<String>,
+    /// Number of triangles of the background mesh.
+    pub triangles: usize,
+    /// What the adaptation of the background did.
+    pub adapted: Adapted,
+    /// What was mended in a mesh that was given, for people.
+    pub repairs: Vec<String>,
+    /// What the last resort did, over all components.
+    pub last_resort: Outcome,
+    /// What the global post-processing did.
+    pub finished: Finished,
+}
+
+/// Makes the background mesh of a case.
+///
+/// # Errors
+/// Whatever is wrong with the case's geometry, metric or mesh.
+pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
+    let made = match &case.domain {
+        DomainSource::Curves { curves, faces } => from_curves(case, curves, faces, watch)?,
+        DomainSource::Mesh { .. } => return Err(Fault::new("Meshes as background are not wired yet")),
+    };
+    refuse_needles(&made.mesh)?;
+    Ok(made)
+}
+
+/// Converts a case: its background mesh, then every live component by the last resort, then post-processing.
+///
+/// # Errors
+/// As [`background`]; and where a component cannot be converted, which its checks should have found.
+pub fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Converted, Fault> {
+    let Background { mut mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
+    let triangles = mesh.element_count();
+    watch.tell(Stage::Convert, 0, triangles as u64);
+    mesh.set_recording(false);
+    let mut total = Outcome::default();
+    for component in live_components(&mesh) {
+        let outcome = last_resort(&mut mesh, &component.triangles, &sizing)
+            .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
+        total = total.plus(&outcome);
+        watch.tell(Stage::Convert, total.triangles as u64, triangles as u64);
+    }
+    mesh = mesh.reordered();
+    let finished = finish(&mut mesh, &sizing, watch);
+    Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, last_resort: total, finished })
+}
+
+/// The background mesh of a domain of curves; where the case bounds the gradation, a first mesh carries the table of the
+/// bounded metric for the second.
+fn from_curves(
+    case: &Case,
+    curves: &[CurveSpec],
+    faces: &[FaceSpec],
+    watch: &mut dyn Watch,
+) -> Result<Background, Fault> {
+    watch.tell(Stage::Divide, 0, 0);
+    let domain = Domain::build(curves.to_vec(), faces.to_vec())?;
+    let mut fields = Vec::new();
+    for spec in &case.fields {
+        fields.push(Field::compile(spec, &|name| domain.curve_polyline(name))?);
+    }
+    let mut sizing = Sizing::new(fields, case.parameters.size_scale);
+    sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
+    let (mut mesh, mut adapted) = adapted_mesh(case, &domain, &sizing, watch)?;
+    if let Some(beta) = case.gradation {
+        sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0);
+        (mesh, adapted) = adapted_mesh(case, &domain, &sizing, watch)?;
+    }
+    let regions = faces.iter().map(|face| face.name.clone()).collect();
+    Ok(Background { mesh, sizing, regions, adapted, repairs: Vec::new() })
+}
+
+fn adapted_mesh(
+    case: &Case,
+    domain: &Domain,
+    sizing: &Sizing,
+    watch: &mut dyn Watch,
+) -> Result<(Mesh, Adapted), Fault> {
+    watch.tell(Stage::Triangulate, 0, 0);
+    let (_, set) = divide_and_triangulate(domain, sizing)?;
+    let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+    watch.tell(Stage::Adapt, 0, 0);
+    // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (spec 3).
+    let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
+    adapt(Mesh::from_triangles(&set, metric), sizing, most, watch)
+}
+
+/// The field at the nodes of a mesh with its gradation bounded, as a table.
+fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, Fault> {
+    let points: Vec<DVec2> = (0..mesh.node_slots() as u32).map(|n| mesh.uv(NodeId(n))).collect();
+    let mut metrics = points.iter().map(|&uv| sizing.metric3(&Place::in_plane(uv))).collect::<Result<Vec<_>, _>>()?;
+    let edges: Vec<[u32; 2]> = mesh.edges().map(|h| [mesh.origin(h).0, mesh.target(h).0]).collect();
+    let in_space: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
+    bound_gradation(&in_space, &edges, &mut metrics, beta);
+    let triangles: Vec<[u32; 3]> = mesh.elements().map(|e| mesh.triangle(e).map(|n| n.0)).collect();
+    Field::table(&points, &triangles, metrics)
+}
+
+/// Refuses a background with a triangle so flat that rounding could invert what the last resort makes of it.
+fn refuse_needles(mesh: &Mesh) -> Result<(), Fault> {
+    for e in mesh.elements() {
+        let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
+        if !firm(a, b, c) {
+            return Err(Fault::new(format!(
+                "A triangle of the background mesh is too flat to be converted: {a}, {b}, {c}"
+            ))
+            .remedy("Make the boundary there less thin, its segments shorter, or the sizes less stretched"));
+        }
+    }
+    Ok(())
+}
