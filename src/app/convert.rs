@@ -1,9 +1,11 @@
 //! `convert` and `background`: from a case or a mesh to files.
 
+use std::process::ExitCode;
+
 use super::command_line::{BackgroundArguments, ConvertArguments};
 use super::output::{self, MeshTarget, Target, tell};
 use super::progress::Progress;
-use super::{input, work};
+use super::{FALLS_SHORT, complain, input, work};
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
 use crate::core::io::case::Case;
@@ -14,7 +16,9 @@ use crate::render::picture::Picture;
 use crate::render::vector::svg;
 
 /// Converts, and writes the mesh, the report and the picture that are asked for.
-pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Fault> {
+///
+/// Exit 1, as of a check, where the result is not valid: that is a bug, and nobody should go on with such a mesh unwarned.
+pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     let (source, destination) = (&arguments.source, &arguments.destination);
     let mesh_target = MeshTarget::of(destination)?;
     let targets = [destination.out.as_ref(), arguments.report.as_ref()];
@@ -34,7 +38,9 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Fault> {
         tell(&quads.report.summary(), output_taken);
         remind(mesh_target.is_none() && destination.picture.is_none(), output_taken);
     }
-    Ok(())
+    let Some(flaw) = &quads.flaw else { return Ok(ExitCode::SUCCESS) };
+    complain(flaw);
+    Ok(ExitCode::from(FALLS_SHORT))
 }
 
 /// Makes the background mesh, and writes it with its metric.
@@ -51,7 +57,7 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     draw(destination.picture.as_ref(), &input.case, &triangles.file)?;
     let timing = progress.finish();
     if !source.quiet {
-        tell(&background_summary(&input.case, &triangles.statistics, &timing), output_taken);
+        tell(&background_summary(&input.case, &triangles.statistics, &triangles.repairs, &timing), output_taken);
         remind(mesh_target.is_none() && destination.picture.is_none(), output_taken);
     }
     Ok(())

@@ -43,7 +43,7 @@ pub fn run() -> ExitCode {
         std::process::exit(INTERRUPTED);
     });
     let done = match &cli.command {
-        Command::Convert(arguments) => convert::convert(arguments).map(|()| ExitCode::SUCCESS),
+        Command::Convert(arguments) => convert::convert(arguments),
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
         Command::Check(arguments) => check::check(arguments),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
