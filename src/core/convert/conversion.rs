@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::component::live_components;
-use super::finish::{Finished, finish};
-use super::last_resort::{Outcome, last_resort};
+use super::converter::{Converter, Counts};
+use super::finish::Finished;
+use super::last_resort::Outcome;
 use crate::core::background::adapt::{Adapted, adapt};
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::fault::Fault;
@@ -50,6 +50,8 @@ pub struct Converted {
     pub adapted: Adapted,
     /// What was mended in a mesh that was given, for people.
     pub repairs: Vec<String>,
+    /// How often what happened on the front.
+    pub counts: Counts,
     /// What the last resort did, over all components.
     pub last_resort: Outcome,
     /// What the global post-processing did.
@@ -74,20 +76,12 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
 /// # Errors
 /// As [`background`]; and where a component cannot be converted, which its checks should have found.
 pub fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Converted, Fault> {
-    let Background { mut mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
+    let Background { mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
     let triangles = mesh.element_count();
-    watch.tell(Stage::Convert, 0, triangles as u64);
-    mesh.set_recording(false);
-    let mut total = Outcome::default();
-    for component in live_components(&mesh) {
-        let outcome = last_resort(&mut mesh, &component.triangles, &sizing)
-            .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
-        total = total.plus(&outcome);
-        watch.tell(Stage::Convert, total.triangles as u64, triangles as u64);
-    }
-    mesh = mesh.reordered();
-    let finished = finish(&mut mesh, &sizing, watch);
-    Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, last_resort: total, finished })
+    let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());
+    converter.run(watch)?;
+    let Converter { mesh, counts, last_resort, finished, .. } = converter;
+    Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, counts, last_resort, finished })
 }
 
 /// The background mesh of a domain of curves; where the case bounds the gradation, a first mesh carries the table of the

@@ -168,9 +168,9 @@ fn a_mesh_lies_relative_to_its_case() {
 fn files_that_are_no_cases_are_refused_with_their_name() {
     let folder = tempfile::tempdir().unwrap();
     let fault = Case::read(folder.path()).unwrap_err();
-    assert_eq!(fault.what, "This is a directory");
+    assert_eq!(fault.what, "This is a folder");
     let fault = Case::read(&folder.path().join("nothing.toml")).unwrap_err();
-    assert!(fault.place.ends_with("nothing.toml") && fault.what.contains("cannot be read"), "{fault}");
+    assert!(fault.place.ends_with("nothing.toml") && fault.what.contains("no such file"), "{fault}");
     let binary = folder.path().join("binary.toml");
     std::fs::write(&binary, [b'v', 0xff, 0xfe]).unwrap();
     assert_eq!(Case::read(&binary).unwrap_err().what, "The file is not text (byte 1)");

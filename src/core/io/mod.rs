@@ -16,4 +16,5 @@ pub mod format;
 pub mod case;
 pub mod built_in;
 pub mod statistics;
+pub mod export;
 pub mod report;
