@@ -73,7 +73,11 @@ impl Tally {
 fn kind(fault: &Fault) -> String {
     let mut words = Vec::new();
     for (i, part) in fault.what.split('"').enumerate() {
-        words.push(if i % 2 == 1 { "_".to_owned() } else { part.replace(|c: char| c.is_ascii_digit() || c == '-', "") });
+        words.push(if i % 2 == 1 {
+            "_".to_owned()
+        } else {
+            part.replace(|c: char| c.is_ascii_digit() || c == '-', "")
+        });
     }
     words.join("")
 }

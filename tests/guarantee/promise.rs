@@ -94,7 +94,11 @@ fn even_loops(mesh: &Mesh) -> Result<(), String> {
         while !std::mem::replace(&mut seen[h.index()], true) {
             count += 1;
             let node = mesh.target(h);
-            h = mesh.fan(node).next().filter(|&n| mesh.twin(n).is_none()).ok_or(format!("the loop ends at {node:?}"))?;
+            h = mesh
+                .fan(node)
+                .next()
+                .filter(|&n| mesh.twin(n).is_none())
+                .ok_or(format!("the loop ends at {node:?}"))?;
         }
         if count % 2 != 0 {
             return Err(format!("the loop through {} has {count} sides", mesh.uv(mesh.origin(first))));

@@ -254,8 +254,12 @@ impl Draft {
                 }
                 let mut face = Face::default();
                 let mut polygon = Vec::new();
-                let around =
-                    [((i, j, false), true), ((i + 1, j, true), true), ((i, j + 1, false), false), ((i, j, true), false)];
+                let around = [
+                    ((i, j, false), true),
+                    ((i + 1, j, true), true),
+                    ((i, j + 1, false), false),
+                    ((i, j, true), false),
+                ];
                 for (key, forward) in around {
                     if !sides.iter().any(|side| side.0 == key) {
                         let (i, j, up) = key;

@@ -64,12 +64,8 @@ fn field(r: &mut Random, draft: &Draft) -> String {
         4 => {
             // Thin about a circle.
             let radius = r.range(0.2, 1.0);
-            let across = format!(
-                "{} + {}*abs({from_point} - {})",
-                n(r.power(-3.5, -1.0)),
-                n(r.range(0.05, 0.7)),
-                n(radius)
-            );
+            let across =
+                format!("{} + {}*abs({from_point} - {})", n(r.power(-3.5, -1.0)), n(r.range(0.05, 0.7)), n(radius));
             let g1 = [format!("1e9*(p - {}) + 1", n(p0)), format!("1e9*(q - {})", n(q0))];
             (across, Some(n(r.power(-1.5, 0.0))), Some(g1))
         }

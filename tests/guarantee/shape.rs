@@ -61,11 +61,9 @@ impl Curve {
                 points.extend((0..=n).map(|k| on_circle(*centre, *radius, from + by * k as f64 / n as f64)));
             }
             Curve::Spline(control) => {
-                // De Boor would do; the control polygon is near enough to keep others away, and is refined once.
-                for w in control.windows(2) {
-                    points.extend([w[0], w[0].midpoint(w[1])]);
-                }
-                points.extend(control.last());
+                let n = parts(control.windows(2).map(|w| w[0].distance(w[1])).sum());
+                let end = (control.len() - 3) as f64;
+                points.extend((0..=n).map(|k| on_spline(control, end * k as f64 / n as f64)));
             }
         }
         points
@@ -114,6 +112,21 @@ impl Curve {
 
 pub fn on_circle(centre: DVec2, radius: f64, angle: f64) -> DVec2 {
     centre + radius * DVec2::new(libm::cos(angle), libm::sin(angle))
+}
+
+/// The point at `t` of the cubic spline with knots 0, 0, 0, 0, 1, 2 ... n, n, n, n (de Boor).
+fn on_spline(control: &[DVec2], t: f64) -> DVec2 {
+    let last = control.len() - 4;
+    let knot = |k: usize| k.saturating_sub(3).min(last + 1) as f64;
+    let span = 3 + (t as usize).min(last);
+    let mut d = [0, 1, 2, 3].map(|j| control[span - 3 + j]);
+    for round in 1..=3 {
+        for j in (round..=3).rev() {
+            let (low, high) = (knot(j + span - 3), knot(j + 1 + span - round));
+            d[j] = d[j - 1].lerp(d[j], (t - low) / (high - low));
+        }
+    }
+    d[3]
 }
 
 /// Whether the point lies inside the closed polygon.

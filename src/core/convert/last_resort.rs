@@ -101,6 +101,12 @@ impl fmt::Display for Stuck {
 
 impl std::error::Error for Stuck {}
 
+/// Two triangles are merged into what is at least this good, or not much worse than they are. Nodes in a row on a
+/// straight side would by their rounding make every other flat corner a convex one.
+const LEAST_QUALITY: f64 = 0.1;
+/// What counts as not much worse.
+const NOT_MUCH_WORSE: f64 = 0.25;
+
 /// How a patch of triangles becomes quadrilaterals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Means {
@@ -340,7 +346,8 @@ impl<'a> Planner<'a> {
             let at = (beside.outline.iter().position(|&s| s == across)).expect("the pair beside has the shared side");
             let (q1, q2) = (beside.nodes[(at + 2) % 4], beside.nodes[(at + 3) % 4]);
             for quads in [[[p1, p2, p3, q1], [q1, q2, p0, p1]], [[p2, p3, q1, q2], [q2, p0, p1, p2]]] {
-                if quads.iter().all(|&quad| self.is_convex(quad)) {
+                let triangles = [side, self.dual.across[side as usize], inner, self.dual.across[inner as usize]];
+                if quads.iter().all(|&quad| self.is_good(quad, &triangles)) {
                     let quality = self.quality(quads[0]).min(self.quality(quads[1]));
                     if best.is_none_or(|(least, ..)| quality > least) {
                         best = Some((quality, quads, inner));
@@ -494,7 +501,24 @@ impl<'a> Planner<'a> {
         let after = |side: u32| side / 3 * 3 + (side + 1) % 3;
         let outline = [after(side), after(after(side)), after(across), after(after(across))];
         let nodes = outline.map(|s| self.mesh().origin(self.dual.half_edge(s)).0);
-        Pair { nodes, outline, convex: self.is_convex(nodes) }
+        Pair { nodes, outline, convex: self.is_good(nodes, &[side, across]) }
+    }
+
+    /// Whether a quadrilateral is strictly convex by more than rounding, and a fit shape in place of the triangles that
+    /// have these sides.
+    #[inline]
+    fn is_good(&self, quad: [u32; 4], sides: &[u32]) -> bool {
+        if !self.is_convex(quad) {
+            return false;
+        }
+        let quality = self.quality(quad);
+        if quality >= LEAST_QUALITY {
+            return true;
+        }
+        let before = sides.iter().map(|side| self.mesh().quality(self.dual.triangles[(side / 3) as usize]));
+        let p = quad.map(|n| self.uv(n));
+        quality >= NOT_MUCH_WORSE * before.fold(f64::INFINITY, f64::min)
+            && (0..4).all(|k| firm(p[k], p[(k + 1) % 4], p[(k + 2) % 4]))
     }
 
     #[inline]
