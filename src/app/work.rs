@@ -94,7 +94,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("clean_up_rotation", cleaned_up.rotations),
         ("last_resort_division", resort.divided),
         ("last_resort_merge", resort.merged),
-        ("last_resort_rotation", resort.rotations),
+        ("last_resort_recut", resort.recut),
         ("last_resort_template_quad", resort.template_quads),
         ("smoothing_move", finished.moves),
     ];

@@ -147,7 +147,8 @@ impl Adapter<'_> {
     }
 
     /// Divides an edge that still is as it was found, unless the new node would come closer than `least` to the
-    /// opposite ones.
+    /// opposite ones, or closer than half of that to a side of the boundary: a side that is much too long, which may
+    /// not be divided, has a long edge beside it for ever.
     fn divide(&mut self, f: Found, least: f64) -> Result<(), Fault> {
         let mesh = &self.mesh;
         if !self.still_there(f) {
@@ -159,6 +160,14 @@ impl Adapter<'_> {
         let metric = self.metric(place)?;
         let near = |n: NodeId| length_over(&metric, mesh.metric_ref(n), mesh.uv(n) - place) < least;
         if f.length < 2.0 && (near(c) || near(d)) {
+            return Ok(());
+        }
+        let near_boundary = |h: HalfEdgeId| {
+            let d = mesh.uv(mesh.target(h)) - mesh.uv(mesh.origin(h));
+            let height = metric.det().sqrt() * d.perp_dot(place - mesh.uv(mesh.origin(h))) / metric.norm2(d).sqrt();
+            mesh.twin(h).is_none() && height < 0.5 * least
+        };
+        if [f.h, twin].iter().any(|&h| near_boundary(mesh.next(h)) || near_boundary(mesh.previous(h))) {
             return Ok(());
         }
         if mesh.element_count() + 2 > self.most_elements {

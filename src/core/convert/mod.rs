@@ -12,7 +12,7 @@ mod local;
 mod seam;
 pub mod component;
 pub mod matching;
-pub mod t_join;
+mod t_join;
 pub mod last_resort;
 pub mod energy;
 pub mod clean_up;

@@ -1,0 +1,145 @@
+//! Promise: every valid case becomes strictly convex quadrilaterals, its boundary untouched (spec 2.6, 2.10, 5).
+//!
+//! Rounds of the random test: 100, or what QUADFRONT_SOAK_ROUNDS says. QUADFRONT_SEED runs one case alone, and
+//! QUADFRONT_SHOW=1 prints its text, which the command line takes as it is.
+#![allow(clippy::unwrap_used)]
+
+mod fit;
+mod promise;
+mod random;
+mod random_case;
+mod random_metric;
+mod shape;
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use promise::{Kept, keep};
+use quadfront::core::fault::Fault;
+use quadfront::core::io::case::Case;
+use random::Random;
+
+/// Of so many cases one may be refused: curves that the generator puts too near to each other.
+const ONE_REFUSED_OF: usize = 30;
+
+fn number_from_environment(name: &str) -> Option<u64> {
+    std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name}={text} is not a number")))
+}
+
+/// The case of a seed, of 25 to 1250 quadrilaterals.
+fn random_case(seed: u64) -> Case {
+    let text = random_case::text(seed);
+    let mut case =
+        Case::parse(&text, "random", "random.toml", Path::new("")).unwrap_or_else(|fault| panic!("{fault}\n{text}"));
+    fit::fit(&mut case, Random::new(!seed).power(1.4, 3.1));
+    let scale = case.parameters.size_scale;
+    case.text = format!("{text}[parameters]\nsize_scale = {scale:?}\nmax_quads = 30000\n");
+    Case::parse(&case.text, "random", "random.toml", Path::new("")).unwrap()
+}
+
+/// What came of all cases.
+#[derive(Default)]
+struct Tally {
+    kept: usize,
+    quads: usize,
+    templates: usize,
+    refused: BTreeMap<String, Vec<u64>>,
+    broken: Vec<String>,
+    slowest: (Duration, u64),
+    largest: (usize, u64),
+}
+
+impl Tally {
+    fn count(&mut self, seed: u64, took: Duration, outcome: Result<Result<Kept, Fault>, String>) {
+        self.slowest = self.slowest.max((took, seed));
+        match outcome {
+            Ok(Ok(kept)) => {
+                self.kept += 1;
+                self.quads += kept.quads;
+                self.templates += usize::from(kept.templates);
+                self.largest = self.largest.max((kept.triangles, seed));
+            }
+            Ok(Err(fault)) => self.refused.entry(kind(&fault)).or_default().push(seed),
+            Err(what) => self.broken.push(format!("seed {seed}: {what}")),
+        }
+    }
+}
+
+/// The words of a fault without its names and numbers.
+fn kind(fault: &Fault) -> String {
+    let mut words = Vec::new();
+    for (i, part) in fault.what.split('"').enumerate() {
+        words.push(if i % 2 == 1 {
+            "_".to_owned()
+        } else {
+            part.replace(|c: char| c.is_ascii_digit() || c == '-', "")
+        });
+    }
+    words.join("")
+}
+
+fn one(seed: u64) -> Result<Result<Kept, Fault>, String> {
+    catch_unwind(AssertUnwindSafe(|| keep(&random_case(seed)))).unwrap_or_else(|panic| {
+        let said = panic.downcast_ref::<String>().cloned();
+        Err(format!("panic: {}", said.or(panic.downcast_ref::<&str>().map(|s| s.to_string())).unwrap_or_default()))
+    })
+}
+
+#[test]
+fn every_random_case_becomes_convex_quadrilaterals_with_its_boundary_untouched() {
+    if let Some(seed) = number_from_environment("QUADFRONT_SEED") {
+        if std::env::var_os("QUADFRONT_SHOW").is_some() {
+            println!("{}", random_case(seed).text);
+        }
+        match one(seed) {
+            Ok(Ok(kept)) => println!("{} triangles, {} quadrilaterals", kept.triangles, kept.quads),
+            Ok(Err(fault)) => println!("refused: {fault}"),
+            Err(what) => panic!("{what}"),
+        }
+        return;
+    }
+    let rounds = number_from_environment("QUADFRONT_SOAK_ROUNDS").unwrap_or(100);
+    let (next, tally) = (AtomicU64::new(0), Mutex::new(Tally::default()));
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                loop {
+                    let seed = next.fetch_add(1, Ordering::Relaxed);
+                    if seed >= rounds {
+                        return;
+                    }
+                    let begun = Instant::now();
+                    let outcome = one(seed);
+                    tally.lock().unwrap().count(seed, begun.elapsed(), outcome);
+                }
+            });
+        }
+    });
+    let mut tally = tally.into_inner().unwrap();
+    tally.broken.sort();
+    let refused: usize = tally.refused.values().map(Vec::len).sum();
+    println!(
+        "{} kept with {} quadrilaterals ({} needed more than matching), {refused} refused, {} broken; slowest {:?}, \
+         largest {:?}",
+        tally.kept,
+        tally.quads,
+        tally.templates,
+        tally.broken.len(),
+        tally.slowest,
+        tally.largest
+    );
+    for (kind, seeds) in &tally.refused {
+        println!("refused {} times, as with seeds {:?}: {kind}", seeds.len(), &seeds[..seeds.len().min(8)]);
+    }
+    let first = tally.broken.first().map_or(String::new(), |what| {
+        let seed = what["seed ".len()..].split(':').next().unwrap().parse().unwrap();
+        let text = catch_unwind(|| random_case(seed).text).unwrap_or_default();
+        format!("{}\n\nthe first as a case:\n\n{text}", tally.broken.join("\n"))
+    });
+    assert!(tally.broken.is_empty(), "{first}");
+    assert!(refused * ONE_REFUSED_OF <= rounds as usize, "{refused} of {rounds} valid cases are refused");
+}
