@@ -1,5 +1,7 @@
 //! The program as a person or a script calls it: exit codes, what goes where, and one clear line for whatever is wrong.
 
+#![allow(clippy::unwrap_used)]
+
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

@@ -2,13 +2,16 @@
 //! `assets/cases/README.md`. Deliberately absent: what the words mean geometrically (`geometry::domain`) and whether a
 //! formula can be evaluated (`metric::formula`).
 
+mod table;
+mod geometry;
+mod metric;
+
 use std::path::{Path, PathBuf};
 
 use toml::de::DeTable;
 
-use super::case_table::{Source, Table};
+use self::table::{Source, Table};
 use super::save::load;
-use super::{case_geometry, case_metric};
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::{CurveSpec, FaceSpec};
@@ -121,7 +124,7 @@ impl Case {
             DomainSource::Curves { curves, .. } => curves.as_slice(),
             DomainSource::Mesh { .. } => &[],
         };
-        let fields = case_metric::fields(&table, curves)?;
+        let fields = metric::fields(&table, curves)?;
         check_fields(&table, &domain, &fields)?;
         Ok(Case {
             name: name.to_owned(),
@@ -183,8 +186,8 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
     if let Some(value) = table.get("sol") {
         return Err(value.fault("sol is given without mesh").remedy("Write mesh = \"...\" too"));
     }
-    let curves = case_geometry::curves(table)?;
-    let faces = case_geometry::faces(table, &curves)?;
+    let curves = geometry::curves(table)?;
+    let faces = geometry::faces(table, &curves)?;
     if faces.is_empty() {
         return Err(table.fault("The case has no face").remedy("Add [[curve]] and [[face]], or mesh = \"...\""));
     }
@@ -226,5 +229,4 @@ fn gradation(table: &Table<'_>) -> Result<Option<f64>, Fault> {
 }
 
 #[cfg(test)]
-#[path = "case_tests.rs"]
 mod tests;
