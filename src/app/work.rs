@@ -62,7 +62,7 @@ pub(super) fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Quads, Fault
         regions: converted.regions.len(),
         valid: flaw.is_none(),
         mesh: Statistics::measure(export.measured(), &converted.sizing)?,
-        last_resort: LastResort::of(resort, converted.counts.formed as usize + resort),
+        last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
         repairs: converted.repairs.clone(),
         events: events(&converted),
         timing: Vec::new(),
@@ -83,9 +83,21 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
     let Adapted { divisions, collapses, swaps, moves } = converted.adapted;
     let (resort, finished) = (converted.last_resort, converted.finished);
     let cleaned_up = finished.cleaned_up;
-    let Counts { steps, formed, right_replaced, rescued, rolled_back, deferred, seamed, split, enhanced, removed } =
-        converted.counts;
+    let Counts {
+        steps,
+        formed,
+        right_replaced,
+        rescued,
+        rolled_back,
+        deferred,
+        seamed,
+        split,
+        enhanced,
+        removed,
+        closed,
+    } = converted.counts;
     let front = [
+        ("front_closed", closed),
         ("front_deferred", deferred),
         ("front_enhanced", enhanced),
         ("front_formed", formed),

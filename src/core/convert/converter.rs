@@ -6,7 +6,7 @@
 
 use smallvec::SmallVec;
 
-use super::component::live_components;
+use super::component::{Component, live_components};
 use super::event::{Event, Why};
 use super::finish::{Finished, finish};
 use super::last_resort::{Outcome, last_resort};
@@ -49,6 +49,8 @@ pub struct Counts {
     pub rolled_back: u64,
     /// Segments put off.
     pub deferred: u64,
+    /// Quadrilaterals over small loops that were closed.
+    pub closed: u64,
     /// Seams.
     pub seamed: u64,
     /// Front splits.
@@ -157,6 +159,7 @@ impl<'a> Converter<'a> {
             Phase::Enhance { element, mark, edges, budget } => self.step_enhance(element, mark, edges, budget),
             Phase::Smooth { element, mark } => self.step_smooth(element, mark),
             Phase::Seam { nodes } => self.step_seam(nodes)?,
+            Phase::Close { waiting, left } => self.step_close(waiting, left)?,
             Phase::PostProcess => {
                 self.finished = finish(&mut self.mesh, self.source, &mut Nobody);
                 (Phase::Done, Event::PostProcessed)
@@ -179,7 +182,9 @@ impl<'a> Converter<'a> {
                 self.second_pass = true;
                 return Ok((Phase::Select, Event::SecondPass));
             }
-            return self.step_last_resort();
+            let mut components = live_components(&self.mesh);
+            components.reverse();
+            return self.step_close(components, Vec::new());
         };
         let base = Base {
             a: segment.a,
@@ -393,10 +398,17 @@ impl<'a> Converter<'a> {
         self.select()
     }
 
-    /// Converts what is left over.
-    fn step_last_resort(&mut self) -> Result<(Phase, Event), Fault> {
+    /// Closes the next small loop that is left over (spec 2.7); what cannot be closed goes to the last resort together.
+    fn step_close(&mut self, mut waiting: Vec<Component>, mut left: Vec<Component>) -> Result<(Phase, Event), Fault> {
+        while let Some(component) = waiting.pop() {
+            if let Some((quads, event)) = self.close(&component) {
+                self.counts.closed += quads;
+                return Ok((Phase::Close { waiting, left }, event));
+            }
+            left.push(component);
+        }
         let mut total = Outcome::default();
-        for component in live_components(&self.mesh) {
+        for component in left {
             let outcome = last_resort(&mut self.mesh, &component.triangles, self.source)
                 .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
             total = total.plus(&outcome);

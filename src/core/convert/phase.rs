@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::component::Component;
 use crate::core::front::sector::Side;
 use crate::core::journal::Mark;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
@@ -110,6 +111,13 @@ pub enum Phase {
     Seam {
         /// Nodes to look at.
         nodes: SmallVec<[NodeId; 8]>,
+    },
+    /// Small loops that are left over are to be closed.
+    Close {
+        /// Components to look at, the next one last.
+        waiting: Vec<Component>,
+        /// Those that could not be closed: they go to the last resort.
+        left: Vec<Component>,
     },
     /// Clean-up and smoothing of the whole mesh.
     PostProcess,
