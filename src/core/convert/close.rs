@@ -1,5 +1,5 @@
-//! Closing what is left of small loops (spec 2.7, 10 rule 4): a quadrilateral over four segments, two over six, formed even
-//! where they are flat, mended by the rotation of an edge with a neighbour, and relaxed together with the elements around.
+//! Closing what is left of small loops (spec 2.7, 10 rule 4): quadrilaterals between the nodes of the loop, formed even where
+//! they are flat, mended by the rotation of an edge with a neighbour, and relaxed together with the elements around.
 
 use smallvec::SmallVec;
 
@@ -15,31 +15,33 @@ const LEAST_QUALITY: f64 = 0.1;
 /// Quality from which no other way is looked for.
 const GOOD: f64 = 0.35;
 
+/// Longer loops are left to the last resort.
+const MOST_SEGMENTS: usize = 10;
+
 /// One way to close a loop: elements over it, and perhaps an edge of them rotated with a neighbour.
 #[derive(Clone, Debug)]
 struct Way {
-    quads: SmallVec<[[NodeId; 4]; 2]>,
+    quads: SmallVec<[[NodeId; 4]; 4]>,
     /// Element, side, number of nodes to rotate by.
     rotation: Option<(usize, u32, usize)>,
 }
 
 impl Converter<'_> {
-    /// Closes a component with a single loop of four or six segments at the best of all ways. Returns the number of
+    /// Closes a component with a single short loop at the best of all ways. Returns the number of
     /// quadrilaterals made.
     pub(super) fn close(&mut self, component: &Component) -> Option<(u64, Event)> {
         let ring = ring(&self.mesh, component)?;
-        let chords: SmallVec<[SmallVec<[[NodeId; 4]; 2]>; 3]> = match ring[..] {
-            [a, b, c, d] => SmallVec::from_iter([SmallVec::from_slice(&[[a, b, c, d]])]),
-            [a, b, c, d, e, f] => SmallVec::from_iter(
-                [[[a, b, c, d], [d, e, f, a]], [[b, c, d, e], [e, f, a, b]], [[c, d, e, f], [f, a, b, c]]]
-                    .map(|pair| SmallVec::from_slice(&pair)),
-            ),
-            _ => return None,
-        };
+        let coverings: Vec<SmallVec<[[NodeId; 4]; 4]>> = coverings(0, ring.len() - 1)
+            .into_iter()
+            .map(|quads| quads.into_iter().map(|corners| corners.map(|k| ring[k])).collect())
+            .collect();
         let mut best: Option<(f64, Way)> = None;
         'ways: for rotated in [false, true] {
-            for quads in &chords {
+            for quads in &coverings {
                 let count = quads.len();
+                if rotated && count > 2 {
+                    continue;
+                }
                 let rotations: SmallVec<[_; 16]> = if rotated {
                     (0..count).flat_map(|q| (0..4).flat_map(move |k| [Some((q, k, 1)), Some((q, k, 2))])).collect()
                 } else {
@@ -70,9 +72,16 @@ impl Converter<'_> {
     fn try_way(&mut self, component: &Component, ring: &[NodeId], way: &Way) -> Option<f64> {
         let region = self.mesh.region(component.triangles[0]);
         let inside = inner_nodes(&self.mesh, &component.triangles, ring);
-        let new: SmallVec<[NewElement; 2]> = way.quads.iter().map(|&q| NewElement::quad(q, region)).collect();
-        if way.quads.len() == 2 && self.mesh.are_joined(way.quads[0][0], way.quads[0][3]) {
-            return None;
+        let new: SmallVec<[NewElement; 4]> = way.quads.iter().map(|&q| NewElement::quad(q, region)).collect();
+        // A chord that is an edge already, outside of the loop, would be there twice.
+        for quad in &way.quads {
+            for k in 0..4 {
+                let (p, q) = (quad[k], quad[(k + 1) % 4]);
+                let is_chord = !(0..ring.len()).any(|i| ring[i] == p && ring[(i + 1) % ring.len()] == q);
+                if is_chord && self.mesh.are_joined(p, q) && !self.is_live_edge(p, q) {
+                    return None;
+                }
+            }
         }
         let made = self.mesh.replace(&component.triangles, &new);
         inside.iter().for_each(|&n| self.mesh.release_node(n));
@@ -98,17 +107,17 @@ impl Converter<'_> {
     }
 }
 
-/// The nodes of a component's single loop, anticlockwise; `None` where it is longer than six segments, has several loops,
+/// The nodes of a component's single loop, anticlockwise; `None` where it is too long, has several loops,
 /// or touches itself.
-fn ring(mesh: &Mesh, component: &Component) -> Option<SmallVec<[NodeId; 6]>> {
-    if component.boundary > 6 || component.triangles.len() > 64 {
+fn ring(mesh: &Mesh, component: &Component) -> Option<SmallVec<[NodeId; MOST_SEGMENTS]>> {
+    if component.boundary > MOST_SEGMENTS || component.triangles.len() > 64 {
         return None;
     }
     let start = component.triangles.iter().flat_map(|&e| mesh.half_edges(e)).find(|&h| mesh.is_front(h))?;
     let mut ring = SmallVec::new();
     let mut h = start;
     loop {
-        if ring.contains(&mesh.origin(h)) || ring.len() == 6 {
+        if ring.contains(&mesh.origin(h)) || ring.len() == MOST_SEGMENTS {
             return None;
         }
         ring.push(mesh.origin(h));
@@ -128,4 +137,36 @@ fn inner_nodes(mesh: &Mesh, triangles: &[ElementId], ring: &[NodeId]) -> SmallVe
         }
     }
     inside
+}
+
+/// All ways to cover the polygon of the corners `from..=to` (an even number of them) by quadrilaterals between its corners.
+fn coverings(from: usize, to: usize) -> Vec<Vec<[usize; 4]>> {
+    if to == from + 1 {
+        return vec![Vec::new()];
+    }
+    let mut all = Vec::new();
+    // The quadrilateral over the side from..to has two more corners; what it cuts off are polygons again.
+    for i in (from + 1..to).step_by(2) {
+        for j in (i + 1..to).step_by(2) {
+            for first in coverings(from, i) {
+                for second in coverings(i, j) {
+                    for third in coverings(j, to) {
+                        let own = [[from, i, j, to]];
+                        all.push([&first[..], &second, &third, &own].concat());
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::coverings;
+
+    #[test]
+    fn a_polygon_has_as_many_coverings_as_the_ternary_trees_say() {
+        assert_eq!([4, 6, 8, 10].map(|n| coverings(0, n - 1).len()), [1, 3, 12, 55]);
+    }
 }
