@@ -34,8 +34,8 @@ bench:
 	@tools/setup build
 	cargo bench --locked --no-default-features
 
-# Properties run this many cases here, and 100 in `make test`.
-soak: export PROPTEST_CASES = 10000
+# Properties run this many rounds here, and a few hundred in `make test`.
+soak: export QUADFRONT_SOAK_ROUNDS = 10000
 soak:
 	@tools/setup build
 	cargo test --locked --release --no-default-features -- --include-ignored

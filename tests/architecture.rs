@@ -1,5 +1,7 @@
 //! The arrows of ARCHITECTURE.md, read from the sources: app -> render -> core and never back, and what core may not know.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -119,7 +121,7 @@ fn the_rooms_know_only_what_they_may() {
         sources(&root.join(room), &mut files);
         assert!(!files.is_empty(), "{room} has sources");
         for file in files {
-            if file.file_stem().is_some_and(|stem| stem.to_string_lossy().ends_with("_tests")) {
+            if file.ends_with("tests.rs") {
                 continue;
             }
             let path = file.strip_prefix(&root).unwrap().display().to_string();

@@ -4,12 +4,14 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh, write_to};
 use quadfront::core::io::medit;
 use quadfront::core::io::mesh_file::{Data, Group, MeshFile};
+use quadfront::core::io::save::{abandon, save};
 use quadfront::core::mesh::soundness::{Allow, examine};
 use quadfront::core::metric::tensor::Metric3;
 
@@ -269,6 +271,47 @@ fn a_metric_that_is_none_is_refused_by_its_vertex() {
     assert!(told(&format!("{head}2\n1 2\n1 1\n")).contains("no metric"));
     assert!(told(&format!("{head}2\n1 3\n1 0 1\n")).contains("more than the file can hold"));
     assert!(told("MeshVersionFormatted 2\nDimension 2\nEnd\n").contains("no section SolAtVertices"));
+}
+
+#[test]
+fn giving_up_halfway_leaves_the_old_file_and_nothing_beside_it() {
+    // Giving up is for the whole process, so another one does it: this test again, told by a variable where.
+    const PLACE: &str = "QUADFRONT_TEST_GIVE_UP";
+    if let Some(folder) = std::env::var_os(PLACE) {
+        let path = Path::new(&folder).join("a.msh");
+        let fault = save(&path, |out| {
+            out.write_all(&[0; 1 << 20])?;
+            abandon();
+            assert_eq!(fs::read_dir(&folder)?.count(), 1);
+            Ok(())
+        });
+        assert!(fault.unwrap_err().what.contains("given up"));
+        assert!(save(&path, |_| Ok(())).is_err());
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.msh"), "old").unwrap();
+    let this = "giving_up_halfway_leaves_the_old_file_and_nothing_beside_it";
+    let child =
+        Command::new(std::env::current_exe().unwrap()).args(["--exact", this]).env(PLACE, folder.path()).output();
+    let child = child.unwrap();
+    assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stdout));
+    assert_eq!(fs::read(folder.path().join("a.msh")).unwrap(), b"old");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_folder_for_a_mesh_and_a_sol_of_another_mesh_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mesh");
+    fs::create_dir(&path).unwrap();
+    assert!(read_mesh(&path, None).unwrap_err().to_string().contains("a.mesh: This is a folder"));
+    assert!(write_mesh(&path, Format::Medit, &plates(), TEXT).unwrap_err().what.contains("This is a folder"));
+    let path = folder.path().join("b.mesh");
+    write_mesh(&path, Format::Medit, &plates(), TEXT).unwrap();
+    fs::write(path.with_extension("sol"), "MeshVersionFormatted 2\nDimension 2\nSolAtVertices 1 1 1 .5").unwrap();
+    let told = read_mesh(&path, None).unwrap_err().to_string();
+    assert!(told.contains("b.sol, line 3: The metric has 1 values, and the mesh 6 vertices"), "{told}");
 }
 
 #[test]

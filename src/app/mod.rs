@@ -1,8 +1,63 @@
 //! The command line (and, with the next issues, the window): ties `core` and `render` together.
 
+mod command_line;
+mod input;
+mod output;
+mod progress;
+mod work;
+mod convert;
+mod check;
+mod cases;
+mod render;
+
+use std::io::{self, Write};
 use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::core::fault::Fault;
+use crate::core::io::save;
+use command_line::{Cli, Command};
+
+/// A checked mesh falls short.
+const FALLS_SHORT: u8 = 1;
+/// Bad input or usage.
+const BAD_INPUT: u8 = 2;
+/// Ctrl-C, as shells tell it.
+const INTERRUPTED: i32 = 130;
 
 /// Runs the program with the process's own arguments.
 pub fn run() -> ExitCode {
-    ExitCode::SUCCESS
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are "errors" of clap's that go to standard output; whether they arrive is not ours to mend.
+            let _ = error.print();
+            return if error.use_stderr() { ExitCode::from(BAD_INPUT) } else { ExitCode::SUCCESS };
+        }
+    };
+    // Files are renamed into place when they are whole; what is half-written is removed before the process ends. Without a
+    // handler (no system refuses one) Ctrl-C would end the process all the same and leave a temporary file.
+    let _ = ctrlc::set_handler(|| {
+        save::abandon();
+        std::process::exit(INTERRUPTED);
+    });
+    let done = match &cli.command {
+        Command::Convert(arguments) => convert::convert(arguments),
+        Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
+        Command::Check(arguments) => check::check(arguments),
+        Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
+        Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),
+    };
+    done.unwrap_or_else(|fault| {
+        complain(&fault);
+        ExitCode::from(BAD_INPUT)
+    })
+}
+
+/// Tells a fault as one line on standard error.
+fn complain(fault: &Fault) {
+    let line: String = fault.to_string().chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    // Where standard error is closed there is nobody to tell.
+    let _ = writeln!(io::stderr(), "error: {line}");
 }

@@ -19,6 +19,10 @@ pub enum Entry {
     Sides(ElementId, u8),
     /// The region of an element.
     Region(ElementId, u32),
+    /// The level of an element.
+    Level(ElementId, u16),
+    /// Whether a front segment is put off.
+    Deferred(HalfEdgeId, bool),
     /// Coordinates of a node.
     Uv(NodeId, DVec2),
     /// Metric of a node.
@@ -83,6 +87,11 @@ impl Journal {
     /// Forgets everything: what was done stays done. Where nobody keeps a history, this is the commit.
     pub fn forget(&mut self) {
         self.entries.clear();
+    }
+
+    /// The entries after a mark, oldest first.
+    pub(crate) fn since(&self, mark: Mark) -> &[Entry] {
+        &self.entries[mark.0..]
     }
 
     /// Writes an entry down.

@@ -7,5 +7,6 @@ pub mod metric;
 pub mod journal;
 pub mod mesh;
 pub mod background;
+pub mod front;
 pub mod convert;
 pub mod io;

@@ -176,15 +176,17 @@ impl CutMesh {
     }
 }
 
-/// Disjoint sets of corners.
-struct Sets(Vec<u32>);
+/// Disjoint sets of what is numbered from 0.
+pub struct Sets(Vec<u32>);
 
 impl Sets {
-    fn new(n: usize) -> Self {
+    /// Each number in a set of its own.
+    pub fn new(n: usize) -> Self {
         Sets((0..n as u32).collect())
     }
 
-    fn find(&mut self, mut x: u32) -> u32 {
+    /// The lowest number of the set of `x`.
+    pub fn find(&mut self, mut x: u32) -> u32 {
         while self.0[x as usize] != x {
             self.0[x as usize] = self.0[self.0[x as usize] as usize];
             x = self.0[x as usize];
@@ -192,8 +194,8 @@ impl Sets {
         x
     }
 
-    /// The lowest corner stands for its set.
-    fn join(&mut self, a: u32, b: u32) {
+    /// Makes one set of the sets of `a` and `b`.
+    pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         self.0[a.max(b) as usize] = a.min(b);
     }

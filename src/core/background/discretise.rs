@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
+use super::length::{Piece, about, give, measure, share_out};
 use super::parity;
 use crate::core::fault::Fault;
-use crate::core::geometry::domain::{CurveId, DirectedCurve, Domain, DomainCurve};
-use crate::core::geometry::place::told;
+use crate::core::geometry::domain::{CurveId, DirectedCurve, Domain};
 use crate::core::metric::field::MetricSource;
 
 /// More segments than this on all curves together are refused: the sizes cannot be meant.
@@ -26,28 +26,6 @@ pub struct Division<'a> {
     metric: &'a dyn MetricSource,
     /// The smooth straight or curved pieces of each curve, between its corners.
     pieces: Vec<Vec<Piece>>,
-}
-
-/// A piece of a curve between two corners.
-struct Piece {
-    /// Parameters and metric lengths from the piece's start, ascending; between two the curve is resolved.
-    table: Vec<(f64, f64)>,
-    segments: u32,
-}
-
-impl Piece {
-    fn length(&self) -> f64 {
-        self.table[self.table.len() - 1].1
-    }
-
-    /// How far metric lengths are from 1 when divided into `n` segments.
-    fn error(&self, n: u32) -> f64 {
-        (self.length() / f64::from(n) - 1.0).abs()
-    }
-
-    fn stretched(&self) -> f64 {
-        self.length() / f64::from(self.segments)
-    }
 }
 
 /// Divides the curves of a domain into segments of about unit metric length, all topological loops even and of at least
@@ -72,13 +50,13 @@ impl<'a> Division<'a> {
         let mut total = 0.0;
         for curve in &domain.curves {
             let mut pieces = measure(curve, metric)?;
-            let length: f64 = pieces.iter().map(Piece::length).sum();
+            let length: f64 = curve.segments.map_or_else(|| pieces.iter().map(Piece::length).sum(), f64::from);
             total += length;
-            if !(total < MOST_SEGMENTS) {
+            if total > MOST_SEGMENTS {
+                let what = format!("The curve \"{}\" would get {length:.3e} segments", curve.name);
                 return Err(about(
                     curve,
-                    Fault::new(format!("The curve \"{}\" is {length:.3e} target sizes long", curve.name))
-                        .remedy("Ask for larger sizes along it"),
+                    Fault::new(what).remedy("Ask for larger sizes along it, or for fewer segments"),
                 ));
             }
             match curve.segments {
@@ -87,8 +65,9 @@ impl<'a> Division<'a> {
                         piece.segments = (piece.length().round() as u32).max(1);
                     }
                     let closed = curve.ends[0] == curve.ends[1];
-                    while closed && pieces.iter().map(|p| p.segments).sum::<u32>() < 3 {
-                        most_stretched(&mut pieces).segments += 1;
+                    let few: u32 = pieces.iter().map(|p| p.segments).sum();
+                    if closed && few < 3 {
+                        give(&mut pieces, 3 - few);
                     }
                 }
                 Some(n) => {
@@ -123,9 +102,7 @@ impl<'a> Division<'a> {
             return false;
         }
         let more = (self.segments(id) / 4 * 2).max(2);
-        for _ in 0..more {
-            most_stretched(&mut self.pieces[id.index()]).segments += 1;
-        }
+        give(&mut self.pieces[id.index()], more);
         true
     }
 
@@ -171,9 +148,7 @@ impl<'a> Division<'a> {
                     }));
                 };
                 // One more on a line that is run twice leaves every loop even; elsewhere it has to be two.
-                for _ in 0..if doubled[id.index()] { 1 } else { 2 } {
-                    most_stretched(&mut self.pieces[id.index()]).segments += 1;
-                }
+                give(&mut self.pieces[id.index()], if doubled[id.index()] { 1 } else { 2 });
             }
         }
         Ok(())
@@ -262,58 +237,20 @@ impl<'a> Division<'a> {
         let mut chains = Vec::with_capacity(self.pieces.len());
         for (curve, pieces) in self.domain.curves.iter().zip(&self.pieces) {
             let mut chain = vec![curve.ends[0]];
+            let mut append = |t: f64| {
+                chain.push(nodes.len() as u32);
+                nodes.push(curve.curve.point(t));
+            };
             for (i, piece) in pieces.iter().enumerate() {
-                let n = piece.segments;
-                let mut at = 0;
-                for k in 1..n {
-                    let target = piece.length() * (f64::from(k) / f64::from(n));
-                    while at + 2 < piece.table.len() && piece.table[at + 1].1 <= target {
-                        at += 1;
-                    }
-                    let t =
-                        self.parameter(curve, piece.table[at], piece.table[at + 1], target, 1e-7 * piece.stretched())?;
-                    chain.push(nodes.len() as u32);
-                    nodes.push(curve.curve.point(t));
-                }
+                piece.divisions(curve, self.metric)?.into_iter().for_each(&mut append);
                 if i + 1 < pieces.len() {
-                    chain.push(nodes.len() as u32);
-                    nodes.push(curve.curve.point(piece.table[piece.table.len() - 1].0));
+                    append(piece.end());
                 }
             }
             chain.push(curve.ends[1]);
             chains.push(chain);
         }
         Ok(DividedDomain { nodes, chains })
-    }
-
-    /// The parameter between two entries of a table at which the length is `target`, by Newton within a bracket.
-    fn parameter(
-        &self,
-        curve: &DomainCurve,
-        from: (f64, f64),
-        to: (f64, f64),
-        target: f64,
-        tolerance: f64,
-    ) -> Result<f64, Fault> {
-        let (mut low, mut high) = (from.0, to.0);
-        let mut t = from.0 + (to.0 - from.0) * ((target - from.1) / (to.1 - from.1)).clamp(0.0, 1.0);
-        for _ in 0..50 {
-            let off = from.1 + gauss(curve, self.metric, from.0, t)? - target;
-            if off.abs() <= tolerance {
-                break;
-            }
-            if off > 0.0 {
-                high = t
-            } else {
-                low = t
-            }
-            let next = t - off / speed(curve, self.metric, t)?;
-            t = if next > low && next < high { next } else { 0.5 * (low + high) };
-            if high - low <= 4.0 * f64::EPSILON * high.abs() {
-                break;
-            }
-        }
-        Ok(t)
     }
 }
 
@@ -322,101 +259,6 @@ fn single_columns(walk: &[DirectedCurve]) -> Vec<u32> {
     let mut ids: Vec<u32> = walk.iter().map(|d| d.curve.0).collect();
     ids.sort_unstable();
     ids.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1).map(|g| g[0]).collect()
-}
-
-fn most_stretched(pieces: &mut [Piece]) -> &mut Piece {
-    let at = (0..pieces.len()).max_by(|&a, &b| pieces[a].stretched().total_cmp(&pieces[b].stretched()).then(b.cmp(&a)));
-    &mut pieces[at.expect("a curve has at least one piece")]
-}
-
-/// Divides `n` segments among the pieces so that the longest are as short as can be, at least one each.
-fn share_out(pieces: &mut [Piece], n: u32) {
-    // As many as fit rounded down, then the rest to those that are stretched most.
-    let total: f64 = pieces.iter().map(Piece::length).sum();
-    let mut given = 0;
-    for piece in pieces.iter_mut() {
-        piece.segments = ((piece.length() / total * f64::from(n)) as u32).max(1);
-        given += piece.segments;
-    }
-    while given < n {
-        most_stretched(pieces).segments += 1;
-        given += 1;
-    }
-    while given > n {
-        // Pieces raised to one may have taken from the others: those that suffer least give back.
-        let least = (0..pieces.len()).filter(|&i| pieces[i].segments > 1).min_by(|&a, &b| {
-            let after = |i: usize| pieces[i].length() / f64::from(pieces[i].segments - 1);
-            after(a).total_cmp(&after(b)).then(a.cmp(&b))
-        });
-        let Some(i) = least else { return };
-        pieces[i].segments -= 1;
-        given -= 1;
-    }
-}
-
-fn about(curve: &DomainCurve, fault: Fault) -> Fault {
-    if curve.place.is_empty() { fault } else { fault.at(curve.place.clone()) }
-}
-
-/// Metric length of the derivative at `t`.
-fn speed(curve: &DomainCurve, metric: &dyn MetricSource, t: f64) -> Result<f64, Fault> {
-    let (p, d) = curve.curve.at(t);
-    let m = metric.metric(p).map_err(|bad| {
-        about(
-            curve,
-            Fault::new(bad.what.clone()).at(format!("on the curve \"{}\" at {}", curve.name, told(bad.place.uv))),
-        )
-    })?;
-    Ok((m.uu * d.x * d.x + 2.0 * m.uv * d.x * d.y + m.vv * d.y * d.y).max(0.0).sqrt())
-}
-
-/// Metric length between two parameters by three-point Gauss quadrature.
-fn gauss(curve: &DomainCurve, metric: &dyn MetricSource, a: f64, b: f64) -> Result<f64, Fault> {
-    let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
-    // sqrt(3/5)
-    let off = 0.774_596_669_241_483_4 * half;
-    let ends = speed(curve, metric, middle - off)? + speed(curve, metric, middle + off)?;
-    Ok(half * (5.0 * ends + 8.0 * speed(curve, metric, middle)?) / 9.0)
-}
-
-/// The pieces of a curve with their tables of length, halved until the quadrature agrees with itself.
-fn measure(curve: &DomainCurve, metric: &dyn MetricSource) -> Result<Vec<Piece>, Fault> {
-    let corners = curve.curve.corners();
-    let breaks = curve.curve.breaks();
-    let parts = (64 / (breaks.len() - 1)).clamp(2, 32);
-    let mut pieces: Vec<Piece> = Vec::new();
-    let mut table = vec![(0.0, 0.0)];
-    let mut stack = Vec::new();
-    let mut next_corner = 0;
-    for w in breaks.windows(2) {
-        for i in (0..parts).rev() {
-            let at = |i: usize| if i == parts { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / parts as f64 };
-            stack.push((at(i), at(i + 1), None, 0));
-        }
-        while let Some((a, b, known, depth)) = stack.pop() {
-            let whole = match known {
-                Some(length) => length,
-                None => gauss(curve, metric, a, b)?,
-            };
-            let middle = 0.5 * (a + b);
-            let (first, second) = (gauss(curve, metric, a, middle)?, gauss(curve, metric, middle, b)?);
-            let both = first + second;
-            if (both - whole).abs() <= 1e-6 + 1e-7 * both || depth >= 30 || table.len() > 2_000_000 {
-                let before: f64 = table[table.len() - 1].1;
-                table.push((middle, before + first));
-                table.push((b, before + both));
-            } else {
-                stack.push((middle, b, Some(second), depth + 1));
-                stack.push((a, middle, Some(first), depth + 1));
-            }
-        }
-        let at_corner = corners.get(next_corner).is_some_and(|&t| t <= w[1]);
-        if at_corner || w[1] >= 1.0 {
-            next_corner += 1;
-            pieces.push(Piece { table: std::mem::replace(&mut table, vec![(w[1], 0.0)]), segments: 1 });
-        }
-    }
-    Ok(pieces)
 }
 
 #[cfg(test)]

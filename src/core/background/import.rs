@@ -1,1 +1,405 @@
-//! import: being written.
+//! An existing triangle mesh as background: checked, repaired where nothing is lost by it, and cut apart between regions.
+//!
+//! What is refused: curved meshes, quadrilaterals, triangles without room, edges of three triangles, overlaps, and parts
+//! with an odd number of triangles. Nodes at the same place are kept apart as the file has them: they are the two sides
+//! of a crack. Deliberately absent: reading files (`core/io`).
+
+use std::collections::BTreeSet;
+
+use glam::DVec2;
+use rustc_hash::FxHashMap;
+
+use super::cut::{CutMesh, Sets, Side, cut, sorted_sides};
+use super::triangulate::too_thin;
+use crate::core::fault::Fault;
+use crate::core::geometry::place::{number, told};
+use crate::core::geometry::predicates::{firm, orient};
+use crate::core::io::mesh_file::MeshFile;
+use crate::core::mesh::triangle_set::TriangleSet;
+use crate::core::metric::spectrum::{LogMetric2, LogMetric3};
+use crate::core::metric::tensor::{Metric2, Metric3};
+
+/// A mesh that has been taken in.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// Its triangles in the order of the file, cut apart between regions and at pinched nodes.
+    pub set: TriangleSet,
+    /// The points of the file that each node stands at: twice the same one, or the two between which a divided segment
+    /// got its middle.
+    pub origin: Vec<[u32; 2]>,
+    /// Names of the regions by number: those of the file's groups, or their tags.
+    pub regions: Vec<String>,
+    /// What was repaired or left out, sentences without a full stop.
+    pub repairs: Vec<String>,
+}
+
+impl Imported {
+    /// Metrics at the points of the file as metrics at the nodes.
+    pub fn at_nodes(&self, metric: &[Metric3]) -> Vec<Metric3> {
+        let middle = |a: u32, b: u32| {
+            let sum = LogMetric3::ZERO.plus(0.5, &metric[a as usize].ln()).plus(0.5, &metric[b as usize].ln());
+            sum.exp()
+        };
+        self.origin.iter().map(|&[a, b]| if a == b { metric[a as usize] } else { middle(a, b) }).collect()
+    }
+}
+
+/// Takes in a planar triangle mesh. Regions are the tags of the triangles in ascending order. A part (triangles of one
+/// region that hang together by edges) with an odd number of triangles is refused, or where `split_odd` allows, its
+/// longest boundary segment that no other region shares is divided.
+///
+/// # Errors
+/// All that the module's doc says, with the numbers of the triangles (from 1, in the order of the file) and places.
+pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
+    let mut import = Import::checked(file)?;
+    import.orient_and_drop_duplicates()?;
+    import.check_edges()?;
+    import.even_parts(split_odd)?;
+    Ok(import.finish())
+}
+
+struct Import<'a> {
+    file: &'a MeshFile,
+    uv: Vec<DVec2>,
+    origin: Vec<[u32; 2]>,
+    triangles: Vec<[u32; 3]>,
+    /// Region of each triangle, and its number in the file.
+    region: Vec<u32>,
+    number: Vec<u32>,
+    tags: Vec<u32>,
+    sides: Vec<Side>,
+    repairs: Vec<String>,
+    coincident: usize,
+}
+
+impl<'a> Import<'a> {
+    fn checked(file: &'a MeshFile) -> Result<Self, Fault> {
+        let (n, quads) = (file.triangles.len(), file.quads.len());
+        if quads > 0 {
+            let what = if n == 0 {
+                format!("The mesh has quadrilaterals already: all of its {quads} elements")
+            } else {
+                format!("{quads} of its {} elements are quadrilaterals", n + quads)
+            };
+            return Err(Fault::new(what).remedy("Give a mesh of triangles only"));
+        }
+        if n == 0 {
+            let skipped: Vec<String> = file.skipped.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
+            let others = if skipped.is_empty() { String::new() } else { format!(", only {}", skipped.join(", ")) };
+            return Err(
+                Fault::new(format!("The mesh has no triangles{others}")).remedy("Give a mesh of plane triangles")
+            );
+        }
+        if n > u32::MAX as usize / 8 || file.points.len() > u32::MAX as usize / 8 {
+            return Err(Fault::new(format!("The mesh has {n} triangles, more than can be numbered")));
+        }
+        let mut used = vec![false; file.points.len()];
+        for (i, t) in file.triangles.iter().enumerate() {
+            for &node in t {
+                let Some(used) = used.get_mut(node as usize) else {
+                    return Err(Fault::new(format!(
+                        "Triangle {} has the point {}, and there are {}",
+                        i + 1,
+                        u64::from(node) + 1,
+                        file.points.len()
+                    )));
+                };
+                *used = true;
+            }
+        }
+        let mut z = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for (i, p) in file.points.iter().enumerate().filter(|(i, _)| used[*i]) {
+            if !p.is_finite() || p.abs().max_element() > 1e100 {
+                return Err(Fault::new(format!("Point {} is ({}, {}, {})", i + 1, p.x, p.y, p.z))
+                    .remedy("Coordinates must be finite numbers"));
+            }
+            z = (z.0.min(p.z), z.1.max(p.z));
+            (low, high) = (low.min(p.truncate()), high.max(p.truncate()));
+        }
+        if z.1 - z.0 > 1e-9 * (high - low).max_element().max(z.1.abs()) {
+            return Err(Fault::new(format!(
+                "The mesh is not plane: its z runs from {} to {}",
+                number(z.0),
+                number(z.1)
+            ))
+            .remedy("Curved meshes are not converted yet: give one with a constant z"));
+        }
+        if !file.triangle_tags.is_empty() && file.triangle_tags.len() != n {
+            return Err(Fault::new(format!(
+                "The mesh has {n} triangles and {} tags for them",
+                file.triangle_tags.len()
+            )));
+        }
+        let tag = |i: usize| file.triangle_tags.get(i).copied().unwrap_or(0);
+        let tags: Vec<u32> = (0..n).map(tag).collect::<BTreeSet<u32>>().into_iter().collect();
+        let index: FxHashMap<u32, u32> = tags.iter().copied().zip(0..).collect();
+        let mut repairs = Vec::new();
+        let orphans = used.iter().filter(|u| !**u).count();
+        tell(&mut repairs, orphans, "point without triangles was left out", "points without triangles were left out");
+        let mut import = Import {
+            file,
+            uv: file.points.iter().map(|p| p.truncate()).collect(),
+            origin: (0..file.points.len() as u32).map(|i| [i, i]).collect(),
+            triangles: file.triangles.clone(),
+            region: (0..n).map(|i| index[&tag(i)]).collect(),
+            number: (1..=n as u32).collect(),
+            tags,
+            sides: Vec::new(),
+            repairs,
+            coincident: 0,
+        };
+        import.coincident = import.count_coincident(&used);
+        tell(
+            &mut import.repairs,
+            import.coincident,
+            "point stands at the place of another: taken as the other side of a crack",
+            "points stand at the places of others: taken as the other sides of cracks",
+        );
+        Ok(import)
+    }
+
+    /// How many points that are used stand exactly where another one stands.
+    fn count_coincident(&self, used: &[bool]) -> usize {
+        // Plus zero: -0 is the same place as 0.
+        let bits = |p: DVec2| ((p.x + 0.0).to_bits(), (p.y + 0.0).to_bits());
+        let mut places: Vec<(u64, u64)> =
+            self.uv.iter().zip(used).filter(|(_, u)| **u).map(|(&p, _)| bits(p)).collect();
+        places.sort_unstable();
+        places.windows(2).filter(|w| w[0] == w[1]).count()
+    }
+
+    fn firm(&self, [a, b, c]: [u32; 3]) -> bool {
+        firm(self.uv[a as usize], self.uv[b as usize], self.uv[c as usize])
+    }
+
+    /// All triangles anticlockwise and each once.
+    fn orient_and_drop_duplicates(&mut self) -> Result<(), Fault> {
+        let mut clockwise = 0;
+        for i in 0..self.triangles.len() {
+            let t = &mut self.triangles[i];
+            if orient(self.uv[t[0] as usize], self.uv[t[1] as usize], self.uv[t[2] as usize]) < 0.0 {
+                t.swap(1, 2);
+                clockwise += 1;
+            }
+            let t = self.triangles[i];
+            let [a, b, c] = t.map(|n| self.uv[n as usize]);
+            if !firm(a, b, c) {
+                let what = format!("Triangle {} is {}", i + 1, too_thin(a, b, c));
+                return Err(Fault::new(what)
+                    .at(format!("at {}, {}, {}", told(a), told(b), told(c)))
+                    .remedy("Mend the mesh there: collapse or swap its longest side"));
+            }
+        }
+        tell(&mut self.repairs, clockwise, "clockwise triangle was turned", "clockwise triangles were turned");
+        let key = |t: &[u32; 3]| {
+            let mut t = *t;
+            t.sort_unstable();
+            t
+        };
+        let mut order: Vec<u32> = (0..self.triangles.len() as u32).collect();
+        order.sort_unstable_by_key(|&i| (key(&self.triangles[i as usize]), i));
+        let mut keep = vec![true; order.len()];
+        for w in order.windows(2) {
+            keep[w[1] as usize] = key(&self.triangles[w[0] as usize]) != key(&self.triangles[w[1] as usize]);
+        }
+        let doubles = keep.iter().filter(|k| !**k).count();
+        if doubles > 0 {
+            retain(&mut self.triangles, &keep);
+            retain(&mut self.region, &keep);
+            retain(&mut self.number, &keep);
+        }
+        tell(&mut self.repairs, doubles, "duplicate triangle was left out", "duplicate triangles were left out");
+        Ok(())
+    }
+
+    /// No edge of more than two triangles, no two triangles on the same side of one.
+    fn check_edges(&mut self) -> Result<(), Fault> {
+        self.sides = sorted_sides(self.uv.len(), &self.triangles);
+        for group in self.sides.chunk_by(same_edge).filter(|g| g.len() > 1) {
+            let number = |s: &Side| self.number[s.corner as usize / 3].to_string();
+            let forward = |s: &Side| self.triangles[s.corner as usize / 3][s.corner as usize % 3] == s.low;
+            let numbers: Vec<String> = group.iter().map(number).collect();
+            let what = match group {
+                [a, b] if forward(a) == forward(b) => {
+                    format!("The triangles {} overlap: they lie on the same side of an edge", numbers.join(" and "))
+                }
+                [_, _] => continue,
+                _ => format!("{} triangles share one edge: {}", group.len(), numbers.join(", ")),
+            };
+            let (a, b) = (self.uv[group[0].low as usize], self.uv[group[0].high as usize]);
+            return Err(Fault::new(what)
+                .at(format!("at the edge from {} to {}", told(a), told(b)))
+                .remedy("Take out what is too much: in the plane an edge has one triangle on each side"));
+        }
+        Ok(())
+    }
+
+    /// Every part has an even number of triangles, if need be after dividing a boundary segment.
+    fn even_parts(&mut self, split_odd: bool) -> Result<(), Fault> {
+        let mut parts = Sets::new(self.triangles.len());
+        for pair in self.sides.chunk_by(same_edge) {
+            if let [a, b] = pair
+                && self.region[a.corner as usize / 3] == self.region[b.corner as usize / 3]
+            {
+                parts.join(a.corner / 3, b.corner / 3);
+            }
+        }
+        let part: Vec<u32> = (0..self.triangles.len() as u32).map(|t| parts.find(t)).collect();
+        let mut count = vec![0_u32; part.len()];
+        part.iter().for_each(|&p| count[p as usize] += 1);
+        // The longest segment of each odd part that lies on no other region.
+        let mut longest: Vec<Option<(f64, u32)>> = vec![None; part.len()];
+        let odd: Vec<u32> = (0..part.len() as u32).filter(|&p| count[p as usize] % 2 == 1).collect();
+        let Some(&first) = odd.first() else { return Ok(()) };
+        if !split_odd {
+            return Err(self.odd_fault(&part, first, count[first as usize]));
+        }
+        for side in self.sides.chunk_by(same_edge).filter(|g| g.len() == 1).map(|g| g[0]) {
+            let p = part[side.corner as usize / 3] as usize;
+            let length = self.uv[side.low as usize].distance(self.uv[side.high as usize]);
+            if count[p] % 2 == 1 && longest[p].is_none_or(|(l, _)| length > l) {
+                longest[p] = Some((length, side.corner));
+            }
+        }
+        for &p in &odd {
+            let Some((_, corner)) = longest[p as usize] else {
+                return Err(self.odd_fault(&part, p, count[p as usize]));
+            };
+            self.divide(corner)?;
+        }
+        tell(
+            &mut self.repairs,
+            odd.len(),
+            "boundary segment was divided, so that its part has an even number of triangles",
+            "boundary segments were divided, so that their parts have even numbers of triangles",
+        );
+        self.sides = sorted_sides(self.uv.len(), &self.triangles);
+        Ok(())
+    }
+
+    /// Divides the side that starts at a corner, and its triangle with it.
+    fn divide(&mut self, corner: u32) -> Result<(), Fault> {
+        let (t, k) = (corner as usize / 3, corner as usize % 3);
+        let [a, b, c] = [0, 1, 2].map(|i| self.triangles[t][(k + i) % 3]);
+        let middle = self.uv[a as usize].midpoint(self.uv[b as usize]);
+        let m = self.uv.len() as u32;
+        self.uv.push(middle);
+        self.origin.push([a, b]);
+        let halves = [[a, m, c], [m, b, c]];
+        if halves.iter().any(|&h| !self.firm(h)) {
+            return Err(Fault::new(format!("Triangle {} is too thin to be divided", self.number[t]))
+                .at(format!("at {}", told(middle)))
+                .remedy("Divide another boundary segment of its part in the mesh"));
+        }
+        self.triangles[t] = halves[0];
+        self.triangles.push(halves[1]);
+        self.region.push(self.region[t]);
+        self.number.push(self.number[t]);
+        Ok(())
+    }
+
+    fn odd_fault(&self, part: &[u32], odd: u32, count: u32) -> Fault {
+        let member = |t: usize| part[t] == odd;
+        let triangles: Vec<[u32; 3]> = (0..part.len()).filter(|&t| member(t)).map(|t| self.triangles[t]).collect();
+        let mesh = cut(&self.uv, triangles, vec![0; count as usize], &[]);
+        let loops = mesh.loops();
+        let found = loops.iter().find(|l| l.len() % 2 == 1);
+        let segments = found.map_or(0, Vec::len);
+        let place = found.map_or(DVec2::ZERO, |l| mesh.set.uv[l[0] as usize]);
+        let region = self.region_name(self.region[odd as usize]);
+        let remedy = if self.coincident > 0 {
+            "Divide one boundary segment of this part; or merge points that stand at the same place, if the mesh ought to hang together there"
+        } else {
+            "Divide one boundary segment of this part"
+        };
+        Fault::new(format!(
+            "The boundary loop of {segments} segments leaves a part of {region} with {count} triangles; an all-quad mesh needs an even count"
+        ))
+        .at(format!("at {}", told(place)))
+        .remedy(remedy)
+    }
+
+    fn region_name(&self, region: u32) -> String {
+        let tag = self.tags[region as usize];
+        self.file.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned)
+    }
+
+    fn finish(mut self) -> Imported {
+        let inner = |group: &[Side]| match group {
+            [a, b] => self.region[a.corner as usize / 3] == self.region[b.corner as usize / 3],
+            _ => false,
+        };
+        let lines: BTreeSet<(u32, u32)> = self.file.lines.iter().map(|&[a, b]| (a.min(b), a.max(b))).collect();
+        let lost = if lines.is_empty() {
+            0
+        } else {
+            self.sides.chunk_by(same_edge).filter(|g| inner(g) && lines.contains(&(g[0].low, g[0].high))).count()
+        };
+        tell(&mut self.repairs, lost, "line inside a region is not kept", "lines inside regions are not kept");
+        let names = (0..self.tags.len() as u32).map(|r| self.region_name(r)).collect();
+        let single = self.tags.len() == 1;
+        let CutMesh { set, origin, .. } = cut(&self.uv, self.triangles, self.region, &[]);
+        if single {
+            // Within one region only a pinched node becomes several.
+            let pinched = origin.windows(2).filter(|w| w[0] == w[1]).count();
+            tell(
+                &mut self.repairs,
+                pinched,
+                "node was split where triangles meet in a point only",
+                "nodes were split where triangles meet in a point only",
+            );
+        }
+        let origin = origin.into_iter().map(|n| self.origin[n as usize]).collect();
+        Imported { set, origin, regions: names, repairs: self.repairs }
+    }
+}
+
+/// The metric that the triangles themselves imply: in that of a triangle it is equilateral with sides of length 1. At a
+/// point it is the log-Euclidean mean over its triangles with equal weights, since each has the same area in its own
+/// metric. One for each node; nodes at one point have the same.
+pub fn implied_metric(set: &TriangleSet) -> Vec<Metric2> {
+    let points = set.point.iter().map(|p| p.index() + 1).max().unwrap_or(0);
+    let mut sum = vec![(LogMetric2::ZERO, 0.0_f64); points];
+    for t in &set.triangles {
+        let ln = implied_by(t.map(|n| set.uv[n as usize])).ln();
+        for n in t {
+            let (total, count) = &mut sum[set.point[*n as usize].index()];
+            *total = total.plus(1.0, &ln);
+            *count += 1.0;
+        }
+    }
+    let mean: Vec<Metric2> =
+        sum.iter().map(|(total, count)| LogMetric2::ZERO.plus(1.0 / count.max(1.0), total).exp()).collect();
+    set.point.iter().map(|p| mean[p.index()]).collect()
+}
+
+/// The metric in which a triangle is equilateral with unit sides: 3/2 of the inverse of the sum of `e e^T` over its
+/// sides `e`, whose determinant is three times the square of the doubled area.
+fn implied_by([a, b, c]: [DVec2; 3]) -> Metric2 {
+    let sides = [b - a, c - b, a - c];
+    let doubled = orient(a, b, c);
+    let factor = 0.5 / (doubled * doubled);
+    let sum = |f: fn(DVec2) -> f64| sides.iter().map(|&e| f(e)).sum::<f64>();
+    Metric2 { uu: factor * sum(|e| e.y * e.y), uv: -factor * sum(|e| e.x * e.y), vv: factor * sum(|e| e.x * e.x) }
+}
+
+fn same_edge(a: &Side, b: &Side) -> bool {
+    (a.low, a.high) == (b.low, b.high)
+}
+
+fn tell(repairs: &mut Vec<String>, n: usize, one: &str, several: &str) {
+    match n {
+        0 => {}
+        1 => repairs.push(format!("1 {one}")),
+        n => repairs.push(format!("{n} {several}")),
+    }
+}
+
+fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    items.retain(|_| keep.next().copied().unwrap_or(true));
+}
+
+#[cfg(test)]
+mod tests;

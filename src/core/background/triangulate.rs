@@ -12,12 +12,9 @@ use crate::core::fault::Fault;
 use crate::core::geometry::crossing::crossing_of;
 use crate::core::geometry::domain::{CurveId, CurveKind, Domain};
 use crate::core::geometry::place::{number, told};
-use crate::core::geometry::predicates::orient;
+use crate::core::geometry::predicates::{firm, orient};
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::MetricSource;
-
-/// No triangle may have a smaller altitude relative to its longest side (spec 2.10: the templates need the room).
-pub const FLATTEST: f64 = 1e-7;
 
 /// How often offending curves are divided more finely before the domain is refused.
 const ROUNDS: usize = 16;
@@ -47,8 +44,7 @@ pub fn divide_and_triangulate(
         match triangulate(domain, &divided) {
             Ok(set) => return Ok((divided, set)),
             Err(clash) => {
-                // No short circuit: all of them are refined.
-                let helped = clash.curves.iter().fold(false, |any, &id| division.refine(id) || any);
+                let helped = clash.curves.iter().filter(|id| division.refine(**id)).count() > 0;
                 if !helped || round >= ROUNDS {
                     return Err(clash.fault);
                 }
@@ -83,16 +79,18 @@ type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<TriangleSet, Box<Clash>> {
     let mesh = triangles(domain, divided)?;
     for nodes in mesh.loops() {
-        assert!(nodes.len() % 2 == 0, "the boundary loop through {} is odd", told(mesh.set.uv[nodes[0] as usize]));
+        assert!(
+            nodes.len().is_multiple_of(2),
+            "the boundary loop through {} is odd",
+            told(mesh.set.uv[nodes[0] as usize])
+        );
     }
     Ok(mesh.set)
 }
 
 fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Clash>> {
     let edges = Edges::new(domain, divided)?;
-    let mut cdt = load(domain, divided)?;
-    let mut handles = vec![FixedVertexHandle::from_index(0); divided.nodes.len()];
-    cdt.vertices().for_each(|v| handles[v.data().node as usize] = v.fix());
+    let (mut cdt, handles) = load(domain, divided)?;
     edges.constrain(&mut cdt, &handles)?;
     let faces = edges.flood(&cdt, &handles)?;
 
@@ -103,8 +101,7 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Cl
             region.push(f);
         }
     }
-    let largest = divided.nodes.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
-    if let Some(t) = kept.iter().find(|t| !roomy(t.map(|n| divided.nodes[n as usize]), largest)) {
+    if let Some(t) = kept.iter().find(|&&[a, b, c]| !firm(edges.at(a), edges.at(b), edges.at(c))) {
         return Err(edges.thin(t));
     }
     let lines: Vec<([u32; 2], Cut)> = domain
@@ -121,38 +118,45 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Cl
     Ok(cut(&divided.nodes, kept, region, &lines))
 }
 
-/// Whether a triangle is strictly positive and not thinner than spec 2.10 allows, where no coordinate is larger than
-/// `largest`.
-pub fn roomy([a, b, c]: [DVec2; 3], largest: f64) -> bool {
-    let doubled = orient(a, b, c);
-    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let altitude = doubled / longest;
-    doubled > 0.0 && altitude >= FLATTEST * longest && altitude >= 256.0 * f64::EPSILON * largest
-}
-
-/// The Delaunay triangulation of the nodes. Scaled by a power of two, so that signs are those of the given coordinates.
-fn load(domain: &Domain, divided: &DividedDomain) -> Result<Cdt, Box<Clash>> {
+/// The Delaunay triangulation of the nodes, and where each is in it. Scaled by a power of two, so that signs are those of
+/// the given coordinates.
+///
+/// Nodes are inserted from coarse to fine along each curve: every round halves the steps of the one before, so that each
+/// insertion changes little and begins beside the one before. (spade's bulk loaders need quadratic time for nodes that
+/// lie on a few lines, and the one that takes constraints walks a hash set of std, whose order differs between runs.)
+fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVertexHandle>), Box<Clash>> {
     let largest = divided.nodes.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let scale = libm::ldexp(1.0, -libm::ilogb(largest));
-    let vertices: Vec<Vertex> = divided
-        .nodes
-        .iter()
-        .zip(0..)
-        .map(|(p, node)| Vertex { at: spade::mitigate_underflow(Point2::new(p.x * scale, p.y * scale)), node })
-        .collect();
-    // The bulk loader that takes constraints too walks a hash set of std: its result may differ from run to run.
-    let cdt = Cdt::bulk_load(vertices).map_err(|e| {
-        Box::new(Clash { curves: Vec::new(), fault: Fault::new(format!("The nodes cannot be triangulated: {e}")) })
-    })?;
-    if cdt.num_vertices() == divided.nodes.len() {
-        return Ok(cdt);
+    let n = divided.nodes.len();
+    let mut cdt = Cdt::with_capacity(n, 3 * n, 2 * n);
+    let mut handles = vec![FixedVertexHandle::from_index(0); n];
+    let mut insert = |node: u32| {
+        let p = divided.nodes[node as usize];
+        let at = spade::mitigate_underflow(Point2::new(p.x * scale, p.y * scale));
+        let count = cdt.num_vertices();
+        let failed = |e| {
+            Box::new(Clash { curves: Vec::new(), fault: Fault::new(format!("The nodes cannot be triangulated: {e}")) })
+        };
+        let handle = cdt.insert(Vertex { at, node }).map_err(failed)?;
+        if cdt.num_vertices() == count {
+            // It has taken the place of another one.
+            let other = handles.iter().position(|&h| h == handle).unwrap_or(0) as u32;
+            return Err(clash(domain, curves_through(domain, divided, &[other, node]), "come to the same point", p));
+        }
+        handles[node as usize] = handle;
+        Ok(())
+    };
+    (0..domain.vertices.len() as u32).try_for_each(&mut insert)?;
+    let longest = divided.chains.iter().map(Vec::len).max().unwrap_or(0);
+    let mut step = longest.next_power_of_two();
+    while step > 0 {
+        for chain in &divided.chains {
+            // Odd multiples of the step, but for the end.
+            chain[..chain.len() - 1].iter().skip(step).step_by(2 * step).copied().try_for_each(&mut insert)?;
+        }
+        step /= 2;
     }
-    let mut order: Vec<u32> = (0..divided.nodes.len() as u32).collect();
-    let key = |n: u32| divided.nodes[n as usize] * scale;
-    order.sort_by(|&a, &b| key(a).x.total_cmp(&key(b).x).then(key(a).y.total_cmp(&key(b).y)).then(a.cmp(&b)));
-    let same = order.windows(2).find(|w| key(w[0]) == key(w[1])).map_or([0, 0], |w| [w[0], w[1]]);
-    let curves = curves_through(domain, divided, &same);
-    Err(clash(domain, curves, "come to the same point", divided.nodes[same[0] as usize]))
+    Ok((cdt, handles))
 }
 
 /// The edges of the divided curves.
@@ -292,16 +296,28 @@ impl<'a> Edges<'a> {
         let curves = curves_through(self.domain, self.divided, triangle);
         let names: Vec<String> =
             curves.iter().map(|id| format!("\"{}\"", self.domain.curves[id.index()].name)).collect();
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let fault = Fault::new(format!(
-            "The nodes {}, {} and {} of {} make a triangle only {} as high as it is long; {FLATTEST:e} is the least",
+            "The nodes {}, {} and {} of {} make a triangle that is {}",
             told(a),
             told(b),
             told(c),
             names.join(", "),
-            number(orient(a, b, c) / longest / longest)
+            too_thin(a, b, c)
         ));
         Box::new(Clash { curves, fault: fault.remedy("Keep the curves further apart there, or ask for smaller sizes") })
+    }
+}
+
+/// What is amiss with a triangle that is not [`firm`], after "is".
+pub fn too_thin(a: DVec2, b: DVec2, c: DVec2) -> String {
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let ratio = orient(a, b, c) / longest / longest;
+    if ratio <= 0.0 {
+        "without area".to_owned()
+    } else if ratio < 1e-7 {
+        format!("only {} as high as it is long, where 1e-7 is the least", number(ratio))
+    } else {
+        "too small for coordinates so far from the origin".to_owned()
     }
 }
 

@@ -1,20 +1,25 @@
 //! From a case to its background mesh, and on to quadrilaterals: the order of the parts, and nothing of their insides.
 
+use std::path::Path;
+
 use glam::DVec2;
 
-use super::component::live_components;
-use super::finish::{Finished, finish};
-use super::last_resort::{Outcome, last_resort};
+use super::converter::{Converter, Counts};
+use super::finish::Finished;
+use super::last_resort::Outcome;
 use crate::core::background::adapt::{Adapted, adapt};
+use crate::core::background::import::{implied_metric, import};
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::{CurveSpec, Domain, FaceSpec};
 use crate::core::geometry::predicates::firm;
 use crate::core::io::case::{Case, DomainSource};
+use crate::core::io::format::read_mesh;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;
 use crate::core::metric::field::{Field, MetricSource, Place, Sizing};
 use crate::core::metric::gradation::bound_gradation;
+use crate::core::metric::tensor::Metric2;
 use crate::core::progress::{Stage, Watch};
 
 /// Points at which the metric is looked over before anything is made from it.
@@ -50,6 +55,8 @@ pub struct Converted {
     pub adapted: Adapted,
     /// What was mended in a mesh that was given, for people.
     pub repairs: Vec<String>,
+    /// How often what happened on the front.
+    pub counts: Counts,
     /// What the last resort did, over all components.
     pub last_resort: Outcome,
     /// What the global post-processing did.
@@ -63,7 +70,7 @@ pub struct Converted {
 pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
     let made = match &case.domain {
         DomainSource::Curves { curves, faces } => from_curves(case, curves, faces, watch)?,
-        DomainSource::Mesh { .. } => return Err(Fault::new("Meshes as background are not wired yet")),
+        DomainSource::Mesh { path, sol } => from_mesh(case, path, sol.as_deref(), watch)?,
     };
     refuse_needles(&made.mesh)?;
     Ok(made)
@@ -74,20 +81,12 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
 /// # Errors
 /// As [`background`]; and where a component cannot be converted, which its checks should have found.
 pub fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Converted, Fault> {
-    let Background { mut mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
+    let Background { mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
     let triangles = mesh.element_count();
-    watch.tell(Stage::Convert, 0, triangles as u64);
-    mesh.set_recording(false);
-    let mut total = Outcome::default();
-    for component in live_components(&mesh) {
-        let outcome = last_resort(&mut mesh, &component.triangles, &sizing)
-            .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
-        total = total.plus(&outcome);
-        watch.tell(Stage::Convert, total.triangles as u64, triangles as u64);
-    }
-    mesh = mesh.reordered();
-    let finished = finish(&mut mesh, &sizing, watch);
-    Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, last_resort: total, finished })
+    let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());
+    converter.run(watch)?;
+    let Converter { mesh, counts, last_resort, finished, .. } = converter;
+    Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, counts, last_resort, finished })
 }
 
 /// The background mesh of a domain of curves; where the case bounds the gradation, a first mesh carries the table of the
@@ -113,6 +112,36 @@ fn from_curves(
     }
     let regions = faces.iter().map(|face| face.name.clone()).collect();
     Ok(Background { mesh, sizing, regions, adapted, repairs: Vec::new() })
+}
+
+/// A mesh that was given, as it is. Its metric is that of the case's fields; where there are none its own, given at its
+/// nodes or implied by its triangles.
+fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch) -> Result<Background, Fault> {
+    watch.tell(Stage::Read, 0, 0);
+    let file = read_mesh(path, sol)?;
+    let place = path.display().to_string();
+    let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
+    let set = &imported.set;
+    let mut fields = Vec::new();
+    for spec in &case.fields {
+        fields.push(Field::compile(spec, &|_| None)?);
+    }
+    if fields.is_empty() {
+        let metrics = match &file.metric {
+            Some(given) => imported.at_nodes(given),
+            None => implied_metric(set).iter().map(Metric2::in_space).collect(),
+        };
+        fields.push(Field::table(&set.uv, &set.triangles, metrics).map_err(|fault| fault.at(place))?);
+    }
+    let sizing = Sizing::new(fields, case.parameters.size_scale);
+    let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+    Ok(Background {
+        mesh: Mesh::from_triangles(set, metric).reordered(),
+        sizing,
+        regions: imported.regions,
+        adapted: Adapted::default(),
+        repairs: imported.repairs,
+    })
 }
 
 fn adapted_mesh(

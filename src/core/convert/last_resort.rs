@@ -1,13 +1,15 @@
 //! The last resort (spec 2.10): any component with an even number of positive triangles becomes strictly convex
 //! quadrilaterals, its boundary untouched.
 //!
-//! 1. A maximum matching of neighbouring triangles whose union is strictly convex ([`super::matching`]).
+//! 1. A maximum matching of neighbouring triangles whose union is strictly convex and not close to a triangle
+//!    ([`super::matching`]).
 //! 2. What it leaves over is matched over other inner edges, searches using as few of them as they can.
 //! 3. What is left over even then is linked by paths, so that every triangle has one or three edges in a T-join
-//!    ([`super::t_join`]).
-//! 4. A pair whose union is not convex is cut anew together with a convex pair beside it, where that gives two convex
-//!    quadrilaterals (an edge rotation; this is what swaps and matching again can reach, found directly).
-//! 5. Two triangles that have only each other in the join and a convex union are merged. Every other edge of the join is
+//!    (module `t_join`).
+//! 4. A pair whose union is not such is cut anew together with up to three pairs around it, where that gives good
+//!    quadrilaterals (what swaps of edges and matching again would look for, found directly and at its best), or filled
+//!    together with them around one new node (`recut`).
+//! 5. Two triangles that have only each other in the join and such a union are merged. Every other edge of the join is
 //!    divided at its middle, and its triangles are filled by templates.
 //!
 //! Why this always succeeds: neighbours agree on which edges are divided; the templates are affine images of strictly
@@ -24,7 +26,7 @@ use smallvec::SmallVec;
 use super::component::{Dual, NONE};
 use super::matching::Matching;
 use super::t_join::t_join;
-use crate::core::geometry::predicates::{convex, firm};
+use crate::core::geometry::predicates::{convex, firm, orient};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::metric::field::{BadMetric, MetricSource};
@@ -38,8 +40,8 @@ pub struct Outcome {
     pub triangles: usize,
     /// Quadrilaterals that are two merged triangles.
     pub merged: usize,
-    /// Edges rotated to make a pair that is not convex fit: each stands for two more quadrilaterals.
-    pub rotations: usize,
+    /// Quadrilaterals that were cut anew from several pairs, one of which could not be merged.
+    pub recut: usize,
     /// Quadrilaterals of the templates.
     pub template_quads: usize,
     /// Edges divided.
@@ -57,7 +59,7 @@ impl Outcome {
         Outcome {
             triangles: self.triangles + other.triangles,
             merged: self.merged + other.merged,
-            rotations: self.rotations + other.rotations,
+            recut: self.recut + other.recut,
             template_quads: self.template_quads + other.template_quads,
             divided: self.divided + other.divided,
             unmatched: self.unmatched + other.unmatched,
@@ -67,7 +69,7 @@ impl Outcome {
 
     /// All quadrilaterals made.
     pub fn quads(&self) -> usize {
-        self.merged + 2 * self.rotations + self.template_quads
+        self.merged + self.recut + self.template_quads
     }
 }
 
@@ -101,24 +103,18 @@ impl fmt::Display for Stuck {
 
 impl std::error::Error for Stuck {}
 
-/// Two triangles are merged into what is at least this good, or not much worse than they are. Nodes in a row on a
-/// straight side would by their rounding make every other flat corner a convex one.
-const LEAST_QUALITY: f64 = 0.1;
-/// What counts as not much worse.
-const NOT_MUCH_WORSE: f64 = 0.25;
-
 /// How a patch of triangles becomes quadrilaterals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Means {
     /// Two triangles merge.
     Merge,
-    /// Two pairs of triangles become two quadrilaterals, the edge between them rotated.
-    Rotation,
+    /// A few pairs of triangles become as many quadrilaterals, or one more, cut otherwise than the pairs.
+    Recut,
     /// Edges are divided and templates fill the triangles between them.
     Templates,
 }
 
-/// Turns the given triangles of a mesh, whole components of even size, into quadrilaterals.
+/// Turns the given triangles of a mesh, one or several whole components of even size, into quadrilaterals.
 ///
 /// Sides that the triangles do not share among themselves stay as they are. New nodes get their metric from `source`.
 ///
@@ -126,7 +122,7 @@ pub enum Means {
 /// [`Stuck`]; then the mesh is unchanged.
 ///
 /// # Panics
-/// Where an element is no triangle.
+/// Where an element is no triangle, or is given twice.
 pub fn last_resort(mesh: &mut Mesh, component: &[ElementId], source: &dyn MetricSource) -> Result<Outcome, Stuck> {
     let plan = Plan::new(mesh, component, source)?;
     for patch in 0..plan.patches() {
@@ -135,7 +131,7 @@ pub fn last_resort(mesh: &mut Mesh, component: &[ElementId], source: &dyn Metric
     Ok(plan.outcome())
 }
 
-/// What is to be done, patch by patch: first the merges and rotations, then the templates.
+/// What is to be done, patch by patch: first the merges and recuts, then the templates.
 #[derive(Clone, Debug)]
 pub struct Plan {
     outcome: Outcome,
@@ -217,7 +213,23 @@ struct Pair {
     nodes: [u32; 4],
     /// The sides of the triangles that lie on the outline: `outline[k]` from `nodes[k]` to the next.
     outline: [u32; 4],
-    convex: bool,
+    /// Whether the two can be merged: see [`firm_quad`].
+    firm: bool,
+}
+
+/// Least share of a quadrilateral that the triangle at a corner must have, in halves of the whole.
+///
+/// A corner that is straight but for rounding (three points of an arc or of a straight side with a middle) makes a
+/// quadrilateral that is strictly convex by the letter, and that nothing can mend where its nodes are fixed. The share
+/// is 1 for a parallelogram, and affine maps keep it: the measure knows nothing of the metric, which may fit badly.
+const FLAT: f64 = 0.05;
+
+/// Whether a quadrilateral is strictly convex, exactly, and not close to a triangle.
+#[inline]
+fn firm_quad([a, b, c, d]: [DVec2; 4]) -> bool {
+    let (at_a, at_b, at_c, at_d) = (orient(d, a, b), orient(a, b, c), orient(b, c, d), orient(c, d, a));
+    let least = at_a.min(at_b).min(at_c).min(at_d);
+    least > 0.0 && 2.0 * least >= FLAT * (at_a + at_c)
 }
 
 struct Planner<'a> {
@@ -231,7 +243,7 @@ struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    /// `allowed` may forbid a merge, a match over another edge (`Templates`) or a rotation (given one triangle on each
+    /// `allowed` may forbid a merge, a match over another edge (`Templates`) or a recut (given one triangle on each
     /// side of the edge in question): the result must be right whatever is forbidden, and tests forbid at random.
     fn plan(
         mesh: &'a Mesh,
@@ -251,7 +263,7 @@ impl<'a> Planner<'a> {
         };
         let mut planner = Planner { dual, source, join: Vec::new(), done: vec![false; n], plan };
         planner.join(allowed)?;
-        planner.merge_and_rotate(allowed);
+        planner.merge_and_recut(allowed)?;
         planner.fill_with_templates()?;
         Ok(planner.plan)
     }
@@ -259,7 +271,7 @@ impl<'a> Planner<'a> {
     /// Steps 1 to 3.
     fn join(&mut self, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
         let dual = &self.dual;
-        let (mut convex, mut rank, mut other) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut firm, mut rank, mut other) = (Vec::new(), Vec::new(), Vec::new());
         for side in 0..dual.across.len() as u32 {
             let across = dual.across[side as usize];
             if across == NONE || across < side {
@@ -267,15 +279,15 @@ impl<'a> Planner<'a> {
             }
             let edge = [side / 3, across / 3];
             let pair = self.pair(side);
-            if pair.convex && allowed(Means::Merge, self.elements(edge)) {
-                convex.push(edge);
+            if pair.firm && allowed(Means::Merge, self.elements(edge)) {
+                firm.push(edge);
                 rank.push(self.quality(pair.nodes) as f32);
             } else if allowed(Means::Templates, self.elements(edge)) {
                 other.push(edge);
             }
         }
-        let mut matching = Matching::new(dual.triangles.len(), &convex, &other);
-        matching.start(&convex, &rank);
+        let mut matching = Matching::new(dual.triangles.len(), &firm, &other);
+        matching.start(&firm, &rank);
         matching.augment(false);
         self.plan.outcome.unmatched = matching.unmatched();
         if self.plan.outcome.unmatched > 0 {
@@ -287,7 +299,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Step 4 and the merges of step 5.
-    fn merge_and_rotate(&mut self, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) {
+    fn merge_and_recut(&mut self, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
         let mut crooked = Vec::new();
         let mut straight = Vec::new();
         for t in 0..self.dual.triangles.len() as u32 {
@@ -296,7 +308,7 @@ impl<'a> Planner<'a> {
             };
             let pair = self.pair(side);
             let edge = [t, self.dual.across[side as usize] / 3];
-            if pair.convex && allowed(Means::Merge, self.elements(edge)) {
+            if pair.firm && allowed(Means::Merge, self.elements(edge)) {
                 straight.push(side);
             } else {
                 crooked.push(side);
@@ -304,7 +316,7 @@ impl<'a> Planner<'a> {
         }
         for side in crooked {
             if !self.done[(side / 3) as usize] {
-                self.rotate(side, allowed);
+                self.recut(side, allowed)?;
             }
         }
         for side in straight {
@@ -316,51 +328,7 @@ impl<'a> Planner<'a> {
                 self.close_patch(Means::Merge, &[t, self.dual.across[side as usize] / 3]);
             }
         }
-    }
-
-    /// Cuts the hexagon of a crooked pair and a straight one beside it the other way, at best of all possibilities.
-    ///
-    /// ```text
-    ///     q2-----q1                 q2-----q1
-    ///     /       \                 / \     \
-    ///    p0-------p3       =>      p0   \   p3        or from p1 to q1
-    ///     \    _-´/                 \    \ _/
-    ///      p1´--p2                   p1´--p2
-    /// ```
-    fn rotate(&mut self, side: u32, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) {
-        let pair = self.pair(side);
-        let mut best: Option<(f64, [[u32; 4]; 2], u32)> = None;
-        for k in 0..4 {
-            let outline = pair.outline[(k + 3) % 4];
-            let across = self.dual.across[outline as usize];
-            if across == NONE || self.done[(across / 3) as usize] {
-                continue;
-            }
-            let Some(inner) = self.partner_side(across / 3) else { continue };
-            let inner = inner.min(self.dual.across[inner as usize]);
-            let beside = self.pair(inner);
-            if !beside.convex || !allowed(Means::Rotation, self.elements([outline / 3, across / 3])) {
-                continue;
-            }
-            let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|i| pair.nodes[(k + i) % 4]);
-            let at = (beside.outline.iter().position(|&s| s == across)).expect("the pair beside has the shared side");
-            let (q1, q2) = (beside.nodes[(at + 2) % 4], beside.nodes[(at + 3) % 4]);
-            for quads in [[[p1, p2, p3, q1], [q1, q2, p0, p1]], [[p2, p3, q1, q2], [q2, p0, p1, p2]]] {
-                let triangles = [side, self.dual.across[side as usize], inner, self.dual.across[inner as usize]];
-                if quads.iter().all(|&quad| self.is_good(quad, &triangles)) {
-                    let quality = self.quality(quads[0]).min(self.quality(quads[1]));
-                    if best.is_none_or(|(least, ..)| quality > least) {
-                        best = Some((quality, quads, inner));
-                    }
-                }
-            }
-        }
-        if let Some((_, quads, inner)) = best {
-            self.plan.outcome.rotations += 1;
-            self.plan.quads.extend(quads);
-            let across = |side: u32| self.dual.across[side as usize] / 3;
-            self.close_patch(Means::Rotation, &[side / 3, across(side), inner / 3, across(inner)]);
-        }
+        Ok(())
     }
 
     /// The templates of step 5, a patch for each part of the join that hangs together.
@@ -408,18 +376,19 @@ impl<'a> Planner<'a> {
     /// One triangle with one or three divided sides.
     ///
     /// ```text
-    ///             C                             C
-    ///            /|\                           / \
-    ///           / | \                         /   \
-    ///          /  C'  \                      /     \
-    ///         /  / \   \                   m2       m1
-    ///        /  /   \   \                  / \     / \
-    ///       / A'     B'  \                /   \ G /   \
-    ///      / / \  m'/  \  \              /      |      \
-    ///     A------m---------B            A------m0-------B
+    ///              C                             C
+    ///             /|\                           / \
+    ///            / | \                         /   \
+    ///           /  C'  \                      /     \
+    ///          / _/ \_  \                   m2       m1
+    ///         / /     \  \                  / \_   _/ \
+    ///        / A'_   _B'  \                /    \G/    \
+    ///       / /   \m'/  \  \              /      |      \
+    ///      //      |      \ \            /       |       \
+    ///     A--------m---------B          A--------m0-------B
     /// ```
-    /// Five quadrilaterals are the least for one divided side; the barycentric places of A', B', C' and m' were found to
-    /// be the best (least scaled Jacobian 0.5 on the equilateral triangle). Three sides: the centroid G.
+    /// One side: five quadrilaterals, the least there can be; the barycentric places of A', B', C' and m' are the best
+    /// found (least scaled Jacobian 0.5 on the equilateral triangle). Three sides: the centroid G.
     fn fill(&mut self, t: u32, middles: [u32; 3]) -> Result<(), Stuck> {
         let first = self.plan.quads.len();
         let corners = self.mesh().triangle(self.dual.triangles[t as usize]).map(|n| n.0);
@@ -447,7 +416,11 @@ impl<'a> Planner<'a> {
             ]);
         }
         self.plan.outcome.template_quads += self.plan.quads.len() - first;
-        if self.plan.quads[first..].iter().all(|&quad| self.is_convex(quad)) {
+        let is_convex = |quad: &[u32; 4]| {
+            let [a, b, c, d] = quad.map(|n| self.uv(n));
+            convex(a, b, c, d)
+        };
+        if self.plan.quads[first..].iter().all(is_convex) {
             return Ok(());
         }
         let element = self.dual.triangles[t as usize];
@@ -501,30 +474,12 @@ impl<'a> Planner<'a> {
         let after = |side: u32| side / 3 * 3 + (side + 1) % 3;
         let outline = [after(side), after(after(side)), after(across), after(after(across))];
         let nodes = outline.map(|s| self.mesh().origin(self.dual.half_edge(s)).0);
-        Pair { nodes, outline, convex: self.is_good(nodes, &[side, across]) }
-    }
-
-    /// Whether a quadrilateral is strictly convex by more than rounding, and a fit shape in place of the triangles that
-    /// have these sides.
-    #[inline]
-    fn is_good(&self, quad: [u32; 4], sides: &[u32]) -> bool {
-        if !self.is_convex(quad) {
-            return false;
-        }
-        let quality = self.quality(quad);
-        if quality >= LEAST_QUALITY {
-            return true;
-        }
-        let before = sides.iter().map(|side| self.mesh().quality(self.dual.triangles[(side / 3) as usize]));
-        let p = quad.map(|n| self.uv(n));
-        quality >= NOT_MUCH_WORSE * before.fold(f64::INFINITY, f64::min)
-            && (0..4).all(|k| firm(p[k], p[(k + 1) % 4], p[(k + 2) % 4]))
+        Pair { nodes, outline, firm: self.is_firm(nodes) }
     }
 
     #[inline]
-    fn is_convex(&self, quad: [u32; 4]) -> bool {
-        let [a, b, c, d] = quad.map(|n| self.uv(n));
-        convex(a, b, c, d)
+    fn is_firm(&self, quad: [u32; 4]) -> bool {
+        firm_quad(quad.map(|n| self.uv(n)))
     }
 
     #[inline]
@@ -553,5 +508,6 @@ impl<'a> Planner<'a> {
     }
 }
 
+mod recut;
 #[cfg(test)]
 mod tests;

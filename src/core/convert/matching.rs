@@ -354,7 +354,7 @@ mod tests {
             Random(TestRng::deterministic_rng(RngAlgorithm::ChaCha))
         }
         fn below(&mut self, n: u32) -> u32 {
-            (u64::from(self.0.next_u32()) * u64::from(n) >> 32) as u32
+            ((u64::from(self.0.next_u32()) * u64::from(n)) >> 32) as u32
         }
     }
 

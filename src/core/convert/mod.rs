@@ -1,9 +1,20 @@
-//! From triangles to quadrilaterals. For now the guarantee alone (spec 2.10) and what makes its mesh better (spec 10).
+//! From triangles to quadrilaterals: the merging front (paper 4.3), the guarantee (spec 2.10), and what makes the mesh
+//! better in the end (spec 10).
 
 pub mod parameters;
+pub mod event;
+pub mod phase;
+pub mod converter;
+mod sides;
+mod top;
+mod form;
+mod local;
+mod seam;
+mod close;
+pub mod settle;
 pub mod component;
 pub mod matching;
-pub mod t_join;
+mod t_join;
 pub mod last_resort;
 pub mod energy;
 pub mod clean_up;

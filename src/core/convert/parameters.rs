@@ -54,6 +54,21 @@ pub struct Parameters {
     pub selection: Selection,
     /// What is held against `c` times the smallest H-value.
     pub selection_window: SelectionWindow,
+    /// Aim a side edge at the bisector of a frontal angle up to 225 degrees, and at the right angle beyond; off: always at
+    /// the right angle, as the paper says.
+    pub bisector: bool,
+    /// Place the new top nodes of each quadrilateral (spec 10, rule 2); off: the paper's eq. (9) on front nodes.
+    pub placement: bool,
+    /// Smooth around each new quadrilateral (4.3.6).
+    pub smoothing: bool,
+    /// Local structural enhancement (4.3.6).
+    pub enhancement: bool,
+    /// Seam small frontal angles (4.3.6).
+    pub seaming: bool,
+    /// Split the front at slender elements (4.3.6).
+    pub splitting: bool,
+    /// Clean-up and smoothing of the whole mesh at the end (4.3.7).
+    pub post_processing: bool,
     /// A mesh that would need more quadrilaterals is refused before any memory is spent on it.
     pub max_quads: u64,
 }
@@ -73,6 +88,13 @@ impl Default for Parameters {
             layers: 0,
             selection: Selection::Table1,
             selection_window: SelectionWindow::MetricLengthTimesH,
+            bisector: true,
+            placement: true,
+            smoothing: true,
+            enhancement: true,
+            seaming: true,
+            splitting: true,
+            post_processing: true,
             max_quads: 20_000_000,
         }
     }

@@ -108,15 +108,16 @@ fn meets_itself(curve: &DomainCurve, i: u32, j: u32, limits: Limits) -> Option<M
         }
         length
     };
-    let mut between = stretch(i + 1, j);
-    if curve.ends[0] == curve.ends[1] {
-        between = between.min(stretch(0, i) + stretch(j + 1, last + 1));
+    match meet(a, b, &[], limits) {
+        Some(Meeting::Touches(p)) => {
+            let mut between = stretch(i + 1, j);
+            if curve.ends[0] == curve.ends[1] {
+                between = between.min(stretch(0, i) + stretch(j + 1, last + 1));
+            }
+            if between > limits.near { Some(Meeting::Touches(p)) } else { crossing(&a, &b).map(Meeting::Crosses) }
+        }
+        found => found,
     }
-    let found = meet(a, b, &[], limits);
-    if between <= limits.near && matches!(found, Some(Meeting::Touches(_))) {
-        return crossing(&a, &b).map(Meeting::Crosses);
-    }
-    found
 }
 
 fn shared_vertices(a: &DomainCurve, b: &DomainCurve) -> Vec<DVec2> {

@@ -7,6 +7,7 @@ pub mod place;
 pub mod loops;
 pub mod crossing;
 pub mod inside;
+pub mod assembly;
 pub mod domain;
 #[cfg(test)]
 pub(crate) mod fixtures;

@@ -2,14 +2,16 @@
 //! `assets/cases/README.md`. Deliberately absent: what the words mean geometrically (`geometry::domain`) and whether a
 //! formula can be evaluated (`metric::formula`).
 
-use std::fs::File;
-use std::io::Read;
+mod table;
+mod geometry;
+mod metric;
+
 use std::path::{Path, PathBuf};
 
 use toml::de::DeTable;
 
-use super::case_table::{Source, Table};
-use super::{case_geometry, case_metric};
+use self::table::{Source, Table};
+use super::save::load;
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::{CurveSpec, FaceSpec};
@@ -17,9 +19,6 @@ use crate::core::metric::field::FieldSpec;
 
 /// The version of case files that this program reads.
 pub const VERSION: u32 = 1;
-
-/// A case file may be this long, in bytes: what is longer is not a case.
-const LONGEST: u64 = 256 << 20;
 
 /// Where the domain of a case comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +56,8 @@ pub struct Case {
     pub fields: Vec<FieldSpec>,
     /// Bound of the metric's gradation (spec 3, item 5), greater than 1; `None`: not bounded.
     pub gradation: Option<f64>,
+    /// Whether a boundary whose count of segments is odd, and fixed, may be given one segment more; otherwise it is refused.
+    pub split_odd: bool,
     /// The file's own text, for reports; empty for a mesh without a case file.
     pub text: String,
 }
@@ -68,12 +69,7 @@ impl Case {
     /// What the system says of the file, or see [`Case::parse`].
     pub fn read(path: &Path) -> Result<Case, Fault> {
         let place = path.display().to_string();
-        let refuse = |error: std::io::Error| Fault::new(format!("The case cannot be read ({error})")).at(place.clone());
-        if path.is_dir() {
-            return Err(Fault::new("This is a directory").at(place).remedy("Name a case file"));
-        }
-        let mut bytes = Vec::new();
-        File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes)).map_err(refuse)?;
+        let bytes = load(path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let folder = path.parent().unwrap_or(Path::new(""));
         Case::from_bytes(&bytes, &name, &place, folder)
@@ -82,11 +78,8 @@ impl Case {
     /// A case from the bytes of a file: see [`Case::parse`].
     ///
     /// # Errors
-    /// Bytes that are not UTF-8 or far too many, or see [`Case::parse`].
+    /// Bytes that are not UTF-8, or see [`Case::parse`].
     pub fn from_bytes(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
-        if bytes.len() as u64 > LONGEST {
-            return Err(Fault::new("The file is far too long for a case").at(file).remedy("Name a case file"));
-        }
         let text = std::str::from_utf8(bytes).map_err(|error| {
             Fault::new(format!("The file is not text (byte {})", error.valid_up_to()))
                 .at(file)
@@ -118,6 +111,7 @@ impl Case {
             "notes",
             "parameters",
             "gradation",
+            "split_odd",
             "curve",
             "face",
             "metric",
@@ -130,7 +124,7 @@ impl Case {
             DomainSource::Curves { curves, .. } => curves.as_slice(),
             DomainSource::Mesh { .. } => &[],
         };
-        let fields = case_metric::fields(&table, curves)?;
+        let fields = metric::fields(&table, curves)?;
         check_fields(&table, &domain, &fields)?;
         Ok(Case {
             name: name.to_owned(),
@@ -138,6 +132,7 @@ impl Case {
             notes: word("notes")?.unwrap_or_default().trim().to_owned(),
             parameters: parameters(&table)?,
             gradation: gradation(&table)?,
+            split_odd: table.get("split_odd").map_or(Ok(false), |v| v.flag())?,
             domain,
             fields,
             text: text.to_owned(),
@@ -155,6 +150,7 @@ impl Case {
             domain: DomainSource::Mesh { path, sol },
             fields: Vec::new(),
             gradation: None,
+            split_odd: false,
             text: String::new(),
         }
     }
@@ -190,8 +186,8 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
     if let Some(value) = table.get("sol") {
         return Err(value.fault("sol is given without mesh").remedy("Write mesh = \"...\" too"));
     }
-    let curves = case_geometry::curves(table)?;
-    let faces = case_geometry::faces(table, &curves)?;
+    let curves = geometry::curves(table)?;
+    let faces = geometry::faces(table, &curves)?;
     if faces.is_empty() {
         return Err(table.fault("The case has no face").remedy("Add [[curve]] and [[face]], or mesh = \"...\""));
     }
@@ -233,5 +229,4 @@ fn gradation(table: &Table<'_>) -> Result<Option<f64>, Fault> {
 }
 
 #[cfg(test)]
-#[path = "case_tests.rs"]
 mod tests;

@@ -70,14 +70,8 @@ impl MeshFile {
 }
 
 /// The tensor back, if it is finite and positive definite.
-pub fn positive_definite(m: Metric3) -> Option<Metric3> {
-    let xx = m.xx.sqrt();
-    let (yx, zx) = (m.xy / xx, m.xz / xx);
-    let yy = (m.yy - yx * yx).sqrt();
-    let zy = (m.yz - zx * yx) / yy;
-    let zz = (m.zz - zx * zx - zy * zy).sqrt();
-    // The roots of what is not positive are NaN or zero.
-    [xx, yy, zz].iter().all(|root| *root > 0.0 && root.is_finite()).then_some(m)
+pub(super) fn positive_definite(m: Metric3) -> Option<Metric3> {
+    m.is_spd().then_some(m)
 }
 
 /// The tag of element `i`, 0 where there are no tags.

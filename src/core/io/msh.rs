@@ -5,7 +5,9 @@
 //!
 //! [`MeshFile::skipped`]: crate::core::io::mesh_file::MeshFile::skipped
 
+mod input;
 mod read;
+mod data;
 mod write;
 
 pub use read::read;

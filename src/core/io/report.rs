@@ -23,8 +23,8 @@ pub struct Report {
     /// The parameters that were in force, angles in degrees.
     #[serde(serialize_with = "parameters")]
     pub parameters: Parameters,
-    /// The background mesh that was converted.
-    pub background: Background,
+    /// Triangles of the background mesh that was converted.
+    pub background_triangles: usize,
     /// Number of faces (regions).
     pub regions: usize,
     /// Whether the mesh holds all checks: all quadrilaterals, conforming, strictly convex by exact predicates.
@@ -33,6 +33,8 @@ pub struct Report {
     pub mesh: Statistics,
     /// What the last resort had to do.
     pub last_resort: LastResort,
+    /// What was mended in a mesh that was given, each in words.
+    pub repairs: Vec<String>,
     /// Number of events by kind.
     pub events: BTreeMap<String, u64>,
     /// Seconds by phase: the only key that differs between two runs of the same case.
@@ -60,21 +62,14 @@ pub struct CaseTold {
     pub text: String,
 }
 
-/// Counts of the background mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Background {
-    /// Nodes.
-    pub nodes: usize,
-    /// Triangles.
-    pub triangles: usize,
-}
-
 /// What the last resort (spec 2.10) made.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LastResort {
     /// Quadrilaterals made by it.
     pub quads: usize,
-    /// Their share of all, 0 to 1.
+    /// Quadrilaterals made by all means, before clean-up takes some away and adds some.
+    pub of: usize,
+    /// The share of the one in the other, 0 to 1.
     pub share: f64,
 }
 
@@ -93,9 +88,9 @@ impl CaseTold {
 }
 
 impl LastResort {
-    /// That so many of all quadrilaterals are by the last resort.
+    /// That it made so many quadrilaterals of all that were made.
     pub fn of(quads: usize, all: usize) -> LastResort {
-        LastResort { quads, share: if all == 0 { 0.0 } else { quads as f64 / all as f64 } }
+        LastResort { quads, of: all, share: if all == 0 { 0.0 } else { quads as f64 / all as f64 } }
     }
 }
 
@@ -127,7 +122,7 @@ impl Report {
                 if self.valid { "valid" } else { "NOT VALID" }
             ),
         );
-        row("background", counted(self.background.triangles, "triangle"));
+        row("background", counted(self.background_triangles, "triangle"));
         row("angles, metric", angles(&mesh.metric_angles));
         row("angles, plane", angles(&mesh.physical_angles));
         row("edge length", lengths(mesh));
@@ -146,12 +141,15 @@ impl Report {
         row(
             "last resort",
             format!(
-                "{} of {} by it, {:.1} %",
+                "made {} of {} before clean-up, {:.1} %",
                 grouped(self.last_resort.quads),
-                counted(mesh.quads, "quadrilateral"),
+                counted(self.last_resort.of, "quadrilateral"),
                 100.0 * self.last_resort.share
             ),
         );
+        for repair in &self.repairs {
+            row("mended", repair.clone());
+        }
         if !self.timing.is_empty() {
             row("time", times(&self.timing));
         }
@@ -186,7 +184,7 @@ impl Formatter for ListsOnOneLine {
 }
 
 /// The summary of a background mesh: its counts, edge lengths and shape.
-pub fn background_summary(case: &Case, mesh: &Statistics, timing: &[(Stage, f64)]) -> String {
+pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], timing: &[(Stage, f64)]) -> String {
     let quality = mesh.quality.map_or_else(|| "\u{2013}".to_owned(), range);
     let mut text = format!(
         "{}: {}\n  {:<16} {}, {}\n  {:<16} {}\n  {:<16} {quality}\n",
@@ -199,6 +197,9 @@ pub fn background_summary(case: &Case, mesh: &Statistics, timing: &[(Stage, f64)
         lengths(mesh),
         "quality, metric",
     );
+    for repair in repairs {
+        let _ = writeln!(text, "  {:<16} {repair}", "mended");
+    }
     if !timing.is_empty() {
         let _ = writeln!(text, "  {:<16} {}", "time", times(timing));
     }
@@ -252,28 +253,33 @@ fn times(timing: &[(Stage, f64)]) -> String {
 
 fn angles(angles: &Angles) -> String {
     format!(
-        "{:.1}\u{2013}{:.1}\u{b0}, {:.1} % within 60\u{2013}120\u{b0}, {:.1} % within 30\u{2013}160\u{b0}",
+        "{:.1}\u{2013}{:.1}\u{b0}, {} within 60\u{2013}120\u{b0}, {} within 30\u{2013}160\u{b0}",
         angles.min,
         angles.max,
-        100.0 * angles.share_60_120,
-        100.0 * angles.share_30_160
+        percent(angles.share_60_120),
+        percent(angles.share_30_160)
     )
 }
 
 fn lengths(mesh: &Statistics) -> String {
     let lengths = &mesh.lengths;
     format!(
-        "{:.2} \u{b1} {:.2} in the metric ({:.2}\u{2013}{:.2}), {:.1} % within 0.71\u{2013}1.41",
+        "{:.2} \u{b1} {:.2} in the metric ({:.2}\u{2013}{:.2}), {} within 0.71\u{2013}1.41",
         lengths.mean,
         lengths.deviation,
         lengths.min,
         lengths.max,
-        100.0 * lengths.share_unit
+        percent(lengths.share_unit)
     )
 }
 
+/// A share rounded down, so that 100 % means all.
+fn percent(share: f64) -> String {
+    format!("{:.1} %", (share * 1000.0 + 1e-9).floor() / 10.0)
+}
+
 fn range(range: Range) -> String {
-    format!("least {:.2}, mean {:.3}", range.min, range.mean)
+    format!("least {:.3}, mean {:.3}", range.min, range.mean)
 }
 
 fn counted(count: usize, thing: &str) -> String {
@@ -281,7 +287,7 @@ fn counted(count: usize, thing: &str) -> String {
 }
 
 /// An integer with a thin space before every three digits.
-fn grouped(count: usize) -> String {
+pub fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (k, digit) in digits.chars().enumerate() {
@@ -323,11 +329,12 @@ mod tests {
             program: Program { name: "quadfront".to_owned(), version: "0.0.0".to_owned() },
             case: CaseTold { name: "three".to_owned(), title: "Three quadrilaterals".to_owned(), text: String::new() },
             parameters: Parameters::default(),
-            background: Background { nodes: 7, triangles: 1234 },
+            background_triangles: 1234,
             regions: 1,
             valid: true,
             mesh: Statistics::measure(mesh, &Growing).unwrap(),
             last_resort: LastResort::of(3, 3),
+            repairs: vec!["2 triangles were turned over".to_owned()],
             events: BTreeMap::from([("swap".to_owned(), 2), ("merge".to_owned(), 1)]),
             timing: vec![(Stage::Adapt, 0.25), (Stage::Convert, 1.5)],
         }

@@ -23,13 +23,15 @@ pub struct Scanner<'a> {
     /// Where the last word, line or number began: complaints name its line.
     last: usize,
     comment: Option<u8>,
+    /// Whether there are no lines to speak of.
+    binary: bool,
 }
 
 impl<'a> Scanner<'a> {
     /// A scanner at the start of `bytes` (after a byte order mark, if there is one); `name` is how messages call it.
     pub fn new(name: &'a str, bytes: &'a [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Scanner { name, bytes, at, last: at, comment: None }
+        Scanner { name, bytes, at, last: at, comment: None, binary: false }
     }
 
     /// The same scanner, to which words that begin with `mark` are comments up to the end of their line.
@@ -37,6 +39,11 @@ impl<'a> Scanner<'a> {
     pub fn with_comments(mut self, mark: u8) -> Self {
         self.comment = Some(mark);
         self
+    }
+
+    /// From now on complaints count bytes instead of lines.
+    pub fn set_binary(&mut self) {
+        self.binary = true;
     }
 
     /// How messages call the file.
@@ -61,6 +68,9 @@ impl<'a> Scanner<'a> {
 
     /// A complaint about what stands at a mark. Lines are counted only now: who reads a good file pays nothing.
     pub fn fault_at(&self, mark: usize, what: impl Into<String>) -> Fault {
+        if self.binary {
+            return Fault::new(what).at(format!("{}, byte {mark}", self.name));
+        }
         let line = 1 + self.bytes[..mark.min(self.bytes.len())].iter().filter(|&&b| b == b'\n').count();
         Fault::new(what).at(format!("{}, line {line}", self.name))
     }
@@ -188,7 +198,8 @@ impl<'a> Scanner<'a> {
     pub fn fits(&self, count: u64, least: usize, what: &str) -> Result<usize, Fault> {
         // The last word of a file needs no space behind it.
         let room = (self.left() as u64 + 1) / least.max(1) as u64;
-        if count > room || count >= u64::from(u32::MAX) {
+        // Half-edges are numbered by 32 bits, four to an element.
+        if count > room || count >= 1 << 30 {
             return Err(self
                 .fault(format!("{count} as {what} is more than the file can hold"))
                 .remedy("It is cut off or damaged: write it again"));

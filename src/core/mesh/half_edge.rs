@@ -31,6 +31,10 @@ pub struct Mesh {
     /// 3, 4, or 0 for a tombstone.
     sides: Vec<u8>,
     region: Vec<u32>,
+    /// Row of a quadrilateral, counted from the boundary (0 for a triangle).
+    level: Vec<u16>,
+    /// Whether the front segment in this slot is put off.
+    deferred: Vec<bool>,
     free_nodes: Vec<NodeId>,
     free_elements: Vec<ElementId>,
     journal: Journal,
@@ -102,6 +106,8 @@ impl Mesh {
             twin: vec![NONE; 4 * elements],
             sides: vec![3; elements],
             region: set.region.clone(),
+            level: vec![0; elements],
+            deferred: vec![false; 4 * elements],
             free_nodes: Vec::new(),
             free_elements: Vec::new(),
             journal: Journal::default(),
@@ -238,6 +244,18 @@ impl Mesh {
     #[inline]
     pub fn region(&self, e: ElementId) -> u32 {
         self.region[e.index()]
+    }
+
+    /// The level of a quadrilateral: its row, counted from the boundary; 0 for a triangle.
+    #[inline]
+    pub fn level(&self, e: ElementId) -> u16 {
+        self.level[e.index()]
+    }
+
+    /// Whether the front segment is put off until something near it changes.
+    #[inline]
+    pub fn is_deferred(&self, h: HalfEdgeId) -> bool {
+        self.deferred[h.index()]
     }
 
     /// The node where a half-edge starts.
@@ -394,6 +412,8 @@ impl Mesh {
             twin: corners().map(|(e, k)| if used(e, k) { half_edge(self.twin[slot(e, k)]) } else { NONE }).collect(),
             sides: elements.iter().map(|&(_, e)| self.sides[e as usize]).collect(),
             region: elements.iter().map(|&(_, e)| self.region[e as usize]).collect(),
+            level: elements.iter().map(|&(_, e)| self.level[e as usize]).collect(),
+            deferred: corners().map(|(e, k)| self.deferred[slot(e, k)]).collect(),
             ..Mesh::default()
         }
     }
@@ -428,6 +448,8 @@ impl Mesh {
                 Entry::Twin(h, old) => self.twin[h.index()] = old,
                 Entry::Sides(e, old) => self.sides[e.index()] = old,
                 Entry::Region(e, old) => self.region[e.index()] = old,
+                Entry::Level(e, old) => self.level[e.index()] = old,
+                Entry::Deferred(h, old) => self.deferred[h.index()] = old,
                 Entry::Uv(n, old) => self.uv[n.index()] = old,
                 Entry::Metric(n, old) => self.metric[n.index()] = old,
                 Entry::Anchor(n, old) => self.anchor[n.index()] = old,
@@ -441,6 +463,8 @@ impl Mesh {
                     let slots = 4 * (self.sides.len() - 1);
                     self.origin.truncate(slots);
                     self.twin.truncate(slots);
+                    self.deferred.truncate(slots);
+                    self.level.pop();
                     self.sides.pop();
                     self.region.pop();
                 }
@@ -476,7 +500,13 @@ impl Mesh {
             number(u64::from(self.origin[h]) << 32 | u64::from(self.twin[h]));
         }
         for e in 0..self.sides.len() {
-            number(u64::from(self.region[e]) << 8 | u64::from(self.sides[e]));
+            let deferred = (0..4).map(|k| u64::from(self.deferred[4 * e + k]) << k).sum::<u64>();
+            number(
+                u64::from(self.region[e]) << 28
+                    | u64::from(self.level[e]) << 12
+                    | deferred << 8
+                    | u64::from(self.sides[e]),
+            );
         }
         self.free_nodes.iter().for_each(|n| number(u64::from(n.0)));
         self.free_elements.iter().for_each(|e| number(u64::from(e.0)));
@@ -516,6 +546,24 @@ impl Mesh {
     fn set_region(&mut self, e: ElementId, region: u32) {
         let old = std::mem::replace(&mut self.region[e.index()], region);
         self.journal.note(Entry::Region(e, old));
+    }
+
+    /// Gives a quadrilateral its level.
+    #[inline]
+    pub(in crate::core) fn set_level(&mut self, e: ElementId, level: u16) {
+        if self.level[e.index()] != level {
+            let old = std::mem::replace(&mut self.level[e.index()], level);
+            self.journal.note(Entry::Level(e, old));
+        }
+    }
+
+    /// Puts a front segment off, or takes it up again.
+    #[inline]
+    pub(in crate::core) fn set_deferred(&mut self, h: HalfEdgeId, deferred: bool) {
+        if self.deferred[h.index()] != deferred {
+            let old = std::mem::replace(&mut self.deferred[h.index()], deferred);
+            self.journal.note(Entry::Deferred(h, old));
+        }
     }
 
     #[inline]
@@ -572,12 +620,15 @@ impl Mesh {
             self.journal.note(Entry::ElementTaken(e));
             self.set_sides(e, sides);
             self.set_region(e, region);
+            self.set_level(e, 0);
             return e;
         }
         self.origin.extend([NONE; 4]);
         self.twin.extend([NONE; 4]);
         self.sides.push(sides);
         self.region.push(region);
+        self.level.push(0);
+        self.deferred.extend([false; 4]);
         self.journal.note(Entry::ElementAppended);
         ElementId(self.sides.len() as u32 - 1)
     }

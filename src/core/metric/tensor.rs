@@ -147,6 +147,11 @@ impl Metric2 {
         self.uu > 0.0 && self.vv > 0.0 && det > 0.0 && det.is_finite()
     }
 
+    /// A metric of space that is this one in the plane; across it the geometric mean of the two sizes.
+    pub fn in_space(&self) -> Metric3 {
+        Metric3 { xx: self.uu, xy: self.uv, xz: 0.0, yy: self.vv, yz: 0.0, zz: self.det().sqrt() }
+    }
+
     /// `M d`.
     #[inline]
     pub fn times(&self, d: DVec2) -> DVec2 {

@@ -79,7 +79,7 @@ impl Path {
 
     fn write(&self, svg: &mut String, attributes: &str) {
         if !self.data.is_empty() {
-            let _ = write!(svg, "<path {attributes} d=\"{}\"/>\n", self.data.trim_end());
+            let _ = writeln!(svg, "<path {attributes} d=\"{}\"/>", self.data.trim_end());
         }
     }
 }

@@ -84,7 +84,7 @@ fn loops_are_even_and_at_least_four_long() {
             for face in &domain.faces {
                 for walk in &face.walks {
                     let n: usize = walk.iter().map(|s| divided.chains[s.curve.index()].len() - 1).sum();
-                    assert!(n % 2 == 0 && n >= 4, "{name} at {h}: {n}");
+                    assert!(n.is_multiple_of(2) && n >= 4, "{name} at {h}: {n}");
                 }
             }
         }
@@ -147,7 +147,7 @@ fn a_fixed_odd_loop_is_refused_with_its_name() {
     assert!(says.contains("outer loop of \"plate\" has 17 segments"), "{says}");
     let mut specs = square();
     specs.0.iter_mut().zip([1, 1, 1]).for_each(|(c, n)| c.segments = Some(n));
-    assert_eq!(counts(specs, 0.1), [1, 1, 1, 9]);
+    assert_eq!(counts(specs, 0.1), [1, 1, 1, 11]);
 }
 
 #[test]
@@ -175,7 +175,10 @@ fn loops_fixed_too_short_are_refused() {
 
 #[test]
 fn absurd_sizes_are_refused_before_anything_is_allocated() {
-    assert!(refusal(square(), 1e-12).contains("target sizes long"));
+    assert!(refusal(square(), 1e-12).contains("would get 1.000e12 segments"));
+    let mut specs = square();
+    specs.0[0].segments = Some(u32::MAX);
+    assert!(refusal(specs, 0.1).contains("fewer segments"));
     assert!(refusal(square(), 1e-200).contains("target sizes long"));
 }
 

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::{METRIC, Shape, shape};
+use super::input::Input;
+use super::{Shape, shape};
 use crate::core::fault::Fault;
-use crate::core::io::mesh_file::{Data, Group, MeshFile, positive_definite};
+use crate::core::io::mesh_file::{Group, MeshFile};
 use crate::core::io::numbering::{Numbering, sort_by_number};
-use crate::core::io::scan::{ByteOrder, Scanner, parse_integer, shown};
-use crate::core::metric::tensor::Metric3;
+use crate::core::io::scan::{ByteOrder, Scanner, shown};
 
 /// Reads a mesh from the bytes of an MSH file; `name` is how messages call it.
 ///
@@ -50,7 +50,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
         let missing = if reader.nodes.is_none() { "$Nodes" } else { "$Elements" };
         return Err(Fault::new(format!("There is no section {missing}"))
             .at(scanner.name())
-            .remedy("Save it with nodes and elements, without parametric coordinates"));
+            .remedy("Save it with its nodes and elements"));
     }
     reader.file.skipped = reader.skipped.into_iter().map(|(name, count)| (name.to_string(), count)).collect();
     Ok(reader.file)
@@ -63,77 +63,19 @@ enum Version {
     Four,
 }
 
-/// Numbers from text or from binary, by what the header says.
-struct Input<'a> {
-    scanner: Scanner<'a>,
-    binary: Option<ByteOrder>,
-}
-
-impl Input<'_> {
-    /// A C `int`.
-    fn int(&mut self, what: &str) -> Result<i64, Fault> {
-        match self.binary {
-            None => self.scanner.integer(what),
-            Some(order) => self.scanner.binary_i32(order, what).map(i64::from),
-        }
-    }
-
-    /// A tag: an `int` that is not negative.
-    fn tag(&mut self, what: &str) -> Result<u64, Fault> {
-        let tag = self.int(what)?;
-        u64::try_from(tag).map_err(|_| self.scanner.fault(format!("{tag} stands where {what} is expected")))
-    }
-
-    /// A C `size_t`.
-    fn size(&mut self, what: &str) -> Result<u64, Fault> {
-        match self.binary {
-            None => self.scanner.whole(what),
-            Some(order) => self.scanner.binary_u64(order, what),
-        }
-    }
-
-    /// A C `double`, which must be finite.
-    fn finite(&mut self, what: &str) -> Result<f64, Fault> {
-        let value = self.real(what)?;
-        self.scanner.must_be_finite(value, what)
-    }
-
-    fn real(&mut self, what: &str) -> Result<f64, Fault> {
-        match self.binary {
-            None => self.scanner.real(what),
-            Some(order) => self.scanner.binary_f64(order, what),
-        }
-    }
-
-    /// Whether `count` things can still come: of `text` bytes at least in text, of `binary` bytes in binary.
-    fn fits(&self, count: u64, text: usize, binary: usize, what: &str) -> Result<usize, Fault> {
-        self.scanner.fits(count, if self.binary.is_some() { binary } else { text }, what)
-    }
-
-    /// The count that stands in text on a line of its own, in binary files of version 2 too.
-    fn count_line(&mut self, text: usize, binary: usize, what: &str) -> Result<usize, Fault> {
-        let line = self.scanner.line().unwrap_or_default();
-        let count = parse_integer(line).and_then(|count| u64::try_from(count).ok());
-        let Some(count) = count else {
-            return Err(self.scanner.fault(format!("\"{}\" stands where {what} is expected", shown(line))));
-        };
-        self.fits(count, text, binary, what)
-    }
-}
-
-struct Reader<'a> {
-    input: Input<'a>,
+pub(super) struct Reader<'a> {
+    pub input: Input<'a>,
     version: Option<Version>,
-    file: MeshFile,
+    pub file: MeshFile,
     /// From node tags to indices, as soon as the nodes have been read.
-    nodes: Option<Numbering>,
+    pub nodes: Option<Numbering>,
     has_elements: bool,
     /// Version 4: the first physical group of an entity, by dimension and tag.
     physical: FxHashMap<(i64, i64), u32>,
     /// Element tags of lines, triangles and quadrilaterals.
-    numbers: [Vec<u64>; 3],
+    pub numbers: [Vec<u64>; 3],
     /// From element tags to indices (triangles first), made when data asks for it; `None` inside: tags are not unique.
-    elements: Option<Option<Numbering>>,
+    pub elements: Option<Option<Numbering>>,
     skipped: BTreeMap<&'static str, usize>,
 }
 
@@ -158,6 +100,10 @@ impl Reader<'_> {
             (b"Entities", Version::Four) => self.entities()?,
             (b"Nodes", _) => self.nodes(version)?,
             (b"Elements", _) => self.elements(version)?,
+            (b"ParametricNodes", _) => {
+                let fault = self.input.scanner.fault("Nodes with parametric coordinates are not read in this version");
+                return Err(fault.remedy("Save it without them (in Gmsh: Mesh.SaveParametric = 0), or as MSH 4.1"));
+            }
             (b"NodeData" | b"ElementData", _) if self.has_elements => return self.data(section),
             _ => return self.skip(section),
         }
@@ -165,7 +111,7 @@ impl Reader<'_> {
     }
 
     /// Goes behind a section that is not read.
-    fn skip(&mut self, section: &[u8]) -> Result<(), Fault> {
+    pub fn skip(&mut self, section: &[u8]) -> Result<(), Fault> {
         let start = self.input.scanner.mark();
         let end = [b"$End", section].concat();
         if !self.input.scanner.skip_past(&end) {
@@ -177,7 +123,7 @@ impl Reader<'_> {
     }
 
     /// The end of a section that has been read whole.
-    fn end(&mut self, section: &[u8]) -> Result<(), Fault> {
+    pub fn end(&mut self, section: &[u8]) -> Result<(), Fault> {
         let end = format!("$End{}", shown(section));
         let word = self.input.scanner.need(&end)?;
         if word != end.as_bytes() {
@@ -212,6 +158,7 @@ impl Reader<'_> {
             return Err(scanner.fault(format!("File type {binary} with numbers of {size} bytes is not read")));
         }
         if binary == 1 {
+            scanner.set_binary();
             self.input.binary = match scanner.binary_i32(ByteOrder::Little, "the byte order")? {
                 1 => Some(ByteOrder::Little),
                 0x0100_0000 => Some(ByteOrder::Big),
@@ -491,85 +438,5 @@ impl Reader<'_> {
             Some(index) => Ok(index),
             None => Err(self.input.scanner.fault(format!("An element has the node {tag}, which does not exist"))),
         }
-    }
-
-    /// $NodeData or $ElementData.
-    fn data(&mut self, section: &[u8]) -> Result<(), Fault> {
-        let of_nodes = section == b"NodeData";
-        let scanner = &mut self.input.scanner;
-        let mut name = String::new();
-        let names = scanner.count("a number of names", 2)?;
-        scanner.line();
-        for place in 0..names {
-            let line = scanner.line().unwrap_or_default();
-            if place == 0 {
-                name = String::from_utf8_lossy(line).trim_matches('"').to_string();
-            }
-        }
-        for _ in 0..scanner.count("a number of real tags", 2)? {
-            scanner.real("a real tag")?;
-        }
-        let mut tags = [0; 3];
-        for place in 0..scanner.count("a number of integer tags", 2)? {
-            let tag = scanner.integer("an integer tag")?;
-            if let Some(slot) = tags.get_mut(place) {
-                *slot = tag;
-            }
-        }
-        scanner.line();
-        let [_, components, count] = tags;
-        let things = if of_nodes { self.file.points.len() } else { self.file.triangles.len() + self.file.quads.len() };
-        let (components, count) = (components.max(0) as u64, count.max(0) as u64);
-        let is_metric = of_nodes && components == 9 && name == METRIC;
-        // Data that cannot cover everything is left out; to make room for it could cost more than its bytes.
-        if things == 0 || (count as usize) < things || !(components == 1 || is_metric) {
-            return self.skip(section);
-        }
-        let components = components as usize;
-        let count = self.input.fits(count, 2 + 2 * components, 4 + 8 * components, "a number of values")?;
-        let mut values = vec![0.0; things * components];
-        let mut seen = vec![false; things];
-        for _ in 0..count {
-            let tag = self.input.tag("a node or element tag")?;
-            let index =
-                if of_nodes { self.nodes.as_ref().and_then(|nodes| nodes.index(tag)) } else { self.element_index(tag) };
-            let mut ignored = [0.0; 9];
-            let slots = match index.map(|index| index as usize) {
-                Some(index) => {
-                    seen[index] = true;
-                    &mut values[index * components..(index + 1) * components]
-                }
-                None => &mut ignored[..components],
-            };
-            for slot in slots {
-                *slot = self.input.real("a value")?;
-            }
-        }
-        let missing = seen.iter().position(|seen| !seen);
-        if is_metric {
-            if let Some(index) = missing {
-                return Err(self.input.scanner.fault(format!("The metric has no value for node {}", index + 1)));
-            }
-            let scanner = &self.input.scanner;
-            let metric = values.chunks_exact(9).zip(1u32..).map(|(m, node)| {
-                let metric = Metric3 { xx: m[0], xy: m[1], xz: m[2], yy: m[4], yz: m[5], zz: m[8] };
-                positive_definite(metric)
-                    .ok_or_else(|| scanner.fault(format!("The metric of node {node} is not positive definite")))
-            });
-            self.file.metric = Some(metric.collect::<Result<_, _>>()?);
-        } else if missing.is_none() {
-            let data = Data { name, values };
-            if of_nodes { self.file.point_data.push(data) } else { self.file.element_data.push(data) }
-        }
-        self.end(section)
-    }
-
-    /// The index of a triangle or quadrilateral by its tag.
-    fn element_index(&mut self, tag: u64) -> Option<u32> {
-        let numbers = &self.numbers;
-        self.elements
-            .get_or_insert_with(|| Numbering::new(&[&numbers[1][..], &numbers[2][..]].concat()).ok())
-            .as_ref()?
-            .index(tag)
     }
 }

@@ -168,9 +168,9 @@ fn a_mesh_lies_relative_to_its_case() {
 fn files_that_are_no_cases_are_refused_with_their_name() {
     let folder = tempfile::tempdir().unwrap();
     let fault = Case::read(folder.path()).unwrap_err();
-    assert_eq!(fault.what, "This is a directory");
+    assert_eq!(fault.what, "This is a folder");
     let fault = Case::read(&folder.path().join("nothing.toml")).unwrap_err();
-    assert!(fault.place.ends_with("nothing.toml") && fault.what.contains("cannot be read"), "{fault}");
+    assert!(fault.place.ends_with("nothing.toml") && fault.what.contains("no such file"), "{fault}");
     let binary = folder.path().join("binary.toml");
     std::fs::write(&binary, [b'v', 0xff, 0xfe]).unwrap();
     assert_eq!(Case::read(&binary).unwrap_err().what, "The file is not text (byte 1)");
@@ -182,4 +182,35 @@ fn files_that_are_no_cases_are_refused_with_their_name() {
 fn deep_nesting_is_refused_and_does_not_overflow_the_stack() {
     let fault = parse(&format!("version = 1\nnotes = {}", "[".repeat(200_000))).unwrap_err();
     assert!(fault.what.contains("not TOML"), "{fault}");
+}
+
+#[test]
+fn damaged_cases_are_read_or_refused_and_never_panic() {
+    let pieces = ["[", "]", "\"", "=", "\n", "{", "}", "-", "nan", "1e999", "0x", "'''", "[[curve]]\n", "\u{fe}", ","];
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = |n: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % n as u64) as usize
+    };
+    let mut refused = 0;
+    for round in 0..1500 {
+        let (name, text) = crate::core::io::built_in::CASES[round % crate::core::io::built_in::CASES.len()];
+        let mut characters: Vec<char> = text.chars().collect();
+        for _ in 0..=random(3) {
+            let at = random(characters.len());
+            match random(3) {
+                0 => drop(characters.drain(at..(at + 1 + random(12)).min(characters.len()))),
+                1 => drop(characters.splice(at..at, pieces[random(pieces.len())].chars())),
+                _ => characters.truncate(at.max(1)),
+            }
+        }
+        let damaged: String = characters.into_iter().collect();
+        if let Err(fault) = Case::parse(&damaged, name, "damaged.toml", Path::new("")) {
+            refused += 1;
+            assert!(fault.place.starts_with("damaged.toml") && !fault.what.is_empty(), "{fault}");
+        }
+    }
+    assert!(refused > 500, "{refused}");
 }

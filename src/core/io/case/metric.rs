@@ -1,7 +1,7 @@
 //! `[[metric]]` of a case file.
 
-use super::case_geometry::known_curves;
-use super::case_table::{Table, Value};
+use super::geometry::known_curves;
+use super::table::{Table, Value};
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::CurveSpec;
 use crate::core::metric::field::FieldSpec;

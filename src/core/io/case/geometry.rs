@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::case_table::{Table, Value};
+use super::table::{Table, Value};
 use crate::core::convert::parameters::nearest;
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::{CurveShape, CurveSpec, FaceSpec};

@@ -1,0 +1,40 @@
+//! `cases`: what is built in.
+
+use serde_json::json;
+
+use super::command_line::CasesArguments;
+use super::output::Target;
+use crate::core::convert::parameters::nearest;
+use crate::core::fault::Fault;
+use crate::core::io::built_in;
+
+/// Lists the built-in cases, or prints the file of one.
+pub(super) fn cases(arguments: &CasesArguments) -> Result<(), Fault> {
+    let text = match &arguments.name {
+        Some(name) => file(name)?.to_owned(),
+        None => list(arguments.json)?,
+    };
+    Target::StandardOutput.write(|out| out.write_all(text.as_bytes()))
+}
+
+fn file(name: &str) -> Result<&'static str, Fault> {
+    let case = built_in::CASES.iter().find(|case| case.0 == name);
+    case.map(|case| case.1).ok_or_else(|| {
+        let fault = Fault::new("There is no built-in case of this name").at(name);
+        match nearest(name, built_in::CASES.iter().map(|case| case.0)) {
+            Some(near) => fault.remedy(format!("The nearest is \"{near}\"; quadfront cases lists all")),
+            None => fault.remedy("quadfront cases lists them"),
+        }
+    })
+}
+
+fn list(json: bool) -> Result<String, Fault> {
+    let titles = built_in::CASES.iter().filter_map(|case| built_in::named(case.0)?.map(|c| (case.0, c.title)).into());
+    let titles = titles.collect::<Result<Vec<_>, Fault>>()?;
+    if json {
+        let list: Vec<_> = titles.iter().map(|(name, title)| json!({ "name": name, "title": title })).collect();
+        return Ok(format!("{:#}\n", serde_json::Value::from(list)));
+    }
+    let width = titles.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    Ok(titles.iter().map(|(name, title)| format!("{name:width$}  {title}\n")).collect())
+}

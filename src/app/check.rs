@@ -1,0 +1,62 @@
+//! `check`: whether a mesh in a file is sound.
+
+use std::process::ExitCode;
+
+use super::command_line::CheckArguments;
+use super::input::{self, InputFormat};
+use super::output::{self, tell};
+use super::{FALLS_SHORT, complain};
+use crate::core::fault::Fault;
+use crate::core::io::format::Format;
+use crate::core::mesh::soundness::{Allow, Soundness, examine};
+
+/// Examines a mesh: success where it is sound, exit 1 where it falls short.
+pub(super) fn check(arguments: &CheckArguments) -> Result<ExitCode, Fault> {
+    let output_taken = output::check(&[arguments.report.as_ref()], None)?;
+    let from = arguments.from.map(InputFormat::Mesh);
+    let name = arguments.mesh.as_str();
+    if name == "-" && from.is_none() {
+        return Err(Fault::new("The format is not known").at("standard input").remedy("Write --from msh"));
+    }
+    let mesh = input::read_mesh(name, from)?.ok_or_else(|| {
+        let known = Format::ALL.map(|format| format!(".{}", format.extension())).join(", ");
+        Fault::new("This is a case, and meshes are checked").at(name).remedy(format!("Name a mesh: {known}"))
+    })?;
+    let found = examine(&mesh);
+    if let Some(target) = &arguments.report {
+        let json = serde_json::to_string_pretty(&found).expect("findings have nothing that JSON has not");
+        target.write(|out| writeln!(out, "{json}"))?;
+    }
+    if !arguments.quiet {
+        tell(&facts(name, &found), output_taken);
+    }
+    let allow = Allow { triangles: arguments.triangles, seams: arguments.seams, branching: arguments.branching };
+    Ok(match found.verdict(allow) {
+        Ok(()) => {
+            if !arguments.quiet {
+                tell("sound\n", output_taken);
+            }
+            ExitCode::SUCCESS
+        }
+        Err(fault) => {
+            complain(&fault.at(name));
+            ExitCode::from(FALLS_SHORT)
+        }
+    })
+}
+
+fn facts(name: &str, found: &Soundness) -> String {
+    format!(
+        "{name}: {} quadrilaterals, {} triangles, {} nodes, {} edges\n\
+         {} boundary edges in {} loops, {} pieces, Euler characteristic {}, area {}\n",
+        found.quads,
+        found.triangles,
+        found.nodes,
+        found.edges,
+        found.boundary_edges,
+        found.boundary_loops,
+        found.components,
+        found.euler,
+        found.area
+    )
+}

@@ -1,0 +1,165 @@
+//! The words of the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use super::input::{InputFormat, input_format, mesh_format, setting};
+use super::output::Target;
+use crate::core::io::format::Format;
+
+/// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
+#[derive(Parser)]
+#[command(name = "quadfront", version, about, max_term_width = 100)]
+#[command(
+    after_help = "Exit codes: 0 done; 1 a checked mesh falls short; 2 bad input or usage; 130 stopped by Ctrl-C."
+)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub(super) enum Command {
+    /// Make an all-quadrilateral mesh of a case or of a triangle mesh
+    Convert(ConvertArguments),
+    /// Make the triangles that a conversion starts from, with their metric
+    Background(BackgroundArguments),
+    /// Examine a quadrilateral mesh in a file: exit 1 when it falls short
+    Check(CheckArguments),
+    /// Draw a mesh, or the mesh of a case, as SVG
+    Render(RenderArguments),
+    /// List the built-in cases
+    Cases(CasesArguments),
+}
+
+/// What a mesh is made from.
+#[derive(Args)]
+pub(super) struct Source {
+    /// A built-in case, a case file (.toml), a mesh (.msh .mesh .vtu .obj .inp), or - for standard input
+    #[arg(value_name = "CASE|MESH")]
+    pub input: String,
+    /// What is read where the name does not tell: toml (a case), msh, mesh, vtu, obj, inp
+    #[arg(long, value_name = "FORMAT", value_parser = input_format)]
+    pub from: Option<InputFormat>,
+    /// The metric at the nodes of MESH (Medit)
+    #[arg(long, value_name = "FILE")]
+    pub sol: Option<PathBuf>,
+    /// Set a parameter of the case, for example size_scale=0.5 (may be given several times)
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+    /// Give a boundary of a fixed odd count of segments one segment more instead of refusing it
+    #[arg(long)]
+    pub split_odd: bool,
+    /// No progress and no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Where a mesh goes.
+#[derive(Args)]
+pub(super) struct Destination {
+    /// The mesh: .msh .mesh .vtu .obj .inp, or - for standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<Target>,
+    /// The format of the mesh where its name does not tell: msh, mesh, vtu, obj, inp
+    #[arg(long, value_name = "FORMAT", value_parser = mesh_format)]
+    pub format: Option<Format>,
+    /// Write Gmsh's version 2.2 instead of 4.1
+    #[arg(long)]
+    pub msh2: bool,
+    /// A picture (.svg), or - for standard output
+    #[arg(long, value_name = "FILE.svg")]
+    pub picture: Option<Target>,
+}
+
+#[derive(Args)]
+pub(super) struct ConvertArguments {
+    #[command(flatten)]
+    pub source: Source,
+    #[command(flatten)]
+    pub destination: Destination,
+    /// The report as JSON, or - for standard output
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<Target>,
+}
+
+#[derive(Args)]
+pub(super) struct BackgroundArguments {
+    #[command(flatten)]
+    pub source: Source,
+    #[command(flatten)]
+    pub destination: Destination,
+}
+
+#[derive(Args)]
+pub(super) struct CheckArguments {
+    /// The mesh, or - for standard input
+    pub mesh: String,
+    /// The format of the mesh where its name does not tell: msh, mesh, vtu, obj, inp
+    #[arg(long, value_name = "FORMAT", value_parser = mesh_format)]
+    pub from: Option<Format>,
+    /// Allow triangles
+    #[arg(long)]
+    pub triangles: bool,
+    /// Allow nodes at one place on the boundary (cracks, surfaces cut open)
+    #[arg(long)]
+    pub seams: bool,
+    /// Allow edges of more than two elements (surfaces that meet in a curve)
+    #[arg(long)]
+    pub branching: bool,
+    /// What was found as JSON, or - for standard output
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<Target>,
+    /// Say nothing but what is wrong
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+#[derive(Args)]
+pub(super) struct RenderArguments {
+    #[command(flatten)]
+    pub source: Source,
+    /// The picture (.svg), or - for standard output
+    #[arg(short, long, value_name = "FILE.svg")]
+    pub out: Target,
+}
+
+#[derive(Args)]
+pub(super) struct CasesArguments {
+    /// As JSON: name and title of each
+    #[arg(long)]
+    pub json: bool,
+    /// Print the file of one case, to begin one's own from
+    #[arg(value_name = "CASE", conflicts_with = "json")]
+    pub name: Option<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_words_do_not_contradict_each_other() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn what_the_issue_writes_is_understood() {
+        for line in [
+            "quadfront convert example1 --out example1.msh --report example1.json",
+            "quadfront convert - -o - --format msh --from toml --set size_scale=0.5 --set c=1.5 --msh2 --quiet",
+            "quadfront convert plate.mesh --sol plate.sol --split-odd -o quads.vtu --picture quads.svg",
+            "quadfront background example1 --out triangles.mesh",
+            "quadfront check quads.msh --seams --branching",
+            "quadfront render example1 -o example1.svg",
+            "quadfront cases --json",
+        ] {
+            assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
+        }
+        for line in ["quadfront", "quadfront convert", "quadfront convert a --set size_scale", "quadfront check"] {
+            assert!(Cli::try_parse_from(line.split(' ')).is_err(), "{line}");
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! `convert` and `background`: from a case or a mesh to files.
+
+use std::process::ExitCode;
+
+use super::command_line::{BackgroundArguments, ConvertArguments};
+use super::output::{self, MeshTarget, Target, tell};
+use super::progress::Progress;
+use super::{FALLS_SHORT, complain, input, work};
+use crate::core::convert::parameters::Parameters;
+use crate::core::fault::Fault;
+use crate::core::io::case::Case;
+use crate::core::io::mesh_file::MeshFile;
+use crate::core::io::report::background_summary;
+use crate::core::progress::{Stage, Watch};
+use crate::render::picture::Picture;
+use crate::render::vector::svg;
+
+/// Converts, and writes the mesh, the report and the picture that are asked for.
+///
+/// Exit 1, as of a check, where the result is not valid: that is a bug, and nobody should go on with such a mesh unwarned.
+pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
+    let (source, destination) = (&arguments.source, &arguments.destination);
+    let mesh_target = MeshTarget::of(destination)?;
+    let targets = [destination.out.as_ref(), arguments.report.as_ref()];
+    let output_taken = output::check(&targets, destination.picture.as_ref())?;
+    let mut progress = Progress::new(source.quiet);
+    progress.tell(Stage::Read, 0, 0);
+    let input = input::read(source)?;
+    let mut quads = work::convert(&input.case, &mut progress)?;
+    progress.tell(Stage::Write, 0, 0);
+    write(mesh_target.as_ref(), &quads.file)?;
+    draw(destination.picture.as_ref(), &input.case, &quads.file)?;
+    quads.report.timing = progress.finish();
+    if let Some(target) = &arguments.report {
+        target.write(|out| out.write_all(quads.report.json().as_bytes()))?;
+    }
+    if !source.quiet {
+        tell(&quads.report.summary(), output_taken);
+        remind(mesh_target.is_none() && destination.picture.is_none(), output_taken);
+    }
+    let Some(flaw) = &quads.flaw else { return Ok(ExitCode::SUCCESS) };
+    complain(flaw);
+    Ok(ExitCode::from(FALLS_SHORT))
+}
+
+/// Makes the background mesh, and writes it with its metric.
+pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
+    let (source, destination) = (&arguments.source, &arguments.destination);
+    let mesh_target = MeshTarget::of(destination)?;
+    let output_taken = output::check(&[destination.out.as_ref()], destination.picture.as_ref())?;
+    let mut progress = Progress::new(source.quiet);
+    progress.tell(Stage::Read, 0, 0);
+    let input = input::read(source)?;
+    let triangles = work::background(&input.case, &mut progress)?;
+    progress.tell(Stage::Write, 0, 0);
+    write(mesh_target.as_ref(), &triangles.file)?;
+    draw(destination.picture.as_ref(), &input.case, &triangles.file)?;
+    let timing = progress.finish();
+    if !source.quiet {
+        tell(&background_summary(&input.case, &triangles.statistics, &triangles.repairs, &timing), output_taken);
+        remind(mesh_target.is_none() && destination.picture.is_none(), output_taken);
+    }
+    Ok(())
+}
+
+fn write(target: Option<&MeshTarget>, mesh: &MeshFile) -> Result<(), Fault> {
+    target.map_or(Ok(()), |target| target.write(mesh))
+}
+
+/// Draws a mesh of a case, where a picture is asked for.
+pub(super) fn draw(target: Option<&Target>, case: &Case, mesh: &MeshFile) -> Result<(), Fault> {
+    let Some(target) = target else { return Ok(()) };
+    let set: Vec<_> = Parameters::KEYS
+        .iter()
+        .filter_map(|key| {
+            let text = case.parameters.text_of(key)?;
+            (Parameters::default().text_of(key)? != text).then(|| format!("{key} = {text}"))
+        })
+        .collect();
+    let description = format!(
+        "{} {}, case {}{}{}",
+        env!("CARGO_PKG_NAME"),
+        env!("CARGO_PKG_VERSION"),
+        case.name,
+        if set.is_empty() { "" } else { ", with " },
+        set.join(", ")
+    );
+    let picture = Picture { title: case.title.clone(), description, ..Picture::of_mesh(mesh) };
+    target.write(|out| out.write_all(svg::write(&picture, svg::COLUMN).as_bytes()))
+}
+
+/// Says that the mesh is nowhere, to who has forgotten to name a place for it.
+fn remind(nowhere: bool, output_taken: bool) {
+    if nowhere {
+        tell("No mesh was written: -o FILE writes it.\n", output_taken);
+    }
+}

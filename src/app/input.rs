@@ -1,0 +1,157 @@
+//! What is read: a built-in case, a case file, a mesh file, standard input.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::command_line::Source;
+use crate::core::convert::parameters::nearest;
+use crate::core::fault::Fault;
+use crate::core::io::built_in;
+use crate::core::io::case::Case;
+use crate::core::io::format::{self, Format};
+use crate::core::io::mesh_file::MeshFile;
+
+/// How messages call standard input.
+const STANDARD_INPUT: &str = "standard input";
+
+/// What an input is read as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum InputFormat {
+    /// A case in TOML.
+    Case,
+    /// A mesh.
+    Mesh(Format),
+}
+
+/// Reads `--from` where cases are possible.
+pub(super) fn input_format(text: &str) -> Result<InputFormat, String> {
+    if text == "toml" { Ok(InputFormat::Case) } else { mesh_format(text).map(InputFormat::Mesh) }
+}
+
+/// Reads the name of a mesh format.
+pub(super) fn mesh_format(text: &str) -> Result<Format, String> {
+    let known = || Format::ALL.map(Format::extension).join(", ");
+    let found = Format::ALL.into_iter().find(|format| format.extension() == text);
+    found.ok_or_else(|| format!("the formats of meshes are {}", known()))
+}
+
+/// Reads KEY=VALUE.
+pub(super) fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) => Ok((key.trim().to_owned(), value.trim().to_owned())),
+        None => Err("write KEY=VALUE, for example size_scale=0.5".to_owned()),
+    }
+}
+
+/// A case to work on; a mesh that came by standard input lies in a folder that goes with it.
+pub(super) struct Input {
+    pub case: Case,
+    _folder: Option<TempDir>,
+}
+
+/// The case of the arguments, with what they set.
+pub(super) fn read(source: &Source) -> Result<Input, Fault> {
+    let Input { mut case, _folder } = read_plain(source)?;
+    for (key, value) in &source.set {
+        case.parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
+    }
+    case.split_odd |= source.split_odd;
+    Ok(Input { case, _folder })
+}
+
+fn read_plain(source: &Source) -> Result<Input, Fault> {
+    let name = source.input.as_str();
+    let alone = |case| Input { case, _folder: None };
+    let case = match kind(name, source.from)? {
+        Kind::BuiltIn => built_in::named(name).expect("it was found by its name")?,
+        Kind::StandardInput(InputFormat::Case) => {
+            Case::from_bytes(&standard_input()?, "case", STANDARD_INPUT, Path::new(""))?
+        }
+        Kind::StandardInput(InputFormat::Mesh(format)) => {
+            // Meshes are read by path in `core`; the file's name is what its messages will say.
+            let refuse = |error: std::io::Error| Fault::new(format!("It cannot be kept: {error}")).at(STANDARD_INPUT);
+            let folder = tempfile::tempdir().map_err(refuse)?;
+            let path = folder.path().join("standard-input").with_extension(format.extension());
+            std::fs::write(&path, standard_input()?).map_err(refuse)?;
+            return Ok(Input { case: Case::of_mesh(path, source.sol.clone()), _folder: Some(folder) });
+        }
+        Kind::File(path, InputFormat::Mesh(_)) => return Ok(alone(Case::of_mesh(path, source.sol.clone()))),
+        Kind::File(path, InputFormat::Case) => Case::read(&path)?,
+    };
+    if source.sol.is_some() {
+        return Err(Fault::new("--sol goes with a mesh, and this is a case")
+            .at(name)
+            .remedy("Write mesh = \"...\" and sol = \"...\" in the case, or leave --sol out"));
+    }
+    Ok(alone(case))
+}
+
+/// The mesh of a file or of standard input as it is; `None` where the input is a case.
+pub(super) fn read_mesh(name: &str, from: Option<InputFormat>) -> Result<Option<MeshFile>, Fault> {
+    match kind(name, from)? {
+        Kind::StandardInput(InputFormat::Mesh(format)) => {
+            format::read_bytes(STANDARD_INPUT, &standard_input()?, format).map(Some)
+        }
+        Kind::File(path, InputFormat::Mesh(_)) => format::read_mesh(&path, None).map(Some),
+        _ => Ok(None),
+    }
+}
+
+enum Kind {
+    BuiltIn,
+    StandardInput(InputFormat),
+    File(PathBuf, InputFormat),
+}
+
+fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
+    if name == "-" {
+        return Ok(Kind::StandardInput(from.unwrap_or(InputFormat::Case)));
+    }
+    if from.is_none() && built_in::CASES.iter().any(|case| case.0 == name) {
+        return Ok(Kind::BuiltIn);
+    }
+    let path = PathBuf::from(name);
+    if path.is_dir() {
+        return Err(Fault::new("This is a folder").at(name).remedy("Name a file in it"));
+    }
+    if let Some(format) = from {
+        if let InputFormat::Mesh(format) = format
+            && Format::from_path(&path).ok() != Some(format)
+        {
+            return Err(Fault::new(format!("The name does not end in .{}", format.extension()))
+                .at(name)
+                .remedy("--from is for standard input; files are read by their extension"));
+        }
+        return Ok(Kind::File(path, format));
+    }
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        return Ok(Kind::File(path, InputFormat::Case));
+    }
+    match Format::from_path(&path) {
+        Ok(format) => Ok(Kind::File(path, InputFormat::Mesh(format))),
+        Err(_) if !path.exists() => {
+            let fault = Fault::new("There is neither a built-in case nor a file of this name").at(name);
+            Err(match nearest(name, built_in::CASES.iter().map(|case| case.0)) {
+                Some(near) => {
+                    fault.remedy(format!("The nearest built-in case is \"{near}\"; quadfront cases lists all"))
+                }
+                None => fault.remedy("quadfront cases lists the built-in ones"),
+            })
+        }
+        Err(mut fault) => {
+            fault.remedy += ", and .toml for cases";
+            Err(fault)
+        }
+    }
+}
+
+fn standard_input() -> Result<Vec<u8>, Fault> {
+    let mut bytes = Vec::new();
+    std::io::stdin()
+        .lock()
+        .read_to_end(&mut bytes)
+        .map_err(|error| Fault::new(format!("It cannot be read: {error}")).at(STANDARD_INPUT))?;
+    Ok(bytes)
+}

@@ -1,0 +1,128 @@
+//! Where things go: files, which appear whole or not at all, and standard output.
+
+use std::convert::Infallible;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use super::command_line::Destination;
+use crate::core::fault::Fault;
+use crate::core::io::format::{self, Format, WriteOptions};
+use crate::core::io::mesh_file::MeshFile;
+use crate::core::io::save;
+
+/// A file, or standard output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    /// `-`.
+    StandardOutput,
+    /// Anything else.
+    File(PathBuf),
+}
+
+impl FromStr for Target {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(if text == "-" { Target::StandardOutput } else { Target::File(text.into()) })
+    }
+}
+
+impl Target {
+    /// Refuses what could not be written, before any work is done for it.
+    fn check(&self) -> Result<(), Fault> {
+        let Target::File(path) = self else { return Ok(()) };
+        let place = path.display().to_string();
+        if path.is_dir() {
+            return Err(Fault::new("This is a folder").at(place).remedy("Name a file in it"));
+        }
+        match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+                Err(Fault::new(format!("The folder \"{}\" does not exist", folder.display()))
+                    .at(place)
+                    .remedy("Make it first, or name another place"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes by `write`.
+    pub fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Fault> {
+        match self {
+            Target::File(path) => save::save(path, write),
+            Target::StandardOutput => {
+                let mut out = BufWriter::with_capacity(1 << 18, io::stdout().lock());
+                let written = write(&mut out).and_then(|()| out.flush());
+                written.map_err(|error| Fault::new(format!("It cannot be written: {error}")).at("standard output"))
+            }
+        }
+    }
+}
+
+/// A mesh's place and format.
+pub(super) struct MeshTarget {
+    target: Target,
+    format: Format,
+    options: WriteOptions,
+}
+
+impl MeshTarget {
+    /// The place and format that the arguments name, if they name one.
+    pub fn of(destination: &Destination) -> Result<Option<MeshTarget>, Fault> {
+        let Some(target) = destination.out.clone() else { return Ok(None) };
+        let format = match (&target, destination.format) {
+            (_, Some(format)) => format,
+            (Target::File(path), None) => Format::from_path(path)?,
+            (Target::StandardOutput, None) => {
+                return Err(Fault::new("The format is not known").at("standard output").remedy("Write --format msh"));
+            }
+        };
+        if destination.msh2 && format != Format::Msh {
+            return Err(Fault::new("--msh2 is for .msh").remedy("Leave it out, or write a .msh"));
+        }
+        Ok(Some(MeshTarget { target, format, options: WriteOptions { msh2: destination.msh2 } }))
+    }
+
+    /// Writes the mesh; to standard output without what Medit keeps in a second file.
+    pub fn write(&self, mesh: &MeshFile) -> Result<(), Fault> {
+        match &self.target {
+            Target::File(path) => format::write_mesh(path, self.format, mesh, self.options),
+            Target::StandardOutput => self.target.write(|out| format::write_to(out, self.format, mesh, self.options)),
+        }
+    }
+}
+
+/// Checks that each target can be written, that no two are the same place, and that a picture is an SVG.
+///
+/// Returns whether standard output is one of them: then people are told on standard error.
+pub(super) fn check(targets: &[Option<&Target>], picture: Option<&Target>) -> Result<bool, Fault> {
+    let all: Vec<&Target> = targets.iter().copied().flatten().chain(picture).collect();
+    for (k, target) in all.iter().enumerate() {
+        target.check()?;
+        if all[..k].contains(target) {
+            let fault = Fault::new("Two outputs have the same place");
+            return Err(match target {
+                Target::StandardOutput => fault.at("standard output").remedy("Name a file for one of them"),
+                Target::File(path) => fault.at(path.display().to_string()).remedy("Name another file for one of them"),
+            });
+        }
+    }
+    if let Some(Target::File(path)) = picture
+        && !is_svg(path)
+    {
+        return Err(Fault::new("Pictures are written as .svg")
+            .at(path.display().to_string())
+            .remedy("Give the name this extension"));
+    }
+    Ok(all.contains(&&Target::StandardOutput))
+}
+
+fn is_svg(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg"))
+}
+
+/// Tells people: on standard output, or on standard error where something else is written to standard output.
+pub(super) fn tell(text: &str, on_standard_error: bool) {
+    // Who has closed the stream does not want to know.
+    let _ = if on_standard_error { write!(io::stderr(), "{text}") } else { write!(io::stdout(), "{text}") };
+}

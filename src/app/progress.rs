@@ -1,0 +1,119 @@
+//! How far the work is, shown on a terminal, and how long its parts took: `core` has no clock, this has.
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+
+use crate::core::io::report::grouped;
+use crate::core::progress::{Stage, Watch};
+
+/// Shows progress on standard error where that is a terminal, and measures the time of each stage.
+pub(super) struct Progress {
+    bar: ProgressBar,
+    now: Option<(Stage, Instant)>,
+    times: Vec<(Stage, f64)>,
+    total: u64,
+}
+
+impl Progress {
+    /// Nothing is shown where `quiet` or where standard error is no terminal.
+    pub fn new(quiet: bool) -> Progress {
+        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(None, target).with_style(style("{msg}"));
+        Progress { bar, now: None, times: Vec::new(), total: 0 }
+    }
+
+    /// Clears the line, and tells the seconds of each stage in the order of the work.
+    pub fn finish(mut self) -> Vec<(Stage, f64)> {
+        self.close();
+        self.bar.finish_and_clear();
+        self.times
+    }
+
+    fn close(&mut self) {
+        let Some((stage, since)) = self.now.take() else { return };
+        let seconds = since.elapsed().as_secs_f64();
+        match self.times.iter_mut().find(|time| time.0 == stage) {
+            Some(time) => time.1 += seconds,
+            None => self.times.push((stage, seconds)),
+        }
+    }
+
+    fn begin(&mut self, stage: Stage, total: u64) {
+        self.close();
+        self.now = Some((stage, Instant::now()));
+        // First a style without numbers: each of the changes below may be drawn.
+        self.bar.set_style(style("{msg}"));
+        self.bar.set_message(words(stage));
+        self.bar.reset();
+        self.set_total(total);
+    }
+
+    fn set_total(&mut self, total: u64) {
+        self.total = total;
+        self.bar.set_length(total);
+        self.bar.reset_eta();
+        self.bar.set_style(style(if total > 0 { "{msg}: {done} of about {all} {bar:20} {left}" } else { "{msg}" }));
+    }
+}
+
+/// A style whose numbers are written as everywhere else in the program.
+fn style(template: &str) -> ProgressStyle {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    // Writing to a line of text cannot fail.
+    style
+        .with_key("done", |state: &ProgressState, out: &mut dyn Write| {
+            let _ = out.write_str(&grouped(state.pos() as usize));
+        })
+        .with_key("all", |state: &ProgressState, out: &mut dyn Write| {
+            let _ = out.write_str(&grouped(state.len().unwrap_or(0) as usize));
+        })
+        .with_key("left", |state: &ProgressState, out: &mut dyn Write| {
+            let seconds = state.eta().as_secs_f64();
+            let _ =
+                if seconds < 9.95 { write!(out, "{seconds:.1} s left") } else { write!(out, "{seconds:.0} s left") };
+        })
+}
+
+impl Watch for Progress {
+    fn tell(&mut self, stage: Stage, done: u64, total: u64) {
+        if self.now.is_none_or(|(now, _)| now != stage) {
+            self.begin(stage, total);
+        } else if total != self.total {
+            self.set_total(total);
+        }
+        self.bar.set_position(done.min(total));
+        self.bar.tick();
+    }
+}
+
+fn words(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Read => "Reading",
+        Stage::Divide => "Dividing the curves",
+        Stage::Triangulate => "Triangulating",
+        Stage::Adapt => "Adapting the triangles",
+        Stage::Convert => "Converting",
+        Stage::Finish => "Cleaning up and smoothing",
+        Stage::Check => "Checking and measuring",
+        Stage::Write => "Writing",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stage_that_comes_back_is_told_once_and_in_its_first_place() {
+        let mut progress = Progress::new(true);
+        for (stage, done) in
+            [(Stage::Divide, 0), (Stage::Adapt, 0), (Stage::Adapt, 5), (Stage::Divide, 0), (Stage::Convert, 0)]
+        {
+            progress.tell(stage, done, 10);
+        }
+        let stages: Vec<_> = progress.finish().into_iter().map(|time| time.0).collect();
+        assert_eq!(stages, [Stage::Divide, Stage::Adapt, Stage::Convert]);
+    }
+}

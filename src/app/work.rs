@@ -1,0 +1,130 @@
+//! The work of `core` as the commands need it: from a case to a mesh that can be written, and what is told about it.
+
+use std::collections::BTreeMap;
+
+use crate::core::background::adapt::Adapted;
+use crate::core::convert::conversion::{self, Background, Converted};
+use crate::core::convert::converter::Counts;
+use crate::core::fault::Fault;
+use crate::core::io::case::Case;
+use crate::core::io::export::Export;
+use crate::core::io::mesh_file::MeshFile;
+use crate::core::io::report::{CaseTold, LastResort, Program, Report};
+use crate::core::io::statistics::Statistics;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::soundness::{Allow, examine};
+use crate::core::metric::field::Place;
+use crate::core::progress::{Stage, Watch};
+
+/// The triangles that a conversion starts from.
+pub(super) struct Triangles {
+    /// The mesh with its metric, for files.
+    pub file: MeshFile,
+    /// What it is like.
+    pub statistics: Statistics,
+    /// What was mended in a mesh that was given.
+    pub repairs: Vec<String>,
+}
+
+/// A finished conversion.
+pub(super) struct Quads {
+    /// The mesh, for files.
+    pub file: MeshFile,
+    /// What is told about it; its timing is still empty.
+    pub report: Report,
+    /// What a check of the mesh found wrong: then there is a bug, and the mesh must not pass for valid.
+    pub flaw: Option<Fault>,
+}
+
+/// Makes the triangles of a case.
+pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
+    let Background { mesh, sizing, regions, repairs, .. } = conversion::background(case, watch)?;
+    watch.tell(Stage::Check, 0, 0);
+    let mut export = Export::of(&mesh, &regions);
+    let statistics = Statistics::measure(export.measured(), &sizing)?;
+    let places = export.file.points.iter().map(|p| Place::in_plane(p.truncate()));
+    export.file.metric = Some(places.map(|place| sizing.metric3(&place)).collect::<Result<_, _>>()?);
+    Ok(Triangles { file: export.file, statistics, repairs })
+}
+
+/// Converts a case, checks and measures the result.
+pub(super) fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Quads, Fault> {
+    let converted = conversion::convert(case, watch)?;
+    watch.tell(Stage::Check, 0, 0);
+    let export = Export::of(&converted.mesh, &converted.regions);
+    let flaw = flaw(&converted.mesh, &export.file);
+    let resort = converted.last_resort.quads();
+    let report = Report {
+        program: Program::this(),
+        case: CaseTold::of(case),
+        parameters: case.parameters.clone(),
+        background_triangles: converted.triangles,
+        regions: converted.regions.len(),
+        valid: flaw.is_none(),
+        mesh: Statistics::measure(export.measured(), &converted.sizing)?,
+        last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
+        repairs: converted.repairs.clone(),
+        events: events(&converted),
+        timing: Vec::new(),
+    };
+    Ok(Quads { file: export.file, report, flaw })
+}
+
+/// Everything that is checked on a finished mesh: its structure, exact convexity, and the file as others will see it.
+fn flaw(mesh: &Mesh, file: &MeshFile) -> Option<Fault> {
+    if let Err(what) = mesh.check() {
+        return Some(Fault::new(format!("The mesh is not sound: {what}")));
+    }
+    // Both sides of a crack lie at the same place.
+    examine(file).verdict(Allow { seams: true, ..Allow::default() }).err()
+}
+
+fn events(converted: &Converted) -> BTreeMap<String, u64> {
+    let Adapted { divisions, collapses, swaps, moves } = converted.adapted;
+    let (resort, finished) = (converted.last_resort, converted.finished);
+    let cleaned_up = finished.cleaned_up;
+    let Counts {
+        steps,
+        formed,
+        right_replaced,
+        rescued,
+        rolled_back,
+        deferred,
+        seamed,
+        split,
+        enhanced,
+        removed,
+        closed,
+    } = converted.counts;
+    let front = [
+        ("front_closed", closed),
+        ("front_deferred", deferred),
+        ("front_enhanced", enhanced),
+        ("front_formed", formed),
+        ("front_node_removed", removed),
+        ("front_rescued", rescued),
+        ("front_right_replaced", right_replaced),
+        ("front_rolled_back", rolled_back),
+        ("front_seam", seamed),
+        ("front_split", split),
+        ("front_step", steps),
+    ];
+    let counts = [
+        ("background_collapse", collapses),
+        ("background_division", divisions),
+        ("background_move", moves),
+        ("background_swap", swaps),
+        ("clean_up_collapse", cleaned_up.collapses),
+        ("clean_up_doublet", cleaned_up.doublets),
+        ("clean_up_opening", cleaned_up.openings),
+        ("clean_up_refused", cleaned_up.refused),
+        ("clean_up_rotation", cleaned_up.rotations),
+        ("last_resort_division", resort.divided),
+        ("last_resort_merge", resort.merged),
+        ("last_resort_recut", resort.recut),
+        ("last_resort_template_quad", resort.template_quads),
+        ("smoothing_move", finished.moves),
+    ];
+    let counts = counts.into_iter().map(|(name, count)| (name, count as u64));
+    counts.chain(front).map(|(name, count)| (name.to_owned(), count)).collect()
+}

@@ -1,0 +1,277 @@
+use glam::DVec3;
+use proptest::prelude::*;
+
+use super::*;
+use crate::core::background::discretise::tests::Uniform;
+use crate::core::background::triangulate::divide_and_triangulate;
+use crate::core::geometry::fixtures::{built, square, square_with_hole};
+use crate::core::io::mesh_file::Group;
+
+fn mesh(points: &[(f64, f64)], triangles: &[[u32; 3]]) -> MeshFile {
+    MeshFile {
+        points: points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect(),
+        triangles: triangles.to_vec(),
+        ..MeshFile::default()
+    }
+}
+
+/// A square of four triangles around its centre, node 4.
+fn star() -> MeshFile {
+    mesh(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.5)], &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+}
+
+/// The same with triangle 4 missing: three triangles, a loop of five.
+fn odd_fan() -> MeshFile {
+    let mut file = star();
+    file.triangles.pop();
+    file
+}
+
+fn refusal(file: &MeshFile) -> String {
+    import(file, false).unwrap_err().to_string()
+}
+
+#[test]
+fn a_sound_mesh_comes_in_as_it_is() {
+    let imported = import(&star(), false).unwrap();
+    assert_eq!(imported.set.triangles, star().triangles);
+    assert_eq!(imported.set.uv.len(), 5);
+    assert_eq!(imported.repairs, Vec::<String>::new());
+    assert_eq!(imported.regions, ["region 0"]);
+    assert_eq!(imported.origin, [[0, 0], [1, 1], [2, 2], [3, 3], [4, 4]]);
+}
+
+#[test]
+fn clockwise_duplicate_and_orphan_things_are_repaired_and_reported() {
+    let mut file = star();
+    file.points.push(DVec3::new(7.0, 7.0, 0.0));
+    file.triangles[1].swap(0, 1);
+    file.triangles.push([0, 3, 4]);
+    let imported = import(&file, false).unwrap();
+    assert_eq!(imported.set.triangles.len(), 4);
+    assert_eq!(
+        imported.repairs,
+        [
+            "1 point without triangles was left out",
+            "2 clockwise triangles were turned",
+            "1 duplicate triangle was left out"
+        ]
+    );
+}
+
+#[test]
+fn quadrilaterals_are_refused() {
+    let mut file = star();
+    file.quads = vec![[0, 1, 2, 3]; 12];
+    assert!(refusal(&file).contains("12 of its 16 elements are quadrilaterals"));
+    file.triangles.clear();
+    assert!(refusal(&file).contains("quadrilaterals already: all of its 12"));
+    file.quads.clear();
+    file.skipped = vec![("tetrahedron".to_owned(), 3)];
+    assert!(refusal(&file).contains("no triangles, only 3 tetrahedron"));
+}
+
+#[test]
+fn curved_meshes_are_refused_with_their_range_of_z() {
+    let mut file = star();
+    file.points.iter_mut().for_each(|p| p.z = 3.0);
+    assert!(import(&file, false).is_ok());
+    file.points[4].z = 3.25;
+    assert!(refusal(&file).contains("z runs from 3 to 3.25"));
+}
+
+#[test]
+fn bad_numbers_are_refused() {
+    let mut file = star();
+    file.points[2].x = f64::NAN;
+    assert!(refusal(&file).contains("Point 3 is (NaN, 1, 0)"));
+    let mut file = star();
+    file.triangles[2][1] = 9;
+    assert!(refusal(&file).contains("Triangle 3 has the point 10, and there are 5"));
+    file.triangles[2][1] = u32::MAX;
+    assert!(refusal(&file).contains("4294967296"));
+}
+
+#[test]
+fn flat_triangles_are_refused_with_number_and_place() {
+    let mut file = star();
+    file.points[4] = DVec3::new(0.5, 0.0, 0.0);
+    let says = refusal(&file);
+    assert!(says.contains("Triangle 1 is without area") && says.contains("(0.5, 0)"), "{says}");
+    file.points[4].y = 1e-9;
+    assert!(refusal(&file).contains("Triangle 1 is only 1e-9 as high"));
+    let mut file = star();
+    file.triangles[3] = [3, 3, 4];
+    assert!(refusal(&file).contains("Triangle 4 is without area"));
+}
+
+#[test]
+fn edges_of_three_triangles_and_overlaps_are_refused() {
+    let mut file = star();
+    file.points.push(DVec3::new(0.6, 0.2, 0.0));
+    file.triangles.push([4, 0, 5]);
+    let says = refusal(&file);
+    assert!(says.contains("3 triangles share one edge: 1, 4, 5"), "{says}");
+    let file = mesh(&[(0.0, 0.0), (1.0, 0.0), (0.5, 1.0), (0.5, 2.0)], &[[0, 1, 2], [0, 1, 3]]);
+    assert!(refusal(&file).contains("triangles 1 and 2 overlap"));
+}
+
+#[test]
+fn pinched_nodes_are_split_and_keep_their_point() {
+    let mut file = star();
+    file.triangles.extend([[2, 5, 6], [2, 6, 7]]);
+    file.points.extend([(2.0, 1.0), (2.0, 2.0), (1.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0)));
+    let imported = import(&file, false).unwrap();
+    assert_eq!(imported.set.uv.len(), 9);
+    assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(7));
+    assert_eq!(imported.repairs, ["1 node was split where triangles meet in a point only"]);
+}
+
+#[test]
+fn several_components_are_all_kept() {
+    let mut file = star();
+    let shifted: Vec<DVec3> = file.points.iter().map(|p| *p + 5.0 * DVec3::X).collect();
+    let more: Vec<[u32; 3]> = file.triangles.iter().map(|t| t.map(|n| n + 5)).collect();
+    file.points.extend(shifted);
+    file.triangles.extend(more);
+    let imported = import(&file, false).unwrap();
+    assert_eq!((imported.set.uv.len(), imported.set.triangles.len()), (10, 8));
+}
+
+#[test]
+fn nodes_at_one_place_stay_the_two_sides_of_a_crack() {
+    // The star with its edge from node 0 to the centre opened: node 5 is the other side of node 0.
+    let mut file = star();
+    file.points.push(DVec3::new(0.0, 0.0, 0.0));
+    file.triangles[3] = [3, 5, 4];
+    let imported = import(&file, false).unwrap();
+    assert_eq!(imported.set.uv.len(), 6);
+    assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(5));
+    assert_eq!(imported.repairs, ["1 point stands at the place of another: taken as the other side of a crack"]);
+}
+
+#[test]
+fn regions_are_cut_apart_and_named() {
+    let mut file = star();
+    file.triangle_tags = vec![7, 7, 3, 3];
+    file.groups = vec![Group { dimension: 2, tag: 7, name: "steel".to_owned() }];
+    let imported = import(&file, false).unwrap();
+    assert_eq!(imported.regions, ["region 3", "steel"]);
+    assert_eq!(imported.set.region, [1, 1, 0, 0]);
+    assert_eq!(imported.set.uv.len(), 8);
+    assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(4));
+}
+
+#[test]
+fn an_odd_part_is_refused_with_a_loop_and_its_place() {
+    let says = refusal(&odd_fan());
+    assert!(
+        says.contains("loop of 5 segments") && says.contains("with 3 triangles") && says.contains("Divide one"),
+        "{says}"
+    );
+    // A soup of triangles: the remedy tells what is amiss.
+    let soup = mesh(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], &[[0, 1, 2], [3, 4, 5]]);
+    assert!(refusal(&soup).contains("merge points that stand at the same place"));
+}
+
+#[test]
+fn an_odd_part_is_mended_at_its_longest_boundary_segment_where_allowed() {
+    let mut file = odd_fan();
+    file.points[1].x = 2.0;
+    let imported = import(&file, true).unwrap();
+    assert_eq!(imported.set.triangles.len(), 4);
+    assert_eq!(imported.set.uv[5], DVec2::new(1.0, 0.0));
+    assert_eq!(imported.origin[5], [0, 1]);
+    assert!(imported.repairs[0].contains("1 boundary segment was divided"));
+    let metric: Vec<Metric3> = [1.0, 4.0, 1.0, 1.0, 1.0].map(Metric3::isotropic).to_vec();
+    let middle = imported.at_nodes(&metric)[5];
+    assert!((middle.xx - 1.0 / 4.0).abs() < 1e-12, "the geometric mean of the sizes: {middle:?}");
+}
+
+#[test]
+fn an_odd_part_within_others_is_refused_even_then() {
+    // One triangle in the middle of three others of another region.
+    let mut file = mesh(
+        &[(0.0, 0.0), (2.0, 0.0), (1.0, 2.0), (1.0, 0.0), (1.5, 1.0), (0.5, 1.0)],
+        &[[3, 4, 5], [0, 3, 5], [3, 1, 4], [5, 4, 2]],
+    );
+    file.triangle_tags = vec![1, 2, 2, 2];
+    let says = import(&file, true).unwrap_err().to_string();
+    assert!(says.contains("region 1 with 1 triangles"), "{says}");
+    file.triangle_tags.clear();
+    assert!(import(&file, false).is_ok());
+}
+
+#[test]
+fn odd_loops_of_an_even_part_are_fine() {
+    // A ring between two triangles: two loops of three, six triangles.
+    let file = mesh(
+        &[(0.0, 0.0), (9.0, 0.0), (0.0, 9.0), (2.0, 2.0), (4.0, 2.0), (2.0, 4.0)],
+        &[[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]],
+    );
+    assert_eq!(import(&file, false).unwrap().set.triangles.len(), 6);
+}
+
+#[test]
+fn lines_inside_regions_are_told() {
+    let mut file = star();
+    file.lines = vec![[0, 1], [4, 0]];
+    assert_eq!(import(&file, false).unwrap().repairs, ["1 line inside a region is not kept"]);
+}
+
+#[test]
+fn equilateral_triangles_imply_their_size_and_stretched_ones_their_stretch() {
+    let height = 0.75_f64.sqrt();
+    for stretch in [1.0, 1e-3] {
+        let points: Vec<(f64, f64)> = (0..20)
+            .map(|i| (f64::from(i % 5) + 0.5 * f64::from(i / 5), f64::from(i / 5) * height))
+            .map(|(x, y)| (0.1 * x, 0.1 * stretch * y))
+            .collect();
+        let mut triangles = Vec::new();
+        for (i, j) in (0..3).flat_map(|j| (0..4).map(move |i| (i, j))) {
+            let a = 5 * j + i;
+            triangles.extend([[a, a + 1, a + 5], [a + 1, a + 6, a + 5]]);
+        }
+        let set = import(&mesh(&points, &triangles), false).unwrap().set;
+        for m in implied_metric(&set) {
+            let (uu, vv) = (100.0, 100.0 / (stretch * stretch));
+            assert!((m.uu / uu - 1.0).abs() < 1e-6 && (m.vv / vv - 1.0).abs() < 1e-6, "{m:?}");
+            assert!(m.uv.abs() < 1e-6 * (uu * vv).sqrt());
+        }
+    }
+}
+
+#[test]
+fn a_background_mesh_survives_the_way_through_a_file() {
+    for specs in [square(), square_with_hole()] {
+        let (_, set) = divide_and_triangulate(&built(specs), &Uniform(0.05)).unwrap();
+        let file = MeshFile {
+            points: set.uv.iter().map(|p| p.extend(0.0)).collect(),
+            triangles: set.triangles.clone(),
+            ..MeshFile::default()
+        };
+        assert_eq!(import(&file, false).unwrap().set, set);
+        assert!(implied_metric(&set).iter().all(Metric2::is_spd));
+    }
+}
+
+proptest! {
+    /// Whatever nonsense: an answer or a refusal, no panic.
+    #[test]
+    fn nonsense_is_taken_or_refused(
+        points in prop::collection::vec((0_i32..5, 0_i32..5), 0..12),
+        triangles in prop::collection::vec([0_u32..13, 0_u32..13, 0_u32..13], 0..12),
+        tags in prop::option::of(prop::collection::vec(0_u32..3, 12)),
+        split in any::<bool>(),
+    ) {
+        let points: Vec<(f64, f64)> = points.iter().map(|&(x, y)| (f64::from(x), f64::from(y))).collect();
+        let mut file = mesh(&points, &triangles);
+        file.triangle_tags = tags.map(|t| t[..triangles.len()].to_vec()).unwrap_or_default();
+        if let Ok(imported) = import(&file, split) {
+            let set = &imported.set;
+            prop_assert!(set.triangles.iter().all(|t| firm(set.uv[t[0] as usize], set.uv[t[1] as usize], set.uv[t[2] as usize])));
+            prop_assert_eq!(set.triangles.len() % 2, 0);
+            prop_assert!(implied_metric(set).iter().all(Metric2::is_spd));
+        }
+    }
+}

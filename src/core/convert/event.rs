@@ -1,0 +1,234 @@
+//! What one step did: ids and measured values, from which panels, logs, breakpoints and tests make their words.
+
+use super::last_resort::Outcome;
+use crate::core::front::sector::Side;
+use crate::core::mesh::ids::{ElementId, NodeId};
+
+/// Why an attempt to form a quadrilateral was taken back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Why {
+    /// No edge can serve as this side.
+    NoSide(Side),
+    /// The side edge cannot be divided where it must be.
+    NoDivision(Side),
+    /// A dead edge lies across the top edge.
+    TopBlocked([NodeId; 2]),
+    /// A node lies on the top edge.
+    TopThroughNode(NodeId),
+    /// The swaps of the recovery came to no end.
+    TopTooLong,
+    /// A new side or the top is longer than the gate, in the metric.
+    TooLong(f64),
+    /// The four sides do not enclose a disc of live triangles.
+    NotDisc,
+    /// The quadrilateral is not strictly convex.
+    NotConvex,
+    /// Its quality is below the gate.
+    Poor(f64),
+    /// A loop would become odd; its number of segments.
+    OddLoop(usize),
+    /// The field gives no metric at a new node.
+    NoMetric,
+}
+
+/// Why a node was removed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// It stood in the way of a swap of the top edge's recovery (4.3.4, top edge iii).
+    Recovery,
+    /// Local structural enhancement (4.3.6, i).
+    Enhancement,
+}
+
+/// What a step of the converter did or decided. Angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// A base segment was selected (4.3.3).
+    BaseSelected {
+        /// Its left node.
+        a: NodeId,
+        /// Its right node.
+        b: NodeId,
+        /// Its H-value (eq. 6).
+        h_value: f64,
+        /// The smallest one on the front.
+        h_min: f64,
+        /// Its class of table 1.
+        class: u8,
+        /// Frontal angles at A and B.
+        theta: [f64; 2],
+        /// Metric length.
+        length_metric: f64,
+        /// Physical length.
+        length_physical: f64,
+        /// Rows from the boundary.
+        level: u16,
+        /// Whether it is within c Hmin.
+        within_reach: bool,
+    },
+    /// The neighbouring front segment is the side (side edges ii).
+    SideIsFront {
+        /// Which side.
+        side: Side,
+        /// Its top node.
+        node: NodeId,
+    },
+    /// An edge that is there was chosen as side (side edges iii, v).
+    SideChosen {
+        /// Which side.
+        side: Side,
+        /// Its top node.
+        node: NodeId,
+        /// Its angle with the base.
+        angle: f64,
+        /// How far that is from the direction aimed at.
+        deviation: f64,
+        /// Number of edges considered.
+        considered: u8,
+    },
+    /// An edge was swapped to be the side (side edges iv, v).
+    SideSwapped {
+        /// Which side.
+        side: Side,
+        /// Its top node.
+        node: NodeId,
+        /// Its angle with the base.
+        angle: f64,
+        /// How far that is from the direction aimed at.
+        deviation: f64,
+        /// Deviation of the best edge that was there.
+        instead_of: f64,
+    },
+    /// The side edge was divided (side edges vi).
+    SideDivided {
+        /// Which side.
+        side: Side,
+        /// The new top node.
+        node: NodeId,
+        /// Metric length before.
+        length: f64,
+    },
+    /// An edge across the top edge was swapped (top edge iv).
+    TopSwapped {
+        /// Ends of the edge that lay across.
+        across: [NodeId; 2],
+        /// Ends of the edge that took its place.
+        new: [NodeId; 2],
+    },
+    /// The top edge is there (top edge vi).
+    TopFound {
+        /// Its ends.
+        ends: [NodeId; 2],
+        /// Swaps that it took.
+        swaps: u8,
+    },
+    /// A node with three or four triangles was removed (fig. 8).
+    NodeRemoved {
+        /// The node.
+        node: NodeId,
+        /// Why.
+        purpose: Purpose,
+    },
+    /// A quadrilateral stands.
+    Formed {
+        /// Its id.
+        element: ElementId,
+        /// Its nodes A, B, D, C.
+        nodes: [NodeId; 4],
+        /// Its quality (spec 2.1.5).
+        quality: f64,
+        /// Triangles that it ate.
+        eaten: u8,
+        /// Its level.
+        level: u16,
+        /// Which attempt it was, from 0.
+        attempt: u8,
+    },
+    /// An attempt was taken back.
+    RolledBack {
+        /// Which attempt, from 0.
+        attempt: u8,
+        /// Why.
+        why: Why,
+    },
+    /// All attempts failed: the segment is put off until something near it changes.
+    Deferred {
+        /// Its left node.
+        a: NodeId,
+        /// Its right node.
+        b: NodeId,
+    },
+    /// An edge near the new quadrilateral was swapped (4.3.6, enhancement ii).
+    Enhanced {
+        /// Ends of the new edge.
+        new: [NodeId; 2],
+    },
+    /// Nodes around the new quadrilateral were moved (4.3.6, eqs. 9 and 10).
+    Smoothed {
+        /// How many.
+        nodes: u8,
+    },
+    /// Two front segments were seamed (4.3.6, fig. 18).
+    Seamed {
+        /// The node between them.
+        at: NodeId,
+        /// The node that both other ends became.
+        node: NodeId,
+        /// The frontal angle that was.
+        angle: f64,
+    },
+    /// The front was split at a slender element (4.3.6, fig. 19).
+    Split {
+        /// The node that two became.
+        node: NodeId,
+        /// Metric area of the element.
+        area: f64,
+        /// Its width over its height.
+        ratio: f64,
+    },
+    /// A small loop was closed (spec 2.7).
+    Closed {
+        /// Its segments.
+        segments: u8,
+        /// Quadrilaterals over it.
+        quads: u8,
+        /// The worst quality around.
+        quality: f64,
+    },
+    /// Every segment is put off: all are taken up again with wider gates.
+    SecondPass,
+    /// The last resort converted what was left over.
+    LastResort(Outcome),
+    /// The whole mesh was cleaned up and smoothed (4.3.7).
+    PostProcessed,
+    /// All is done.
+    Finished,
+}
+
+impl Event {
+    /// The kind, as reports and breakpoints name it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Event::BaseSelected { .. } => "base_selected",
+            Event::SideIsFront { .. } => "side_is_front",
+            Event::SideChosen { .. } => "side_chosen",
+            Event::SideSwapped { .. } => "side_swapped",
+            Event::SideDivided { .. } => "side_divided",
+            Event::TopSwapped { .. } => "top_swapped",
+            Event::TopFound { .. } => "top_found",
+            Event::NodeRemoved { .. } => "node_removed",
+            Event::Formed { .. } => "formed",
+            Event::RolledBack { .. } => "rolled_back",
+            Event::Deferred { .. } => "deferred",
+            Event::Enhanced { .. } => "enhanced",
+            Event::Smoothed { .. } => "smoothed",
+            Event::Seamed { .. } => "seamed",
+            Event::Split { .. } => "split",
+            Event::Closed { .. } => "closed",
+            Event::SecondPass => "second_pass",
+            Event::LastResort(_) => "last_resort",
+            Event::PostProcessed => "post_processed",
+            Event::Finished => "finished",
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! Local post-processing around a new quadrilateral (paper 4.3.6): structural enhancement and area-weighted smoothing by
+//! eqs. (9) and (10), with the guards of spec 2.8.
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use super::converter::Converter;
+use super::energy;
+use super::event::{Event, Purpose};
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::metric::tensor::Metric2;
+
+/// A smoothed node must not let the worst quality around fall below this share of what it was.
+const KEPT_QUALITY: f64 = 0.9;
+
+impl Converter<'_> {
+    /// Live edges around a quadrilateral: those at its nodes and those opposite to them.
+    pub(super) fn edges_around(&self, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
+        let mesh = &self.mesh;
+        let mut edges = SmallVec::new();
+        for node in mesh.quad(element) {
+            for h in mesh.fan(node).filter(|h| mesh.is_triangle(h.element())) {
+                for h in [h, mesh.next(h)] {
+                    if mesh.twin(h).is_some_and(|t| mesh.is_triangle(t.element())) {
+                        edges.push(h);
+                    }
+                }
+            }
+        }
+        edges
+    }
+
+    /// Removes one live node beside the quadrilateral that has three or four triangles (i).
+    pub(super) fn remove_a_node(&mut self, element: ElementId) -> Option<Event> {
+        for corner in self.mesh.quad(element) {
+            let around: SmallVec<[NodeId; 12]> = self.mesh.neighbours(corner).collect();
+            for node in around {
+                if !self.mesh.is_fixed(node) && self.mesh.delete_node(node).is_ok() {
+                    return Some(Event::NodeRemoved { node, purpose: Purpose::Enhancement });
+                }
+            }
+        }
+        None
+    }
+
+    /// Swaps the edge if that lowers the largest angle of its two triangles (ii).
+    pub(super) fn enhance_edge(&mut self, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4])> {
+        let mesh = &self.mesh;
+        if !mesh.has_element(h.element()) || !mesh.is_triangle(h.element()) {
+            return None;
+        }
+        let t = mesh.twin(h).filter(|t| mesh.is_triangle(t.element()))?;
+        let (a, b) = (mesh.origin(h), mesh.origin(t));
+        let (c, d) = (mesh.origin(mesh.previous(h)), mesh.origin(mesh.previous(t)));
+        let before = least_cosine(mesh, [a, b, c]).min(least_cosine(mesh, [b, a, d]));
+        // A largest angle below 90 degrees is no reason to change anything.
+        if before > 0.0 {
+            return None;
+        }
+        let after = least_cosine(mesh, [a, d, c]).min(least_cosine(mesh, [d, b, c]));
+        if after <= before + 1e-6 || mesh.can_swap(h).is_err() {
+            return None;
+        }
+        let h = self.mesh.swap(h);
+        let mesh = &self.mesh;
+        let t = mesh.twin(h)?;
+        Some((
+            Event::Enhanced { new: [mesh.origin(h), mesh.target(h)] },
+            [mesh.next(h), mesh.previous(h), mesh.next(t), mesh.previous(t)],
+        ))
+    }
+
+    /// Smooths around the quadrilateral in the paper's order: nodes of the triangles around it, then its own. With
+    /// placement on, nodes of the front stay, and nodes that the quadrilateral buried are relaxed by the energy.
+    pub(super) fn smooth_around(&mut self, element: ElementId) -> u8 {
+        let corners = self.mesh.quad(element);
+        let mut around: SmallVec<[NodeId; 24]> = SmallVec::new();
+        for corner in corners {
+            for h in self.mesh.fan(corner).filter(|h| self.mesh.is_triangle(h.element())) {
+                for node in [self.mesh.target(h), self.mesh.origin(self.mesh.previous(h))] {
+                    if !around.contains(&node) && !corners.contains(&node) {
+                        around.push(node);
+                    }
+                }
+            }
+        }
+        let mut moved = 0;
+        for node in around {
+            let is_live = !self.is_on_front(node);
+            if is_live || (!self.parameters.placement && !self.mesh.is_fixed(node)) {
+                moved += u8::from(self.smooth_by_area(node));
+            }
+        }
+        for node in corners {
+            if self.mesh.is_fixed(node) {
+                continue;
+            }
+            let buried = self.mesh.fan(node).all(|h| !self.mesh.is_triangle(h.element()));
+            if self.parameters.placement {
+                moved += u8::from(buried && energy::relax(&mut self.mesh, node, self.source) > 0.0);
+            } else {
+                moved += u8::from(self.smooth_by_area(node));
+            }
+        }
+        moved
+    }
+
+    /// Moves a node to the weighted centroid of its elements (eq. 9), in steps 1, 1/2, 1/4, 1/8 until the guard holds.
+    fn smooth_by_area(&mut self, node: NodeId) -> bool {
+        let mesh = &self.mesh;
+        let (mut sum, mut weight, mut before) = (DVec2::ZERO, 0.0, f64::INFINITY);
+        for h in mesh.fan(node) {
+            let e = h.element();
+            let (mut centroid, mut root) = (DVec2::ZERO, 0.0);
+            let sides = mesh.sides(e) as f64;
+            for n in mesh.corners(e) {
+                centroid += mesh.uv(n);
+                root += mesh.metric_ref(n).det().sqrt();
+            }
+            let area = root / sides * element_area(mesh, e);
+            sum += centroid / sides * area;
+            weight += area;
+            before = before.min(mesh.quality(e));
+        }
+        let here = mesh.uv(node);
+        let there = sum / weight;
+        // Less than a thousandth of a unit is not worth the journal's memory.
+        if mesh.metric_ref(node).norm2(there - here) < 1e-6 {
+            return false;
+        }
+        let mut step = 1.0;
+        for _ in 0..4 {
+            let place = here + (there - here) * step;
+            step *= 0.5;
+            let Ok(metric) = self.source.metric(place) else { continue };
+            if self.mesh.can_move(node, place).is_err() {
+                continue;
+            }
+            let old = (here, self.mesh.metric(node));
+            let mark = self.mesh.mark();
+            self.mesh.move_node(node, place, metric);
+            let after = self.mesh.fan(node).map(|h| self.mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
+            if after >= KEPT_QUALITY * before {
+                return true;
+            }
+            if self.mesh.journal().is_recording() {
+                self.mesh.take_back(mark);
+            } else {
+                self.mesh.move_node(node, old.0, old.1);
+            }
+        }
+        false
+    }
+}
+
+/// Least cosine of a triangle's angles (that of its largest angle), each in the metric of its node.
+fn least_cosine(mesh: &Mesh, n: [NodeId; 3]) -> f64 {
+    let mut least = f64::INFINITY;
+    for k in 0..3 {
+        let m: &Metric2 = mesh.metric_ref(n[k]);
+        let p = mesh.uv(n[k]);
+        let (a, b) = (mesh.uv(n[(k + 1) % 3]) - p, mesh.uv(n[(k + 2) % 3]) - p);
+        least = least.min(m.inner(a, b) / (m.norm2(a) * m.norm2(b)).sqrt());
+    }
+    least
+}
+
+/// Area of an element in the parametric plane.
+fn element_area(mesh: &Mesh, e: ElementId) -> f64 {
+    if mesh.is_triangle(e) {
+        let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
+        0.5 * (b - a).perp_dot(c - a)
+    } else {
+        let [a, b, c, d] = mesh.quad(e).map(|n| mesh.uv(n));
+        0.5 * (c - a).perp_dot(d - b)
+    }
+}

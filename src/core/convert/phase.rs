@@ -1,0 +1,126 @@
+//! Where the converter stands between two steps: exactly what the next step needs.
+
+use smallvec::SmallVec;
+
+use super::component::Component;
+use crate::core::front::sector::Side;
+use crate::core::journal::Mark;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+
+/// The base segment of the quadrilateral at hand. Its half-edge changes with every swap beside it: nodes name it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base {
+    /// Left node.
+    pub a: NodeId,
+    /// Right node.
+    pub b: NodeId,
+    /// Frontal angles at both.
+    pub theta: [f64; 2],
+    /// Metric length.
+    pub length: f64,
+    /// Level of the segment, and so of the quadrilateral.
+    pub level: u16,
+}
+
+/// One way to try to form the quadrilateral of a base segment (spec 2.4, 10 rules 1, 7, 9).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attempt {
+    /// 0 is the paper's; then divisions that are forced; then every other edge at B, at A; last the Lee-Lo pairs.
+    pub number: u8,
+    /// Sides to be divided whatever their length.
+    pub divide: [bool; 2],
+    /// Tops that are laid down.
+    pub tops: [Option<NodeId>; 2],
+    /// What to take back to when it fails.
+    pub mark: Mark,
+}
+
+/// Where the converter stands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Phase {
+    /// A base segment is to be selected.
+    Select,
+    /// A side is to be prepared; the left one comes first.
+    PrepareSide {
+        /// The base.
+        base: Base,
+        /// The attempt.
+        attempt: Attempt,
+        /// Which side.
+        side: Side,
+        /// The left top, where it is prepared.
+        left: Option<NodeId>,
+    },
+    /// A side may have to be divided.
+    DivideSide {
+        /// The base.
+        base: Base,
+        /// The attempt.
+        attempt: Attempt,
+        /// Which side.
+        side: Side,
+        /// Tops, as far as they are known (the side at hand included).
+        tops: [Option<NodeId>; 2],
+    },
+    /// The top edge is to be recovered.
+    RecoverTop {
+        /// The base.
+        base: Base,
+        /// The attempt.
+        attempt: Attempt,
+        /// Tops C and D.
+        tops: [NodeId; 2],
+        /// Swaps done so far.
+        swaps: u8,
+    },
+    /// The quadrilateral is to be formed.
+    Form {
+        /// The base.
+        base: Base,
+        /// The attempt.
+        attempt: Attempt,
+        /// Tops C and D.
+        tops: [NodeId; 2],
+    },
+    /// The attempt has failed; the next one is to be found.
+    Retry {
+        /// The base.
+        base: Base,
+        /// The attempt that failed.
+        attempt: Attempt,
+    },
+    /// The local mesh is to be enhanced.
+    Enhance {
+        /// The new quadrilateral.
+        element: ElementId,
+        /// What the queue has not seen begins here.
+        mark: Mark,
+        /// Edges still to be looked at.
+        edges: SmallVec<[HalfEdgeId; 24]>,
+        /// Swaps left.
+        budget: u8,
+    },
+    /// Nodes around the new quadrilateral are to be smoothed.
+    Smooth {
+        /// The new quadrilateral.
+        element: ElementId,
+        /// What the queue has not seen begins here.
+        mark: Mark,
+    },
+    /// Small frontal angles at these nodes are to be seamed.
+    Seam {
+        /// Nodes to look at.
+        nodes: SmallVec<[NodeId; 8]>,
+    },
+    /// Small loops that are left over are to be closed.
+    Close {
+        /// Components to look at, the next one last.
+        waiting: Vec<Component>,
+        /// Those that could not be closed: they go to the last resort.
+        left: Vec<Component>,
+    },
+    /// Clean-up and smoothing of the whole mesh.
+    PostProcess,
+    /// Nothing is left to do.
+    Done,
+}

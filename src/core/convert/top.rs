@@ -1,0 +1,105 @@
+//! Recovery of the top edge (paper 4.3.4, definition of the top edge, i to vi; spec 2.4): swaps along the line, one a
+//! step, with node removal where no swap is possible. Every crossing is found by exact predicates.
+
+use super::converter::Converter;
+use super::event::{Event, Purpose, Why};
+use crate::core::geometry::predicates::orient;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+
+/// More edges across the top edge than this are not worth swapping.
+const MOST_CROSSINGS: usize = 24;
+/// Swaps and removals of one recovery.
+pub(super) const MOST_SWAPS: u8 = 48;
+
+/// What a step of the recovery came to.
+pub(super) enum Recovery {
+    /// The edge is there.
+    Found,
+    /// Something was changed on the way.
+    Changed(Event),
+}
+
+impl Converter<'_> {
+    /// One step of the recovery of the edge from C to D.
+    pub(super) fn recover_step(&mut self, c: NodeId, d: NodeId, keep: &[NodeId]) -> Result<Recovery, Why> {
+        if self.mesh.are_joined(c, d) {
+            return Ok(Recovery::Found);
+        }
+        let crossings = crossings(&self.mesh, c, d)?;
+        for &h in &crossings {
+            if self.mesh.can_swap(h).is_ok() {
+                // A swap that still crosses is only worth it where it brings an end of the new edge to C or D.
+                let t = self.mesh.twin(h).ok_or(Why::NotDisc)?;
+                let new = [self.mesh.origin(self.mesh.previous(h)), self.mesh.origin(self.mesh.previous(t))];
+                if crosses(&self.mesh, new, c, d) && crossings.len() > 1 && !new.contains(&c) && !new.contains(&d) {
+                    continue;
+                }
+                let across = [self.mesh.origin(h), self.mesh.target(h)];
+                self.mesh.swap(h);
+                return Ok(Recovery::Changed(Event::TopSwapped { across, new }));
+            }
+        }
+        // No swap is possible: remove a node that keeps one from being valid (iii).
+        for &h in &crossings {
+            for node in [self.mesh.origin(h), self.mesh.target(h)] {
+                if !keep.contains(&node) && self.mesh.delete_node(node).is_ok() {
+                    return Ok(Recovery::Changed(Event::NodeRemoved { node, purpose: Purpose::Recovery }));
+                }
+            }
+        }
+        Err(Why::TopTooLong)
+    }
+}
+
+/// Whether the line between two nodes crosses the line from C to D properly.
+fn crosses(mesh: &Mesh, [e, f]: [NodeId; 2], c: NodeId, d: NodeId) -> bool {
+    if [e, f].iter().any(|n| *n == c || *n == d) {
+        return false;
+    }
+    let (e, f, c, d) = (mesh.uv(e), mesh.uv(f), mesh.uv(c), mesh.uv(d));
+    (orient(c, d, e) > 0.0) != (orient(c, d, f) > 0.0) && (orient(e, f, c) > 0.0) != (orient(e, f, d) > 0.0)
+}
+
+/// The edges that the line from C to D crosses, from C on, all of them live.
+fn crossings(mesh: &Mesh, c: NodeId, d: NodeId) -> Result<Vec<HalfEdgeId>, Why> {
+    let (p, q) = (mesh.uv(c), mesh.uv(d));
+    // The triangle at C that holds the direction to D (ii).
+    let mut start = None;
+    for h in mesh.fan(c) {
+        if !mesh.is_triangle(h.element()) {
+            continue;
+        }
+        let (e, f) = (mesh.target(h), mesh.origin(mesh.previous(h)));
+        let (at_e, at_f) = (orient(p, q, mesh.uv(e)), orient(p, q, mesh.uv(f)));
+        if at_e < 0.0 && at_f > 0.0 {
+            start = Some(mesh.next(h));
+            break;
+        }
+        for (node, side) in [(e, at_e), (f, at_f)] {
+            if side == 0.0 && (mesh.uv(node) - p).dot(q - p) > 0.0 {
+                return Err(Why::TopThroughNode(node));
+            }
+        }
+    }
+    let Some(mut h) = start else { return Err(Why::NotDisc) };
+    let mut found = Vec::new();
+    loop {
+        let ends = [mesh.origin(h), mesh.target(h)];
+        let Some(t) = mesh.twin(h).filter(|t| mesh.is_triangle(t.element())) else { return Err(Why::TopBlocked(ends)) };
+        found.push(h);
+        if found.len() > MOST_CROSSINGS {
+            return Err(Why::TopTooLong);
+        }
+        let apex = mesh.origin(mesh.previous(t));
+        if apex == d {
+            return Ok(found);
+        }
+        let side = orient(p, q, mesh.uv(apex));
+        if side == 0.0 {
+            return Err(Why::TopThroughNode(apex));
+        }
+        // t runs from the left end to the right one: leave between the apex and the end on its other side.
+        h = if side > 0.0 { mesh.next(t) } else { mesh.previous(t) };
+    }
+}

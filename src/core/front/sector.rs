@@ -1,0 +1,123 @@
+//! The live sector between two front segments at a node, walked from a front segment (spec 2.1.4): frontal angles are
+//! stored per end of a segment and not per node, since a pinched node has several sectors.
+
+use smallvec::SmallVec;
+
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::metric::measure::angle;
+
+/// Left or right end of a front segment AB: A or B. Everything about sides is one function over this.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// At A, to the left when one looks from the base into the live region.
+    Left,
+    /// At B.
+    Right,
+}
+
+impl Side {
+    /// Both, left first.
+    pub const BOTH: [Side; 2] = [Side::Left, Side::Right];
+
+    /// 0 for the left, 1 for the right.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The other one.
+    #[must_use]
+    pub fn other(self) -> Side {
+        match self {
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        }
+    }
+}
+
+/// An edge that leaves one end of a base segment into its live sector; the last one is the next front segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spoke {
+    /// Its far end.
+    pub node: NodeId,
+    /// A half-edge of it that lies in a live triangle of the sector.
+    pub h: HalfEdgeId,
+    /// Whether it is the front segment that ends the sector.
+    pub is_front: bool,
+}
+
+/// Spokes of a sector, in the order in which they are met from the base segment.
+pub type Spokes = SmallVec<[Spoke; 10]>;
+
+impl Mesh {
+    /// Whether the half-edge is a front segment: a side of a live triangle without a live triangle beyond.
+    #[inline]
+    pub fn is_front(&self, h: HalfEdgeId) -> bool {
+        self.is_triangle(h.element()) && self.twin(h).is_none_or(|t| !self.is_triangle(t.element()))
+    }
+
+    /// The front segment before `h` on its loop: that which ends where `h` starts, over the same live sector.
+    #[inline]
+    pub fn front_before(&self, h: HalfEdgeId) -> HalfEdgeId {
+        let mut p = self.previous(h);
+        while let Some(t) = self.twin(p).filter(|t| self.is_triangle(t.element())) {
+            p = self.previous(t);
+        }
+        p
+    }
+
+    /// The front segment after `h` on its loop.
+    #[inline]
+    pub fn front_after(&self, h: HalfEdgeId) -> HalfEdgeId {
+        let mut n = self.next(h);
+        while let Some(t) = self.twin(n).filter(|t| self.is_triangle(t.element())) {
+            n = self.next(t);
+        }
+        n
+    }
+
+    /// The front segment from one node to another, where there is one.
+    pub fn front_between(&self, from: NodeId, to: NodeId) -> Option<HalfEdgeId> {
+        self.half_edge_between(from, to).filter(|&h| self.is_front(h))
+    }
+
+    /// The edges of the live sector at one end of a front segment, from the segment on; the last is the next segment.
+    pub fn spokes(&self, base: HalfEdgeId, side: Side) -> Spokes {
+        let mut spokes = Spokes::new();
+        let step = |h| match side {
+            Side::Left => self.previous(h),
+            Side::Right => self.next(h),
+        };
+        let mut h = step(base);
+        loop {
+            let node = match side {
+                Side::Left => self.origin(h),
+                Side::Right => self.target(h),
+            };
+            let beyond = self.twin(h).filter(|t| self.is_triangle(t.element()));
+            spokes.push(Spoke { node, h, is_front: beyond.is_none() });
+            match beyond {
+                Some(t) => h = step(t),
+                None => return spokes,
+            }
+        }
+    }
+
+    /// The frontal angle at one end of a front segment, in (0, 2 pi], in the metric of the node (fig. 9).
+    #[inline]
+    pub fn frontal_angle(&self, h: HalfEdgeId, side: Side) -> f64 {
+        let (at, base_end, other_end) = match side {
+            Side::Left => (self.origin(h), self.target(h), self.origin(self.front_before(h))),
+            Side::Right => (self.target(h), self.origin(h), self.target(self.front_after(h))),
+        };
+        let p = self.uv(at);
+        let (from, to) = match side {
+            Side::Left => (base_end, other_end),
+            Side::Right => (other_end, base_end),
+        };
+        let theta = angle(self.metric_ref(at), self.uv(from) - p, self.uv(to) - p);
+        // Both directions equal: the tip of a crack, where the sector is a full turn. (A sector of positive triangles
+        // that closes to nothing does not exist; one that is thinner than this would need them to be needles.)
+        if theta < 1e-9 || from == to { std::f64::consts::TAU } else { theta }
+    }
+}

@@ -1,0 +1,112 @@
+//! What orders the front segments: H-value (eq. 6), metric and physical length, frontal angles, class of table 1.
+
+use std::cmp::Ordering;
+
+use super::sector::Side;
+use crate::core::convert::parameters::{Parameters, Selection, SelectionWindow};
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+
+/// A front segment AB with everything that its selection depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// The half-edge from A to B in its live triangle.
+    pub h: HalfEdgeId,
+    /// Node A.
+    pub a: NodeId,
+    /// Node B.
+    pub b: NodeId,
+    /// H-value (eq. 6): the mean of the smallest target sizes at both ends, in units of the case.
+    pub h_value: f64,
+    /// Length in the metric.
+    pub length_metric: f64,
+    /// Length in the plane.
+    pub length_physical: f64,
+    /// Frontal angles at A and B, radians.
+    pub theta: [f64; 2],
+    /// Class of table 1: 1 both angles below theta_rect, 2 only that at A, 3 only that at B, 4 neither.
+    pub class: u8,
+    /// Rows from the boundary.
+    pub level: u16,
+}
+
+impl Segment {
+    /// Measures a front segment.
+    pub fn measure(mesh: &Mesh, h: HalfEdgeId, parameters: &Parameters) -> Segment {
+        let (a, b) = (mesh.origin(h), mesh.target(h));
+        let theta = Side::BOTH.map(|side| mesh.frontal_angle(h, side));
+        let class = match theta.map(|t| t < parameters.theta_rect) {
+            [true, true] => 1,
+            [true, false] => 2,
+            [false, true] => 3,
+            [false, false] => 4,
+        };
+        Segment {
+            h,
+            a,
+            b,
+            h_value: 0.5 * (mesh.metric_ref(a).min_size() + mesh.metric_ref(b).min_size()),
+            length_metric: mesh.distance(a, b),
+            length_physical: mesh.uv(a).distance(mesh.uv(b)),
+            theta,
+            class,
+            level: front_level(mesh, h),
+        }
+    }
+
+    /// What must be below c Hmin for the segment to be within reach (4.3.3, step ii; the readings of spec 1).
+    pub fn window(&self, window: SelectionWindow) -> f64 {
+        match window {
+            SelectionWindow::HValue => self.h_value,
+            SelectionWindow::PhysicalLength => self.length_physical,
+            SelectionWindow::MetricLengthTimesH => self.length_metric * self.h_value,
+        }
+    }
+
+    /// Sum of the frontal angles.
+    pub fn theta_sum(&self) -> f64 {
+        self.theta[0] + self.theta[1]
+    }
+
+    /// The key by which the segment waits in its heap: smaller comes first.
+    pub fn key(&self, parameters: &Parameters) -> Key {
+        let first = match parameters.selection {
+            Selection::Table1 => self.window(parameters.selection_window),
+            Selection::Shortest => self.length_physical,
+            Selection::SmallestAngle => self.theta_sum(),
+            Selection::Level => {
+                // Q-Morph: state (number of ends that have a side already), then level, then length.
+                let state = match self.class {
+                    1 => 0.0,
+                    2 | 3 => 1.0,
+                    _ => 2.0,
+                };
+                return Key([state, f64::from(self.level), self.length_metric]);
+            }
+        };
+        Key([first, self.theta_sum(), 0.0])
+    }
+}
+
+/// Rows from the boundary: 0 on it, else one more than the quadrilateral beyond.
+pub fn front_level(mesh: &Mesh, h: HalfEdgeId) -> u16 {
+    mesh.twin(h).map_or(0, |t| mesh.level(t.element()).saturating_add(1))
+}
+
+/// Numbers that order front segments, compared one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key(pub [f64; 3]);
+
+impl Eq for Key {}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.iter().zip(&other.0).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
+    }
+}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}

@@ -1,0 +1,198 @@
+//! Selection of the base segment (paper 4.3.3, table 1) in O(log n): lazy heaps over the front segments.
+//!
+//! The heaps are a cache. They hold every front segment that is not put off, with keys that are a pure function of the
+//! mesh; rebuilt from a state they choose the same. An entry counts only while its stamp is that of its half-edge.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use smallvec::SmallVec;
+
+use super::segment::{Key, Segment};
+use crate::core::convert::parameters::{Parameters, Selection};
+use crate::core::journal::{Entry, Mark};
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+
+/// A segment that waits to be chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Waiting {
+    key: Key,
+    h: HalfEdgeId,
+    stamp: u32,
+}
+
+/// The chosen base segment and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// The base segment.
+    pub segment: Segment,
+    /// Smallest H-value on the front (step i).
+    pub h_min: f64,
+    /// Whether the segment was within c Hmin; else it is the one with the smallest H-value (step iii).
+    pub within_reach: bool,
+}
+
+/// All front segments, ordered for selection.
+#[derive(Clone, Debug, Default)]
+pub struct Queue {
+    /// Classes 1 to 3 by the selection window, and all segments by H-value; other criteria use the last heap alone.
+    heaps: [BinaryHeap<Reverse<Waiting>>; 4],
+    stamp: Vec<u32>,
+    node_epoch: Vec<u32>,
+    epoch: u32,
+}
+
+impl Queue {
+    /// The queue of a state.
+    pub fn of(mesh: &Mesh, parameters: &Parameters) -> Queue {
+        let mut queue = Queue::default();
+        queue.grow(mesh);
+        for e in mesh.elements() {
+            for h in mesh.half_edges(e) {
+                if mesh.is_front(h) && !mesh.is_deferred(h) {
+                    queue.push(mesh, h, parameters);
+                }
+            }
+        }
+        queue
+    }
+
+    fn grow(&mut self, mesh: &Mesh) {
+        self.stamp.resize(4 * mesh.element_slots(), 0);
+        self.node_epoch.resize(mesh.node_slots(), 0);
+    }
+
+    fn push(&mut self, mesh: &Mesh, h: HalfEdgeId, parameters: &Parameters) {
+        let segment = Segment::measure(mesh, h, parameters);
+        let stamp = self.stamp[h.index()];
+        let layer = f64::from(u32::from(segment.level).min(parameters.layers));
+        let mut put = |heap: usize, key: Key| self.heaps[heap].push(Reverse(Waiting { key, h, stamp }));
+        if parameters.selection == Selection::Table1 {
+            if segment.class < 4 {
+                let Key([window, sum, _]) = segment.key(parameters);
+                put(usize::from(segment.class) - 1, Key([layer, window, sum]));
+            }
+            put(3, Key([layer, segment.h_value, segment.theta_sum()]));
+        } else {
+            let Key([first, second, third]) = segment.key(parameters);
+            // Offsetting goes before everything else; levels beyond the layers are alike to it.
+            put(3, Key([layer * 1e9 + first, second, third]));
+        }
+    }
+
+    /// The best entry of a heap that still counts.
+    fn top(&mut self, heap: usize, mesh: &Mesh) -> Option<Waiting> {
+        let stamp = &self.stamp;
+        let heap = &mut self.heaps[heap];
+        while let Some(&Reverse(waiting)) = heap.peek() {
+            if stamp[waiting.h.index()] == waiting.stamp {
+                debug_assert!(mesh.is_front(waiting.h), "{:?} waits and is not on the front", waiting.h);
+                return Some(waiting);
+            }
+            heap.pop();
+        }
+        None
+    }
+
+    /// Selects the base segment (4.3.3, steps i to iii, or the criterion that the parameters name). The segment stays in
+    /// the queue; it leaves by being put off, or by what its quadrilateral changes. None where every segment is put off.
+    pub fn select(&mut self, mesh: &Mesh, parameters: &Parameters) -> Option<Choice> {
+        let smallest = self.top(3, mesh)?;
+        let measured = |waiting: Waiting| Segment::measure(mesh, waiting.h, parameters);
+        if parameters.selection != Selection::Table1 {
+            let segment = measured(smallest);
+            return Some(Choice { segment, h_min: segment.h_value, within_reach: true });
+        }
+        let Key([layer, h_min, _]) = smallest.key;
+        for class in 0..3 {
+            let Some(waiting) = self.top(class, mesh) else { continue };
+            let Key([its_layer, window, _]) = waiting.key;
+            if its_layer == layer && window < parameters.c * h_min {
+                return Some(Choice { segment: measured(waiting), h_min, within_reach: true });
+            }
+        }
+        Some(Choice { segment: measured(smallest), h_min, within_reach: false })
+    }
+
+    /// Puts a segment off until something near it changes.
+    pub fn defer(&mut self, mesh: &mut Mesh, h: HalfEdgeId) {
+        mesh.set_deferred(h, true);
+        self.stamp[h.index()] = self.stamp[h.index()].wrapping_add(1);
+    }
+
+    /// Brings the queue up to date with everything that the journal holds since the mark: segments at nodes that moved
+    /// or whose elements changed, and their neighbours on the loop. Those are taken up again where they were put off.
+    pub fn refresh(&mut self, mesh: &mut Mesh, mark: Mark, parameters: &Parameters) {
+        self.grow(mesh);
+        self.epoch = self.epoch.wrapping_add(1);
+        let epoch = self.epoch;
+        let mut nodes: SmallVec<[NodeId; 64]> = SmallVec::new();
+        let mut touch = |node: NodeId, seen: &mut [u32]| {
+            if mesh.has_node(node) && std::mem::replace(&mut seen[node.index()], epoch) != epoch {
+                nodes.push(node);
+            }
+        };
+        for entry in mesh.journal().since(mark) {
+            match *entry {
+                Entry::Origin(h, _) | Entry::Twin(h, _) => {
+                    let Some(stamp) = self.stamp.get_mut(h.index()) else { continue };
+                    *stamp = stamp.wrapping_add(1);
+                    if mesh.has_element(h.element()) && (h.corner() as usize) < mesh.sides(h.element()) {
+                        touch(mesh.origin(h), &mut self.node_epoch);
+                    }
+                }
+                Entry::Uv(node, _) => touch(node, &mut self.node_epoch),
+                Entry::Sides(e, _) => {
+                    for corner in 0..4 {
+                        if let Some(stamp) = self.stamp.get_mut(e.half_edge(corner).index()) {
+                            *stamp = stamp.wrapping_add(1);
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        let mut segments: SmallVec<[HalfEdgeId; 64]> = SmallVec::new();
+        for &node in &nodes {
+            for h in mesh.fan(node) {
+                if !mesh.is_triangle(h.element()) {
+                    continue;
+                }
+                if mesh.is_front(h) {
+                    segments.push(h);
+                    segments.push(mesh.front_before(h));
+                }
+                let p = mesh.previous(h);
+                if mesh.is_front(p) {
+                    segments.push(p);
+                    segments.push(mesh.front_after(p));
+                }
+            }
+        }
+        segments.sort_unstable();
+        segments.dedup();
+        for &h in &segments {
+            self.stamp[h.index()] = self.stamp[h.index()].wrapping_add(1);
+            mesh.set_deferred(h, false);
+            self.push(mesh, h, parameters);
+        }
+        if self.heaps[3].len() > 64 + 3 * mesh.element_count() {
+            *self = Queue::of(mesh, parameters);
+        }
+    }
+
+    /// Takes up every segment that was put off; says whether there was one.
+    pub fn take_up_all(&mut self, mesh: &mut Mesh, parameters: &Parameters) -> bool {
+        let put_off: Vec<HalfEdgeId> = mesh
+            .elements()
+            .flat_map(|e| mesh.half_edges(e))
+            .filter(|&h| mesh.is_front(h) && mesh.is_deferred(h))
+            .collect();
+        for &h in &put_off {
+            mesh.set_deferred(h, false);
+            self.push(mesh, h, parameters);
+        }
+        !put_off.is_empty()
+    }
+}

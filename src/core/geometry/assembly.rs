@@ -1,0 +1,168 @@
+//! From the words of a case to curves that meet at vertices.
+
+use glam::DVec2;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+use rustc_hash::FxHashMap;
+
+use super::curve::Curve;
+use super::domain::{CurveId, CurveKind, CurveSpec, DomainCurve, FaceSpec};
+use super::place::told;
+use crate::core::fault::Fault;
+
+/// How messages call a loop of a face: its single curve where it has one, else its number.
+pub fn loop_name(spec: &FaceSpec, i: usize) -> String {
+    if i == 0 { format!("outer loop of \"{}\"", spec.name) } else { format!("hole {i} of \"{}\"", spec.name) }
+}
+
+/// A fault with the place of what it is about, where there is one.
+pub fn placed(fault: Fault, place: &str) -> Fault {
+    if place.is_empty() { fault } else { fault.at(place) }
+}
+
+/// The curves of each loop of a face: the outer one, then the holes.
+pub type Lists = Vec<Vec<CurveId>>;
+
+/// Resolves the names of the faces; makes the curves that are used, in the order of the case.
+///
+/// # Errors
+/// Names that are unknown, given twice or used wrongly, and curves that are no curves.
+pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCurve>, Vec<Lists>), Fault> {
+    let mut by_name: FxHashMap<&str, usize> = FxHashMap::default();
+    for (i, spec) in specs.iter().enumerate() {
+        if by_name.insert(&spec.name, i).is_some() {
+            return Err(placed(Fault::new(format!("There are two curves \"{}\"", spec.name)), &spec.place)
+                .remedy("Rename one of them"));
+        }
+    }
+    if faces.is_empty() {
+        return Err(Fault::new("There is no face to mesh").remedy("Add a face with an outer loop"));
+    }
+    for (i, face) in faces.iter().enumerate() {
+        if faces[..i].iter().any(|f| f.name == face.name) {
+            return Err(placed(Fault::new(format!("There are two faces \"{}\"", face.name)), &face.place)
+                .remedy("Rename one of them"));
+        }
+    }
+    for face in faces {
+        if let Some(i) = std::iter::once(&face.outer).chain(&face.holes).position(Vec::is_empty) {
+            let what = format!("The {} has no curves", loop_name(face, i));
+            return Err(placed(Fault::new(what).remedy("Name the curves of a closed loop"), &face.place));
+        }
+    }
+    // How each curve is used: its kind, and for an internal line the face.
+    let mut used: Vec<Option<(CurveKind, u32)>> = vec![None; specs.len()];
+    let mut loops_by_spec: Vec<Vec<Vec<usize>>> = Vec::new();
+    for (f, face) in faces.iter().enumerate() {
+        let find = |name: &String| {
+            by_name.get(name.as_str()).copied().ok_or_else(|| {
+                let fault =
+                    Fault::new(format!("The face \"{}\" names the curve \"{name}\", which is not there", face.name));
+                let nearest = specs.iter().map(|s| (strsim::damerau_levenshtein(name, &s.name), &s.name)).min();
+                placed(
+                    match nearest {
+                        Some((_, near)) => fault.remedy(format!("The nearest known name is \"{near}\"")),
+                        None => fault.remedy("The case has no curves"),
+                    },
+                    &face.place,
+                )
+            })
+        };
+        let mut claim = |name: &String, kind: CurveKind| -> Result<usize, Fault> {
+            let i = find(name)?;
+            match used[i] {
+                Some((CurveKind::Boundary, _)) if kind == CurveKind::Boundary => {}
+                Some(_) => {
+                    let what = format!("The curve \"{name}\" is a crack or a repeated line and something else besides");
+                    return Err(placed(Fault::new(what), &face.place).remedy("Name it in one list only"));
+                }
+                None => used[i] = Some((kind, f as u32)),
+            }
+            Ok(i)
+        };
+        let mut of_face = Vec::new();
+        for list in std::iter::once(&face.outer).chain(&face.holes) {
+            of_face.push(list.iter().map(|name| claim(name, CurveKind::Boundary)).collect::<Result<Vec<_>, _>>()?);
+        }
+        for name in &face.cracks {
+            claim(name, CurveKind::Crack)?;
+        }
+        for name in &face.repeated {
+            claim(name, CurveKind::Repeated)?;
+        }
+        loops_by_spec.push(of_face);
+    }
+    let mut ids = vec![CurveId(u32::MAX); specs.len()];
+    let mut curves = Vec::new();
+    for (i, (spec, usage)) in specs.iter().zip(&used).enumerate() {
+        let Some((kind, face)) = *usage else { continue };
+        let named = |fault: Fault| placed(fault.at(format!("curve \"{}\"", spec.name)), &spec.place);
+        if spec.segments == Some(0) {
+            return Err(named(
+                Fault::new("It is to have 0 segments").remedy("Give at least 1, or leave the number out"),
+            ));
+        }
+        ids[i] = CurveId(curves.len() as u32);
+        let internal = (kind != CurveKind::Boundary).then_some(face);
+        curves.push(DomainCurve {
+            name: spec.name.clone(),
+            curve: Curve::new(&spec.shape).map_err(named)?,
+            segments: spec.segments,
+            place: spec.place.clone(),
+            ends: [0; 2],
+            sides: [internal; 2],
+            kind,
+            fine: Vec::new(),
+        });
+    }
+    let lists = loops_by_spec
+        .into_iter()
+        .map(|loops| loops.into_iter().map(|l| l.into_iter().map(|i| ids[i]).collect()).collect())
+        .collect();
+    Ok((curves, lists))
+}
+
+/// Joins ends that are within the tolerance into vertices, and makes the fine polylines between them.
+///
+/// # Errors
+/// Curves of zero length.
+pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Result<Vec<DVec2>, Fault> {
+    // Ends that were given as numbers come first: where they meet computed ones, theirs is the place.
+    let mut ends: Vec<(bool, usize, usize, DVec2)> = Vec::new();
+    for (i, c) in curves.iter().enumerate() {
+        ends.push((!c.curve.ends_given(), i, 0, c.curve.start()));
+        ends.push((!c.curve.ends_given(), i, 1, c.curve.end()));
+    }
+    ends.sort_by_key(|e| (e.0, e.1, e.2));
+    let mut tree: RTree<GeomWithData<[f64; 2], u32>> = RTree::new();
+    let mut vertices: Vec<DVec2> = Vec::new();
+    for &(_, i, which, p) in &ends {
+        // The tree works on coordinates of order 1, so that no square underflows.
+        let q = [p.x / size, p.y / size];
+        let known =
+            tree.nearest_neighbor(q).filter(|v| vertices[v.data as usize].distance(p) <= tolerance).map(|v| v.data);
+        curves[i].ends[which] = known.unwrap_or_else(|| {
+            vertices.push(p);
+            tree.insert(GeomWithData::new(q, vertices.len() as u32 - 1));
+            vertices.len() as u32 - 1
+        });
+    }
+    for c in curves.iter_mut() {
+        c.fine = c.curve.polyline(1e-5 * size);
+        let last = c.fine.len() - 1;
+        c.fine[0].1 = vertices[c.ends[0] as usize];
+        c.fine[last].1 = vertices[c.ends[1] as usize];
+        let (low, high) = c.curve.bounds();
+        let short = c.fine.windows(2).find(|w| w[0].1.distance(w[1].1) <= tolerance && c.curve.straight());
+        if (high - low).max_element() <= tolerance || short.is_some() {
+            let p = short.map_or(c.first(), |w| w[0].1);
+            return Err(placed(
+                Fault::new(format!("The curve \"{}\" has (nearly) zero length", c.name))
+                    .at(format!("at {}", told(p)))
+                    .remedy("Take it, or the point too many, out"),
+                &c.place,
+            ));
+        }
+    }
+    Ok(vertices)
+}

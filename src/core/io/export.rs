@@ -1,0 +1,144 @@
+//! A mesh of the converter as files and measurements know it: without tombstones, the copies of a node made one point.
+
+use glam::DVec2;
+
+use super::mesh_file::{Group, MeshFile};
+use super::statistics::Measured;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::PointId;
+
+/// Tag of lines with elements on one side: the boundary, and both sides of a crack.
+const BOUNDARY: u32 = 1;
+/// Tag of lines with elements on both sides: curves that faces share, repeated lines.
+const INSIDE: u32 = 2;
+
+/// No point yet.
+const NONE: u32 = u32::MAX;
+
+/// The arrays of a mesh.
+#[derive(Clone, Debug, Default)]
+pub struct Export {
+    /// Coordinates of each node.
+    pub uv: Vec<DVec2>,
+    /// Output point of each node: its place in the points of `file`.
+    pub points: Vec<PointId>,
+    /// Triangles by nodes.
+    pub triangles: Vec<[u32; 3]>,
+    /// Quadrilaterals by nodes.
+    pub quads: Vec<[u32; 4]>,
+    /// Points, elements, lines along all curves, and their groups.
+    pub file: MeshFile,
+}
+
+impl Export {
+    /// The arrays of a planar mesh whose regions have these names; nodes and elements keep their order.
+    pub fn of(mesh: &Mesh, regions: &[String]) -> Export {
+        let mut export = Export::default();
+        let mut node_at = vec![NONE; mesh.node_slots()];
+        let mut point_at: Vec<u32> = Vec::new();
+        for node in mesh.nodes() {
+            let uv = mesh.uv(node);
+            node_at[node.index()] = export.uv.len() as u32;
+            export.uv.push(uv);
+            let mut new_point = || {
+                export.file.points.push(uv.extend(0.0));
+                export.file.points.len() as u32 - 1
+            };
+            let point = match mesh.point(node) {
+                None => new_point(),
+                Some(shared) => {
+                    if shared.index() >= point_at.len() {
+                        point_at.resize(shared.index() + 1, NONE);
+                    }
+                    let at = &mut point_at[shared.index()];
+                    if *at == NONE {
+                        *at = new_point();
+                    }
+                    *at
+                }
+            };
+            export.points.push(PointId(point));
+        }
+        let file = &mut export.file;
+        let points = &export.points;
+        let point_of = |node: u32| points[node as usize].0;
+        for e in mesh.elements() {
+            if mesh.is_triangle(e) {
+                let nodes = mesh.triangle(e).map(|n| node_at[n.index()]);
+                export.triangles.push(nodes);
+                file.triangles.push(nodes.map(point_of));
+                file.triangle_tags.push(mesh.region(e) + 1);
+            } else {
+                let nodes = mesh.quad(e).map(|n| node_at[n.index()]);
+                export.quads.push(nodes);
+                file.quads.push(nodes.map(point_of));
+                file.quad_tags.push(mesh.region(e) + 1);
+            }
+        }
+        let mut sides = Vec::new();
+        for h in mesh.edges().filter(|h| mesh.twin(*h).is_none()) {
+            let [a, b] = [mesh.origin(h), mesh.target(h)].map(|n| point_of(node_at[n.index()]));
+            sides.push(([a.min(b), a.max(b)], [a, b]));
+        }
+        sides.sort_unstable();
+        for same in sides.chunk_by(|a, b| a.0 == b.0) {
+            file.lines.push(same[0].1);
+            file.line_tags.push(if same.len() == 1 { BOUNDARY } else { INSIDE });
+        }
+        for (tag, name) in [(BOUNDARY, "boundary"), (INSIDE, "inside")] {
+            if file.line_tags.contains(&tag) {
+                file.groups.push(Group { dimension: 1, tag, name: name.to_owned() });
+            }
+        }
+        for (region, name) in (1..).zip(regions) {
+            file.groups.push(Group { dimension: 2, tag: region, name: name.clone() });
+        }
+        export
+    }
+
+    /// The mesh as it is measured.
+    pub fn measured(&self) -> Measured<'_> {
+        Measured { uv: &self.uv, points: &self.points, triangles: &self.triangles, quads: &self.quads }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::mesh::half_edge::Mesh;
+    use crate::core::mesh::triangle_set::TriangleSet;
+    use crate::core::metric::tensor::Metric2;
+
+    /// Two triangles of two faces whose nodes along the line between them are doubled.
+    fn two_faces(points: [u32; 6]) -> Export {
+        let uv = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let set = TriangleSet {
+            uv: uv.map(|(x, y)| DVec2::new(x, y)).to_vec(),
+            point: points.map(PointId).to_vec(),
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+            region: vec![0, 1],
+        };
+        let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6]);
+        Export::of(&mesh, &["left".to_owned(), "right".to_owned()])
+    }
+
+    #[test]
+    fn copies_of_a_node_are_one_point_and_the_line_between_faces_is_inside() {
+        let export = two_faces([0, 1, 2, 1, 3, 2]);
+        assert_eq!((export.uv.len(), export.file.points.len()), (6, 4));
+        assert_eq!(export.file.triangles, [[0, 1, 2], [1, 3, 2]]);
+        assert_eq!(export.file.triangle_tags, [1, 2]);
+        let inside: Vec<_> = (0..5).filter(|i| export.file.line_tags[*i] == INSIDE).collect();
+        assert_eq!(inside.len(), 1);
+        assert_eq!(export.file.lines.len(), 5);
+        let names: Vec<_> = export.file.groups.iter().map(|g| g.name.as_str()).collect();
+        assert_eq!(names, ["boundary", "inside", "left", "right"]);
+    }
+
+    #[test]
+    fn the_sides_of_a_crack_are_points_and_lines_of_their_own() {
+        let export = two_faces([0, 1, 2, 3, 4, 5]);
+        assert_eq!((export.file.points.len(), export.file.lines.len()), (6, 6));
+        assert!(export.file.line_tags.iter().all(|tag| *tag == BOUNDARY));
+    }
+}

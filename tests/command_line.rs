@@ -1,0 +1,228 @@
+//! The program as a person or a script calls it: exit codes, what goes where, and one clear line for whatever is wrong.
+
+#![allow(clippy::unwrap_used)]
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn command(arguments: &[&str], folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_quadfront"));
+    command.args(arguments).current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn run(arguments: &[&str], folder: &Path) -> Output {
+    command(arguments, folder).output().unwrap()
+}
+
+fn run_with_input(arguments: &[&str], folder: &Path, input: &[u8]) -> Output {
+    let mut child = command(arguments, folder).stdin(Stdio::piped()).spawn().unwrap();
+    // A program that refuses its arguments does not read its input.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    child.wait_with_output().unwrap()
+}
+
+fn said(output: &Output) -> (i32, String, String) {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+}
+
+/// One quadrilateral, or where `flat` one that is not convex.
+fn square_obj(flat: bool) -> String {
+    let corner = if flat { "0.2 0.2" } else { "1 1" };
+    format!("v 0 0 0\nv 1 0 0\nv {corner} 0\nv 0 1 0\nf 1 2 3 4\n")
+}
+
+#[test]
+fn example_1_becomes_a_mesh_a_report_and_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["convert", "example1", "--out", "a.msh", "--report", "a.json", "--picture", "a.svg"];
+    let (code, out, err) = said(&run(&arguments, folder.path()));
+    assert_eq!((code, err.as_str()), (0, ""), "nothing but the summary where there is no terminal");
+    assert!(out.starts_with("example1: ") && out.contains("1 face; valid") && out.contains("last resort"), "{out}");
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+    assert_eq!(report["valid"], true);
+    assert_eq!(report["mesh"]["triangles"], 0);
+    let quads = report["mesh"]["quads"].as_u64().unwrap();
+    assert!((200..500).contains(&quads), "{quads}");
+    let resort = &report["last_resort"];
+    let front = ["front_formed", "front_closed"].map(|kind| report["events"][kind].as_u64().unwrap());
+    assert_eq!(resort["of"].as_u64().unwrap(), front[0] + front[1] + resort["quads"].as_u64().unwrap());
+    assert!(resort["share"].as_f64().unwrap() < 0.25, "{resort}");
+    assert!(report["timing"]["total"].as_f64().unwrap() > 0.0);
+    assert_eq!(report["parameters"]["theta_rect"], 135);
+    assert!(std::fs::read_to_string(folder.path().join("a.svg")).unwrap().ends_with("</svg>\n"));
+    let (code, out, _) = said(&run(&["check", "a.msh"], folder.path()));
+    assert_eq!(code, 0);
+    assert!(out.contains(&format!("{quads} quadrilaterals")) && out.ends_with("sound\n"), "{out}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "nothing is left beside");
+}
+
+#[test]
+fn two_runs_give_the_same_bytes_but_for_the_timing() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = ["msh", "mesh", "vtu", "obj", "inp"];
+    for name in ["a", "b"] {
+        for extension in files {
+            let (out, report) = (format!("{name}.{extension}"), format!("{name}.json"));
+            let run = run(&["convert", "two-faces", "-q", "-o", &out, "--report", &report], folder.path());
+            assert_eq!(said(&run), (0, String::new(), String::new()));
+        }
+    }
+    let bytes = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    for extension in files {
+        assert_eq!(bytes(&format!("a.{extension}")), bytes(&format!("b.{extension}")), "{extension}");
+    }
+    let report = |name: &str| {
+        let mut report: serde_json::Value = serde_json::from_slice(&bytes(name)).unwrap();
+        report.as_object_mut().unwrap().remove("timing").unwrap();
+        report
+    };
+    assert_eq!(report("a.json"), report("b.json"));
+}
+
+#[test]
+fn a_mesh_on_standard_output_is_not_mixed_with_the_summary() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["convert", "uniform", "--set", "size_scale=4", "-o", "-", "--format", "obj"];
+    let (code, out, err) = said(&run(&arguments, folder.path()));
+    assert_eq!(code, 0);
+    assert!(!out.contains("quadrilaterals") && out.lines().any(|l| l.starts_with("f ")), "{out}");
+    assert!(err.contains("quadrilaterals"), "{err}");
+}
+
+#[test]
+fn cases_and_meshes_come_by_standard_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, case, _) = said(&run(&["cases", "uniform"], folder.path()));
+    let arguments = ["convert", "-", "--set", "size_scale=4", "-q", "-o", "-", "--format", "msh"];
+    let (code, piped, err) = said(&run_with_input(&arguments, folder.path(), case.as_bytes()));
+    assert_eq!((code, err.as_str()), (0, ""));
+    let named = ["convert", "uniform", "--set", "size_scale=4", "-q", "-o", "-", "--format", "msh"];
+    assert_eq!(piped, said(&run(&named, folder.path())).1);
+    let check = run_with_input(&["check", "-", "--from", "msh"], folder.path(), piped.as_bytes());
+    assert_eq!(said(&check).0, 0);
+    let render = run_with_input(&["render", "-", "--from", "msh", "-o", "-"], folder.path(), piped.as_bytes());
+    assert!(said(&render).1.starts_with("<svg"));
+}
+
+#[test]
+fn the_background_is_written_with_its_metric() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, out, _) = said(&run(&["background", "uniform", "--set", "size_scale=4", "-o", "a.mesh"], folder.path()));
+    assert_eq!(code, 0);
+    assert!(out.contains("triangles") && out.contains("edge length"), "{out}");
+    assert!(folder.path().join("a.sol").is_file());
+    let (code, out, err) = said(&run(&["check", "a.mesh"], folder.path()));
+    assert_eq!(code, 1, "triangles are no quadrilaterals: {out} {err}");
+    assert_eq!(said(&run(&["check", "a.mesh", "--triangles"], folder.path())).0, 0);
+}
+
+#[test]
+fn a_checked_mesh_that_falls_short_is_exit_1_and_one_that_cannot_be_read_exit_2() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("good.obj"), square_obj(false)).unwrap();
+    std::fs::write(folder.path().join("bad.obj"), square_obj(true)).unwrap();
+    std::fs::write(folder.path().join("broken.obj"), "v 0 0\nf 1 2 3\n").unwrap();
+    assert_eq!(said(&run(&["check", "good.obj"], folder.path())).0, 0);
+    let (code, _, err) = said(&run(&["check", "bad.obj", "--report", "bad.json"], folder.path()));
+    assert_eq!(code, 1);
+    assert!(err.starts_with("error: bad.obj: ") && err.lines().count() == 1, "{err}");
+    assert!(folder.path().join("bad.json").is_file());
+    assert_eq!(said(&run(&["check", "broken.obj"], folder.path())).0, 2);
+    assert_eq!(said(&run(&["check", "example1"], folder.path())).0, 2);
+}
+
+#[test]
+fn whatever_is_wrong_is_one_line_with_exit_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &[u8]| std::fs::write(folder.path().join(name), text).unwrap();
+    write("unknown.toml", b"version = 1\ntitel = \"A\"\n");
+    write("binary.toml", &[0xff, 0xfe, 0x00]);
+    write("empty.toml", b"");
+    write("empty.msh", b"");
+    write("noise.msh", b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 99999999999999 1 1\n");
+    std::fs::create_dir(folder.path().join("folder.toml")).unwrap();
+    let lines: [(&[&str], &str); 19] = [
+        (&["convert", "exampel1"], "nearest built-in case is \"example1\""),
+        (&["convert", "unknown.toml"], "unknown.toml, line 2: The key \"titel\" is not known"),
+        (&["convert", "binary.toml"], "not text"),
+        (&["convert", "empty.toml"], "version"),
+        (&["convert", "folder.toml"], "folder"),
+        (&["convert", "nothing.toml"], "no such file"),
+        (&["convert", "nothing.msh"], "no such file"),
+        (&["convert", "empty.msh"], "empty"),
+        (&["convert", "noise.msh"], "noise.msh"),
+        (&["convert", "uniform", "-o", "a.png"], ".png"),
+        (&["convert", "uniform", "-o", "nowhere/a.msh"], "\"nowhere\" does not exist"),
+        (&["convert", "uniform", "-o", "-"], "--format"),
+        (&["convert", "uniform", "-o", "a.obj", "--msh2"], "--msh2"),
+        (&["convert", "uniform", "-o", "a.msh", "--report", "a.msh"], "same place"),
+        (&["convert", "uniform", "--picture", "a.png"], ".svg"),
+        (&["convert", "uniform", "--sol", "a.sol"], "--sol"),
+        (&["convert", "uniform", "--set", "theta_rect=135deg"], "Write degrees without a unit: theta_rect = 135"),
+        (&["convert", "uniform", "--set", "size=1"], "size_scale"),
+        (&["cases", "gaer"], "\"gear\""),
+    ];
+    for (arguments, words) in lines {
+        let (code, out, err) = said(&run(arguments, folder.path()));
+        assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
+        assert!(err.starts_with("error: ") && err.lines().count() == 1 && err.contains(words), "{arguments:?}: {err}");
+    }
+}
+
+#[test]
+fn usage_that_is_not_understood_is_exit_2_and_help_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [&["conwert"][..], &["convert"], &["convert", "uniform", "--set", "c"], &[]] {
+        let (code, out, err) = said(&run(arguments, folder.path()));
+        assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
+    }
+    let (code, out, _) = said(&run(&["--help"], folder.path()));
+    assert!(code == 0 && out.contains("Exit codes: 0 done; 1"), "{out}");
+}
+
+#[test]
+fn every_built_in_case_is_listed_with_its_title() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, list, _) = said(&run(&["cases"], folder.path()));
+    let (_, json, _) = said(&run(&["cases", "--json"], folder.path()));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let names: Vec<_> = json.as_array().unwrap().iter().map(|case| case["name"].as_str().unwrap()).collect();
+    assert_eq!(names.len(), list.lines().count());
+    assert!(names.iter().zip(list.lines()).all(|(name, line)| line.starts_with(name)));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_no_half_written_file() {
+    use std::time::Duration;
+
+    let folder = tempfile::tempdir().unwrap();
+    // Too long a work to be done before it is stopped.
+    let arguments = ["convert", "uniform", "--set", "size_scale=0.02", "-o", "a.msh"];
+    let child = command(&arguments, folder.path()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["convert", "uniform", "--set", "size_scale=4", "-o", "/dev/full", "--format", "msh"];
+    let (code, _, err) = said(&run(&arguments, folder.path()));
+    assert_eq!(code, 2);
+    assert!(err.contains("The disk is full") && err.lines().count() == 1, "{err}");
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let arguments = ["convert", "uniform", "--set", "size_scale=4", "-o", "-", "--format", "msh"];
+    let output = command(&arguments, folder.path()).stdout(full).output().unwrap();
+    let (code, _, err) = said(&output);
+    assert!(code == 2 && err.starts_with("error: standard output: "), "{err}");
+}
