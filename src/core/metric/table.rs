@@ -155,17 +155,15 @@ mod tests {
     }
 
     #[test]
-    fn slanting_needles_are_found_in_strips_as_by_a_search_through_all() {
+    fn slanting_needles_are_found_though_each_stands_in_several_boxes() {
         let table = needles(40);
         assert!(table.corners.len() > 4 * 160, "needles stand in several boxes: {}", table.corners.len());
         for k in 0..3000 {
             let p = DVec2::new((f64::from(k) * 0.618_034).fract(), f64::from(k) / 2999.0) * 1.2 - DVec2::splat(0.1);
             let m = table.metric(p).unwrap();
-            let by_hand =
-                (0..table.corners.len()).map(|i| in_triangle(&table.corners[i], p).1).fold(f64::INFINITY, f64::min);
             let inside = p.clamp(DVec2::ZERO, DVec2::ONE);
             let expected = Metric3::isotropic(libm::exp(inside.x - inside.y));
-            assert!((m.xx / expected.xx - 1.0).abs() < 1e-9, "{p} {m:?} {expected:?} {by_hand}");
+            assert!((m.xx / expected.xx - 1.0).abs() < 1e-9, "{p} {m:?} {expected:?}");
         }
     }
 }
