@@ -48,7 +48,7 @@ enum Candidate {
 }
 
 /// Cleans up an all-quadrilateral mesh until no candidate lowers the energy, within a budget linear in its size.
-pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource) -> CleanedUp {
+pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> CleanedUp {
     let ideal = boundary_ideals(mesh);
     let mut work = CleanUp { source, ideal, queue: VecDeque::new(), queued: Vec::new(), done: CleanedUp::default() };
     let nodes: Vec<NodeId> = mesh.nodes().collect();
@@ -65,7 +65,9 @@ pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource) -> CleanedUp {
         budget -= 1;
         if mesh.has_node(node) {
             work.mend(mesh, node);
-            mesh.commit();
+            if !keep_journal {
+                mesh.commit();
+            }
         }
     }
     work.done
