@@ -11,7 +11,7 @@ use crate::core::fault::Fault;
 use crate::core::geometry::predicates::firm;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
-use crate::core::mesh::quality::length_over;
+use crate::core::mesh::quality::{length_over, quality_over};
 use crate::core::metric::field::MetricSource;
 use crate::core::metric::measure::triangle_quality;
 use crate::core::metric::tensor::Metric2;
@@ -55,7 +55,8 @@ pub fn adapt(
     most_elements: usize,
     watch: &mut dyn Watch,
 ) -> Result<(Mesh, Adapted), Fault> {
-    let mut adapter = Adapter { mesh, source, most_elements, done: Adapted::default(), stack: Vec::new(), quality: Vec::new() };
+    let mut adapter =
+        Adapter { mesh, source, most_elements, done: Adapted::default(), stack: Vec::new(), quality: Vec::new() };
     adapter.mesh.set_recording(false);
     adapter.run(watch)?;
     adapter.mesh.set_recording(true);
@@ -339,9 +340,8 @@ impl Adapter<'_> {
             sum += p_b + away / length_over(metric, m_b, away);
         }
         let there = sum / star.len() as f64;
-        let quality = |([b, c], m): &([DVec2; 2], Metric2), p: DVec2, m_p: &Metric2| {
-            triangle_quality(&sum_of(m, m_p), p, *b, *c)
-        };
+        let quality =
+            |([b, c], m): &([DVec2; 2], Metric2), p: DVec2, m_p: &Metric2| triangle_quality(&sum_of(m, m_p), p, *b, *c);
         // What is good enough whatever it was before; only below it that has to be known.
         const GOOD: f64 = 0.6;
         let mut least = GOOD;
