@@ -29,7 +29,7 @@ fn built_in_cases_have_unit_edges_and_no_bad_triangles() {
     }
 }
 
-/// The unit square with sizes h1(X) and 0.06 along its sides X and Y, laid out in the plane as
+/// The unit square with sizes h1(X) and 0.03 along its sides X and Y, laid out in the plane as
 /// p = stretch\[0\] X g1 + stretch\[1\] Y g2 with g1 at `degrees`; the metric goes along, so that in it nothing changes.
 fn laid_out(h1: &str, degrees: f64, stretch: [f64; 2]) -> Case {
     let (s, c) = libm::sincos(degrees.to_radians());
@@ -50,7 +50,7 @@ fn laid_out(h1: &str, degrees: f64, stretch: [f64; 2]) -> Case {
         [[metric]]
         kind = "formula"
         h1 = "{a:?}*({h1})"
-        h2 = "{b:?}*0.06"
+        h2 = "{b:?}*0.03"
         g1 = [{c:?}, {s:?}]
         [metric.let]
         X = "({c:?}*x + {s:?}*y)/{a:?}"
@@ -61,7 +61,7 @@ fn laid_out(h1: &str, degrees: f64, stretch: [f64; 2]) -> Case {
 
 #[test]
 fn a_constant_metric_gives_triangles_that_are_equilateral_in_it() {
-    for (h1, degrees) in [("0.06", 0.0), ("0.006", 0.0), ("0.006", 27.0), ("0.3", 45.0)] {
+    for (h1, degrees) in [("0.03", 0.0), ("0.003", 0.0), ("0.003", 27.0), ("0.15", 45.0)] {
         let told = statistics(&laid_out(h1, degrees, [1.0, 1.0]));
         let quality = told.quality.unwrap();
         assert!(quality.mean > 0.93 && quality.min > 0.5, "{h1} at {degrees}: {quality:?}");
@@ -69,30 +69,34 @@ fn a_constant_metric_gives_triangles_that_are_equilateral_in_it() {
     }
 }
 
-/// Counts and distributions that agree as those of two meshes of the same metric do.
+/// Sizes for some 6,000 triangles. Meshes of the same metric that start from other triangles scatter: with 1,500 triangles
+/// by 3.5 % in their number, with 24,000 by 1.3 % (15 directions).
+const GRADED: &str = "0.005 + 0.025*X";
+
+/// Counts and distributions that agree within that scatter.
 fn assert_alike(a: &Statistics, b: &Statistics) {
     let (q, r) = (a.quality.unwrap(), b.quality.unwrap());
     let told = format!("{} {} {q:?}, {} {} {r:?}", a.triangles, a.lengths.mean, b.triangles, b.lengths.mean);
-    assert!((a.triangles as f64 / b.triangles as f64 - 1.0).abs() < 0.03, "{told}");
-    assert!((a.lengths.mean - b.lengths.mean).abs() < 0.015, "{told}");
-    assert!((a.lengths.deviation - b.lengths.deviation).abs() < 0.015, "{told}");
-    assert!((a.lengths.share_unit - b.lengths.share_unit).abs() < 0.015, "{told}");
+    assert!((a.triangles as f64 / b.triangles as f64 - 1.0).abs() < 0.04, "{told}");
+    assert!((a.lengths.mean - b.lengths.mean).abs() < 0.02, "{told}");
+    assert!((a.lengths.deviation - b.lengths.deviation).abs() < 0.02, "{told}");
+    assert!((a.lengths.share_unit - b.lengths.share_unit).abs() < 0.02, "{told}");
     assert!((q.mean - r.mean).abs() < 0.01, "{told}");
 }
 
 #[test]
 fn a_turned_domain_and_metric_give_a_mesh_alike() {
-    let straight = statistics(&laid_out("0.01 + 0.05*X", 0.0, [1.0, 1.0]));
+    let straight = statistics(&laid_out(GRADED, 0.0, [1.0, 1.0]));
     assert!(straight.triangles > 1000);
     for degrees in [20.0, 45.0, 90.0, 200.0] {
-        assert_alike(&straight, &statistics(&laid_out("0.01 + 0.05*X", degrees, [1.0, 1.0])));
+        assert_alike(&straight, &statistics(&laid_out(GRADED, degrees, [1.0, 1.0])));
     }
 }
 
 #[test]
 fn a_stretched_plane_with_a_metric_that_makes_up_for_it_gives_a_mesh_alike() {
-    let plain = statistics(&laid_out("0.01 + 0.05*X", 0.0, [1.0, 1.0]));
+    let plain = statistics(&laid_out(GRADED, 0.0, [1.0, 1.0]));
     for (degrees, stretch) in [(0.0, [1.0, 7.0]), (0.0, [30.0, 1.0]), (33.0, [1.0, 20.0]), (0.0, [1e-5, 1e-5])] {
-        assert_alike(&plain, &statistics(&laid_out("0.01 + 0.05*X", degrees, stretch)));
+        assert_alike(&plain, &statistics(&laid_out(GRADED, degrees, stretch)));
     }
 }
