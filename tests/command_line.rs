@@ -226,3 +226,27 @@ fn a_full_disk_is_said() {
     let (code, _, err) = said(&output);
     assert!(code == 2 && err.starts_with("error: standard output: "), "{err}");
 }
+
+/// Two squares of two triangles each that share a corner.
+const PINCHED: &str =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nf 1 2 3\nf 1 3 4\nf 3 5 6\nf 3 6 7\n";
+
+#[test]
+fn parts_that_share_a_node_only_come_apart_and_are_sound() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("pinched.obj"), PINCHED).unwrap();
+    let (code, _, err) = said(&run(&["convert", "pinched.obj", "-q", "-o", "quads.obj"], folder.path()));
+    assert_eq!((code, err.as_str()), (0, ""));
+    let (code, _, err) = said(&run(&["check", "quads.obj", "-q", "--seams"], folder.path()));
+    assert_eq!((code, err.as_str()), (0, ""));
+}
+
+#[test]
+fn a_metric_that_fails_between_the_nodes_of_a_given_mesh_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("mesh.obj"), PINCHED).unwrap();
+    let case = "version = 1\nmesh = \"mesh.obj\"\n[[metric]]\nkind = \"formula\"\nh1 = \"hypot(x - 2/3, y - 1/3)\"\n";
+    std::fs::write(folder.path().join("case.toml"), case).unwrap();
+    let (code, _, err) = said(&run(&["convert", "case.toml", "-q", "-o", "quads.obj"], folder.path()));
+    assert!(code == 2 && err.starts_with("error: (0.66") && err.contains("h1 = 0 is not positive"), "{err}");
+}
