@@ -124,3 +124,21 @@ pub enum Phase {
     /// Nothing is left to do.
     Done,
 }
+
+impl Phase {
+    /// The phase without the marks of the journal, which are history and not state.
+    #[must_use]
+    pub fn plain(&self) -> Phase {
+        let mut plain = self.clone();
+        match &mut plain {
+            Phase::PrepareSide { attempt, .. }
+            | Phase::DivideSide { attempt, .. }
+            | Phase::RecoverTop { attempt, .. }
+            | Phase::Form { attempt, .. }
+            | Phase::Retry { attempt, .. } => attempt.mark = Mark::default(),
+            Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => *mark = Mark::default(),
+            Phase::Select | Phase::Seam { .. } | Phase::Close { .. } | Phase::PostProcess | Phase::Done => {}
+        }
+        plain
+    }
+}
