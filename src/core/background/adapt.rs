@@ -51,7 +51,8 @@ pub fn adapt(
     most_elements: usize,
     watch: &mut dyn Watch,
 ) -> Result<(Mesh, Adapted), Fault> {
-    let mut adapter = Adapter { mesh, source, most_elements, done: Adapted::default(), stack: Vec::new(), quality: Vec::new() };
+    let mut adapter =
+        Adapter { mesh, source, most_elements, done: Adapted::default(), stack: Vec::new(), quality: Vec::new() };
     adapter.mesh.set_recording(false);
     adapter.run(watch)?;
     adapter.mesh.set_recording(true);
@@ -332,9 +333,8 @@ impl Adapter<'_> {
             sum += p_b + away / length_over(metric, m_b, away);
         }
         let there = sum / star.len() as f64;
-        let quality = |([b, c], m): &([DVec2; 2], Metric2), p: DVec2, m_p: &Metric2| {
-            triangle_quality(&sum_of(m, m_p), p, *b, *c)
-        };
+        let quality =
+            |([b, c], m): &([DVec2; 2], Metric2), p: DVec2, m_p: &Metric2| triangle_quality(&sum_of(m, m_p), p, *b, *c);
         // What is good enough whatever it was before; only below it that has to be known.
         const GOOD: f64 = 0.6;
         let mut least = GOOD;
