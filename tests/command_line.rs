@@ -47,7 +47,10 @@ fn example_1_becomes_a_mesh_a_report_and_a_picture() {
     assert_eq!(report["mesh"]["triangles"], 0);
     let quads = report["mesh"]["quads"].as_u64().unwrap();
     assert!((200..500).contains(&quads), "{quads}");
-    assert_eq!(report["last_resort"]["share"], 1.0, "there is no merging front yet, and the report says so");
+    let resort = &report["last_resort"];
+    let front = ["front_formed", "front_closed"].map(|kind| report["events"][kind].as_u64().unwrap());
+    assert_eq!(resort["of"].as_u64().unwrap(), front[0] + front[1] + resort["quads"].as_u64().unwrap());
+    assert!(resort["share"].as_f64().unwrap() < 0.25, "{resort}");
     assert!(report["timing"]["total"].as_f64().unwrap() > 0.0);
     assert_eq!(report["parameters"]["theta_rect"], 135);
     assert!(std::fs::read_to_string(folder.path().join("a.svg")).unwrap().ends_with("</svg>\n"));

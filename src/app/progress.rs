@@ -1,9 +1,11 @@
 //! How far the work is, shown on a terminal, and how long its parts took: `core` has no clock, this has.
 
+use std::fmt::Write;
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use crate::core::io::report::grouped;
 use crate::core::progress::{Stage, Watch};
 
 /// Shows progress on standard error where that is a terminal, and measures the time of each stage.
@@ -18,7 +20,8 @@ impl Progress {
     /// Nothing is shown where `quiet` or where standard error is no terminal.
     pub fn new(quiet: bool) -> Progress {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        Progress { bar: ProgressBar::with_draw_target(None, target), now: None, times: Vec::new(), total: 0 }
+        let bar = ProgressBar::with_draw_target(None, target).with_style(style("{msg}"));
+        Progress { bar, now: None, times: Vec::new(), total: 0 }
     }
 
     /// Clears the line, and tells the seconds of each stage in the order of the work.
@@ -40,17 +43,37 @@ impl Progress {
     fn begin(&mut self, stage: Stage, total: u64) {
         self.close();
         self.now = Some((stage, Instant::now()));
-        self.bar.reset();
+        // First a style without numbers: each of the changes below may be drawn.
+        self.bar.set_style(style("{msg}"));
         self.bar.set_message(words(stage));
+        self.bar.reset();
         self.set_total(total);
     }
 
     fn set_total(&mut self, total: u64) {
         self.total = total;
-        let template = if total > 0 { "{msg}: {human_pos} of about {human_len} {bar:20} {eta} left" } else { "{msg}" };
-        self.bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
         self.bar.set_length(total);
+        self.bar.reset_eta();
+        self.bar.set_style(style(if total > 0 { "{msg}: {done} of about {all} {bar:20} {left}" } else { "{msg}" }));
     }
+}
+
+/// A style whose numbers are written as everywhere else in the program.
+fn style(template: &str) -> ProgressStyle {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    // Writing to a line of text cannot fail.
+    style
+        .with_key("done", |state: &ProgressState, out: &mut dyn Write| {
+            let _ = out.write_str(&grouped(state.pos() as usize));
+        })
+        .with_key("all", |state: &ProgressState, out: &mut dyn Write| {
+            let _ = out.write_str(&grouped(state.len().unwrap_or(0) as usize));
+        })
+        .with_key("left", |state: &ProgressState, out: &mut dyn Write| {
+            let seconds = state.eta().as_secs_f64();
+            let _ =
+                if seconds < 9.95 { write!(out, "{seconds:.1} s left") } else { write!(out, "{seconds:.0} s left") };
+        })
 }
 
 impl Watch for Progress {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::core::background::adapt::Adapted;
 use crate::core::convert::conversion::{self, Background, Converted};
+use crate::core::convert::converter::Counts;
 use crate::core::fault::Fault;
 use crate::core::io::case::Case;
 use crate::core::io::export::Export;
@@ -52,6 +53,7 @@ pub(super) fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Quads, Fault
     watch.tell(Stage::Check, 0, 0);
     let export = Export::of(&converted.mesh, &converted.regions);
     let flaw = flaw(&converted.mesh, &export.file);
+    let resort = converted.last_resort.quads();
     let report = Report {
         program: Program::this(),
         case: CaseTold::of(case),
@@ -60,8 +62,7 @@ pub(super) fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Quads, Fault
         regions: converted.regions.len(),
         valid: flaw.is_none(),
         mesh: Statistics::measure(export.measured(), &converted.sizing)?,
-        // Without a front every quadrilateral is of the last resort.
-        last_resort: LastResort::of(converted.last_resort.quads(), converted.last_resort.quads()),
+        last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
         repairs: converted.repairs.clone(),
         events: events(&converted),
         timing: Vec::new(),
@@ -82,6 +83,32 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
     let Adapted { divisions, collapses, swaps, moves } = converted.adapted;
     let (resort, finished) = (converted.last_resort, converted.finished);
     let cleaned_up = finished.cleaned_up;
+    let Counts {
+        steps,
+        formed,
+        right_replaced,
+        rescued,
+        rolled_back,
+        deferred,
+        seamed,
+        split,
+        enhanced,
+        removed,
+        closed,
+    } = converted.counts;
+    let front = [
+        ("front_closed", closed),
+        ("front_deferred", deferred),
+        ("front_enhanced", enhanced),
+        ("front_formed", formed),
+        ("front_node_removed", removed),
+        ("front_rescued", rescued),
+        ("front_right_replaced", right_replaced),
+        ("front_rolled_back", rolled_back),
+        ("front_seam", seamed),
+        ("front_split", split),
+        ("front_step", steps),
+    ];
     let counts = [
         ("background_collapse", collapses),
         ("background_division", divisions),
@@ -98,5 +125,6 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("last_resort_template_quad", resort.template_quads),
         ("smoothing_move", finished.moves),
     ];
-    counts.into_iter().map(|(name, count)| (name.to_owned(), count as u64)).collect()
+    let counts = counts.into_iter().map(|(name, count)| (name, count as u64));
+    counts.chain(front).map(|(name, count)| (name.to_owned(), count)).collect()
 }

@@ -44,7 +44,7 @@ pub enum Entry {
 }
 
 /// A place in the journal to which everything later can be taken back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Mark(usize);
 
 /// Old values in the order in which they were replaced.

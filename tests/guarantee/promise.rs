@@ -144,10 +144,3 @@ fn sound(mesh: &Mesh) -> Result<(), String> {
         None => Ok(()),
     }
 }
-
-/// The canonical state of a mesh.
-pub fn state(mesh: &Mesh) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    mesh.write_state(&mut bytes);
-    bytes
-}

@@ -11,7 +11,7 @@ use crate::core::fault::Fault;
 use crate::core::geometry::predicates::firm;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
-use crate::core::mesh::quality::length_over;
+use crate::core::mesh::quality::{length_over, quality_over};
 use crate::core::metric::field::MetricSource;
 use crate::core::metric::measure::triangle_quality;
 use crate::core::metric::tensor::Metric2;
@@ -27,6 +27,10 @@ const SAMPLED: usize = 20_000;
 const CYCLES: usize = 4;
 /// A collapse or a split must not make a triangle worse than this, or than the worst of those it replaces.
 const LEAST_QUALITY: f64 = 0.4;
+/// A division must not make a triangle that is worse than this, unless it is not much worse than the one that it divides:
+/// by two thirds at the worst where the divided side is the longest, by less than half beside a longer one.
+const POOR: f64 = 0.1;
+const NOT_MUCH_WORSE: f64 = 0.55;
 
 /// What the adaptation did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -159,8 +163,8 @@ impl Adapter<'_> {
     }
 
     /// Divides an edge that still is as it was found, unless the new node would come closer than `least` to the
-    /// opposite ones, or closer than half of that to a side of the boundary: a side that is much too long, which may
-    /// not be divided, has a long edge beside it for ever.
+    /// opposite ones, or make a poor triangle poorer: beside a side of the boundary that is much too long, and may not be
+    /// divided, there is a long edge for ever.
     fn divide(&mut self, f: Found, least: f64) -> Result<(), Fault> {
         let mesh = &self.mesh;
         if !self.still_there(f) {
@@ -174,12 +178,15 @@ impl Adapter<'_> {
         if f.length < 2.0 && (near(c) || near(d)) {
             return Ok(());
         }
-        let near_boundary = |h: HalfEdgeId| {
-            let d = mesh.uv(mesh.target(h)) - mesh.uv(mesh.origin(h));
-            let height = metric.det().sqrt() * d.perp_dot(place - mesh.uv(mesh.origin(h))) / metric.norm2(d).sqrt();
-            mesh.twin(h).is_none() && height < 0.5 * least
+        let fit = |h_ab: HalfEdgeId| {
+            let (a, b, c) = (mesh.origin(h_ab), mesh.target(h_ab), mesh.origin(mesh.previous(h_ab)));
+            let half = |n: NodeId| {
+                quality_over([mesh.uv(n), place, mesh.uv(c)], [mesh.metric_ref(n), &metric, mesh.metric_ref(c)]).abs()
+            };
+            let after = half(a).min(half(b));
+            after >= POOR || after >= NOT_MUCH_WORSE * mesh.triangle_quality([a, b, c])
         };
-        if [f.h, twin].iter().any(|&h| near_boundary(mesh.next(h)) || near_boundary(mesh.previous(h))) {
+        if !(fit(f.h) && fit(twin)) {
             return Ok(());
         }
         if mesh.element_count() + 2 > self.most_elements {

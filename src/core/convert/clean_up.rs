@@ -9,9 +9,9 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::energy;
-use crate::core::geometry::predicates::convex;
+use super::settle::{Nodes, elements_around, put, settle};
 use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::operators::Refusal;
 use crate::core::metric::field::MetricSource;
 use crate::core::metric::measure::angle;
@@ -20,10 +20,10 @@ use crate::core::metric::measure::angle;
 const LEAST_QUALITY: f64 = 0.2;
 /// The energy must fall by this much: differences below it are noise of the relaxation.
 const LEAST_GAIN: f64 = 1e-2;
-/// Rounds of relaxation of the nodes around a trial.
-const RELAX_ROUNDS: usize = 4;
 /// Candidates tried at one node, best valence gain first.
-const MOST_TRIALS: usize = 10;
+const MOST_TRIALS: usize = 16;
+/// An element below this quality is poor.
+const POOR: f64 = 0.4;
 
 /// What the clean-up did, by operation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,7 +50,7 @@ enum Candidate {
 }
 
 /// Cleans up an all-quadrilateral mesh until no candidate lowers the energy, within a budget linear in its size.
-pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource) -> CleanedUp {
+pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> CleanedUp {
     let ideal = boundary_ideals(mesh);
     let mut work = CleanUp { source, ideal, queue: VecDeque::new(), queued: Vec::new(), done: CleanedUp::default() };
     let nodes: Vec<NodeId> = mesh.nodes().collect();
@@ -67,7 +67,9 @@ pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource) -> CleanedUp {
         budget -= 1;
         if mesh.has_node(node) {
             work.mend(mesh, node);
-            mesh.commit();
+            if !keep_journal {
+                mesh.commit();
+            }
         }
     }
     work.done
@@ -98,8 +100,6 @@ struct CleanUp<'a> {
     queued: Vec<bool>,
     done: CleanedUp,
 }
-
-type Nodes = SmallVec<[NodeId; 12]>;
 
 impl CleanUp<'_> {
     fn ideal(&self, mesh: &Mesh, node: NodeId) -> i32 {
@@ -140,7 +140,8 @@ impl CleanUp<'_> {
         }
     }
 
-    /// Changes around a node that do not raise the sum of squared excesses, with their gain (negative is better).
+    /// Changes around a node that do not raise the sum of squared excesses (or only by two where an element there is
+    /// poor), with their gain: negative is better.
     fn candidates(&self, mesh: &Mesh, node: NodeId) -> SmallVec<[(i32, Candidate); 32]> {
         let mut found = SmallVec::new();
         if !mesh.is_fixed(node) && mesh.fan(node).count() == 2 {
@@ -151,12 +152,15 @@ impl CleanUp<'_> {
             let e = self.excess(mesh, n);
             (e + by) * (e + by) - e * e
         };
+        // Where an element is poor a worse structure may be the better mesh.
+        let spokes: SmallVec<[HalfEdgeId; 8]> = mesh.fan(node).collect();
+        let worst = spokes.iter().map(|h| mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
+        let most_gain = if worst < POOR { 2 } else { 0 };
         let mut push = |gain: i32, candidate: Candidate| {
-            if gain <= 0 {
+            if gain <= most_gain {
                 found.push((gain, candidate));
             }
         };
-        let spokes: SmallVec<[HalfEdgeId; 8]> = mesh.fan(node).collect();
         for &h in &spokes {
             let e = h.element();
             if !mesh.is_quad(e) {
@@ -213,7 +217,7 @@ impl CleanUp<'_> {
         let mut core = core_nodes(mesh, candidate);
         let (energy_before, quality_before) = self.patch(mesh, &core);
         let mark = mesh.mark();
-        let kept = self.apply(mesh, candidate, &mut core).is_ok() && self.settle(mesh, &core) && {
+        let kept = self.apply(mesh, candidate, &mut core).is_ok() && settle(mesh, self.source, &core) && {
             let (energy, quality) = self.patch(mesh, &core);
             energy < energy_before - LEAST_GAIN && quality >= quality_before.min(LEAST_QUALITY)
         };
@@ -244,7 +248,7 @@ impl CleanUp<'_> {
                 mesh.collapse_diamond(h_ab)?;
                 core.retain(|n| *n != a);
                 if !mesh.is_fixed(c) {
-                    self.put(mesh, c, middle)?;
+                    put_or_refuse(mesh, self.source, c, middle)?;
                 }
             }
             Candidate::Rotate(h, by) => mesh.rotate_edge(h, by)?,
@@ -259,49 +263,12 @@ impl CleanUp<'_> {
                     }
                     let own: Nodes = mesh.neighbours(node).filter(|&n| n != p && n != q).collect();
                     let middle = own.iter().fold(DVec2::ZERO, |s, &n| s + mesh.uv(n)) / own.len().max(1) as f64;
-                    self.put(mesh, node, here + (middle - here) * 0.33)?;
+                    put_or_refuse(mesh, self.source, node, here + (middle - here) * 0.33)?;
                 }
                 core.push(w);
             }
         }
         Ok(())
-    }
-
-    /// Places a node without asking whether its elements are positive: [`settle`](CleanUp::settle) does.
-    fn put(&self, mesh: &mut Mesh, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
-        let metric = self.source.metric(uv).map_err(|_| Refusal::NotPositive)?;
-        mesh.move_node(node, uv, metric);
-        Ok(())
-    }
-
-    /// Relaxes the core nodes; where elements are inverted first moves them to the middle of their neighbours. True
-    /// when every element around is strictly convex in the end.
-    fn settle(&self, mesh: &mut Mesh, core: &Nodes) -> bool {
-        for _ in 0..3 {
-            if all_convex(mesh, core) {
-                break;
-            }
-            for &node in core.iter().filter(|&&n| !mesh.is_fixed(n)).collect::<SmallVec<[_; 12]>>() {
-                let around: Nodes = mesh.neighbours(node).collect();
-                let middle = around.iter().fold(DVec2::ZERO, |s, &n| s + mesh.uv(n)) / around.len() as f64;
-                if self.put(mesh, node, middle).is_err() {
-                    return false;
-                }
-            }
-        }
-        if !all_convex(mesh, core) {
-            return false;
-        }
-        for _ in 0..RELAX_ROUNDS {
-            let mut moved: f64 = 0.0;
-            for &node in core {
-                moved = moved.max(energy::relax(mesh, node, self.source));
-            }
-            if moved < 0.02 {
-                break;
-            }
-        }
-        true
     }
 
     /// Energy of everything that depends on the core nodes, and the worst quality of the elements there.
@@ -350,17 +317,6 @@ fn core_nodes(mesh: &Mesh, candidate: Candidate) -> Nodes {
     core
 }
 
-fn elements_around(mesh: &Mesh, nodes: &Nodes) -> SmallVec<[ElementId; 24]> {
-    let mut elements: SmallVec<[ElementId; 24]> =
-        nodes.iter().flat_map(|&n| mesh.fan(n)).map(|h| h.element()).collect();
-    elements.sort_unstable();
-    elements.dedup();
-    elements
-}
-
-fn all_convex(mesh: &Mesh, core: &Nodes) -> bool {
-    elements_around(mesh, core).iter().all(|&e| {
-        let [a, b, c, d] = mesh.quad(e).map(|n| mesh.uv(n));
-        convex(a, b, c, d)
-    })
+fn put_or_refuse(mesh: &mut Mesh, source: &dyn MetricSource, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
+    if put(mesh, source, node, uv) { Ok(()) } else { Err(Refusal::NotPositive) }
 }

@@ -6,7 +6,7 @@
 
 use smallvec::SmallVec;
 
-use super::component::live_components;
+use super::component::{Component, live_components};
 use super::event::{Event, Why};
 use super::finish::{Finished, finish};
 use super::last_resort::{Outcome, last_resort};
@@ -17,10 +17,10 @@ use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
 use crate::core::front::selection::{Choice, Queue};
 use crate::core::journal::Mark;
-use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::half_edge::{Mesh, Undone};
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::metric::field::MetricSource;
-use crate::core::progress::{Nobody, Stage, Watch};
+use crate::core::progress::{Stage, Watch};
 
 /// Looks at edges for one enhancement: four times a ring's size (spec 2.8).
 const ENHANCEMENTS: u8 = 48;
@@ -49,6 +49,8 @@ pub struct Counts {
     pub rolled_back: u64,
     /// Segments put off.
     pub deferred: u64,
+    /// Quadrilaterals over small loops that were closed.
+    pub closed: u64,
     /// Seams.
     pub seamed: u64,
     /// Front splits.
@@ -57,6 +59,24 @@ pub struct Counts {
     pub enhanced: u64,
     /// Nodes removed.
     pub removed: u64,
+}
+
+/// What a step needs to be taken back.
+#[derive(Clone, Debug)]
+struct Record {
+    phase: Phase,
+    second_pass: bool,
+    counts: Counts,
+    undo: Undo,
+}
+
+/// How a step is taken back.
+#[derive(Clone, Debug)]
+enum Undo {
+    /// By the journal, from here.
+    Journal(Mark),
+    /// It was a rollback itself: by doing again what it took back.
+    Redo(Vec<Undone>),
 }
 
 /// A conversion at some step.
@@ -68,8 +88,15 @@ pub struct Converter<'a> {
     pub(super) source: &'a dyn MetricSource,
     /// Parameters; may be changed between two steps by [`Converter::set_parameters`].
     pub(super) parameters: Parameters,
-    queue: Queue,
+    /// A cache: rebuilt from the mesh where it is missing, and then chooses the same.
+    queue: Option<Queue>,
     phase: Phase,
+    /// Records of the steps, where a history is kept.
+    history: Option<Vec<Record>>,
+    /// What the step at hand took back, where a history is kept.
+    undone: Option<Vec<Undone>>,
+    /// Where the journal stood before the step at hand.
+    step_mark: Mark,
     /// Whether the gates are wide: every segment was put off and taken up again.
     second_pass: bool,
     /// How often what happened.
@@ -83,13 +110,15 @@ pub struct Converter<'a> {
 impl<'a> Converter<'a> {
     /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2).
     pub fn new(mesh: Mesh, source: &'a dyn MetricSource, parameters: Parameters) -> Self {
-        let queue = Queue::of(&mesh, &parameters);
         Converter {
             mesh,
             source,
             parameters,
-            queue,
+            queue: None,
             phase: Phase::Select,
+            history: None,
+            undone: None,
+            step_mark: Mark::default(),
             second_pass: false,
             counts: Counts::default(),
             last_resort: Outcome::default(),
@@ -110,7 +139,46 @@ impl<'a> Converter<'a> {
     /// Changes the parameters from the next step on.
     pub fn set_parameters(&mut self, parameters: Parameters) {
         self.parameters = parameters;
-        self.queue = Queue::of(&self.mesh, &self.parameters);
+        self.queue = None;
+    }
+
+    /// Keeps from now on what [`step_back`](Converter::step_back) needs.
+    pub fn keep_history(&mut self) {
+        self.mesh.commit();
+        self.history = Some(Vec::new());
+    }
+
+    /// Takes the last step back, exactly. False at the beginning of the history, or where none is kept.
+    pub fn step_back(&mut self) -> bool {
+        let Some(record) = self.history.as_mut().and_then(Vec::pop) else { return false };
+        match record.undo {
+            Undo::Journal(mark) => self.mesh.take_back(mark),
+            Undo::Redo(undone) => self.mesh.redo(undone),
+        }
+        self.phase = record.phase;
+        self.second_pass = record.second_pass;
+        self.counts = record.counts;
+        self.queue = None;
+        true
+    }
+
+    /// Appends the canonical serialisation of the state: mesh, front, phase and what the next steps depend on. Equal
+    /// bytes are equal states; caches and counts are left out.
+    pub fn write_state(&self, bytes: &mut Vec<u8>) {
+        self.mesh.write_state(bytes);
+        bytes.extend_from_slice(
+            format!("{:?} {:?} {:?}", self.phase.plain(), self.second_pass, self.parameters).as_bytes(),
+        );
+    }
+
+    fn queue(&mut self) -> &mut Queue {
+        self.queue.get_or_insert_with(|| Queue::of(&self.mesh, &self.parameters))
+    }
+
+    /// The queue taken out, so that it can be handed the mesh; it must be put back.
+    fn take_queue(&mut self) -> Queue {
+        self.queue();
+        self.queue.take().expect("it was just made")
     }
 
     /// Runs to the end.
@@ -122,18 +190,16 @@ impl<'a> Converter<'a> {
         watch.tell(Stage::Convert, 0, total);
         while self.phase != Phase::Done {
             if self.phase == Phase::Select {
-                // Nobody keeps a history here: what was done stays done.
-                self.mesh.commit();
+                if self.history.is_none() {
+                    // What was done stays done.
+                    self.mesh.commit();
+                }
                 if self.counts.formed.is_multiple_of(1024) {
                     watch.tell(Stage::Convert, 2 * self.counts.formed, total);
                 }
             }
             if self.phase == Phase::PostProcess {
-                self.mesh = self.mesh.reordered();
-                self.mesh.set_recording(true);
-                self.finished = finish(&mut self.mesh, self.source, watch);
-                self.phase = Phase::Done;
-                break;
+                watch.tell(Stage::Finish, 0, 0);
             }
             self.step()?;
         }
@@ -145,6 +211,13 @@ impl<'a> Converter<'a> {
     /// # Errors
     /// Where what is left over cannot be converted even by the last resort: a bug, or a mesh that broke its promises.
     pub fn step(&mut self) -> Result<Event, Fault> {
+        let before = self.history.is_some().then(|| Record {
+            phase: self.phase.clone(),
+            second_pass: self.second_pass,
+            counts: self.counts,
+            undo: Undo::Journal(self.mesh.mark()),
+        });
+        self.step_mark = self.mesh.mark();
         self.counts.steps += 1;
         let phase = std::mem::replace(&mut self.phase, Phase::Done);
         let (next, event) = match phase {
@@ -157,14 +230,28 @@ impl<'a> Converter<'a> {
             Phase::Enhance { element, mark, edges, budget } => self.step_enhance(element, mark, edges, budget),
             Phase::Smooth { element, mark } => self.step_smooth(element, mark),
             Phase::Seam { nodes } => self.step_seam(nodes)?,
+            Phase::Close { waiting, left } => self.step_close(waiting, left)?,
             Phase::PostProcess => {
-                self.finished = finish(&mut self.mesh, self.source, &mut Nobody);
+                self.finished = finish(&mut self.mesh, self.source, self.history.is_some());
                 (Phase::Done, Event::PostProcessed)
             }
             Phase::Done => (Phase::Done, Event::Finished),
         };
         self.phase = next;
+        if let (Some(history), Some(mut record)) = (&mut self.history, before) {
+            if let Some(undone) = self.undone.take() {
+                record.undo = Undo::Redo(undone);
+            }
+            history.push(record);
+        }
         Ok(event)
+    }
+
+    /// Brings the queue up to date with what the journal holds since the mark.
+    fn refresh(&mut self, mark: Mark) {
+        let mut queue = self.take_queue();
+        queue.refresh(&mut self.mesh, mark, &self.parameters);
+        self.queue = Some(queue);
     }
 
     /// The gates that a formation must pass.
@@ -174,12 +261,18 @@ impl<'a> Converter<'a> {
 
     /// Base segment selection (4.3.3).
     fn select(&mut self) -> Result<(Phase, Event), Fault> {
-        let Some(Choice { segment, h_min, within_reach }) = self.queue.select(&self.mesh, &self.parameters) else {
-            if !self.second_pass && self.queue.take_up_all(&mut self.mesh, &self.parameters) {
+        let mut queue = self.take_queue();
+        let choice = queue.select(&self.mesh, &self.parameters);
+        let taken_up = choice.is_none() && !self.second_pass && queue.take_up_all(&mut self.mesh, &self.parameters);
+        self.queue = Some(queue);
+        let Some(Choice { segment, h_min, within_reach }) = choice else {
+            if taken_up {
                 self.second_pass = true;
                 return Ok((Phase::Select, Event::SecondPass));
             }
-            return self.step_last_resort();
+            let mut components = live_components(&self.mesh);
+            components.reverse();
+            return self.step_close(components, Vec::new());
         };
         let base = Base {
             a: segment.a,
@@ -208,7 +301,13 @@ impl<'a> Converter<'a> {
 
     /// Takes an attempt back; the next one follows.
     fn fail(&mut self, base: Base, attempt: Attempt, why: Why) -> (Phase, Event) {
-        self.mesh.take_back(attempt.mark);
+        if self.history.is_some() {
+            // What this very step did is not part of the state before it.
+            self.mesh.take_back(self.step_mark);
+            self.undone = Some(self.mesh.take_back_to_redo(attempt.mark));
+        } else {
+            self.mesh.take_back(attempt.mark);
+        }
         self.counts.rolled_back += 1;
         (Phase::Retry { base, attempt }, Event::RolledBack { attempt: attempt.number, why })
     }
@@ -299,7 +398,9 @@ impl<'a> Converter<'a> {
         }
         self.counts.deferred += 1;
         if let Some(h) = self.base_half_edge(&base) {
-            self.queue.defer(&mut self.mesh, h);
+            let mut queue = self.take_queue();
+            queue.defer(&mut self.mesh, h);
+            self.queue = Some(queue);
         }
         (Phase::Select, Event::Deferred { a: base.a, b: base.b })
     }
@@ -368,7 +469,7 @@ impl<'a> Converter<'a> {
     /// Smoothing (4.3.6); the queue then sees everything since the base was selected.
     fn step_smooth(&mut self, element: ElementId, mark: Mark) -> (Phase, Event) {
         let nodes = if self.parameters.smoothing { self.smooth_around(element) } else { 0 };
-        self.queue.refresh(&mut self.mesh, mark, &self.parameters);
+        self.refresh(mark);
         let next = if self.parameters.seaming {
             Phase::Seam { nodes: SmallVec::from_slice(&self.mesh.quad(element)) }
         } else {
@@ -383,7 +484,7 @@ impl<'a> Converter<'a> {
             let mark = self.mesh.mark();
             if let Some(event) = self.seam_at(at) {
                 self.counts.seamed += 1;
-                self.queue.refresh(&mut self.mesh, mark, &self.parameters);
+                self.refresh(mark);
                 if let Event::Seamed { node, .. } = event {
                     nodes.push(node);
                 }
@@ -393,10 +494,17 @@ impl<'a> Converter<'a> {
         self.select()
     }
 
-    /// Converts what is left over.
-    fn step_last_resort(&mut self) -> Result<(Phase, Event), Fault> {
+    /// Closes the next small loop that is left over (spec 2.7); what cannot be closed goes to the last resort together.
+    fn step_close(&mut self, mut waiting: Vec<Component>, mut left: Vec<Component>) -> Result<(Phase, Event), Fault> {
+        while let Some(component) = waiting.pop() {
+            if let Some((quads, event)) = self.close(&component) {
+                self.counts.closed += quads;
+                return Ok((Phase::Close { waiting, left }, event));
+            }
+            left.push(component);
+        }
         let mut total = Outcome::default();
-        for component in live_components(&self.mesh) {
+        for component in left {
             let outcome = last_resort(&mut self.mesh, &component.triangles, self.source)
                 .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
             total = total.plus(&outcome);

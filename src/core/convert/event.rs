@@ -186,6 +186,15 @@ pub enum Event {
         /// Its width over its height.
         ratio: f64,
     },
+    /// A small loop was closed (spec 2.7).
+    Closed {
+        /// Its segments.
+        segments: u8,
+        /// Quadrilaterals over it.
+        quads: u8,
+        /// The worst quality around.
+        quality: f64,
+    },
     /// Every segment is put off: all are taken up again with wider gates.
     SecondPass,
     /// The last resort converted what was left over.
@@ -215,6 +224,7 @@ impl Event {
             Event::Smoothed { .. } => "smoothed",
             Event::Seamed { .. } => "seamed",
             Event::Split { .. } => "split",
+            Event::Closed { .. } => "closed",
             Event::SecondPass => "second_pass",
             Event::LastResort(_) => "last_resort",
             Event::PostProcessed => "post_processed",

@@ -7,7 +7,6 @@ use super::energy;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;
 use crate::core::metric::field::MetricSource;
-use crate::core::progress::{Stage, Watch};
 
 /// A node that moved farther than this (in its metric) sends its neighbours to be looked at again.
 const STIRRED: f64 = 0.02;
@@ -23,21 +22,17 @@ pub struct Finished {
     pub moves: usize,
 }
 
-/// Smooths, cleans up and smooths again. Every step keeps all elements strictly convex.
-pub fn finish(mesh: &mut Mesh, source: &dyn MetricSource, watch: &mut dyn Watch) -> Finished {
-    let mut moves = 0;
-    watch.tell(Stage::Finish, 0, 3);
-    moves += smooth(mesh, source);
-    watch.tell(Stage::Finish, 1, 3);
-    let cleaned_up = clean_up(mesh, source);
-    watch.tell(Stage::Finish, 2, 3);
-    moves += smooth(mesh, source);
-    mesh.commit();
+/// Smooths, cleans up and smooths again. Every step keeps all elements strictly convex. The journal is kept where
+/// `keep_journal` says so, else forgotten on the way.
+pub fn finish(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> Finished {
+    let mut moves = smooth(mesh, source, keep_journal);
+    let cleaned_up = clean_up(mesh, source, keep_journal);
+    moves += smooth(mesh, source, keep_journal);
     Finished { cleaned_up, moves }
 }
 
 /// Relaxes all free nodes until none moves any more that matters. Returns the number of moves.
-fn smooth(mesh: &mut Mesh, source: &dyn MetricSource) -> usize {
+fn smooth(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> usize {
     let mut queue: VecDeque<NodeId> = mesh.nodes().filter(|&n| !mesh.is_fixed(n)).collect();
     let mut queued = vec![false; mesh.node_slots()];
     queue.iter().for_each(|n| queued[n.index()] = true);
@@ -59,7 +54,9 @@ fn smooth(mesh: &mut Mesh, source: &dyn MetricSource) -> usize {
                 }
             }
         }
-        mesh.commit();
+        if !keep_journal {
+            mesh.commit();
+        }
     }
     moves
 }

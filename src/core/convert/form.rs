@@ -17,6 +17,14 @@ use crate::core::metric::measure::quad_quality;
 /// A quadrilateral does not eat more triangles than this.
 const MOST_EATEN: usize = 64;
 
+/// What lies between the four sides of a quadrilateral to be formed.
+struct Enclosed {
+    /// Live triangles, that of the base first.
+    triangles: SmallVec<[ElementId; 16]>,
+    /// Nodes wholly inside.
+    inside: SmallVec<[NodeId; 8]>,
+}
+
 impl Converter<'_> {
     /// Merges the triangles between the four sides, places the new top nodes, checks shape and parity.
     pub(super) fn form(&mut self, base: &Base, attempt: &Attempt, [c, d]: [NodeId; 2]) -> Result<Event, Why> {
@@ -28,7 +36,7 @@ impl Converter<'_> {
         });
         let gate = self.gates();
         let nodes = [a, b, d, c];
-        let (eaten, inside) = self.enclosed(base, nodes)?;
+        let Enclosed { triangles: eaten, inside } = self.enclosed(base, nodes)?;
         let quad = NewElement::quad(nodes, self.mesh.region(eaten[0]));
         let element = self.mesh.replace(&eaten, &[quad])[0];
         for node in inside {
@@ -78,11 +86,7 @@ impl Converter<'_> {
     }
 
     /// The live triangles between the four sides A-B-D-C and the nodes wholly inside; they must form a disc.
-    fn enclosed(
-        &self,
-        base: &Base,
-        nodes: [NodeId; 4],
-    ) -> Result<(SmallVec<[ElementId; 16]>, SmallVec<[NodeId; 8]>), Why> {
+    fn enclosed(&self, base: &Base, nodes: [NodeId; 4]) -> Result<Enclosed, Why> {
         let mesh = &self.mesh;
         let h = self.base_half_edge(base).ok_or(Why::NotDisc)?;
         let is_side = |from: NodeId, to: NodeId| (0..4).any(|k| nodes[k] == from && nodes[(k + 1) % 4] == to);
@@ -111,7 +115,7 @@ impl Converter<'_> {
             }
         }
         if sides == 4 && found.len() == 2 + 2 * inside.len() && inside.iter().all(|&n| !mesh.is_fixed(n)) {
-            Ok((found, inside))
+            Ok(Enclosed { triangles: found, inside })
         } else {
             Err(Why::NotDisc)
         }

@@ -10,6 +10,8 @@ mod top;
 mod form;
 mod local;
 mod seam;
+mod close;
+pub mod settle;
 pub mod component;
 pub mod matching;
 mod t_join;

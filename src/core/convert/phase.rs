@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::component::Component;
 use crate::core::front::sector::Side;
 use crate::core::journal::Mark;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
@@ -111,8 +112,33 @@ pub enum Phase {
         /// Nodes to look at.
         nodes: SmallVec<[NodeId; 8]>,
     },
+    /// Small loops that are left over are to be closed.
+    Close {
+        /// Components to look at, the next one last.
+        waiting: Vec<Component>,
+        /// Those that could not be closed: they go to the last resort.
+        left: Vec<Component>,
+    },
     /// Clean-up and smoothing of the whole mesh.
     PostProcess,
     /// Nothing is left to do.
     Done,
+}
+
+impl Phase {
+    /// The phase without the marks of the journal, which are history and not state.
+    #[must_use]
+    pub fn plain(&self) -> Phase {
+        let mut plain = self.clone();
+        match &mut plain {
+            Phase::PrepareSide { attempt, .. }
+            | Phase::DivideSide { attempt, .. }
+            | Phase::RecoverTop { attempt, .. }
+            | Phase::Form { attempt, .. }
+            | Phase::Retry { attempt, .. } => attempt.mark = Mark::default(),
+            Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => *mark = Mark::default(),
+            Phase::Select | Phase::Seam { .. } | Phase::Close { .. } | Phase::PostProcess | Phase::Done => {}
+        }
+        plain
+    }
 }

@@ -51,15 +51,14 @@ impl Converter<'_> {
             }
         }
         let there = best.map_or(f64::INFINITY, |b| b.0);
-        if there > self.parameters.side_deviation {
-            if let Some((deviation, angle, h)) = self.best_swap(base, side, &spokes, target, &excluded) {
-                if deviation < there {
-                    let h = self.mesh.swap(h);
-                    let at = self.base_node(base, side);
-                    let node = if self.mesh.origin(h) == at { self.mesh.target(h) } else { self.mesh.origin(h) };
-                    return Ok((node, Event::SideSwapped { side, node, angle, deviation, instead_of: there }));
-                }
-            }
+        if there > self.parameters.side_deviation
+            && let Some((deviation, angle, h)) = self.best_swap(base, side, &spokes, target, &excluded)
+            && deviation < there
+        {
+            let h = self.mesh.swap(h);
+            let at = self.base_node(base, side);
+            let node = if self.mesh.origin(h) == at { self.mesh.target(h) } else { self.mesh.origin(h) };
+            return Ok((node, Event::SideSwapped { side, node, angle, deviation, instead_of: there }));
         }
         let (deviation, angle, node) = best.ok_or(Why::NoSide(side))?;
         Ok((node, Event::SideChosen { side, node, angle, deviation, considered }))

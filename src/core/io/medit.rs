@@ -232,7 +232,7 @@ fn write_elements<const N: usize>(out: &mut dyn Write, name: &str, list: &[[u32;
     Ok(())
 }
 
-/// Writes the metric at the points of a mesh as `.sol`, in the dimension in which [`write`] writes the mesh.
+/// Writes the metric at the points of a mesh as `.sol`, in the dimension in which [`write`](fn@write) writes the mesh.
 ///
 /// # Errors
 /// What `out` says.

@@ -253,28 +253,33 @@ fn times(timing: &[(Stage, f64)]) -> String {
 
 fn angles(angles: &Angles) -> String {
     format!(
-        "{:.1}\u{2013}{:.1}\u{b0}, {:.1} % within 60\u{2013}120\u{b0}, {:.1} % within 30\u{2013}160\u{b0}",
+        "{:.1}\u{2013}{:.1}\u{b0}, {} within 60\u{2013}120\u{b0}, {} within 30\u{2013}160\u{b0}",
         angles.min,
         angles.max,
-        100.0 * angles.share_60_120,
-        100.0 * angles.share_30_160
+        percent(angles.share_60_120),
+        percent(angles.share_30_160)
     )
 }
 
 fn lengths(mesh: &Statistics) -> String {
     let lengths = &mesh.lengths;
     format!(
-        "{:.2} \u{b1} {:.2} in the metric ({:.2}\u{2013}{:.2}), {:.1} % within 0.71\u{2013}1.41",
+        "{:.2} \u{b1} {:.2} in the metric ({:.2}\u{2013}{:.2}), {} within 0.71\u{2013}1.41",
         lengths.mean,
         lengths.deviation,
         lengths.min,
         lengths.max,
-        100.0 * lengths.share_unit
+        percent(lengths.share_unit)
     )
 }
 
+/// A share rounded down, so that 100 % means all.
+fn percent(share: f64) -> String {
+    format!("{:.1} %", (share * 1000.0 + 1e-9).floor() / 10.0)
+}
+
 fn range(range: Range) -> String {
-    format!("least {:.2}, mean {:.3}", range.min, range.mean)
+    format!("least {:.3}, mean {:.3}", range.min, range.mean)
 }
 
 fn counted(count: usize, thing: &str) -> String {
@@ -282,7 +287,7 @@ fn counted(count: usize, thing: &str) -> String {
 }
 
 /// An integer with a thin space before every three digits.
-fn grouped(count: usize) -> String {
+pub fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (k, digit) in digits.chars().enumerate() {

@@ -7,11 +7,15 @@ use super::spectrum::LogMetric3;
 use super::tensor::Metric3;
 use crate::core::fault::Fault;
 
+/// A slanting needle is known to the tree by so many boxes at the most: its whole box would overlap with those of all needles
+/// beside it.
+const MOST_STRIPS: f64 = 64.0;
+
 /// The mesh, the logarithms at its nodes, and what finds a triangle.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
     tree: BoxTree,
-    /// Corners of the triangles, anticlockwise, in the tree's order.
+    /// Corners of the triangles, anticlockwise, in the tree's order; those of needles come several times.
     corners: Vec<[DVec2; 3]>,
     /// Their nodes.
     nodes: Vec<[u32; 3]>,
@@ -55,8 +59,8 @@ impl Table {
                 return Err(Fault::new(format!("Triangle {} of the table of metrics has no area", i + 1))
                     .at(format!("({}, {})", p.x, p.y)));
             }
-            anticlockwise.push(if area > 0.0 { [a, b, c] } else { [a, c, b] });
-            boxes.push((p.min(q).min(r), p.max(q).max(r)));
+            strips([p, q, r], &mut boxes);
+            anticlockwise.resize(boxes.len(), if area > 0.0 { [a, b, c] } else { [a, c, b] });
         }
         let (tree, order) = BoxTree::new(&boxes);
         let nodes: Vec<[u32; 3]> = order.into_iter().map(|i| anticlockwise[i as usize]).collect();
@@ -74,6 +78,31 @@ impl Table {
             sum = sum.plus(weight, &self.logarithms[node as usize]);
         }
         Some(sum.exp())
+    }
+}
+
+/// Adds the boxes of the strips across its longest side that a triangle is cut into, the more the less of its box it fills.
+fn strips(corners: [DVec2; 3], boxes: &mut Vec<(DVec2, DVec2)>) {
+    let [p, q, r] = corners;
+    let extent = p.max(q).max(r) - p.min(q).min(r);
+    let count = (0.5 * extent.x * extent.y / (q - p).perp_dot(r - p).abs()).clamp(1.0, MOST_STRIPS) as u32;
+    let length2 = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);
+    let longest = (0..3).max_by(|&i, &j| length2(i).total_cmp(&length2(j))).unwrap_or(0);
+    let [a, b, c] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
+    let foot = share_along(c, a, b);
+    // The ends of a cut across the side a-b: on the side, and on the two others.
+    let cut = |t: f64| {
+        let other = if t < foot { a.lerp(c, t / foot) } else { c.lerp(b, ((t - foot) / (1.0 - foot)).min(1.0)) };
+        [if t < 1.0 { a.lerp(b, t) } else { b }, other]
+    };
+    for k in 0..count {
+        let [from, to] = [k, k + 1].map(|k| f64::from(k) / f64::from(count));
+        let ([p, q], [r, s]) = (cut(from), cut(to));
+        let (mut low, mut high) = (p.min(q).min(r).min(s), p.max(q).max(r).max(s));
+        if (from..=to).contains(&foot) {
+            (low, high) = (low.min(c), high.max(c));
+        }
+        boxes.push((low, high));
     }
 }
 
@@ -98,4 +127,43 @@ fn in_triangle(corners: &[DVec2; 3], p: DVec2) -> ([f64; 3], f64) {
         }
     }
     nearest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The unit square in rows of needles along one of its diagonals.
+    fn needles(rows: u32) -> Table {
+        let (mut points, mut triangles) = (Vec::new(), Vec::new());
+        for k in 0..=rows {
+            let t = f64::from(k) / f64::from(rows);
+            points.extend([DVec2::new(t, 0.0), DVec2::new(1.0, t), DVec2::new(0.0, t), DVec2::new(t, 1.0)]);
+        }
+        for k in (0..4 * rows).step_by(4) {
+            // Below the diagonal from (k, 0) to (1, 1 - k), above it from (0, k) to (1 - k, 1).
+            let far = 4 * rows - k;
+            triangles.extend([[k, k + 4, far + 1], [k + 4, far - 3, far + 1]]);
+            triangles.extend([[k + 2, far + 3, k + 6], [k + 6, far + 3, far - 1]]);
+        }
+        triangles.retain(|t| {
+            let [a, b, c] = t.map(|n| points[n as usize]);
+            (b - a).perp_dot(c - a) != 0.0
+        });
+        let metrics = points.iter().map(|p| Metric3::isotropic(libm::exp(p.x - p.y))).collect::<Vec<_>>();
+        Table::new(&points, &triangles, &metrics).unwrap()
+    }
+
+    #[test]
+    fn slanting_needles_are_found_though_each_stands_in_several_boxes() {
+        let table = needles(40);
+        assert!(table.corners.len() > 4 * 160, "needles stand in several boxes: {}", table.corners.len());
+        for k in 0..3000 {
+            let p = DVec2::new((f64::from(k) * 0.618_034).fract(), f64::from(k) / 2999.0) * 1.2 - DVec2::splat(0.1);
+            let m = table.metric(p).unwrap();
+            let inside = p.clamp(DVec2::ZERO, DVec2::ONE);
+            let expected = Metric3::isotropic(libm::exp(inside.x - inside.y));
+            assert!((m.xx / expected.xx - 1.0).abs() < 1e-9, "{p} {m:?} {expected:?}");
+        }
+    }
 }

@@ -183,3 +183,34 @@ fn deep_nesting_is_refused_and_does_not_overflow_the_stack() {
     let fault = parse(&format!("version = 1\nnotes = {}", "[".repeat(200_000))).unwrap_err();
     assert!(fault.what.contains("not TOML"), "{fault}");
 }
+
+#[test]
+fn damaged_cases_are_read_or_refused_and_never_panic() {
+    let pieces = ["[", "]", "\"", "=", "\n", "{", "}", "-", "nan", "1e999", "0x", "'''", "[[curve]]\n", "\u{fe}", ","];
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = |n: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % n as u64) as usize
+    };
+    let mut refused = 0;
+    for round in 0..1500 {
+        let (name, text) = crate::core::io::built_in::CASES[round % crate::core::io::built_in::CASES.len()];
+        let mut characters: Vec<char> = text.chars().collect();
+        for _ in 0..=random(3) {
+            let at = random(characters.len());
+            match random(3) {
+                0 => drop(characters.drain(at..(at + 1 + random(12)).min(characters.len()))),
+                1 => drop(characters.splice(at..at, pieces[random(pieces.len())].chars())),
+                _ => characters.truncate(at.max(1)),
+            }
+        }
+        let damaged: String = characters.into_iter().collect();
+        if let Err(fault) = Case::parse(&damaged, name, "damaged.toml", Path::new("")) {
+            refused += 1;
+            assert!(fault.place.starts_with("damaged.toml") && !fault.what.is_empty(), "{fault}");
+        }
+    }
+    assert!(refused > 500, "{refused}");
+}
