@@ -43,7 +43,7 @@ pub struct Background {
 /// The quadrilaterals of a case.
 #[derive(Clone, Debug)]
 pub struct Converted {
-    /// All quadrilaterals.
+    /// All quadrilaterals, where the conversion was taken to its end.
     pub mesh: Mesh,
     /// What gives the metric anywhere.
     pub sizing: Sizing,
@@ -81,10 +81,22 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
 /// # Errors
 /// As [`background`]; and where a component cannot be converted, which its checks should have found.
 pub fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Converted, Fault> {
+    convert_by(case, watch, &mut |converter, watch| converter.run(watch))
+}
+
+/// Converts a case as far as `drive` takes its converter.
+///
+/// # Errors
+/// As [`background`], and what `drive` says.
+pub fn convert_by(
+    case: &Case,
+    watch: &mut dyn Watch,
+    drive: &mut dyn FnMut(&mut Converter<'_>, &mut dyn Watch) -> Result<(), Fault>,
+) -> Result<Converted, Fault> {
     let Background { mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
     let triangles = mesh.element_count();
     let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());
-    converter.run(watch)?;
+    drive(&mut converter, watch)?;
     let Converter { mesh, counts, last_resort, finished, .. } = converter;
     Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, counts, last_resort, finished })
 }
