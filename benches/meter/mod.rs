@@ -27,13 +27,29 @@ pub fn median_of<T>(runs: usize, mut work: impl FnMut() -> T) -> (T, f64) {
 }
 
 fn once<T>(work: &mut impl FnMut() -> T) -> (T, f64) {
-    let (clock, processor) = (Instant::now(), processor_time());
+    let start = now();
     let result = work();
-    let seconds = match (processor, processor_time()) {
+    (result, since(start))
+}
+
+/// A moment to measure from.
+#[derive(Clone, Copy)]
+pub struct Moment {
+    clock: Instant,
+    processor: Option<f64>,
+}
+
+/// This moment.
+pub fn now() -> Moment {
+    Moment { clock: Instant::now(), processor: processor_time() }
+}
+
+/// Seconds since then.
+pub fn since(then: Moment) -> f64 {
+    match (then.processor, processor_time()) {
         (Some(before), Some(after)) => after - before,
-        _ => clock.elapsed().as_secs_f64(),
-    };
-    (result, seconds)
+        _ => then.clock.elapsed().as_secs_f64(),
+    }
 }
 
 /// Seconds that this thread has run, where the system tells.

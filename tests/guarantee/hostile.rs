@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::mpsc;
 use std::time::Duration;
 
+use quadfront::core::convert::conversion::{background, convert};
 use quadfront::core::io::case::Case;
+use quadfront::core::progress::Nobody;
 
 use super::promise::keep;
 
@@ -169,4 +171,29 @@ fn metrics_that_jump_or_swing_are_meshed() {
     ] {
         assert!(with(formula).is_err(), "{formula}");
     }
+}
+
+/// A hole of eight sides where the metric asks for some hundreds.
+fn coarse_hole_in_a_thin_metric() -> Case {
+    let hole = circle("hole", 0.5, 0.5, 0.1) + "segments = 8\n";
+    let metric = "[[metric]]\nkind = \"formula\"\nh1 = 0.004\nh2 = 4\ng1 = [1, -0.3]\n";
+    let text = format!("version = 1\n{}{hole}{}{metric}", square(1.0, 0.0), face("rim", "holes = [[\"hole\"]]"));
+    Case::parse(&text, "hole", "hole.toml", Path::new("")).unwrap()
+}
+
+#[test]
+fn beside_sides_that_are_much_too_long_no_needles_gather() {
+    // Edges beside such a side stay long however often they are divided: each division once halved an altitude, down to
+    // the least that is representable.
+    let mesh = background(&coarse_hole_in_a_thin_metric(), &mut Nobody).unwrap().mesh;
+    let worst = mesh.elements().map(|e| mesh.quality(e)).fold(f64::INFINITY, f64::min);
+    assert!(worst > 1e-4, "{worst:e}");
+}
+
+#[test]
+fn segments_that_were_put_off_are_all_taken_up_again_once_only() {
+    // They were after every quadrilateral of the second pass, which is quadratic where the front fails at most of them.
+    let converted = convert(&coarse_hole_in_a_thin_metric(), &mut Nobody).unwrap();
+    let (steps, triangles) = (converted.counts.steps, converted.triangles as u64);
+    assert!(steps < 150 * triangles, "{steps} steps for {triangles} triangles");
 }

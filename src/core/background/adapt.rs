@@ -8,10 +8,12 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use crate::core::fault::Fault;
+use crate::core::geometry::predicates::firm;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::quality::{length_over, quality_over};
 use crate::core::metric::field::MetricSource;
+use crate::core::metric::measure::triangle_quality;
 use crate::core::metric::tensor::Metric2;
 use crate::core::progress::{Stage, Watch};
 
@@ -53,7 +55,8 @@ pub fn adapt(
     most_elements: usize,
     watch: &mut dyn Watch,
 ) -> Result<(Mesh, Adapted), Fault> {
-    let mut adapter = Adapter { mesh, source, most_elements, done: Adapted::default(), stack: Vec::new() };
+    let mut adapter =
+        Adapter { mesh, source, most_elements, done: Adapted::default(), stack: Vec::new(), quality: Vec::new() };
     adapter.mesh.set_recording(false);
     adapter.run(watch)?;
     adapter.mesh.set_recording(true);
@@ -67,6 +70,8 @@ struct Adapter<'a> {
     done: Adapted,
     /// Half-edges whose swap is to be looked at; kept for its memory.
     stack: Vec<HalfEdgeId>,
+    /// Quality of each element while swaps are looked for; kept for its memory.
+    quality: Vec<f64>,
 }
 
 /// An edge that was found too long or too short, to be met again after others have changed.
@@ -128,8 +133,14 @@ impl Adapter<'_> {
     fn long_edges(&self, sampled: bool) -> Result<Vec<Found>, Fault> {
         let mesh = &self.mesh;
         let mut found = Vec::new();
-        for h in mesh.edges().filter(|&h| mesh.twin(h).is_some()) {
+        for h in mesh.edges() {
             let (from, to) = (mesh.origin(h), mesh.target(h));
+            // The length is no more than the greater one of those at the two ends, which nearly always is enough to know.
+            let d = mesh.uv(to) - mesh.uv(from);
+            let short = mesh.metric_ref(from).norm2(d).max(mesh.metric_ref(to).norm2(d)) < LONG * LONG;
+            if (short && !sampled) || mesh.twin(h).is_none() {
+                continue;
+            }
             let mut length = mesh.distance(from, to);
             if sampled && length <= 2.0 {
                 length = length.max(self.sampled_length(from, to)?);
@@ -138,7 +149,8 @@ impl Adapter<'_> {
                 found.push(Found { length, h, from, to });
             }
         }
-        found.sort_unstable_by_key(|f| (std::cmp::Reverse(length_class(f.length)), f.h));
+        // Edges come by id; a stable sort leaves them so within a class.
+        found.sort_by_key(|f| std::cmp::Reverse(length_class(f.length)));
         Ok(found)
     }
 
@@ -229,6 +241,9 @@ impl Adapter<'_> {
     /// Swaps every edge whose swap raises the lesser quality of its two triangles, until there is none.
     fn swap_where_better(&mut self) {
         let mesh = &mut self.mesh;
+        self.quality.clear();
+        self.quality.resize(mesh.element_slots(), 0.0);
+        mesh.elements().for_each(|e| self.quality[e.index()] = mesh.triangle_quality(mesh.triangle(e)));
         self.stack.extend(mesh.edges());
         self.stack.reverse();
         let mut budget = 4 * self.stack.len();
@@ -237,13 +252,12 @@ impl Adapter<'_> {
                 self.stack.clear();
                 return;
             }
-            if !mesh.has_element(h.element()) || !swap_is_better(mesh, h) {
-                continue;
-            }
+            let Some(qualities) = better_by_swap(mesh, &self.quality, h) else { continue };
             budget -= 1;
             self.done.swaps += 1;
             let h = mesh.swap(h);
             let t = mesh.twin(h).expect("a swapped edge has two sides");
+            [self.quality[h.element().index()], self.quality[t.element().index()]] = qualities;
             self.stack.extend([mesh.next(h), mesh.previous(h), mesh.next(t), mesh.previous(t)]);
         }
     }
@@ -256,7 +270,7 @@ impl Adapter<'_> {
             .map(|h| Found { length: mesh.length(h), h, from: mesh.origin(h), to: mesh.target(h) })
             .filter(|f| f.length < SHORT && !(mesh.is_fixed(f.from) && mesh.is_fixed(f.to)))
             .collect();
-        found.sort_unstable_by_key(|f| (length_class(f.length), f.h));
+        found.sort_by_key(|f| length_class(f.length));
         for f in found {
             if !self.still_there(f) {
                 continue;
@@ -314,27 +328,33 @@ impl Adapter<'_> {
 
     fn smooth_node(&mut self, node: NodeId) -> Result<(), Fault> {
         let mesh = &self.mesh;
-        let here = mesh.uv(node);
-        let mut star: SmallVec<[[NodeId; 2]; 12]> = SmallVec::new();
-        let (mut sum, mut before) = (DVec2::ZERO, f64::INFINITY);
+        let (here, metric) = (mesh.uv(node), mesh.metric_ref(node));
+        // The ring: the two other corners of each triangle, with their places and the sum of their metrics.
+        let mut star: SmallVec<[([DVec2; 2], Metric2); 12]> = SmallVec::new();
+        let mut sum = DVec2::ZERO;
         for h in mesh.fan(node) {
             let (b, c) = (mesh.target(h), mesh.origin(mesh.previous(h)));
-            star.push([b, c]);
-            before = before.min(mesh.triangle_quality([node, b, c]));
-            let away = here - mesh.uv(b);
-            sum += mesh.uv(b) + away / mesh.distance(node, b);
+            let (p_b, m_b, m_c) = (mesh.uv(b), mesh.metric_ref(b), mesh.metric_ref(c));
+            star.push(([p_b, mesh.uv(c)], sum_of(m_b, m_c)));
+            let away = here - p_b;
+            sum += p_b + away / length_over(metric, m_b, away);
         }
         let there = sum / star.len() as f64;
+        let quality =
+            |([b, c], m): &([DVec2; 2], Metric2), p: DVec2, m_p: &Metric2| triangle_quality(&sum_of(m, m_p), p, *b, *c);
+        // What is good enough whatever it was before; only below it that has to be known.
+        const GOOD: f64 = 0.6;
+        let mut least = GOOD;
         for step in [1.0, 0.5, 0.25] {
             let place = here + (there - here) * step;
             let Ok(metric) = self.source.metric(place) else { continue };
-            let after = star.iter().fold(f64::INFINITY, |least, &[b, c]| {
-                least.min(quality_over(
-                    [place, mesh.uv(b), mesh.uv(c)],
-                    [&metric, mesh.metric_ref(b), mesh.metric_ref(c)],
-                ))
-            });
-            if after >= before.min(0.6) && mesh.can_move(node, place).is_ok() {
+            let worst = star.iter().map(|t| quality(t, place, &metric)).fold(f64::INFINITY, f64::min);
+            if worst < least && least == GOOD {
+                let before = star.iter().map(|t| quality(t, here, mesh.metric_ref(node)));
+                least = before.fold(GOOD, f64::min);
+            }
+            // As `Mesh::can_move` judges, with the places at hand.
+            if worst >= least && star.iter().all(|([b, c], _)| firm(place, *b, *c)) {
                 self.mesh.move_node(node, place, metric);
                 self.done.moves += 1;
                 return Ok(());
@@ -342,6 +362,11 @@ impl Adapter<'_> {
         }
         Ok(())
     }
+}
+
+#[inline]
+fn sum_of(a: &Metric2, b: &Metric2) -> Metric2 {
+    Metric2 { uu: a.uu + b.uu, uv: a.uv + b.uv, vv: a.vv + b.vv }
 }
 
 /// Lengths within a quarter of an octave count as equal: what is nearly as urgent is done in the order of memory.
@@ -369,16 +394,22 @@ fn is_delaunay(mesh: &Mesh, h_ab: HalfEdgeId) -> bool {
     at_c.0 * at_d.1 + at_c.1 * at_d.0 >= 0.0
 }
 
-/// Whether swapping raises the lesser quality of the two triangles, by enough not to be undone by rounding.
+/// The qualities of the two triangles after a swap, where it raises the lesser one by enough not to be undone by
+/// rounding; `quality` has those before it.
 #[inline]
-fn swap_is_better(mesh: &Mesh, h_ab: HalfEdgeId) -> bool {
-    let Some(h_ba) = mesh.twin(h_ab) else { return false };
+fn better_by_swap(mesh: &Mesh, quality: &[f64], h_ab: HalfEdgeId) -> Option<[f64; 2]> {
+    let h_ba = mesh.twin(h_ab)?;
+    let before = quality[h_ab.element().index()].min(quality[h_ba.element().index()]);
+    if before > 0.95 {
+        return None;
+    }
     let (a, b) = (mesh.origin(h_ab), mesh.origin(h_ba));
     let (c, d) = (mesh.origin(mesh.previous(h_ab)), mesh.origin(mesh.previous(h_ba)));
-    let before = mesh.triangle_quality([a, b, c]).min(mesh.triangle_quality([b, a, d]));
-    if before > 0.95 {
-        return false;
+    let least = before + 1e-6;
+    let first = mesh.triangle_quality([a, d, c]);
+    if first <= least {
+        return None;
     }
-    let after = mesh.triangle_quality([a, d, c]).min(mesh.triangle_quality([d, b, c]));
-    after > before + 1e-6 && mesh.can_swap(h_ab).is_ok()
+    let second = mesh.triangle_quality([b, c, d]);
+    (second > least && mesh.can_swap(h_ab).is_ok()).then_some([first, second])
 }

@@ -21,7 +21,9 @@ const LEAST_QUALITY: f64 = 0.2;
 /// The energy must fall by this much: differences below it are noise of the relaxation.
 const LEAST_GAIN: f64 = 1e-2;
 /// Candidates tried at one node, best valence gain first.
-const MOST_TRIALS: usize = 10;
+const MOST_TRIALS: usize = 16;
+/// An element below this quality is poor.
+const POOR: f64 = 0.4;
 
 /// What the clean-up did, by operation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -138,7 +140,8 @@ impl CleanUp<'_> {
         }
     }
 
-    /// Changes around a node that do not raise the sum of squared excesses, with their gain (negative is better).
+    /// Changes around a node that do not raise the sum of squared excesses (or only by two where an element there is
+    /// poor), with their gain: negative is better.
     fn candidates(&self, mesh: &Mesh, node: NodeId) -> SmallVec<[(i32, Candidate); 32]> {
         let mut found = SmallVec::new();
         if !mesh.is_fixed(node) && mesh.fan(node).count() == 2 {
@@ -149,12 +152,15 @@ impl CleanUp<'_> {
             let e = self.excess(mesh, n);
             (e + by) * (e + by) - e * e
         };
+        // Where an element is poor a worse structure may be the better mesh.
+        let spokes: SmallVec<[HalfEdgeId; 8]> = mesh.fan(node).collect();
+        let worst = spokes.iter().map(|h| mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
+        let most_gain = if worst < POOR { 2 } else { 0 };
         let mut push = |gain: i32, candidate: Candidate| {
-            if gain <= 0 {
+            if gain <= most_gain {
                 found.push((gain, candidate));
             }
         };
-        let spokes: SmallVec<[HalfEdgeId; 8]> = mesh.fan(node).collect();
         for &h in &spokes {
             let e = h.element();
             if !mesh.is_quad(e) {

@@ -76,7 +76,7 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     Ok(made)
 }
 
-/// Converts a case: its background mesh by the front, what is left over by the last resort, then post-processing.
+/// Converts a case: its background mesh, then the front and what closes it, then post-processing.
 ///
 /// # Errors
 /// As [`background`]; and where a component cannot be converted, which its checks should have found.
@@ -138,6 +138,8 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
     for spec in &case.fields {
         fields.push(Field::compile(spec, &|_| None)?);
     }
+    // What the triangles themselves imply is sound, however thin they are.
+    let given = !fields.is_empty() || file.metric.is_some();
     if fields.is_empty() {
         let metrics = match &file.metric {
             Some(given) => imported.at_nodes(given),
@@ -145,10 +147,24 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
         };
         fields.push(Field::table(&set.uv, &set.triangles, metrics).map_err(|fault| fault.at(place))?);
     }
-    let sizing = Sizing::new(fields, case.parameters.size_scale);
-    let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+    let mut sizing = Sizing::new(fields, case.parameters.size_scale);
+    if given {
+        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be asked for.
+        let middle = |t: &[u32; 3]| t.iter().map(|&n| set.uv[n as usize]).sum::<DVec2>() / 3.0;
+        let points: Vec<DVec2> = set.uv.iter().copied().chain(set.triangles.iter().map(middle)).collect();
+        sizing.survey(&points, &|_| false)?;
+    }
+    let meshed = |sizing: &Sizing| -> Result<Mesh, Fault> {
+        let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+        Ok(Mesh::from_triangles(set, metric).reordered())
+    };
+    let mut mesh = meshed(&sizing)?;
+    if let Some(beta) = case.gradation {
+        sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0);
+        mesh = meshed(&sizing)?;
+    }
     Ok(Background {
-        mesh: Mesh::from_triangles(set, metric).reordered(),
+        mesh,
         sizing,
         regions: imported.regions,
         adapted: Adapted::default(),

@@ -378,7 +378,6 @@ impl<'a> Converter<'a> {
                 let right_replaced = attempt.tops[1].is_some() && attempt.tops[0].is_none();
                 self.counts.right_replaced += u64::from(right_replaced);
                 self.counts.rescued += u64::from(attempt.tops[0].is_some());
-                self.second_pass = false;
                 let edges = if self.parameters.enhancement { self.edges_around(element) } else { SmallVec::new() };
                 (Phase::Enhance { element, mark: attempt.mark, edges, budget: ENHANCEMENTS }, event)
             }

@@ -230,7 +230,9 @@ const FLAT: f64 = 0.05;
 fn firm_quad([a, b, c, d]: [DVec2; 4]) -> bool {
     let (at_a, at_b, at_c, at_d) = (orient(d, a, b), orient(a, b, c), orient(b, c, d), orient(c, d, a));
     let least = at_a.min(at_b).min(at_c).min(at_d);
-    least > 0.0 && 2.0 * least >= FLAT * (at_a + at_c)
+    // Four nodes in a row may have shares of what rounding makes of nothing.
+    let solid = || firm(d, a, b) && firm(a, b, c) && firm(b, c, d) && firm(c, d, a);
+    least > 0.0 && 2.0 * least >= FLAT * (at_a + at_c) && solid()
 }
 
 struct Planner<'a> {

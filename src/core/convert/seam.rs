@@ -13,10 +13,14 @@ const MOST_UNLIKE: f64 = 2.5;
 /// With this many dead elements at the node, angles up to `WIDE` are seamed too (Levik; spec 1).
 const CROWDED: usize = 5;
 const WIDE: f64 = std::f64::consts::FRAC_PI_4;
+/// Segments that are shorter than this on average, in the metric, are seamed up to `SHORT_ANGLE`: where sizes grow ahead of
+/// the front, columns must end, and this is where they do (docs/experiments.md).
+const SHORT: f64 = 0.85;
+const SHORT_ANGLE: f64 = std::f64::consts::FRAC_PI_3;
 
 impl Converter<'_> {
     /// Seams at a node of the front where the frontal angle is small enough and the guards of spec 2.8 hold. All of it
-    /// is taken back where it fails.
+    /// is taken back where it fails. With `theta_seam` 0 nothing is seamed.
     pub(super) fn seam_at(&mut self, at: NodeId) -> Option<Event> {
         if !self.mesh.has_node(at) {
             return None;
@@ -26,10 +30,12 @@ impl Converter<'_> {
             let angle = self.mesh.frontal_angle(h, Side::Left);
             let crowded = self.mesh.fan(at).filter(|h| self.mesh.is_quad(h.element())).count() >= CROWDED;
             let bound = self.parameters.theta_seam;
-            if angle > if crowded { bound.max(WIDE) } else { bound } {
+            let before = self.mesh.front_before(h);
+            let short = 0.5 * (self.mesh.length(h) + self.mesh.length(before));
+            let bound = if crowded { bound.max(WIDE) } else { bound };
+            if angle > if short < SHORT { bound.max(SHORT_ANGLE) } else { bound } {
                 continue;
             }
-            let before = self.mesh.front_before(h);
             let (b, c) = (self.mesh.target(h), self.mesh.origin(before));
             let mark = self.mesh.mark();
             match self.seam(at, b, c) {

@@ -282,7 +282,6 @@ impl Domain {
             // Loops around the point: those crossed an odd number of times.
             let mut around: Vec<(usize, usize)> = self
                 .crossed(p)
-                .into_iter()
                 .filter(|id| id.index() != c)
                 .flat_map(|id| loops_of[id.index()].iter().copied())
                 .collect();
@@ -331,21 +330,30 @@ impl Domain {
         Ok(())
     }
 
-    fn crossed(&self, p: DVec2) -> smallvec::SmallVec<[CurveId; 16]> {
-        inside::crossed_by_ray(&self.chords, &self.curves, p, self.lower.x - self.size)
+    /// The curves that a ray from `p` towards -x crosses, one entry for each crossing.
+    fn crossed(&self, p: DVec2) -> impl Iterator<Item = CurveId> {
+        let crossings = inside::crossings(&self.chords, &self.curves, p.y, [self.lower.x - self.size, p.x]);
+        crossings.into_iter().filter(move |c| c.left_of(p)).map(|c| c.curve)
     }
 
     /// The face that holds the point, judged by the fine polylines; `None` outside and in holes.
     pub fn inside(&self, p: DVec2) -> Option<u32> {
-        let mut faces: smallvec::SmallVec<[u32; 16]> = self
-            .crossed(p)
-            .into_iter()
-            .map(|id| &self.curves[id.index()])
-            .filter(|c| c.kind == CurveKind::Boundary)
-            .flat_map(|c| c.sides.into_iter().flatten())
-            .collect();
-        faces.sort_unstable();
-        faces.chunk_by(|a, b| a == b).find(|g| g.len() % 2 == 1).map(|g| g[0])
+        self.face_beyond(self.crossed(p))
+    }
+
+    /// The face that holds a point from which a ray to infinity crosses these curves: one whose curves it crosses an odd
+    /// number of times.
+    fn face_beyond(&self, crossed: impl Iterator<Item = CurveId>) -> Option<u32> {
+        let mut odd: smallvec::SmallVec<[u32; 16]> = smallvec::SmallVec::new();
+        for curve in crossed.map(|id| &self.curves[id.index()]).filter(|c| c.kind == CurveKind::Boundary) {
+            for face in curve.sides.into_iter().flatten() {
+                match odd.iter().position(|f| *f == face) {
+                    Some(i) => drop(odd.swap_remove(i)),
+                    None => odd.push(face),
+                }
+            }
+        }
+        odd.into_iter().min()
     }
 
     /// About `n` points that cover the domain: a square grid of points inside, and points of all curves as dense.
@@ -372,9 +380,12 @@ impl Domain {
         }
         let (columns, rows) = ((extent.x / spacing).ceil() as usize, (extent.y / spacing).ceil() as usize);
         for j in 0..rows {
+            let y = self.lower.y + spacing * (j as f64 + 0.5);
+            let line = [self.lower.x - self.size, self.upper.x];
+            let row = inside::crossings(&self.chords, &self.curves, y, line);
             for i in 0..columns {
-                let p = self.lower + spacing * DVec2::new(i as f64 + 0.5, j as f64 + 0.5);
-                if self.inside(p).is_some() {
+                let p = DVec2::new(self.lower.x + spacing * (i as f64 + 0.5), y);
+                if self.face_beyond(row.iter().filter(|c| c.left_of(p)).map(|c| c.curve)).is_some() {
                     points.push(p);
                 }
             }

@@ -25,21 +25,41 @@ pub fn chord_tree(curves: &[DomainCurve], margin: impl Fn(CurveId, u32) -> f64) 
     RTree::bulk_load(boxes)
 }
 
-/// The curves that a ray from `p` towards -x crosses, one entry for each crossing.
-pub fn crossed_by_ray(tree: &RTree<Chord>, curves: &[DomainCurve], p: DVec2, far_left: f64) -> SmallVec<[CurveId; 16]> {
-    let mut crossed = SmallVec::new();
-    if p.x < far_left {
-        return crossed;
+/// A chord that crosses a horizontal line, and the curve that it is of.
+#[derive(Clone, Copy, Debug)]
+pub struct Crossing {
+    low: DVec2,
+    high: DVec2,
+    /// The curve.
+    pub curve: CurveId,
+}
+
+impl Crossing {
+    /// Whether a ray from `p`, which lies on the line, towards -x meets the chord.
+    #[inline]
+    pub fn left_of(&self, p: DVec2) -> bool {
+        orient(self.low, self.high, p) < 0.0
     }
-    for chord in tree.locate_in_envelope_intersecting(AABB::from_corners([far_left, p.y], [p.x, p.y])) {
+}
+
+/// The chords that the horizontal line at `y` crosses between the two abscissas, and perhaps some beyond the second.
+pub fn crossings(tree: &RTree<Chord>, curves: &[DomainCurve], y: f64, [left, right]: [f64; 2]) -> Crossings {
+    let mut crossings = Crossings::new();
+    if right < left {
+        return crossings;
+    }
+    for chord in tree.locate_in_envelope_intersecting(AABB::from_corners([left, y], [right, y])) {
         let (id, i) = chord.data;
         let fine = &curves[id.index()].fine;
         let (a, b) = (fine[i as usize].1, fine[i as usize + 1].1);
-        // Half-open, so that a ray through a corner counts it once.
+        // Half-open, so that a line through a corner counts it once.
         let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };
-        if low.y <= p.y && p.y < high.y && orient(low, high, p) < 0.0 {
-            crossed.push(id);
+        if low.y <= y && y < high.y {
+            crossings.push(Crossing { low, high, curve: id });
         }
     }
-    crossed
+    crossings
 }
+
+/// What [`crossings`] finds.
+pub type Crossings = SmallVec<[Crossing; 8]>;

@@ -10,6 +10,7 @@
 use glam::DVec2;
 
 use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
+use super::order::{grouped, hilbert_order};
 use super::triangle_set::TriangleSet;
 use crate::core::journal::{Entry, Journal, Mark};
 use crate::core::metric::tensor::Metric2;
@@ -208,7 +209,9 @@ impl Mesh {
 
     /// One half-edge of every edge, by id: that of the smaller id, or the only one.
     pub fn edges(&self) -> impl Iterator<Item = HalfEdgeId> + '_ {
-        self.elements().flat_map(|e| self.half_edges(e)).filter(|&h| self.twin(h).is_none_or(|t| h < t))
+        let slots = (0..4 * self.sides.len() as u32).map(HalfEdgeId);
+        // Absence is the largest number: one comparison takes sides without twin too.
+        slots.filter(|h| h.corner() < u32::from(self.sides[h.element().index()]) && h.0 < self.twin[h.index()])
     }
 
     /// The half-edges of an element, anticlockwise.
@@ -413,37 +416,44 @@ impl Mesh {
     /// neighbours in memory, which is most of the speed of large meshes. The journal starts empty.
     #[must_use]
     pub fn reordered(&self) -> Mesh {
-        let nodes = hilbert_order(self.nodes().map(|n| (n.0, self.uv(n))).collect());
+        let nodes = hilbert_order(&self.nodes().map(|n| (n.0, self.uv(n))).collect::<Vec<_>>());
         let mut new_node = vec![NONE; self.uv.len()];
         for (new, &old) in nodes.iter().enumerate() {
             new_node[old as usize] = new as u32;
         }
-        let mut elements: Vec<(u32, u32)> = self
-            .elements()
-            .map(|e| (self.corners(e).map(|n| new_node[n.index()]).min().unwrap_or(NONE), e.0))
-            .collect();
-        elements.sort_unstable();
+        // Elements follow their first node.
+        let first_node = |e: ElementId| self.corners(e).map(|n| new_node[n.index()]).min().unwrap_or(NONE);
+        let elements: Vec<(u32, u32)> = self.elements().map(|e| (first_node(e), e.0)).collect();
+        let elements: Vec<u32> = grouped(nodes.len(), &elements, |e| e.0).into_iter().map(|(_, old)| old).collect();
         let mut new_element = vec![NONE; self.sides.len()];
-        for (new, &(_, old)) in elements.iter().enumerate() {
+        for (new, &old) in elements.iter().enumerate() {
             new_element[old as usize] = new as u32;
         }
         let half_edge = |h: u32| if h == NONE { NONE } else { new_element[(h >> 2) as usize] << 2 | (h & 3) };
-        let slot = |old: u32, corner: u32| (4 * old + corner) as usize;
-        let corners = || elements.iter().flat_map(|&(_, old)| (0..4).map(move |corner| (old, corner)));
-        let used = |old: u32, corner: u32| corner < u32::from(self.sides[old as usize]);
+        let slots = 4 * elements.len();
+        let (mut origin, mut twin) = (Vec::with_capacity(slots), Vec::with_capacity(slots));
+        let mut deferred = Vec::with_capacity(slots);
+        for &old in &elements {
+            let first = 4 * old as usize;
+            let sides = self.sides[old as usize] as usize;
+            for slot in first..first + 4 {
+                let used = slot < first + sides;
+                origin.push(if used { new_node[self.origin[slot] as usize] } else { NONE });
+                twin.push(if used { half_edge(self.twin[slot]) } else { NONE });
+            }
+            deferred.extend_from_slice(&self.deferred[first..first + 4]);
+        }
         Mesh {
             uv: nodes.iter().map(|&n| self.uv[n as usize]).collect(),
             metric: nodes.iter().map(|&n| self.metric[n as usize]).collect(),
             anchor: nodes.iter().map(|&n| half_edge(self.anchor[n as usize])).collect(),
             point: nodes.iter().map(|&n| self.point[n as usize]).collect(),
-            origin: corners()
-                .map(|(e, k)| if used(e, k) { new_node[self.origin[slot(e, k)] as usize] } else { NONE })
-                .collect(),
-            twin: corners().map(|(e, k)| if used(e, k) { half_edge(self.twin[slot(e, k)]) } else { NONE }).collect(),
-            sides: elements.iter().map(|&(_, e)| self.sides[e as usize]).collect(),
-            region: elements.iter().map(|&(_, e)| self.region[e as usize]).collect(),
-            level: elements.iter().map(|&(_, e)| self.level[e as usize]).collect(),
-            deferred: corners().map(|(e, k)| self.deferred[slot(e, k)]).collect(),
+            origin,
+            twin,
+            sides: elements.iter().map(|&e| self.sides[e as usize]).collect(),
+            region: elements.iter().map(|&e| self.region[e as usize]).collect(),
+            level: elements.iter().map(|&e| self.level[e as usize]).collect(),
+            deferred,
             ..Mesh::default()
         }
     }
@@ -751,41 +761,4 @@ impl Mesh {
         self.free_elements.push(e);
         self.journal.note(Entry::ElementFreed);
     }
-}
-
-/// The ids sorted along a Hilbert curve through the bounding box of the places; equal cells keep the order of the ids.
-fn hilbert_order(places: Vec<(u32, DVec2)>) -> Vec<u32> {
-    const BITS: u32 = 26;
-    let low = places.iter().fold(DVec2::INFINITY, |low, (_, p)| low.min(*p));
-    let high = places.iter().fold(DVec2::NEG_INFINITY, |high, (_, p)| high.max(*p));
-    let extent = (high - low).max_element();
-    let scale = if extent > 0.0 { f64::from((1_u32 << BITS) - 1) / extent } else { 0.0 };
-    let mut keyed: Vec<(u64, u32)> = places
-        .iter()
-        .map(|&(id, p)| {
-            let cell = (p - low) * scale;
-            (hilbert_distance(BITS, cell.x as u32, cell.y as u32), id)
-        })
-        .collect();
-    keyed.sort_unstable();
-    keyed.into_iter().map(|(_, id)| id).collect()
-}
-
-/// Distance along the Hilbert curve of order `bits` at which the cell (x, y) comes.
-fn hilbert_distance(bits: u32, mut x: u32, mut y: u32) -> u64 {
-    let mut distance = 0;
-    for level in (0..bits).rev() {
-        let side = 1_u32 << level;
-        let (right, up) = (u32::from(x & side != 0), u32::from(y & side != 0));
-        distance = distance << 2 | u64::from((3 * right) ^ up);
-        // Turn the quadrant so that the curve inside it begins where the last one ended.
-        if up == 0 {
-            if right == 1 {
-                x = !x & (2 * side - 1);
-                y = !y & (2 * side - 1);
-            }
-            std::mem::swap(&mut x, &mut y);
-        }
-    }
-    distance
 }

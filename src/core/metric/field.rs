@@ -234,7 +234,10 @@ impl FormulaField {
         let constants: Option<Vec<f64>> = (count..outputs.len()).map(|i| program.constant(i)).collect();
         let frame = match constants {
             _ if count == 1 => Frame::Isotropic,
-            Some(g) => Frame::Fixed(frame_from(given, &g).map_err(Fault::new)?),
+            Some(g) => Frame::Fixed(
+                frame_from(given, &g)
+                    .map_err(|what| Fault::new(what).remedy("Give directions that are neither zero nor parallel"))?,
+            ),
             None => Frame::Varying(given),
         };
         Ok(FormulaField { program, sizes: count, frame, place: place.into() })

@@ -29,6 +29,10 @@ const AS_GOOD_AS_ZERO: f64 = 1e-10;
 /// Cells along each side of the domain's box; the smallest size of each cell is the start of one search.
 const CELLS: usize = 8;
 
+/// A search goes on while the size changes by more than this part over a step: the size that falls to zero within a few
+/// steps does so, even if it falls as the tenth root of the distance.
+const HOPEFUL: f64 = 0.02;
+
 /// Directions of the search, in halves of a right angle and between, so that creases are followed.
 const DIRECTIONS: [DVec2; 16] = {
     let mut d = [DVec2::ZERO; 16];
@@ -71,35 +75,41 @@ impl Sizing {
         let high = domain_points.iter().fold(first, |high, p| high.max(*p));
         let extent = (high - low).length();
         let nothing = AS_GOOD_AS_ZERO * extent.max(low.abs().max(high.abs()).max_element());
-        let mut starts: [Option<(f64, DVec2)>; CELLS * CELLS] = [None; CELLS * CELLS];
+        let mut starts = Starts { low, extent: high - low, of_cell: [None; CELLS * CELLS] };
         for &p in domain_points {
             let size = survey.note(&self.metric(p)?, p);
-            let cell = ((p - low) / (high - low).max(DVec2::splat(f64::MIN_POSITIVE)) * CELLS as f64).floor();
-            let cell = cell.min(DVec2::splat(CELLS as f64 - 1.0));
-            let start = &mut starts[cell.y as usize * CELLS + cell.x as usize];
+            let start = starts.at(p);
             if start.is_none_or(|(smallest, _)| size < smallest) {
                 *start = Some((size, p));
             }
         }
         let spacing = extent / (domain_points.len() as f64).sqrt();
-        for (size, p) in starts.into_iter().flatten() {
-            self.descend(size, p, 2.0 * spacing, inside, &mut survey)?;
+        for cell in 0..CELLS * CELLS {
+            let Some(start) = starts.of_cell[cell] else { continue };
+            self.descend(start, 2.0 * spacing, Some(&mut starts), inside, &mut survey)?;
             if survey.smallest < nothing {
-                let p = survey.smallest_at;
-                return Err(Fault::new(format!("The size falls to {:e}, as good as zero", survey.smallest))
-                    .at(format!("({}, {})", p.x, p.y))
-                    .remedy("Bound the size from below, as in max(h, 0.001)"));
+                break;
             }
+        }
+        // Only the smallest one is wanted to the last digit.
+        self.descend((survey.smallest, survey.smallest_at), 2.0 * spacing, None, inside, &mut survey)?;
+        if survey.smallest < nothing {
+            let p = survey.smallest_at;
+            return Err(Fault::new(format!("The size falls to {:e}, as good as zero", survey.smallest))
+                .at(format!("({}, {})", p.x, p.y))
+                .remedy("Bound the size from below, as in max(h, 0.001)"));
         }
         Ok(survey)
     }
 
-    /// Pattern search for smaller sizes from `p`, with steps from `step` down to rounding.
+    /// Pattern search for smaller sizes, with steps from `step` down to rounding. One of several searches, whose `starts`
+    /// are given, ends sooner: where no step changes the size by more than a part, so that no zero can be near, and in a
+    /// cell where another one starts lower.
     fn descend(
         &self,
-        mut size: f64,
-        mut p: DVec2,
+        (mut size, mut p): (f64, DVec2),
         mut step: f64,
+        mut starts: Option<&mut Starts>,
         inside: &dyn Fn(DVec2) -> bool,
         survey: &mut Survey,
     ) -> Result<(), Fault> {
@@ -108,23 +118,47 @@ impl Sizing {
         let mut moves = 0;
         while step > finest && moves < MOST_MOVES {
             let mut best = (size, p);
+            let mut largest_change: Option<f64> = None;
             for direction in DIRECTIONS {
                 let q = p + step * direction;
                 if q != p && inside(q) {
                     let there = survey.note(&self.metric(q)?, q);
+                    largest_change = Some(largest_change.unwrap_or(0.0).max((there - size).abs()));
                     if there < best.0 {
                         best = (there, q);
                     }
                 }
             }
+            if starts.is_some() && largest_change.is_some_and(|change| change < HOPEFUL * size) {
+                return Ok(());
+            }
             if best.0 < size {
                 (size, p) = best;
                 moves += 1;
+                if starts.as_mut().is_some_and(|s| s.at(p).is_some_and(|(lower, _)| lower < size)) {
+                    return Ok(());
+                }
             } else {
                 step *= 0.5;
             }
         }
         Ok(())
+    }
+}
+
+/// Where the searches start: the smallest size of each cell, with its place.
+struct Starts {
+    low: DVec2,
+    extent: DVec2,
+    of_cell: [Option<(f64, DVec2)>; CELLS * CELLS],
+}
+
+impl Starts {
+    /// The start of the cell that holds the place.
+    fn at(&mut self, p: DVec2) -> &mut Option<(f64, DVec2)> {
+        let cell = ((p - self.low) / self.extent.max(DVec2::splat(f64::MIN_POSITIVE)) * CELLS as f64).floor();
+        let cell = cell.clamp(DVec2::ZERO, DVec2::splat(CELLS as f64 - 1.0));
+        &mut self.of_cell[cell.y as usize * CELLS + cell.x as usize]
     }
 }
 

@@ -117,13 +117,13 @@ fn edges_of_three_triangles_and_overlaps_are_refused() {
 }
 
 #[test]
-fn pinched_nodes_are_split_and_keep_their_point() {
+fn pinched_nodes_are_split_and_so_are_their_points() {
     let mut file = star();
     file.triangles.extend([[2, 5, 6], [2, 6, 7]]);
     file.points.extend([(2.0, 1.0), (2.0, 2.0), (1.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0)));
     let imported = import(&file, false).unwrap();
     assert_eq!(imported.set.uv.len(), 9);
-    assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(7));
+    assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(8));
     assert_eq!(imported.repairs, ["1 node was split where triangles meet in a point only"]);
 }
 

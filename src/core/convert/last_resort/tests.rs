@@ -365,3 +365,17 @@ fn components_are_told_apart_and_counted() {
     last_resort(&mut mesh, &components[1].triangles, &Uniform).expect("two is even");
     assert_eq!(live_components(&mesh).len(), 2, "a quadrilateral is live no more");
 }
+
+#[test]
+fn four_nodes_in_a_row_make_no_quadrilateral_of_rounding() {
+    // Nodes of a slanting side, as a discretisation gave them: strictly convex, and each corner has its share.
+    let quad = [
+        DVec2::new(0.909433962264151, -0.20654739368918124),
+        DVec2::new(0.9132075471698113, -0.2136077244017097),
+        DVec2::new(0.9169811320754717, -0.22066805511423812),
+        DVec2::new(0.9207547169811321, -0.22772838582676647),
+    ];
+    assert!(convex(quad[0], quad[1], quad[2], quad[3]));
+    assert!(!firm_quad(quad));
+    assert!(firm_quad([DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y]));
+}

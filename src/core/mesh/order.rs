@@ -1,0 +1,97 @@
+//! Orders in linear time: along a Hilbert curve, and by small numbers.
+
+use glam::DVec2;
+
+/// Cells along each side of the Hilbert curve's square, as a power of two.
+const BITS: u32 = 26;
+
+/// The ids sorted along a Hilbert curve through the bounding box of the places; equal cells are sorted by id.
+pub fn hilbert_order(places: &[(u32, DVec2)]) -> Vec<u32> {
+    let low = places.iter().fold(DVec2::INFINITY, |low, (_, p)| low.min(*p));
+    let high = places.iter().fold(DVec2::NEG_INFINITY, |high, (_, p)| high.max(*p));
+    let extent = (high - low).max_element();
+    let scale = if extent > 0.0 { f64::from((1_u32 << BITS) - 1) / extent } else { 0.0 };
+    let keyed = places.iter().map(|&(id, p)| {
+        let cell = (p - low) * scale;
+        (hilbert_distance(BITS, cell.x as u32, cell.y as u32), id)
+    });
+    // As many groups as places, so that each is small unless the places crowd together.
+    let bits = (usize::BITS - places.len().leading_zeros()).min(2 * BITS);
+    let group = |&(key, _): &(u64, u32)| (key >> (2 * BITS - bits)) as u32;
+    let mut sorted = grouped(1 << bits, &keyed.collect::<Vec<_>>(), group);
+    sorted.chunk_by_mut(|a, b| group(a) == group(b)).for_each(<[_]>::sort_unstable);
+    sorted.into_iter().map(|(_, id)| id).collect()
+}
+
+/// Things sorted by a number below `groups` that each has; equal ones keep their order.
+pub fn grouped<T: Copy + Default>(groups: usize, things: &[T], group: impl Fn(&T) -> u32) -> Vec<T> {
+    let mut start = vec![0_u32; groups + 1];
+    for thing in things {
+        start[group(thing) as usize + 1] += 1;
+    }
+    for i in 0..groups {
+        start[i + 1] += start[i];
+    }
+    let mut sorted = vec![T::default(); things.len()];
+    for thing in things {
+        let slot = &mut start[group(thing) as usize];
+        sorted[*slot as usize] = *thing;
+        *slot += 1;
+    }
+    sorted
+}
+
+/// Distance along the Hilbert curve of order `bits` at which the cell (x, y) comes.
+fn hilbert_distance(bits: u32, mut x: u32, mut y: u32) -> u64 {
+    let mut distance = 0;
+    for level in (0..bits).rev() {
+        let side = 1_u32 << level;
+        let (right, up) = (u32::from(x & side != 0), u32::from(y & side != 0));
+        distance = distance << 2 | u64::from((3 * right) ^ up);
+        // Turn the quadrant so that the curve inside it begins where the last one ended.
+        if up == 0 {
+            if right == 1 {
+                x = !x & (2 * side - 1);
+                y = !y & (2 * side - 1);
+            }
+            std::mem::swap(&mut x, &mut y);
+        }
+    }
+    distance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn order(ids: std::ops::Range<u32>, place: impl Fn(u32) -> DVec2) -> Vec<u32> {
+        hilbert_order(&ids.map(|id| (id, place(id))).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn the_order_steps_from_cell_to_neighbouring_cell() {
+        // A grid of 32 x 32 places, given row by row.
+        let place = |id: u32| DVec2::new(f64::from(id % 32), f64::from(id / 32));
+        let mut ids = order(0..1024, place);
+        for w in ids.windows(2) {
+            assert_eq!(place(w[0]).distance(place(w[1])), 1.0, "{w:?}");
+        }
+        ids.sort_unstable();
+        assert!(ids.into_iter().eq(0..1024));
+    }
+
+    #[test]
+    fn equal_places_and_crowds_are_in_the_order_of_their_ids() {
+        assert_eq!(order(0..5, |_| DVec2::ONE), [0, 1, 2, 3, 4]);
+        let place = |id: u32| if id == 7 { DVec2::ONE } else { DVec2::splat(1e-12) };
+        assert_eq!(order(3..9, place), [3, 4, 5, 6, 8, 7]);
+        assert!(order(0..0, place).is_empty());
+    }
+
+    #[test]
+    fn groups_come_in_order_and_keep_their_own() {
+        let things = [(2, 'a'), (0, 'b'), (2, 'c'), (1, 'd'), (0, 'e')];
+        let sorted = grouped(4, &things, |thing| thing.0);
+        assert!(sorted.into_iter().map(|(_, name)| name).eq("bedac".chars()));
+    }
+}
