@@ -413,7 +413,8 @@ impl Mesh {
     // ---- order ----
 
     /// The same mesh without tombstones, its nodes and elements along a Hilbert curve: neighbours in the plane become
-    /// neighbours in memory, which is most of the speed of large meshes. The journal starts empty.
+    /// neighbours in memory, which is most of the speed of large meshes. The journal starts empty, and records where this
+    /// mesh's does.
     #[must_use]
     pub fn reordered(&self) -> Mesh {
         let nodes = hilbert_order(&self.nodes().map(|n| (n.0, self.uv(n))).collect::<Vec<_>>());
@@ -443,6 +444,8 @@ impl Mesh {
             }
             deferred.extend_from_slice(&self.deferred[first..first + 4]);
         }
+        let mut journal = Journal::default();
+        journal.set_recording(self.journal.is_recording());
         Mesh {
             uv: nodes.iter().map(|&n| self.uv[n as usize]).collect(),
             metric: nodes.iter().map(|&n| self.metric[n as usize]).collect(),
@@ -454,6 +457,7 @@ impl Mesh {
             region: elements.iter().map(|&e| self.region[e as usize]).collect(),
             level: elements.iter().map(|&e| self.level[e as usize]).collect(),
             deferred,
+            journal,
             ..Mesh::default()
         }
     }
@@ -760,5 +764,28 @@ impl Mesh {
         self.set_sides(e, 0);
         self.free_elements.push(e);
         self.journal.note(Entry::ElementFreed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mesh_put_in_order_records_where_it_did_before() {
+        let set = TriangleSet {
+            uv: vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y],
+            point: (0..4).map(PointId).collect(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            region: vec![0; 2],
+        };
+        for recording in [false, true] {
+            let mut mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4]);
+            mesh.set_recording(recording);
+            let mut mesh = mesh.reordered();
+            let inner = mesh.edges().find(|h| mesh.twin(*h).is_some()).unwrap();
+            mesh.swap(inner);
+            assert_eq!(mesh.journal().len_since(Mark::default()) > 0, recording);
+        }
     }
 }
