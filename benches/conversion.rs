@@ -13,7 +13,9 @@ mod meter;
 
 fn main() {
     println!("Conversion, {}", meter::clock());
-    println!("case           quads   front: s    quads/s  exponent  with post-processing: s    quads/s  exponent  peak bytes/quad");
+    println!(
+        "case           quads   front: s    quads/s  exponent  with post-processing: s    quads/s  exponent  peak bytes/quad"
+    );
     // Scales that give about 10,000, 100,000 and 1,000,000 quadrilaterals.
     for (name, scales) in [("uniform", [0.2, 0.0633, 0.0197]), ("example1", [0.163, 0.0516, 0.0161])] {
         let mut before: Option<(usize, [f64; 2])> = None;

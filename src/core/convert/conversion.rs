@@ -151,13 +151,7 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
         sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0);
         mesh = meshed(&sizing)?;
     }
-    Ok(Background {
-        mesh,
-        sizing,
-        regions: imported.regions,
-        adapted: Adapted::default(),
-        repairs: imported.repairs,
-    })
+    Ok(Background { mesh, sizing, regions: imported.regions, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
 fn adapted_mesh(
