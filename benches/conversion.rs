@@ -14,7 +14,7 @@ mod meter;
 fn main() {
     println!("Conversion, {}", meter::clock());
     println!(
-        "case           quads   front: s    quads/s  exponent  with post-processing: s    quads/s  exponent  peak bytes/quad"
+        "case           quads   front: s    quads/s  exponent  and finish: s    quads/s  exponent  peak bytes/quad"
     );
     // Scales that give about 10,000, 100,000 and 1,000,000 quadrilaterals.
     for (name, scales) in [("uniform", [0.2, 0.0633, 0.0197]), ("example1", [0.163, 0.0516, 0.0161])] {
@@ -34,7 +34,7 @@ fn main() {
                 before.map_or(String::new(), |(m, s)| format!("{:.2}", meter::exponent([m, n], [s[i], seconds[i]])))
             };
             println!(
-                "{name:10} {n:9} {:10.3} {:10.0} {:>9} {:24.3} {:10.0} {:>9} {:>16}",
+                "{name:10} {n:9} {:10.3} {:10.0} {:>9} {:14.3} {:10.0} {:>9} {:>16}",
                 seconds[0],
                 n as f64 / seconds[0],
                 exponent(0),

@@ -6,6 +6,8 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use quadfront::core::io::format::{Format, read_bytes};
+
 fn command(arguments: &[&str], folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_quadfront"));
     command.args(arguments).current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -120,6 +122,130 @@ fn the_background_is_written_with_its_metric() {
     assert_eq!(said(&run(&["check", "a.mesh", "--triangles"], folder.path())).0, 0);
 }
 
+/// The values of element data, by triangles and quadrilaterals, and the number of lines in the group "front".
+fn state_of(folder: &Path, name: &str) -> (Vec<f64>, usize, usize, usize) {
+    let bytes = std::fs::read(folder.join(name)).unwrap();
+    let mesh = read_bytes(name, &bytes, Format::Msh).unwrap();
+    let live = mesh.element_data.iter().find(|data| data.name == "live").unwrap().values.clone();
+    assert!(["level", "region"].iter().all(|name| mesh.element_data.iter().any(|data| data.name == *name)));
+    let front = mesh.front_lines().count();
+    (live, mesh.triangles.len(), mesh.quads.len(), front)
+}
+
+#[test]
+fn a_conversion_stops_where_so_many_quadrilaterals_stand() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = ["convert", "example1", "--set", "size_scale=2"];
+    let at = |stop: &str, out: &str| {
+        let output = run(&[&case[..], &["-q", "--at", stop, "-o", out, "--events", "a.jsonl"]].concat(), folder.path());
+        assert_eq!(said(&output), (0, String::new(), String::new()));
+        let events = std::fs::read_to_string(folder.path().join("a.jsonl")).unwrap();
+        events.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap()).collect::<Vec<_>>()
+    };
+    let events = at("nq=20", "a.msh");
+    let (live, triangles, quads, front) = state_of(folder.path(), "a.msh");
+    assert_eq!(quads, 20);
+    assert!(triangles > 20 && front > 10, "{triangles} triangles, {front} front segments");
+    assert!(live.iter().take(triangles).all(|l| *l == 1.0) && live.iter().skip(triangles).all(|l| *l == 0.0));
+    let last = events.last().unwrap();
+    assert_eq!(last["nq"], 20);
+    assert!(events.iter().any(|event| event["kind"] == "formed" && event["nq"] == 20));
+    assert!(!["formed", "enhanced"].map(|kind| last["kind"] == kind).contains(&true), "{last}");
+    // The same place, by the number of its step.
+    let step = format!("step={}", last["step"]);
+    assert_eq!(at(&step, "b.msh"), events);
+    let bytes = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(bytes("a.msh"), bytes("b.msh"));
+    // Before the first step everything is live, and the front is the boundary.
+    assert!(at("step=0", "c.msh").is_empty());
+    let (_, _, quads, front) = state_of(folder.path(), "c.msh");
+    assert_eq!(quads, 0);
+    assert!(front > 0 && front.is_multiple_of(2));
+    at("nq=20", "a.vtu");
+    for (mesh, code) in [("a.vtu", 0), ("a.msh", 0)] {
+        assert_eq!(said(&run(&["check", mesh, "--triangles", "--seams", "-q"], folder.path())).0, code, "{mesh}");
+    }
+    let (code, _, err) = said(&run(&[&case[..], &["--at", "nq=100000"]].concat(), folder.path()));
+    assert!(code == 2 && err.contains("The conversion ends after step"), "{err}");
+}
+
+#[test]
+fn every_step_is_told_as_one_line_of_json_and_the_mesh_is_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = ["convert", "example1", "--set", "size_scale=2", "-q"];
+    let told = ["-o", "a.msh", "--events", "-", "--report", "a.json"];
+    let (code, out, err) = said(&run(&[&case[..], &told[..]].concat(), folder.path()));
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert_eq!(said(&run(&[&case[..], &["-o", "b.msh"]].concat(), folder.path())).0, 0);
+    let bytes = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(bytes("a.msh"), bytes("b.msh"));
+    let events: Vec<serde_json::Value> = out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(events.iter().zip(1..).all(|(event, step)| event["step"] == step));
+    let report: serde_json::Value = serde_json::from_slice(&bytes("a.json")).unwrap();
+    let count = |kind: &str| events.iter().filter(|event| event["kind"] == kind).count();
+    assert_eq!(report["events"]["front_formed"], count("formed"));
+    assert_eq!(report["events"]["front_rolled_back"], count("rolled_back"));
+    assert_eq!(report["events"]["front_step"], events.len());
+    assert_eq!(events.last().unwrap()["nq"], report["mesh"]["quads"]);
+    let base = events.iter().find(|event| event["kind"] == "base_selected").unwrap();
+    assert!(base["a"].is_u64() && base["within_reach"].is_boolean());
+    assert!(base["theta"][0].as_f64().unwrap() > 10.0, "degrees: {base}");
+    // A conversion that cannot be made leaves no file.
+    let (code, _, err) =
+        said(&run(&["convert", "uniform", "--set", "max_quads=5", "--events", "c.jsonl"], folder.path()));
+    assert!(code == 2 && err.lines().count() == 1 && !err.contains("conversion failed"), "{err}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "nothing is left beside");
+}
+
+#[test]
+fn the_front_is_drawn_alone_and_as_a_strip() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |arguments: &[&str]| {
+        let case = ["render", "example1", "--set", "size_scale=2", "-q", "-o", "-"];
+        let (code, out, err) = said(&run(&[&case[..], arguments].concat(), folder.path()));
+        assert_eq!((code, err.as_str()), (0, ""));
+        out
+    };
+    let (front, base) = ("#00659C", "#AD4E00");
+    let plain = draw(&[]);
+    assert!(!plain.contains(front) && !plain.contains(base));
+    let at = draw(&["--at", "nq=20"]);
+    assert!(at.contains(front) && at.contains(base) && at.contains("at nq=20</desc>"), "front and base are shown");
+    let strip = draw(&["--at", "nq=10,20"]);
+    assert!(strip.contains(">(a) nq=10</text>") && strip.contains(">(b) nq=20</text>"));
+    assert_eq!(strip.matches(base).count(), 2);
+    let arguments = ["convert", "example1", "--set", "size_scale=2", "-q", "--at", "nq=20", "--picture", "-"];
+    assert_eq!(said(&run(&arguments, folder.path())).1, at);
+}
+
+#[test]
+fn the_paper_s_reading_is_one_flag_and_single_parameters_come_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments =
+        ["convert", "example1", "--paper", "--set", "size_scale=2", "--set", "c=1.5", "--report", "a.json", "-q"];
+    assert_eq!(said(&run(&arguments, folder.path())), (0, String::new(), String::new()));
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+    let parameters = &report["parameters"];
+    assert_eq!((&report["valid"], &parameters["size_scale"], &parameters["c"]), (&true.into(), &2.into(), &1.5.into()));
+    assert_eq!((&parameters["bisector"], &parameters["seaming"]), (&false.into(), &true.into()));
+    assert_eq!(parameters["selection_window"], "physical_length");
+}
+
+#[test]
+fn switches_are_read_from_a_case_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, case, _) = said(&run(&["cases", "uniform"], folder.path()));
+    let switches = "\n[parameters]\nsize_scale = 4\nseaming = false\npost_processing = false\n";
+    assert!(!case.contains("[parameters]"));
+    std::fs::write(folder.path().join("a.toml"), case.clone() + switches).unwrap();
+    let (code, _, err) = said(&run(&["convert", "a.toml", "-q", "--report", "-"], folder.path()));
+    assert_eq!((code, err.as_str()), (0, ""));
+    std::fs::write(folder.path().join("b.toml"), case + "\n[parameters]\nseaming = \"no\"\n").unwrap();
+    let (code, _, err) = said(&run(&["convert", "b.toml"], folder.path()));
+    assert!(code == 2 && err.contains("Write seaming = true or seaming = false"), "{err}");
+}
+
 #[test]
 fn a_checked_mesh_that_falls_short_is_exit_1_and_one_that_cannot_be_read_exit_2() {
     let folder = tempfile::tempdir().unwrap();
@@ -145,7 +271,7 @@ fn whatever_is_wrong_is_one_line_with_exit_2() {
     write("empty.msh", b"");
     write("noise.msh", b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 99999999999999 1 1\n");
     std::fs::create_dir(folder.path().join("folder.toml")).unwrap();
-    let lines: [(&[&str], &str); 19] = [
+    let lines: [(&[&str], &str); 20] = [
         (&["convert", "exampel1"], "nearest built-in case is \"example1\""),
         (&["convert", "unknown.toml"], "unknown.toml, line 2: The key \"titel\" is not known"),
         (&["convert", "binary.toml"], "not text"),
@@ -164,6 +290,7 @@ fn whatever_is_wrong_is_one_line_with_exit_2() {
         (&["convert", "uniform", "--sol", "a.sol"], "--sol"),
         (&["convert", "uniform", "--set", "theta_rect=135deg"], "Write degrees without a unit: theta_rect = 135"),
         (&["convert", "uniform", "--set", "size=1"], "size_scale"),
+        (&["convert", "uniform", "--report", "a", "--events", "a"], "same place"),
         (&["cases", "gaer"], "\"gear\""),
     ];
     for (arguments, words) in lines {
@@ -225,4 +352,28 @@ fn a_full_disk_is_said() {
     let output = command(&arguments, folder.path()).stdout(full).output().unwrap();
     let (code, _, err) = said(&output);
     assert!(code == 2 && err.starts_with("error: standard output: "), "{err}");
+}
+
+/// Two squares of two triangles each that share a corner.
+const PINCHED: &str =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nf 1 2 3\nf 1 3 4\nf 3 5 6\nf 3 6 7\n";
+
+#[test]
+fn parts_that_share_a_node_only_come_apart_and_are_sound() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("pinched.obj"), PINCHED).unwrap();
+    let (code, _, err) = said(&run(&["convert", "pinched.obj", "-q", "-o", "quads.obj"], folder.path()));
+    assert_eq!((code, err.as_str()), (0, ""));
+    let (code, _, err) = said(&run(&["check", "quads.obj", "-q", "--seams"], folder.path()));
+    assert_eq!((code, err.as_str()), (0, ""));
+}
+
+#[test]
+fn a_metric_that_fails_between_the_nodes_of_a_given_mesh_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("mesh.obj"), PINCHED).unwrap();
+    let case = "version = 1\nmesh = \"mesh.obj\"\n[[metric]]\nkind = \"formula\"\nh1 = \"hypot(x - 2/3, y - 1/3)\"\n";
+    std::fs::write(folder.path().join("case.toml"), case).unwrap();
+    let (code, _, err) = said(&run(&["convert", "case.toml", "-q", "-o", "quads.obj"], folder.path()));
+    assert!(code == 2 && err.starts_with("error: (0.66") && err.contains("h1 = 0 is not positive"), "{err}");
 }

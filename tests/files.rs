@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh, write_to};
 use quadfront::core::io::medit;
-use quadfront::core::io::mesh_file::{Data, Group, MeshFile};
+use quadfront::core::io::mesh_file::{Data, FRONT, Group, MeshFile};
 use quadfront::core::io::save::{abandon, save};
 use quadfront::core::mesh::soundness::{Allow, examine};
 use quadfront::core::metric::tensor::Metric3;
@@ -109,6 +109,21 @@ fn vtu_reads_back_the_surface_with_its_data() {
     let mesh = plates();
     let read = read_bytes("a.vtu", &bytes_of(Format::Vtu, &mesh, TEXT), Format::Vtu).unwrap();
     assert_eq!(read, MeshFile { lines: vec![], line_tags: vec![], groups: vec![], ..mesh });
+}
+
+#[test]
+fn the_front_of_a_state_is_cells_of_a_vtu_and_data_stay_with_their_elements() {
+    let mut state = plates();
+    let front = 1 + state.line_tags.iter().max().unwrap();
+    state.lines.push([0, 1]);
+    state.line_tags.push(front);
+    state.groups.insert(0, Group { dimension: 1, tag: front, name: FRONT.to_string() });
+    let bytes = bytes_of(Format::Vtu, &state, TEXT);
+    let text = String::from_utf8(bytes.clone()).unwrap();
+    let cells = state.triangles.len() + state.quads.len() + 1;
+    assert!(text.contains(&format!("NumberOfCells=\"{cells}\"")), "{text}");
+    let read = read_bytes("a.vtu", &bytes, Format::Vtu).unwrap();
+    assert_eq!(read, MeshFile { lines: vec![[0, 1]], line_tags: vec![], groups: vec![], ..state });
 }
 
 #[test]

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::input::{InputFormat, input_format, mesh_format, setting};
+use super::input::{InputFormat, Stops, input_format, mesh_format, setting, stop, stops};
 use super::output::Target;
+use crate::core::convert::walk::Stop;
 use crate::core::io::format::Format;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
@@ -48,6 +49,9 @@ pub(super) struct Source {
     /// Set a parameter of the case, for example size_scale=0.5 (may be given several times)
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
+    /// The paper's own reading of every parameter of the front, in place of the case's; --set comes after it
+    #[arg(long)]
+    pub paper: bool,
     /// Give a boundary of a fixed odd count of segments one segment more instead of refusing it
     #[arg(long)]
     pub split_odd: bool,
@@ -82,6 +86,12 @@ pub(super) struct ConvertArguments {
     /// The report as JSON, or - for standard output
     #[arg(long, value_name = "FILE")]
     pub report: Option<Target>,
+    /// What each step did, as one JSON object a line, or - for standard output
+    #[arg(long, value_name = "FILE.jsonl")]
+    pub events: Option<Target>,
+    /// Stop where so many quadrilaterals stand (nq=100) or after so many steps (step=812), and write the mesh as it is then
+    #[arg(long, value_name = "STOP", value_parser = stop)]
+    pub at: Option<Stop>,
 }
 
 #[derive(Args)]
@@ -120,6 +130,10 @@ pub(super) struct CheckArguments {
 pub(super) struct RenderArguments {
     #[command(flatten)]
     pub source: Source,
+    /// Draw the conversion where so many quadrilaterals stand (nq=100) or after so many steps (step=812); several, in their
+    /// order, side by side (nq=50,100,150)
+    #[arg(long, value_name = "STOPS", value_parser = stops)]
+    pub at: Option<Stops>,
     /// The picture (.svg), or - for standard output
     #[arg(short, long, value_name = "FILE.svg")]
     pub out: Target,
@@ -151,6 +165,9 @@ mod tests {
             "quadfront convert example1 --out example1.msh --report example1.json",
             "quadfront convert - -o - --format msh --from toml --set size_scale=0.5 --set c=1.5 --msh2 --quiet",
             "quadfront convert plate.mesh --sol plate.sol --split-odd -o quads.vtu --picture quads.svg",
+            "quadfront convert example1 --paper --events example1.jsonl --at nq=100 -o front.vtu",
+            "quadfront render example1 --at step=812 -o front.svg",
+            "quadfront render example1 --at nq=50,100,150 -o strip.svg",
             "quadfront background example1 --out triangles.mesh",
             "quadfront check quads.msh --seams --branching",
             "quadfront render example1 -o example1.svg",
@@ -158,7 +175,14 @@ mod tests {
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }
-        for line in ["quadfront", "quadfront convert", "quadfront convert a --set size_scale", "quadfront check"] {
+        for line in [
+            "quadfront",
+            "quadfront convert",
+            "quadfront convert a --set size_scale",
+            "quadfront check",
+            "quadfront convert a --at 5",
+            "quadfront render a --at nq=2,1 -o a.svg",
+        ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_err(), "{line}");
         }
     }

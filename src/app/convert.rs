@@ -21,22 +21,24 @@ use crate::render::vector::svg;
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     let (source, destination) = (&arguments.source, &arguments.destination);
     let mesh_target = MeshTarget::of(destination)?;
-    let targets = [destination.out.as_ref(), arguments.report.as_ref()];
+    let targets = [destination.out.as_ref(), arguments.report.as_ref(), arguments.events.as_ref()];
     let output_taken = output::check(&targets, destination.picture.as_ref())?;
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source)?;
-    let mut quads = work::convert(&input.case, &mut progress)?;
+    let mut quads = work::convert_telling(&input.case, arguments.at, arguments.events.as_ref(), &mut progress)?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &quads.file)?;
-    draw(destination.picture.as_ref(), &input.case, &quads.file)?;
+    if let Some(target) = &destination.picture {
+        draw(target, &input.case, quads.picture(&input.case))?;
+    }
     quads.report.timing = progress.finish();
     if let Some(target) = &arguments.report {
         target.write(|out| out.write_all(quads.report.json().as_bytes()))?;
     }
     if !source.quiet {
         tell(&quads.report.summary(), output_taken);
-        remind(mesh_target.is_none() && destination.picture.is_none(), output_taken);
+        remind(mesh_target.is_none() && destination.picture.is_none() && arguments.events.is_none(), output_taken);
     }
     let Some(flaw) = &quads.flaw else { return Ok(ExitCode::SUCCESS) };
     complain(flaw);
@@ -54,7 +56,9 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     let triangles = work::background(&input.case, &mut progress)?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &triangles.file)?;
-    draw(destination.picture.as_ref(), &input.case, &triangles.file)?;
+    if let Some(target) = &destination.picture {
+        draw(target, &input.case, Picture::of_mesh(&triangles.file))?;
+    }
     let timing = progress.finish();
     if !source.quiet {
         tell(&background_summary(&input.case, &triangles.statistics, &triangles.repairs, &timing), output_taken);
@@ -67,9 +71,18 @@ fn write(target: Option<&MeshTarget>, mesh: &MeshFile) -> Result<(), Fault> {
     target.map_or(Ok(()), |target| target.write(mesh))
 }
 
-/// Draws a mesh of a case, where a picture is asked for.
-pub(super) fn draw(target: Option<&Target>, case: &Case, mesh: &MeshFile) -> Result<(), Fault> {
-    let Some(target) = target else { return Ok(()) };
+/// Writes a picture of a case; its own title says at which stop it was made, if at one.
+pub(super) fn draw(target: &Target, case: &Case, picture: Picture) -> Result<(), Fault> {
+    let mut description = describe(case);
+    if !picture.title.is_empty() {
+        description = format!("{description}, at {}", picture.title);
+    }
+    let picture = Picture { title: case.title.clone(), description, ..picture };
+    target.write(|out| out.write_all(svg::write(&picture, svg::COLUMN).as_bytes()))
+}
+
+/// What made a picture: program, case, and the parameters that differ from the default.
+pub(super) fn describe(case: &Case) -> String {
     let set: Vec<_> = Parameters::KEYS
         .iter()
         .filter_map(|key| {
@@ -77,16 +90,14 @@ pub(super) fn draw(target: Option<&Target>, case: &Case, mesh: &MeshFile) -> Res
             (Parameters::default().text_of(key)? != text).then(|| format!("{key} = {text}"))
         })
         .collect();
-    let description = format!(
+    format!(
         "{} {}, case {}{}{}",
         env!("CARGO_PKG_NAME"),
         env!("CARGO_PKG_VERSION"),
         case.name,
         if set.is_empty() { "" } else { ", with " },
         set.join(", ")
-    );
-    let picture = Picture { title: case.title.clone(), description, ..Picture::of_mesh(mesh) };
-    target.write(|out| out.write_all(svg::write(&picture, svg::COLUMN).as_bytes()))
+    )
 }
 
 /// Says that the mesh is nowhere, to who has forgotten to name a place for it.

@@ -7,6 +7,7 @@ use tempfile::TempDir;
 
 use super::command_line::Source;
 use crate::core::convert::parameters::nearest;
+use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
 use crate::core::io::case::Case;
@@ -45,6 +46,42 @@ pub(super) fn setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
+/// Places to stop at, one after the other.
+#[derive(Clone, Debug)]
+pub(super) struct Stops(pub Vec<Stop>);
+
+/// Reads nq=N or step=N.
+pub(super) fn stop(text: &str) -> Result<Stop, String> {
+    match stops(text)?.0[..] {
+        [stop] => Ok(stop),
+        _ => Err("write one number, for example nq=100".to_owned()),
+    }
+}
+
+/// Reads nq=N,N,... or step=N,N,..., ascending.
+pub(super) fn stops(text: &str) -> Result<Stops, String> {
+    let usage = || "write nq=100 (quadrilaterals) or step=812".to_owned();
+    let (kind, numbers) = text.split_once('=').ok_or_else(usage)?;
+    let kind = match kind {
+        "nq" => Stop::Quads,
+        "step" => Stop::Step,
+        _ => return Err(usage()),
+    };
+    let numbers: Vec<u64> = numbers.split(',').map(|n| n.parse().map_err(|_| usage())).collect::<Result<_, _>>()?;
+    if !numbers.is_sorted() {
+        return Err("write the numbers in ascending order".to_owned());
+    }
+    Ok(Stops(numbers.into_iter().map(kind).collect()))
+}
+
+/// How a stop is written.
+pub(super) fn stop_text(stop: Stop) -> String {
+    match stop {
+        Stop::Quads(quads) => format!("nq={quads}"),
+        Stop::Step(step) => format!("step={step}"),
+    }
+}
+
 /// A case to work on; a mesh that came by standard input lies in a folder that goes with it.
 pub(super) struct Input {
     pub case: Case,
@@ -54,6 +91,9 @@ pub(super) struct Input {
 /// The case of the arguments, with what they set.
 pub(super) fn read(source: &Source) -> Result<Input, Fault> {
     let Input { mut case, _folder } = read_plain(source)?;
+    if source.paper {
+        case.parameters = case.parameters.read_as_paper();
+    }
     for (key, value) in &source.set {
         case.parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
     }

@@ -1,4 +1,4 @@
-//! `render`: a mesh as it is, or the mesh of a case, as a picture.
+//! `render`: a mesh as it is, the mesh of a case, or a conversion on the way, as a picture.
 
 use super::command_line::RenderArguments;
 use super::progress::Progress;
@@ -12,14 +12,30 @@ use crate::render::vector::svg;
 pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
     let source = &arguments.source;
     output::check(&[], Some(&arguments.out))?;
-    if let Some(mesh) = input::read_mesh(&source.input, source.from)? {
+    if arguments.at.is_none()
+        && let Some(mesh) = input::read_mesh(&source.input, source.from)?
+    {
         let picture = Picture { title: source.input.clone(), ..Picture::of_mesh(&mesh) };
         return arguments.out.write(|out| out.write_all(svg::write(&picture, svg::COLUMN).as_bytes()));
     }
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source)?;
-    let quads = work::convert(&input.case, &mut progress)?;
-    progress.finish();
-    convert::draw(Some(&arguments.out), &input.case, &quads.file)
+    let case = &input.case;
+    match &arguments.at {
+        None => {
+            let quads = work::convert(case, None, &mut |_| {}, &mut progress)?;
+            progress.finish();
+            convert::draw(&arguments.out, case, quads.picture(case))
+        }
+        Some(stops) => {
+            let mut frames = work::frames(case, stops, &mut progress)?;
+            progress.finish();
+            if frames.len() == 1 {
+                return convert::draw(&arguments.out, case, frames.remove(0));
+            }
+            let strip = svg::strip(&frames, &case.title, &convert::describe(case), svg::PAGE);
+            arguments.out.write(|out| out.write_all(strip.as_bytes()))
+        }
+    }
 }

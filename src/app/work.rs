@@ -1,10 +1,13 @@
 //! The work of `core` as the commands need it: from a case to a mesh that can be written, and what is told about it.
 
 use std::collections::BTreeMap;
+use std::io;
 
 use crate::core::background::adapt::Adapted;
 use crate::core::convert::conversion::{self, Background, Converted};
-use crate::core::convert::converter::Counts;
+use crate::core::convert::converter::{Converter, Counts};
+use crate::core::convert::phase::Base;
+use crate::core::convert::walk::{Stop, Told, walk};
 use crate::core::fault::Fault;
 use crate::core::io::case::Case;
 use crate::core::io::export::Export;
@@ -15,6 +18,10 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::soundness::{Allow, examine};
 use crate::core::metric::field::Place;
 use crate::core::progress::{Stage, Watch};
+use crate::render::picture::Picture;
+
+use super::input::{Stops, stop_text};
+use super::output::Target;
 
 /// The triangles that a conversion starts from.
 pub(super) struct Triangles {
@@ -26,8 +33,11 @@ pub(super) struct Triangles {
     pub repairs: Vec<String>,
 }
 
-/// A finished conversion.
+/// A conversion at its end, or at a stop before it.
 pub(super) struct Quads {
+    mesh: Mesh,
+    /// Where it was stopped, and the base segment there, if there is one.
+    stopped: Option<(Stop, Option<Base>)>,
     /// The mesh, for files.
     pub file: MeshFile,
     /// What is told about it; its timing is still empty.
@@ -47,12 +57,52 @@ pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles
     Ok(Triangles { file: export.file, statistics, repairs })
 }
 
-/// Converts a case, checks and measures the result.
-pub(super) fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Quads, Fault> {
-    let converted = conversion::convert(case, watch)?;
+/// Converts a case and writes each event to `events` as it happens: the file appears when the conversion is done.
+pub(super) fn convert_telling(
+    case: &Case,
+    at: Option<Stop>,
+    events: Option<&Target>,
+    watch: &mut dyn Watch,
+) -> Result<Quads, Fault> {
+    let Some(events) = events else { return convert(case, at, &mut |_| {}, watch) };
+    let mut quads = None;
+    let written = events.write(|out| {
+        let mut written = Ok(());
+        let mut tell = |told: &Told<'_>| {
+            if written.is_ok() {
+                written = serde_json::to_writer(&mut *out, told).map_err(io::Error::from).and_then(|()| writeln!(out));
+            }
+        };
+        let done = quads.insert(convert(case, at, &mut tell, watch));
+        // What went wrong with the conversion is told in its own words; no file is left of it.
+        if done.is_err() { Err(io::Error::other("the conversion failed")) } else { written }
+    });
+    match quads {
+        Some(Err(fault)) => Err(fault),
+        Some(Ok(quads)) => written.map(|()| quads),
+        // The file could not even be begun.
+        None => Err(written.err().unwrap_or_else(|| Fault::new("Nothing was written"))),
+    }
+}
+
+/// Converts a case to its end or to a stop, checks and measures the result.
+pub(super) fn convert(
+    case: &Case,
+    at: Option<Stop>,
+    tell: &mut dyn FnMut(&Told<'_>),
+    watch: &mut dyn Watch,
+) -> Result<Quads, Fault> {
+    let mut stopped = None;
+    let converted = conversion::convert_by(case, watch, &mut |converter, watch| {
+        walk(converter, at, watch, tell)?;
+        stopped = at.map(|stop| (stop, converter.phase().base().copied()));
+        Ok(())
+    })?;
     watch.tell(Stage::Check, 0, 0);
-    let export = Export::of(&converted.mesh, &converted.regions);
-    let flaw = flaw(&converted.mesh, &export.file);
+    let of = if at.is_some() { Export::of_state } else { Export::of };
+    let export = of(&converted.mesh, &converted.regions);
+    // On the way there are triangles; both sides of a crack lie at the same place.
+    let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, ..Allow::default() });
     let resort = converted.last_resort.quads();
     let report = Report {
         program: Program::this(),
@@ -67,16 +117,44 @@ pub(super) fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Quads, Fault
         events: events(&converted),
         timing: Vec::new(),
     };
-    Ok(Quads { file: export.file, report, flaw })
+    Ok(Quads { mesh: converted.mesh, stopped, file: export.file, report, flaw })
 }
 
-/// Everything that is checked on a finished mesh: its structure, exact convexity, and the file as others will see it.
-fn flaw(mesh: &Mesh, file: &MeshFile) -> Option<Fault> {
+impl Quads {
+    /// The picture of it, with the front where it was stopped.
+    pub fn picture(&self, case: &Case) -> Picture {
+        match &self.stopped {
+            Some((stop, base)) => {
+                Picture { title: stop_text(*stop), ..Picture::of_state(&self.mesh, &case.parameters, base.as_ref()) }
+            }
+            None => Picture::of_mesh(&self.file),
+        }
+    }
+}
+
+/// The pictures of a conversion at several stops, each with its stop as title.
+pub(super) fn frames(case: &Case, stops: &Stops, watch: &mut dyn Watch) -> Result<Vec<Picture>, Fault> {
+    let mut frames = Vec::new();
+    conversion::convert_by(case, watch, &mut |converter, watch| {
+        for &stop in &stops.0 {
+            walk(converter, Some(stop), watch, &mut |_| {})?;
+            frames.push(Picture { title: stop_text(stop), ..picture(converter) });
+        }
+        Ok(())
+    })?;
+    Ok(frames)
+}
+
+fn picture(converter: &Converter<'_>) -> Picture {
+    Picture::of_state(&converter.mesh, converter.parameters(), converter.phase().base())
+}
+
+/// Everything that is checked on a mesh: its structure, exact convexity, and the file as others will see it.
+fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     if let Err(what) = mesh.check() {
         return Some(Fault::new(format!("The mesh is not sound: {what}")));
     }
-    // Both sides of a crack lie at the same place.
-    examine(file).verdict(Allow { seams: true, ..Allow::default() }).err()
+    examine(file).verdict(allow).err()
 }
 
 fn events(converted: &Converted) -> BTreeMap<String, u64> {

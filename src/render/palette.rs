@@ -29,5 +29,10 @@ pub fn figure(role: Role) -> Style {
         Role::LiveEdge => line("#9A9A9A", 0.25),
         Role::DeadEdge => line("#6F8496", 0.35),
         Role::Boundary => line("#20262C", 0.8),
+        Role::Front(4) => line("#6E7A87", 0.9),
+        Role::Front(3) => line("#7C70DA", 1.1),
+        Role::Front(2) => line("#00659C", 1.1),
+        Role::Front(_) => line("#002B45", 1.2),
+        Role::Base => line("#AD4E00", 1.8),
     }
 }

@@ -3,9 +3,14 @@
 
 use glam::DVec2;
 
+use crate::core::convert::parameters::Parameters;
+use crate::core::convert::phase::Base;
+use crate::core::front::segment::Segment;
+use crate::core::io::export::Export;
 use crate::core::io::mesh_file::MeshFile;
+use crate::core::mesh::half_edge::Mesh;
 
-/// What an area or a line is; writers draw in this order, the last on top.
+/// What an area or a line is; writers draw in the order of [`Role::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// A triangle that is still unconverted.
@@ -18,11 +23,26 @@ pub enum Role {
     DeadEdge,
     /// An edge of the boundary, a crack or a line inside.
     Boundary,
+    /// A segment of the merging front, with its class of table 1 (1 to 4).
+    Front(u8),
+    /// The base segment of the quadrilateral at hand.
+    Base,
 }
 
 impl Role {
     /// All roles from back to front.
-    pub const ALL: [Role; 5] = [Role::LiveTriangle, Role::DeadQuad, Role::LiveEdge, Role::DeadEdge, Role::Boundary];
+    pub const ALL: [Role; 10] = [
+        Role::LiveTriangle,
+        Role::DeadQuad,
+        Role::LiveEdge,
+        Role::DeadEdge,
+        Role::Boundary,
+        Role::Front(4),
+        Role::Front(3),
+        Role::Front(2),
+        Role::Front(1),
+        Role::Base,
+    ];
 }
 
 /// An area: three or four corners, anticlockwise.
@@ -90,13 +110,31 @@ impl Picture {
         mesh.quads.iter().for_each(|q| element(q, Role::DeadQuad, Role::DeadEdge));
         let line =
             |l: &[u32; 2]| Side { edge: [l[0].min(l[1]), l[0].max(l[1])], role: Role::Boundary, room: f64::INFINITY };
-        sides.extend(mesh.lines.iter().map(line));
+        // The front of a state is no line of the mesh, and its classes are not in the file.
+        let front: Vec<usize> = mesh.front_lines().collect();
+        sides.extend(
+            mesh.lines.iter().enumerate().filter(|(i, _)| front.binary_search(i).is_err()).map(|(_, l)| line(l)),
+        );
         sides.sort_by_key(|side| side.edge);
         for same in sides.chunk_by(|a, b| a.edge == b.edge) {
             let highest = same.iter().map(|s| s.role).max().expect("a chunk is never empty");
             let role = if same.len() == 1 { Role::Boundary } else { highest };
             let room = same.iter().map(|s| s.room).fold(f64::INFINITY, f64::min);
             picture.lines.push(Line { role, ends: same[0].edge.map(at), room });
+        }
+        picture
+    }
+
+    /// The picture of a conversion on the way: the mesh, over it the front by the classes of table 1, and the base segment
+    /// where there is one.
+    pub fn of_state(mesh: &Mesh, parameters: &Parameters, base: Option<&Base>) -> Picture {
+        let mut picture = Picture::of_mesh(&Export::of(mesh, &[]).file);
+        let base = base.and_then(|base| mesh.front_between(base.a, base.b));
+        for h in mesh.front() {
+            let segment = Segment::measure(mesh, h, parameters);
+            let role = if base == Some(h) { Role::Base } else { Role::Front(segment.class) };
+            let ends = [mesh.uv(segment.a), mesh.uv(segment.b)];
+            picture.lines.push(Line { role, ends, room: f64::INFINITY });
         }
         picture
     }
@@ -112,6 +150,9 @@ impl Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::mesh::ids::{NodeId, PointId};
+    use crate::core::mesh::triangle_set::TriangleSet;
+    use crate::core::metric::tensor::Metric2;
     use glam::DVec3;
 
     /// Two triangles beside a quadrilateral, with a line between them.
@@ -133,6 +174,23 @@ mod tests {
         let count = |role| picture.lines.iter().filter(|l| l.role == role).count();
         assert_eq!((count(Role::Boundary), count(Role::LiveEdge), count(Role::DeadEdge)), (7, 1, 0));
         assert_eq!(picture.bounds(), Some([DVec2::ZERO, DVec2::new(2.0, 1.0)]));
+    }
+
+    #[test]
+    fn a_state_shows_every_front_segment_once_by_its_class_and_the_base_on_top() {
+        let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
+        let point = (0..4).map(PointId).collect();
+        let set = TriangleSet { uv, point, triangles: vec![[0, 1, 2], [0, 2, 3]], region: vec![0; 2] };
+        let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4]);
+        let base = Base { a: NodeId(0), b: NodeId(1), theta: [1.5; 2], length: 1.0, level: 0 };
+        let picture = Picture::of_state(&mesh, &Parameters::default(), Some(&base));
+        let count = |role| picture.lines.iter().filter(|l| l.role == role).count();
+        assert_eq!(
+            (count(Role::Front(1)), count(Role::Base), count(Role::LiveEdge), count(Role::Boundary)),
+            (3, 1, 1, 4)
+        );
+        let place = |role| Role::ALL.iter().position(|r| *r == role);
+        assert!(place(Role::Base) > place(Role::Front(1)) && place(Role::Front(1)) > place(Role::Boundary));
     }
 
     #[test]

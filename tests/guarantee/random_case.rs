@@ -310,7 +310,7 @@ impl Draft {
             if room < NEAR {
                 continue;
             }
-            let radius = (room * r.range(0.2, 0.9)).min(0.5).max(0.5 * NEAR);
+            let radius = (room * r.range(0.2, 0.9)).clamp(0.5 * NEAR, 0.5);
             discs.push((p, radius));
             self.thing(r, p, radius, face);
         }

@@ -17,8 +17,10 @@ use crate::core::io::case::{Case, DomainSource};
 use crate::core::io::format::read_mesh;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::{Field, MetricSource, Place, Sizing};
 use crate::core::metric::gradation::bound_gradation;
+use crate::core::metric::measure::triangle_area;
 use crate::core::metric::tensor::Metric2;
 use crate::core::progress::{Stage, Watch};
 
@@ -43,7 +45,7 @@ pub struct Background {
 /// The quadrilaterals of a case.
 #[derive(Clone, Debug)]
 pub struct Converted {
-    /// All quadrilaterals.
+    /// All quadrilaterals, where the conversion was taken to its end.
     pub mesh: Mesh,
     /// What gives the metric anywhere.
     pub sizing: Sizing,
@@ -81,10 +83,22 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
 /// # Errors
 /// As [`background`]; and where a component cannot be converted, which its checks should have found.
 pub fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Converted, Fault> {
+    convert_by(case, watch, &mut |converter, watch| converter.run(watch))
+}
+
+/// Converts a case as far as `drive` takes its converter.
+///
+/// # Errors
+/// As [`background`], and what `drive` says.
+pub fn convert_by(
+    case: &Case,
+    watch: &mut dyn Watch,
+    drive: &mut dyn FnMut(&mut Converter<'_>, &mut dyn Watch) -> Result<(), Fault>,
+) -> Result<Converted, Fault> {
     let Background { mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
     let triangles = mesh.element_count();
     let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());
-    converter.run(watch)?;
+    drive(&mut converter, watch)?;
     let Converter { mesh, counts, last_resort, finished, .. } = converter;
     Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, counts, last_resort, finished })
 }
@@ -163,10 +177,27 @@ fn adapted_mesh(
     watch.tell(Stage::Triangulate, 0, 0);
     let (_, set) = divide_and_triangulate(domain, sizing)?;
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+    refuse_the_endless(&set, sizing, case.parameters.max_quads)?;
     watch.tell(Stage::Adapt, 0, 0);
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (spec 3).
     let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
     adapt(Mesh::from_triangles(&set, metric), sizing, most, watch)
+}
+
+/// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is the
+/// metric area (spec 3), one place a triangle of the boundary's triangulation: rough, so that only what is beyond doubt is
+/// refused here. The adaptation itself holds the bound.
+fn refuse_the_endless(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Result<(), Fault> {
+    let mut quads = 0.0;
+    for triangle in &set.triangles {
+        let [a, b, c] = triangle.map(|n| set.uv[n as usize]);
+        quads += triangle_area(&sizing.metric((a + b + c) / 3.0)?, a, b, c);
+    }
+    if quads <= 4.0 * max_quads as f64 {
+        return Ok(());
+    }
+    Err(Fault::new(format!("The metric asks for about {quads:.1e} quadrilaterals, and max_quads is {max_quads}"))
+        .remedy("Make the sizes larger, or allow more by max_quads"))
 }
 
 /// The field at the nodes of a mesh with its gradation bounded, as a table.

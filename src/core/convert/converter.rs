@@ -189,14 +189,8 @@ impl<'a> Converter<'a> {
         let total = self.mesh.element_count() as u64;
         watch.tell(Stage::Convert, 0, total);
         while self.phase != Phase::Done {
-            if self.phase == Phase::Select {
-                if self.history.is_none() {
-                    // What was done stays done.
-                    self.mesh.commit();
-                }
-                if self.counts.formed.is_multiple_of(1024) {
-                    watch.tell(Stage::Convert, 2 * self.counts.formed, total);
-                }
+            if self.counts.steps.is_multiple_of(8192) {
+                watch.tell(Stage::Convert, 2 * self.counts.formed, total);
             }
             if self.phase == Phase::PostProcess {
                 watch.tell(Stage::Finish, 0, 0);
@@ -261,6 +255,10 @@ impl<'a> Converter<'a> {
 
     /// Base segment selection (4.3.3).
     fn select(&mut self) -> Result<(Phase, Event), Fault> {
+        if self.history.is_none() {
+            // Nobody steps back: what was done stays done, and its memory is free again.
+            self.mesh.commit();
+        }
         let mut queue = self.take_queue();
         let choice = queue.select(&self.mesh, &self.parameters);
         let taken_up = choice.is_none() && !self.second_pass && queue.take_up_all(&mut self.mesh, &self.parameters);

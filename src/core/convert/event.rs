@@ -1,11 +1,17 @@
 //! What one step did: ids and measured values, from which panels, logs, breakpoints and tests make their words.
+//!
+//! Serialised, an event is one flat object: `kind` as [`Event::kind`] says it, ids as numbers, angles in degrees, a
+//! reason as an object of its own with `kind` and, where there is one, `value`.
+
+use serde::{Serialize, Serializer};
 
 use super::last_resort::Outcome;
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::{ElementId, NodeId};
 
 /// Why an attempt to form a quadrilateral was taken back.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", content = "value", rename_all = "snake_case")]
 pub enum Why {
     /// No edge can serve as this side.
     NoSide(Side),
@@ -32,7 +38,8 @@ pub enum Why {
 }
 
 /// Why a node was removed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Purpose {
     /// It stood in the way of a swap of the top edge's recovery (4.3.4, top edge iii).
     Recovery,
@@ -41,7 +48,8 @@ pub enum Purpose {
 }
 
 /// What a step of the converter did or decided. Angles in radians.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event {
     /// A base segment was selected (4.3.3).
     BaseSelected {
@@ -56,6 +64,7 @@ pub enum Event {
         /// Its class of table 1.
         class: u8,
         /// Frontal angles at A and B.
+        #[serde(serialize_with = "both_degrees")]
         theta: [f64; 2],
         /// Metric length.
         length_metric: f64,
@@ -80,8 +89,10 @@ pub enum Event {
         /// Its top node.
         node: NodeId,
         /// Its angle with the base.
+        #[serde(serialize_with = "degrees")]
         angle: f64,
         /// How far that is from the direction aimed at.
+        #[serde(serialize_with = "degrees")]
         deviation: f64,
         /// Number of edges considered.
         considered: u8,
@@ -93,10 +104,13 @@ pub enum Event {
         /// Its top node.
         node: NodeId,
         /// Its angle with the base.
+        #[serde(serialize_with = "degrees")]
         angle: f64,
         /// How far that is from the direction aimed at.
+        #[serde(serialize_with = "degrees")]
         deviation: f64,
         /// Deviation of the best edge that was there.
+        #[serde(serialize_with = "degrees")]
         instead_of: f64,
     },
     /// The side edge was divided (side edges vi).
@@ -175,6 +189,7 @@ pub enum Event {
         /// The node that both other ends became.
         node: NodeId,
         /// The frontal angle that was.
+        #[serde(serialize_with = "degrees")]
         angle: f64,
     },
     /// The front was split at a slender element (4.3.6, fig. 19).
@@ -229,6 +244,73 @@ impl Event {
             Event::LastResort(_) => "last_resort",
             Event::PostProcessed => "post_processed",
             Event::Finished => "finished",
+        }
+    }
+}
+
+fn degrees<S: Serializer>(radians: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    radians.to_degrees().serialize(serializer)
+}
+
+fn both_degrees<S: Serializer>(radians: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
+    radians.map(f64::to_degrees).serialize(serializer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn an_event_is_one_flat_object_with_its_kind_and_angles_in_degrees() {
+        let node = NodeId(7);
+        let chosen = Event::SideChosen { side: Side::Left, node, angle: FRAC_PI_2, deviation: 0.0, considered: 3 };
+        let json = serde_json::to_string(&chosen).unwrap();
+        let expected = r#"{"kind":"side_chosen","side":"left","node":7,"angle":90.0,"deviation":0.0,"considered":3}"#;
+        assert_eq!(json, expected);
+        let json = |why| serde_json::to_string(&Event::RolledBack { attempt: 1, why }).unwrap();
+        assert_eq!(json(Why::NotDisc), r#"{"kind":"rolled_back","attempt":1,"why":{"kind":"not_disc"}}"#);
+        let blocked = r#"{"kind":"rolled_back","attempt":1,"why":{"kind":"top_blocked","value":[7,8]}}"#;
+        assert_eq!(json(Why::TopBlocked([node, NodeId(8)])), blocked);
+    }
+
+    #[test]
+    fn the_kind_is_the_same_in_a_file_as_in_a_report() {
+        let (node, ends, side) = (NodeId(1), [NodeId(1), NodeId(2)], Side::Right);
+        let theta = [1.0; 2];
+        let events = [
+            Event::BaseSelected {
+                a: node,
+                b: node,
+                h_value: 1.0,
+                h_min: 1.0,
+                class: 1,
+                theta,
+                length_metric: 1.0,
+                length_physical: 1.0,
+                level: 0,
+                within_reach: true,
+            },
+            Event::SideIsFront { side, node },
+            Event::SideSwapped { side, node, angle: 1.0, deviation: 0.1, instead_of: 0.2 },
+            Event::SideDivided { side, node, length: 1.0 },
+            Event::TopSwapped { across: ends, new: ends },
+            Event::TopFound { ends, swaps: 0 },
+            Event::NodeRemoved { node, purpose: Purpose::Recovery },
+            Event::Formed { element: ElementId(1), nodes: [node; 4], quality: 1.0, eaten: 2, level: 0, attempt: 0 },
+            Event::Deferred { a: node, b: node },
+            Event::Enhanced { new: ends },
+            Event::Smoothed { nodes: 4 },
+            Event::Seamed { at: node, node, angle: 0.5 },
+            Event::Split { node, area: 0.1, ratio: 6.0 },
+            Event::Closed { segments: 4, quads: 1, quality: 0.5 },
+            Event::SecondPass,
+            Event::LastResort(Outcome::default()),
+            Event::PostProcessed,
+            Event::Finished,
+        ];
+        for event in events {
+            assert_eq!(serde_json::to_value(event).unwrap()["kind"], event.kind());
         }
     }
 }

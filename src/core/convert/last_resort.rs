@@ -21,6 +21,7 @@
 use std::fmt;
 
 use glam::DVec2;
+use serde::Serialize;
 use smallvec::SmallVec;
 
 use super::component::{Dual, NONE};
@@ -34,7 +35,7 @@ use crate::core::metric::measure::quad_quality;
 use crate::core::metric::tensor::Metric2;
 
 /// What the last resort did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Outcome {
     /// Triangles it was given.
     pub triangles: usize,

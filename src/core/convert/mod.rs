@@ -5,6 +5,7 @@ pub mod parameters;
 pub mod event;
 pub mod phase;
 pub mod converter;
+pub mod walk;
 mod sides;
 mod top;
 mod form;

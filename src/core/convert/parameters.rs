@@ -120,7 +120,7 @@ impl SelectionWindow {
 
 impl Parameters {
     /// The keys of files and of `--set`, in the order in which they are documented.
-    pub const KEYS: [&'static str; 13] = [
+    pub const KEYS: [&'static str; 20] = [
         "size_scale",
         "c",
         "theta_rect",
@@ -133,8 +133,43 @@ impl Parameters {
         "layers",
         "selection",
         "selection_window",
+        "bisector",
+        "placement",
+        "smoothing",
+        "enhancement",
+        "seaming",
+        "splitting",
+        "post_processing",
         "max_quads",
     ];
+
+    /// The paper's own reading of everything (spec 1): its words where ours differ, the values that it used where it gives a
+    /// range. Front segments are chosen by physical length, side edges stand at right angles, nodes are moved by eq. (9) and
+    /// not placed.
+    pub fn paper() -> Parameters {
+        Parameters {
+            c: 2.0,
+            theta_rect: 135_f64.to_radians(),
+            theta_seam: 30_f64.to_radians(),
+            selection: Selection::Table1,
+            selection_window: SelectionWindow::PhysicalLength,
+            bisector: false,
+            placement: false,
+            ..Parameters::default()
+        }
+    }
+
+    /// The paper's reading for the mesh that these parameters ask for: its size, its limit and the rows that are offset stay,
+    /// since they belong to the case.
+    #[must_use]
+    pub fn read_as_paper(&self) -> Parameters {
+        Parameters {
+            size_scale: self.size_scale,
+            layers: self.layers,
+            max_quads: self.max_quads,
+            ..Parameters::paper()
+        }
+    }
 
     /// Sets one parameter from its text, as files and `--set KEY=VALUE` give it (angles in degrees). A number in quotes is
     /// refused: files pass their texts with them.
@@ -156,6 +191,13 @@ impl Parameters {
             "layers" => self.layers = count(key, value, 0, 1000)? as u32,
             "selection" => self.selection = word(key, value, &Selection::WORDS)?,
             "selection_window" => self.selection_window = word(key, value, &SelectionWindow::WORDS)?,
+            "bisector" => self.bisector = flag(key, value)?,
+            "placement" => self.placement = flag(key, value)?,
+            "smoothing" => self.smoothing = flag(key, value)?,
+            "enhancement" => self.enhancement = flag(key, value)?,
+            "seaming" => self.seaming = flag(key, value)?,
+            "splitting" => self.splitting = flag(key, value)?,
+            "post_processing" => self.post_processing = flag(key, value)?,
             "max_quads" => self.max_quads = count(key, value, 1, 200_000_000)?,
             _ => return Err(unknown_key(key, &Self::KEYS)),
         }
@@ -177,6 +219,13 @@ impl Parameters {
             "layers" => self.layers.to_string(),
             "selection" => said(self.selection, &Selection::WORDS),
             "selection_window" => said(self.selection_window, &SelectionWindow::WORDS),
+            "bisector" => self.bisector.to_string(),
+            "placement" => self.placement.to_string(),
+            "smoothing" => self.smoothing.to_string(),
+            "enhancement" => self.enhancement.to_string(),
+            "seaming" => self.seaming.to_string(),
+            "splitting" => self.splitting.to_string(),
+            "post_processing" => self.post_processing.to_string(),
             "max_quads" => self.max_quads.to_string(),
             _ => return None,
         })
@@ -242,6 +291,13 @@ fn count(key: &str, value: &str, least: u64, most: u64) -> Result<u64, Fault> {
     })
 }
 
+fn flag(key: &str, value: &str) -> Result<bool, Fault> {
+    value.parse::<bool>().map_err(|_| {
+        Fault::new(format!("{key} = {} is neither true nor false", quoted(value)))
+            .remedy(format!("Write {key} = true or {key} = false"))
+    })
+}
+
 fn word<T: Copy>(key: &str, value: &str, words: &[(&str, T)]) -> Result<T, Fault> {
     words.iter().find(|w| w.0 == value).map(|w| w.1).ok_or_else(|| {
         let known: Vec<_> = words.iter().map(|w| format!("\"{}\"", w.0)).collect();
@@ -291,6 +347,22 @@ mod tests {
     }
 
     #[test]
+    fn the_paper_s_reading_leaves_the_size_of_the_case_alone() {
+        let mut own = Parameters::default();
+        for (key, value) in
+            [("size_scale", "0.5"), ("layers", "2"), ("max_quads", "1000"), ("c", "1.5"), ("seaming", "false")]
+        {
+            own.set(key, value).unwrap();
+        }
+        let paper = own.read_as_paper();
+        let text = |key| paper.text_of(key).unwrap();
+        assert_eq!(["size_scale", "layers", "max_quads"].map(text), ["0.5", "2", "1000"]);
+        assert_eq!(["c", "theta_rect", "theta_seam"].map(text), ["2", "135", "30"]);
+        assert_eq!(["selection_window", "bisector", "placement"].map(text), ["physical_length", "false", "false"]);
+        assert_eq!(text("seaming"), "true");
+    }
+
+    #[test]
     fn an_angle_with_a_unit_is_refused_with_the_way_to_write_it() {
         let fault = Parameters::default().set("theta_rect", "120deg").unwrap_err();
         assert_eq!(
@@ -324,6 +396,8 @@ mod tests {
             ("max_quads", "0"),
             ("selection", "largest"),
             ("selection_window", "length"),
+            ("bisector", "1"),
+            ("seaming", "\"true\""),
         ] {
             assert!(parameters.set(key, value).is_err(), "{key} = {value}");
         }

@@ -126,6 +126,23 @@ pub enum Phase {
 }
 
 impl Phase {
+    /// The base segment of the quadrilateral at hand, from its selection until it stands or is put off.
+    pub fn base(&self) -> Option<&Base> {
+        match self {
+            Phase::PrepareSide { base, .. }
+            | Phase::DivideSide { base, .. }
+            | Phase::RecoverTop { base, .. }
+            | Phase::Form { base, .. }
+            | Phase::Retry { base, .. } => Some(base),
+            _ => None,
+        }
+    }
+
+    /// Whether the local post-processing of the last quadrilateral (4.3.6) is under way.
+    pub fn is_local_post_processing(&self) -> bool {
+        matches!(self, Phase::Enhance { .. } | Phase::Smooth { .. } | Phase::Seam { .. })
+    }
+
     /// The phase without the marks of the journal, which are history and not state.
     #[must_use]
     pub fn plain(&self) -> Phase {

@@ -20,7 +20,7 @@ const SHORT_ANGLE: f64 = std::f64::consts::FRAC_PI_3;
 
 impl Converter<'_> {
     /// Seams at a node of the front where the frontal angle is small enough and the guards of spec 2.8 hold. All of it
-    /// is taken back where it fails. With `theta_seam` 0 nothing is seamed.
+    /// is taken back where it fails.
     pub(super) fn seam_at(&mut self, at: NodeId) -> Option<Event> {
         if !self.mesh.has_node(at) {
             return None;
@@ -32,8 +32,9 @@ impl Converter<'_> {
             let bound = self.parameters.theta_seam;
             let before = self.mesh.front_before(h);
             let short = 0.5 * (self.mesh.length(h) + self.mesh.length(before));
-            let bound = if crowded { bound.max(WIDE) } else { bound };
-            if angle > if short < SHORT { bound.max(SHORT_ANGLE) } else { bound } {
+            // The wider angles are ours: the paper's own reading has neither them nor placement.
+            let wider = |applies: bool, wide: f64| if applies && self.parameters.placement { wide } else { 0.0 };
+            if angle > bound.max(wider(crowded, WIDE)).max(wider(short < SHORT, SHORT_ANGLE)) {
                 continue;
             }
             let (b, c) = (self.mesh.target(h), self.mesh.origin(before));

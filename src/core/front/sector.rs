@@ -1,6 +1,7 @@
 //! The live sector between two front segments at a node, walked from a front segment (spec 2.1.4): frontal angles are
 //! stored per end of a segment and not per node, since a pinched node has several sectors.
 
+use serde::Serialize;
 use smallvec::SmallVec;
 
 use crate::core::mesh::half_edge::Mesh;
@@ -8,7 +9,8 @@ use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::metric::measure::angle;
 
 /// Left or right end of a front segment AB: A or B. Everything about sides is one function over this.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Side {
     /// At A, to the left when one looks from the base into the live region.
     Left,
@@ -54,6 +56,11 @@ impl Mesh {
     #[inline]
     pub fn is_front(&self, h: HalfEdgeId) -> bool {
         self.is_triangle(h.element()) && self.twin(h).is_none_or(|t| !self.is_triangle(t.element()))
+    }
+
+    /// The segments of the merging front, by their triangles.
+    pub fn front(&self) -> impl Iterator<Item = HalfEdgeId> + '_ {
+        self.elements().flat_map(|e| self.half_edges(e)).filter(|h| self.is_front(*h))
     }
 
     /// The front segment before `h` on its loop: that which ends where `h` starts, over the same live sector.

@@ -2,15 +2,18 @@
 
 use glam::DVec2;
 
-use super::mesh_file::{Group, MeshFile};
+use super::mesh_file::{Data, FRONT, Group, MeshFile};
 use super::statistics::Measured;
 use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::PointId;
+use crate::core::mesh::ids::{ElementId, PointId};
 
 /// Tag of lines with elements on one side: the boundary, and both sides of a crack.
 const BOUNDARY: u32 = 1;
 /// Tag of lines with elements on both sides: curves that faces share, repeated lines.
 const INSIDE: u32 = 2;
+
+/// Tag of the segments of the merging front.
+const FRONT_TAG: u32 = 3;
 
 /// No point yet.
 const NONE: u32 = u32::MAX;
@@ -33,6 +36,39 @@ pub struct Export {
 impl Export {
     /// The arrays of a planar mesh whose regions have these names; nodes and elements keep their order.
     pub fn of(mesh: &Mesh, regions: &[String]) -> Export {
+        Export::with_nodes(mesh, regions).0
+    }
+
+    /// The arrays of a mesh on the way, with what a reader needs to see where it stands: `live` (1 for triangles, 0 for
+    /// quadrilaterals), `level` and `region` (the tag of its group) at elements, and the merging front as lines of a group
+    /// of its own, each with its live triangle to the left.
+    pub fn of_state(mesh: &Mesh, regions: &[String]) -> Export {
+        let (mut export, node_at) = Export::with_nodes(mesh, regions);
+        let (live, dead): (Vec<ElementId>, Vec<ElementId>) = mesh.elements().partition(|e| mesh.is_triangle(*e));
+        let data = |name: &str, value: &dyn Fn(ElementId) -> f64| Data {
+            name: name.to_owned(),
+            values: live.iter().chain(&dead).map(|e| value(*e)).collect(),
+        };
+        let file = &mut export.file;
+        file.element_data = vec![
+            data("live", &|e| f64::from(u8::from(mesh.is_triangle(e)))),
+            data("level", &|e| f64::from(mesh.level(e))),
+            data("region", &|e| f64::from(mesh.region(e) + 1)),
+        ];
+        for h in mesh.front() {
+            let nodes = [mesh.origin(h), mesh.target(h)];
+            file.lines.push(nodes.map(|n| export.points[node_at[n.index()] as usize].0));
+            file.line_tags.push(FRONT_TAG);
+        }
+        if file.line_tags.contains(&FRONT_TAG) {
+            let before = file.groups.partition_point(|group| group.dimension == 1);
+            file.groups.insert(before, Group { dimension: 1, tag: FRONT_TAG, name: FRONT.to_owned() });
+        }
+        export
+    }
+
+    /// The arrays, and the place in them of each node.
+    fn with_nodes(mesh: &Mesh, regions: &[String]) -> (Export, Vec<u32>) {
         let mut export = Export::default();
         let mut node_at = vec![NONE; mesh.node_slots()];
         let mut point_at: Vec<u32> = Vec::new();
@@ -93,7 +129,7 @@ impl Export {
         for (region, name) in (1..).zip(regions) {
             file.groups.push(Group { dimension: 2, tag: region, name: name.clone() });
         }
-        export
+        (export, node_at)
     }
 
     /// The mesh as it is measured.
@@ -105,7 +141,8 @@ impl Export {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::mesh::half_edge::Mesh;
+    use crate::core::mesh::half_edge::{Mesh, NewElement};
+    use crate::core::mesh::ids::NodeId;
     use crate::core::mesh::triangle_set::TriangleSet;
     use crate::core::metric::tensor::Metric2;
 
@@ -133,6 +170,31 @@ mod tests {
         assert_eq!(export.file.lines.len(), 5);
         let names: Vec<_> = export.file.groups.iter().map(|g| g.name.as_str()).collect();
         assert_eq!(names, ["boundary", "inside", "left", "right"]);
+    }
+
+    #[test]
+    fn a_state_has_its_front_as_lines_and_live_level_and_region_at_elements() {
+        let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (2.0, 0.0)];
+        let set = TriangleSet {
+            uv: uv.map(|(x, y)| DVec2::new(x, y)).to_vec(),
+            point: (0..5).map(PointId).collect(),
+            triangles: vec![[0, 1, 2], [0, 2, 3], [1, 4, 2]],
+            region: vec![0; 3],
+        };
+        let mut mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 5]);
+        let corners = [0, 1, 2, 3].map(NodeId);
+        let new = mesh.replace(&[ElementId(0), ElementId(1)], &[NewElement::quad(corners, 0)]);
+        mesh.set_level(new[0], 4);
+        let file = Export::of_state(&mesh, &["plate".to_owned()]).file;
+        assert_eq!((file.triangles.len(), file.quads.len()), (1, 1));
+        let values: Vec<_> = file.element_data.iter().map(|d| (d.name.as_str(), d.values.clone())).collect();
+        let expected = [("live", vec![1.0, 0.0]), ("level", vec![0.0, 4.0]), ("region", vec![1.0, 1.0])];
+        assert_eq!(values, expected);
+        let mut front: Vec<_> =
+            (0..file.lines.len()).filter(|i| file.line_tags[*i] == FRONT_TAG).map(|i| file.lines[i]).collect();
+        front.sort_unstable();
+        assert_eq!(front, [[1, 4], [2, 1], [4, 2]]);
+        assert_eq!(file.group_name(1, FRONT_TAG), Some("front"));
     }
 
     #[test]

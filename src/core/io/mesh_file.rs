@@ -4,6 +4,9 @@ use glam::DVec3;
 
 use crate::core::metric::tensor::Metric3;
 
+/// The name of the group of lines that are the merging front of a mesh on the way.
+pub const FRONT: &str = "front";
+
 /// A named group of elements (Gmsh's physical group).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
@@ -66,6 +69,15 @@ impl MeshFile {
             .iter()
             .find(|group| group.dimension == dimension && group.tag == tag)
             .map(|group| group.name.as_str())
+    }
+}
+
+impl MeshFile {
+    /// The lines of the merging front, by their place in `lines`; none in a mesh that is no state of a conversion.
+    pub fn front_lines(&self) -> impl Iterator<Item = usize> + '_ {
+        let group = self.groups.iter().find(|group| group.dimension == 1 && group.name == FRONT);
+        let is_front = move |i: &usize| group.is_some_and(|group| tag_of(&self.line_tags, *i) == group.tag);
+        (0..self.lines.len()).filter(is_front)
     }
 }
 

@@ -224,9 +224,10 @@ fn parameters<S: Serializer>(parameters: &Parameters, serializer: S) -> Result<S
     let mut map = serializer.serialize_map(Some(Parameters::KEYS.len()))?;
     for key in Parameters::KEYS {
         let text = parameters.text_of(key).unwrap_or_default();
-        match (text.parse::<u64>(), text.parse::<f64>()) {
-            (Ok(count), _) => map.serialize_entry(key, &count)?,
-            (_, Ok(number)) => map.serialize_entry(key, &number)?,
+        match (text.parse::<u64>(), text.parse::<f64>(), text.parse::<bool>()) {
+            (Ok(count), ..) => map.serialize_entry(key, &count)?,
+            (_, Ok(number), _) => map.serialize_entry(key, &number)?,
+            (.., Ok(flag)) => map.serialize_entry(key, &flag)?,
             _ => map.serialize_entry(key, &text)?,
         }
     }

@@ -1,7 +1,7 @@
 //! VTK's XML format for unstructured grids (`.vtu`), as inline text.
 //!
-//! Triangles and quadrilaterals are written, lines are not: what ParaView colours are the surface's cells. Tags become
-//! the cell data "tag". Deliberately absent: compressed, appended and binary arrays (refused).
+//! Triangles and quadrilaterals are written, of the lines only the merging front of a state: what ParaView colours are the
+//! surface's cells. Tags become the cell data "tag"; lines have -1 in all other data, since VTK does not read NaN. Deliberately absent: compressed, appended and binary arrays (refused).
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -24,7 +24,8 @@ const TAG: &str = "tag";
 /// # Errors
 /// What `out` says.
 pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
-    let cells = mesh.triangles.len() + mesh.quads.len();
+    let front: Vec<usize> = mesh.front_lines().collect();
+    let cells = mesh.triangles.len() + mesh.quads.len() + front.len();
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(out, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">")?;
     writeln!(out, "<UnstructuredGrid>")?;
@@ -40,7 +41,7 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
         }
         close(out)?;
     }
-    write_data(out, &mesh.point_data)?;
+    write_data(out, &mesh.point_data, 0)?;
     writeln!(out, "</PointData>\n<CellData>")?;
     if !mesh.triangle_tags.is_empty() || !mesh.quad_tags.is_empty() {
         open(out, "Int64", TAG, None)?;
@@ -50,9 +51,12 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
         for i in 0..mesh.quads.len() {
             writeln!(out, "{}", tag_of(&mesh.quad_tags, i))?;
         }
+        for &i in &front {
+            writeln!(out, "{}", tag_of(&mesh.line_tags, i))?;
+        }
         close(out)?;
     }
-    write_data(out, &mesh.element_data)?;
+    write_data(out, &mesh.element_data, front.len())?;
     writeln!(out, "</CellData>\n<Points>")?;
     open(out, "Float64", "Points", Some(3))?;
     for p in &mesh.points {
@@ -67,6 +71,10 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     for [a, b, c, d] in &mesh.quads {
         writeln!(out, "{a} {b} {c} {d}")?;
     }
+    for &i in &front {
+        let [a, b] = mesh.lines[i];
+        writeln!(out, "{a} {b}")?;
+    }
     close(out)?;
     open(out, "Int64", "offsets", None)?;
     for i in 1..=mesh.triangles.len() {
@@ -75,10 +83,24 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     for i in 1..=mesh.quads.len() {
         writeln!(out, "{}", 3 * mesh.triangles.len() + 4 * i)?;
     }
+    for i in 1..=front.len() {
+        writeln!(out, "{}", 3 * mesh.triangles.len() + 4 * mesh.quads.len() + 2 * i)?;
+    }
     close(out)?;
     open(out, "UInt8", "types", None)?;
     for i in 0..cells {
-        writeln!(out, "{}", if i < mesh.triangles.len() { 5 } else { 9 })?;
+        let is_line = i >= mesh.triangles.len() + mesh.quads.len();
+        writeln!(
+            out,
+            "{}",
+            if i < mesh.triangles.len() {
+                5
+            } else if is_line {
+                3
+            } else {
+                9
+            }
+        )?;
     }
     close(out)?;
     writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
@@ -107,11 +129,14 @@ fn close(out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "</DataArray>")
 }
 
-fn write_data(out: &mut dyn Write, data: &[Data]) -> io::Result<()> {
+fn write_data(out: &mut dyn Write, data: &[Data], lines: usize) -> io::Result<()> {
     for data in data {
         open(out, "Float64", &data.name, None)?;
         for value in &data.values {
             writeln!(out, "{}", Shortest(*value))?;
+        }
+        for _ in 0..lines {
+            writeln!(out, "-1")?;
         }
         close(out)?;
     }

@@ -13,43 +13,116 @@ pub const COLUMN: f64 = 238.0;
 /// Ground left free around the mesh, in points: half of the widest line, and a little.
 const MARGIN: f64 = 1.0;
 
+/// The width of a figure over the whole page, in points (174 mm).
+pub const PAGE: f64 = 493.0;
+
+/// Between the frames of a strip, in points (3 mm).
+const GAP: f64 = 8.5;
+
+/// Size of labels in points.
+const LABEL: f64 = 7.0;
+
 /// The picture as an SVG file `width` points wide on white ground, as high as its equal scales along both axes demand.
 pub fn write(picture: &Picture, width: f64) -> String {
-    let [low, high] = picture.bounds().unwrap_or([DVec2::ZERO, DVec2::ONE]);
-    let size = high - low;
-    // A tall picture is not magnified beyond measure, and one without any size still has a scale.
-    let span = size.x.max(size.y * 0.1);
-    let scale = (width - 2.0 * MARGIN) / if span > 0.0 { span } else { 1.0 };
-    let height = size.y * scale + 2.0 * MARGIN;
-    let aside = 0.5 * (width - 2.0 * MARGIN - size.x * scale);
-    let place = |p: DVec2| (MARGIN + aside + (p.x - low.x) * scale, MARGIN + (high.y - p.y) * scale);
+    let frame = Frame::fit(picture.bounds(), width);
+    let mut svg = head(picture, width, frame.height);
+    draw(&mut svg, picture, &frame);
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// Pictures of one thing side by side, `width` points over all, in equal frames of the same scale with a letter and the title of
+/// each below it. Title and description are the file's.
+pub fn strip(pictures: &[Picture], title: &str, description: &str, width: f64) -> String {
+    let count = pictures.len().max(1) as f64;
+    let each = (width - GAP * (count - 1.0)) / count;
+    let union = |a: [DVec2; 2], b: [DVec2; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    let mut frame = Frame::fit(pictures.iter().filter_map(Picture::bounds).reduce(union), each);
+    let whole = Picture { title: title.to_owned(), description: description.to_owned(), ..Picture::default() };
+    let mut svg = head(&whole, width, frame.height + 1.7 * LABEL);
+    for (picture, letter) in pictures.iter().zip('a'..) {
+        draw(&mut svg, picture, &frame);
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{}\" font-family=\"IBM Plex Sans, Arial, sans-serif\" font-size=\"{LABEL}\" \
+             fill=\"#000000\">({letter}) {}</text>",
+            Short(frame.left + MARGIN),
+            Short(frame.height + 1.2 * LABEL),
+            escaped(&picture.title)
+        );
+        frame.left += each + GAP;
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// Where coordinates of the mesh come to lie.
+struct Frame {
+    /// The corner at the top left of the mesh, in its coordinates.
+    corner: DVec2,
+    /// Points for one unit of the mesh.
+    scale: f64,
+    /// Ground left free beside a tall mesh.
+    aside: f64,
+    /// The left edge of the frame.
+    left: f64,
+    height: f64,
+}
+
+impl Frame {
+    fn fit(bounds: Option<[DVec2; 2]>, width: f64) -> Frame {
+        let [low, high] = bounds.unwrap_or([DVec2::ZERO, DVec2::ONE]);
+        let size = high - low;
+        // A tall picture is not magnified beyond measure, and one without any size still has a scale.
+        let span = size.x.max(size.y * 0.1);
+        let scale = (width - 2.0 * MARGIN) / if span > 0.0 { span } else { 1.0 };
+        Frame {
+            corner: DVec2::new(low.x, high.y),
+            scale,
+            aside: 0.5 * (width - 2.0 * MARGIN - size.x * scale),
+            left: 0.0,
+            height: size.y * scale + 2.0 * MARGIN,
+        }
+    }
+
+    fn place(&self, p: DVec2) -> (f64, f64) {
+        let right = MARGIN + self.aside + (p.x - self.corner.x) * self.scale;
+        (self.left + right, MARGIN + (self.corner.y - p.y) * self.scale)
+    }
+}
+
+fn head(picture: &Picture, width: f64, height: f64) -> String {
     let (w, h) = (Short(width), Short(height));
-    let mut svg = format!(
+    format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}pt\" height=\"{h}pt\" viewBox=\"0 0 {w} {h}\">\n\
          <title>{}</title>\n<desc>{}</desc>\n<rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>\n",
         escaped(&picture.title),
         escaped(&picture.description)
-    );
+    )
+}
+
+fn draw(svg: &mut String, picture: &Picture, frame: &Frame) {
     for role in Role::ALL {
         let style = figure(role);
         if let Some(fill) = style.fill {
             let mut path = Path::default();
             for area in picture.areas.iter().filter(|a| a.role == role) {
                 let corners = if area.corners[2] == area.corners[3] { &area.corners[..3] } else { &area.corners[..] };
-                path.walk(corners.iter().map(|p| place(*p)), true);
+                path.walk(corners.iter().map(|p| frame.place(*p)), true);
             }
-            path.write(&mut svg, &format!("fill=\"{fill}\""));
+            path.write(svg, &format!("fill=\"{fill}\""));
         }
         if let Some(stroke) = style.stroke {
             for (crowded, stroke_width) in [(true, THIN.min(style.width)), (false, style.width)] {
                 let mut path = Path::default();
                 // The boundary keeps its width: it is what a reader orients by.
-                let thin = |room: f64| role != Role::Boundary && room * scale < CROWDED;
+                let thin = |room: f64| role != Role::Boundary && room * frame.scale < CROWDED;
                 for line in picture.lines.iter().filter(|l| l.role == role && thin(l.room) == crowded) {
-                    path.walk(line.ends.iter().map(|p| place(*p)), false);
+                    path.walk(line.ends.iter().map(|p| frame.place(*p)), false);
                 }
                 path.write(
-                    &mut svg,
+                    svg,
                     &format!(
                         "fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{stroke_width}\" stroke-linecap=\"round\""
                     ),
@@ -57,8 +130,6 @@ pub fn write(picture: &Picture, width: f64) -> String {
             }
         }
     }
-    svg.push_str("</svg>\n");
-    svg
 }
 
 /// Many polygons or lines as one path element: no seams between neighbours, and a short file.
@@ -126,6 +197,21 @@ mod tests {
         };
         let picture = Picture { title: "a < b & c".to_owned(), ..Picture::of_mesh(&mesh) };
         insta::assert_snapshot!(write(&picture, 202.0));
+    }
+
+    #[test]
+    fn the_frames_of_a_strip_are_equal_and_stand_beside_each_other() {
+        let mesh = MeshFile {
+            points: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: vec![[0, 1, 2]],
+            ..MeshFile::default()
+        };
+        let frame = |title: &str| Picture { title: title.to_owned(), ..Picture::of_mesh(&mesh) };
+        let svg = strip(&[frame("nq=1"), frame("nq=2")], "two", "", 108.5);
+        let starts: Vec<_> =
+            svg.split("<path fill=\"#FFFFFF\" d=\"").skip(1).map(|p| &p[..p.find('L').unwrap()]).collect();
+        assert_eq!(starts, ["M1 49", "M59.5 49"]);
+        assert!(svg.contains(">(a) nq=1</text>") && svg.contains(">(b) nq=2</text>"), "{svg}");
     }
 
     #[test]

@@ -1,0 +1,86 @@
+//! A conversion walked step by step, to its end or to a stop, with each event told.
+
+use serde::Serialize;
+
+use super::converter::Converter;
+use super::event::Event;
+use super::phase::Phase;
+use crate::core::fault::Fault;
+use crate::core::progress::{Stage, Watch};
+
+/// Where a walk stops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// As soon as so many quadrilaterals stand and the local post-processing of the last one (4.3.6) is done.
+    Quads(u64),
+    /// After so many steps.
+    Step(u64),
+}
+
+impl Stop {
+    fn is_reached(self, converter: &Converter<'_>) -> bool {
+        match self {
+            Stop::Quads(quads) => quads <= standing(converter) && !converter.phase().is_local_post_processing(),
+            Stop::Step(step) => step <= converter.counts.steps,
+        }
+    }
+}
+
+/// A step as it is told.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Told<'e> {
+    /// Its number, from 1.
+    pub step: u64,
+    /// Quadrilaterals that stand after it.
+    pub nq: u64,
+    /// What it did.
+    #[serde(flatten)]
+    pub event: &'e Event,
+}
+
+/// The number of quadrilaterals that stand.
+pub fn standing(converter: &Converter<'_>) -> u64 {
+    match converter.phase() {
+        // Everything is a quadrilateral, also what the last resort made and what clean-up has put in its place.
+        Phase::PostProcess | Phase::Done => converter.mesh.element_count() as u64,
+        _ => converter.counts.formed + converter.counts.closed,
+    }
+}
+
+/// Steps until `stop` is reached, or to the end where there is none; the same states as
+/// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done.
+///
+/// # Errors
+/// As [`Converter::step`](super::converter::Converter::step); and where the conversion ends before the stop.
+pub fn walk(
+    converter: &mut Converter<'_>,
+    stop: Option<Stop>,
+    watch: &mut dyn Watch,
+    tell: &mut dyn FnMut(&Told<'_>),
+) -> Result<(), Fault> {
+    let total = converter.mesh.element_count() as u64;
+    watch.tell(Stage::Convert, 0, total);
+    let mut shown = 0;
+    while !stop.is_some_and(|stop| stop.is_reached(converter)) {
+        match converter.phase() {
+            Phase::Done => return stop.map_or(Ok(()), |_| Err(past_the_end(converter))),
+            Phase::Select => converter.mesh.commit(),
+            Phase::PostProcess => watch.tell(Stage::Finish, 0, 0),
+            _ => {}
+        }
+        let event = converter.step()?;
+        let nq = standing(converter);
+        tell(&Told { step: converter.counts.steps, nq, event: &event });
+        if shown + 1024 <= nq && *converter.phase() != Phase::Done {
+            shown = nq;
+            watch.tell(Stage::Convert, 2 * nq, total);
+        }
+    }
+    Ok(())
+}
+
+fn past_the_end(converter: &Converter<'_>) -> Fault {
+    let (steps, quads) = (converter.counts.steps, standing(converter));
+    Fault::new(format!("The conversion ends after step {steps} with {quads} quadrilaterals, before it comes there"))
+        .remedy(format!("Stop at step={steps} at the latest"))
+}
