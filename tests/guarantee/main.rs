@@ -27,6 +27,8 @@ use quadfront::core::io::case::Case;
 use quadfront::core::progress::Nobody;
 use random::Random;
 
+/// A case that takes longer is told.
+const SLOW: Duration = Duration::from_secs(20);
 /// Of so many cases one may be refused: curves that the generator puts too near to each other.
 const ONE_REFUSED_OF: usize = 30;
 
@@ -48,6 +50,7 @@ fn random_case(seed: u64) -> Case {
 /// What came of all cases.
 #[derive(Default)]
 struct Tally {
+    rounds: usize,
     kept: usize,
     quads: usize,
     templates: usize,
@@ -59,6 +62,17 @@ struct Tally {
 
 impl Tally {
     fn count(&mut self, seed: u64, took: Duration, outcome: Result<Result<Kept, Fault>, String>) {
+        // A long run says at once what it finds.
+        match &outcome {
+            Ok(Ok(_)) if took < SLOW => {}
+            Ok(Ok(_)) => println!("seed {seed} takes {took:?}"),
+            Ok(Err(fault)) => println!("seed {seed} is refused: {fault}"),
+            Err(what) => println!("seed {seed} breaks: {what}"),
+        }
+        self.rounds += 1;
+        if self.rounds.is_multiple_of(1000) {
+            println!("{} rounds", self.rounds);
+        }
         self.slowest = self.slowest.max((took, seed));
         match outcome {
             Ok(Ok(kept)) => {
