@@ -45,6 +45,18 @@ impl BoxTree {
         (BoxTree { root, nodes }, order)
     }
 
+    /// Some thing not far from `p`: the first of the leaf that is met by always taking the nearer branch. `None` when `p` is
+    /// not finite.
+    #[inline]
+    pub fn descend(&self, p: DVec2) -> Option<u32> {
+        let mut branch = &self.root;
+        while branch.count == 0 {
+            let [left, right] = &self.nodes[branch.at as usize];
+            branch = if left.distance2(p) <= right.distance2(p) { left } else { right };
+        }
+        p.is_finite().then_some(branch.at)
+    }
+
     /// The thing with the least `distance2` from `p` (squared; its box must not be farther), the lowest number among equals,
     /// and that squared distance. `None` when `p` is not finite.
     #[inline]

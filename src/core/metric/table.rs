@@ -10,18 +10,27 @@ use crate::core::fault::Fault;
 /// A slanting needle is known to the tree by so many boxes at the most: its whole box would overlap with those of all needles
 /// beside it.
 const MOST_STRIPS: f64 = 64.0;
+/// A walk from triangle to triangle is given up after so many; then the tree searches.
+const LONGEST_WALK: usize = 400;
 
 /// The mesh, the logarithms at its nodes, and what finds a triangle.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
     tree: BoxTree,
-    /// Corners of the triangles, anticlockwise, in the tree's order; those of needles come several times.
+    /// The triangle of each of the tree's things.
+    triangle: Vec<u32>,
+    /// Corners of the triangles, anticlockwise.
     corners: Vec<[DVec2; 3]>,
     /// Their nodes.
     nodes: Vec<[u32; 3]>,
+    /// The triangles beyond the sides from each corner to the next; `NONE` on the boundary.
+    beyond: Vec<[u32; 3]>,
     /// By node.
     logarithms: Vec<LogMetric3>,
 }
+
+/// No triangle.
+const NONE: u32 = u32::MAX;
 
 impl Table {
     /// # Errors
@@ -44,8 +53,8 @@ impl Table {
                     .at(format!("({}, {})", p.x, p.y)));
             }
         }
-        let mut anticlockwise = Vec::with_capacity(triangles.len());
-        let mut boxes = Vec::with_capacity(triangles.len());
+        let mut nodes = Vec::with_capacity(triangles.len());
+        let (mut boxes, mut owner) = (Vec::with_capacity(triangles.len()), Vec::with_capacity(triangles.len()));
         for (i, &[a, b, c]) in triangles.iter().enumerate() {
             if [a, b, c].iter().any(|&k| k as usize >= points.len()) {
                 return Err(Fault::new(format!(
@@ -60,18 +69,27 @@ impl Table {
                     .at(format!("({}, {})", p.x, p.y)));
             }
             strips([p, q, r], &mut boxes);
-            anticlockwise.resize(boxes.len(), if area > 0.0 { [a, b, c] } else { [a, c, b] });
+            owner.resize(boxes.len(), i as u32);
+            nodes.push(if area > 0.0 { [a, b, c] } else { [a, c, b] });
         }
         let (tree, order) = BoxTree::new(&boxes);
-        let nodes: Vec<[u32; 3]> = order.into_iter().map(|i| anticlockwise[i as usize]).collect();
+        let triangle = order.into_iter().map(|i| owner[i as usize]).collect();
         let corners = nodes.iter().map(|t| t.map(|k| points[k as usize])).collect();
-        Ok(Table { tree, corners, nodes, logarithms: metrics.iter().map(Metric3::ln).collect() })
+        let beyond = beyond(&nodes);
+        Ok(Table { tree, triangle, corners, nodes, beyond, logarithms: metrics.iter().map(Metric3::ln).collect() })
     }
 
     /// The metric at `p`; outside the mesh, that of the nearest point of the mesh. `None` when `p` is not finite.
     #[inline]
     pub fn metric(&self, p: DVec2) -> Option<Metric3> {
-        let (id, _) = self.tree.nearest(p, |id| in_triangle(&self.corners[id as usize], p).1)?;
+        let near = self.triangle[self.tree.descend(p)? as usize];
+        let id = match self.walk(near, p) {
+            Some(id) => id,
+            None => {
+                let distance2 = |thing: u32| in_triangle(&self.corners[self.triangle[thing as usize] as usize], p).1;
+                self.triangle[self.tree.nearest(p, distance2)?.0 as usize]
+            }
+        };
         let weights = in_triangle(&self.corners[id as usize], p).0;
         let mut sum = LogMetric3::ZERO;
         for (weight, node) in weights.into_iter().zip(self.nodes[id as usize]) {
@@ -79,6 +97,47 @@ impl Table {
         }
         Some(sum.exp())
     }
+
+    /// The triangle that holds `p`, by crossing from triangle to triangle the sides that it lies beyond. `None` where the
+    /// walk meets the boundary or becomes long: that says nothing of `p`.
+    fn walk(&self, from: u32, p: DVec2) -> Option<u32> {
+        let (mut at, mut came_from) = (from, NONE);
+        for _ in 0..LONGEST_WALK {
+            let [a, b, c] = self.corners[at as usize].map(|corner| corner - p);
+            let beyond = self.beyond[at as usize];
+            // Beyond the side on which `p` lies farthest outside, but never straight back.
+            let sides = [a.perp_dot(b), b.perp_dot(c), c.perp_dot(a)];
+            let mut worst = None;
+            for k in 0..3 {
+                if sides[k] < 0.0 && beyond[k] != came_from && worst.is_none_or(|w: usize| sides[k] < sides[w]) {
+                    worst = Some(k);
+                }
+            }
+            let Some(k) = worst else { return sides.iter().all(|&side| side >= 0.0).then_some(at) };
+            (came_from, at) = (at, beyond[k]);
+            if at == NONE {
+                return None;
+            }
+        }
+        None
+    }
+}
+
+/// The triangles beyond each triangle's sides. A side of three or more is a boundary.
+fn beyond(nodes: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut sides: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * nodes.len());
+    for (t, n) in (0..).zip(nodes) {
+        sides.extend((0..3).map(|k| (n[k].min(n[(k + 1) % 3]), n[k].max(n[(k + 1) % 3]), 3 * t + k as u32)));
+    }
+    sides.sort_unstable();
+    let mut beyond = vec![[NONE; 3]; nodes.len()];
+    for pair in sides.chunk_by(|one, other| (one.0, one.1) == (other.0, other.1)) {
+        if let &[(_, _, one), (_, _, other)] = pair {
+            beyond[one as usize / 3][one as usize % 3] = other / 3;
+            beyond[other as usize / 3][other as usize % 3] = one / 3;
+        }
+    }
+    beyond
 }
 
 /// Adds the boxes of the strips across its longest side that a triangle is cut into, the more the less of its box it fills.
@@ -157,7 +216,7 @@ mod tests {
     #[test]
     fn slanting_needles_are_found_though_each_stands_in_several_boxes() {
         let table = needles(40);
-        assert!(table.corners.len() > 4 * 160, "needles stand in several boxes: {}", table.corners.len());
+        assert!(table.triangle.len() > 4 * 160, "needles stand in several boxes: {}", table.triangle.len());
         for k in 0..3000 {
             let p = DVec2::new((f64::from(k) * 0.618_034).fract(), f64::from(k) / 2999.0) * 1.2 - DVec2::splat(0.1);
             let m = table.metric(p).unwrap();
