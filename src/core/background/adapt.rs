@@ -25,6 +25,8 @@ const SHORT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 const SAMPLED: usize = 20_000;
 /// Cycles of collapse, split, swap and smooth after the refinement.
 const CYCLES: usize = 4;
+/// Where a pass of the refinement makes fewer nodes than one in so many elements, the next looks at their surroundings only.
+const FEW: usize = 16;
 /// A collapse or a split must not make a triangle worse than this, or than the worst of those it replaces.
 const LEAST_QUALITY: f64 = 0.4;
 /// A division must not make a triangle that is worse than this, unless it is not much worse than the one that it divides:
@@ -94,9 +96,6 @@ impl Adapter<'_> {
             self.split_long(cycle == 0)?;
             self.swap_where_better();
             self.smooth()?;
-            if cycle == 0 {
-                self.mesh = self.mesh.reordered();
-            }
         }
         self.swap_where_better();
         self.smooth()?;
@@ -110,30 +109,49 @@ impl Adapter<'_> {
     /// Delaunay triangulation of the metric at once.
     fn refine(&mut self, watch: &mut dyn Watch) -> Result<(), Fault> {
         let mut ordered = self.mesh.element_count();
+        let mut found = self.long_edges(self.mesh.edges(), ordered < SAMPLED)?;
         loop {
-            // New nodes are strewn over memory; put in order as the mesh grows, all passes stay near linear.
-            if self.mesh.element_count() > 2 * ordered {
-                self.mesh = self.mesh.reordered();
-                ordered = self.mesh.element_count();
+            let elements = self.mesh.element_count();
+            let expected = found.iter().map(|f| f.length as u64).sum::<u64>() * 2 + elements as u64;
+            watch.tell(Stage::Adapt, elements as u64, expected);
+            let mut made = Vec::new();
+            for f in &found {
+                made.extend(self.divide(*f, 0.5)?);
             }
-            let found = self.long_edges(self.mesh.element_count() < SAMPLED)?;
-            let expected = found.iter().map(|f| f.length as u64).sum::<u64>() * 2 + self.mesh.element_count() as u64;
-            watch.tell(Stage::Adapt, self.mesh.element_count() as u64, expected);
-            let before = self.done.divisions;
-            for f in found {
-                self.divide(f, 0.5)?;
-            }
-            if self.done.divisions == before {
+            if made.is_empty() {
                 return Ok(());
             }
+            let sampled = self.mesh.element_count() < SAMPLED;
+            found = if self.mesh.element_count() > 2 * ordered {
+                // New nodes are strewn over memory; put in order as the mesh grows, all passes stay near linear.
+                self.mesh = self.mesh.reordered();
+                ordered = self.mesh.element_count();
+                self.long_edges(self.mesh.edges(), sampled)?
+            } else if made.len() > elements / FEW {
+                self.long_edges(self.mesh.edges(), sampled)?
+            } else {
+                self.long_edges(self.edges_after(&found, &made).into_iter(), sampled)?
+            };
         }
     }
 
-    /// Inner edges longer than unit, the longest first.
-    fn long_edges(&self, sampled: bool) -> Result<Vec<Found>, Fault> {
+    /// The edges that can be long after a pass: those that were and were left, and those around the new nodes (every
+    /// element that the pass changed has one), in the order of their ids.
+    fn edges_after(&self, found: &[Found], made: &[NodeId]) -> Vec<HalfEdgeId> {
+        let mesh = &self.mesh;
+        let around = made.iter().flat_map(|&m| mesh.fan(m)).flat_map(|h| [h, mesh.next(h), mesh.previous(h)]);
+        let left = found.iter().filter(|f| self.still_there(**f)).map(|f| f.h);
+        let mut edges: Vec<_> = around.chain(left).map(|h| mesh.twin(h).map_or(h, |t| h.min(t))).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// Those of the edges that lie inside and are longer than unit, the longest first.
+    fn long_edges(&self, edges: impl Iterator<Item = HalfEdgeId>, sampled: bool) -> Result<Vec<Found>, Fault> {
         let mesh = &self.mesh;
         let mut found = Vec::new();
-        for h in mesh.edges() {
+        for h in edges {
             let (from, to) = (mesh.origin(h), mesh.target(h));
             // The length is no more than the greater one of those at the two ends, which nearly always is enough to know.
             let d = mesh.uv(to) - mesh.uv(from);
@@ -162,21 +180,21 @@ impl Adapter<'_> {
         Ok((end(from) + 4.0 * middle.norm2(d).sqrt() + end(to)) / 6.0)
     }
 
-    /// Divides an edge that still is as it was found, unless the new node would come closer than `least` to the
+    /// Divides an edge that still is as it was found and gives the new node, unless the new node would come closer than `least` to the
     /// opposite ones, or make a poor triangle poorer: beside a side of the boundary that is much too long, and may not be
     /// divided, there is a long edge for ever.
-    fn divide(&mut self, f: Found, least: f64) -> Result<(), Fault> {
+    fn divide(&mut self, f: Found, least: f64) -> Result<Option<NodeId>, Fault> {
         let mesh = &self.mesh;
         if !self.still_there(f) {
-            return Ok(());
+            return Ok(None);
         }
-        let Some(twin) = mesh.twin(f.h) else { return Ok(()) };
+        let Some(twin) = mesh.twin(f.h) else { return Ok(None) };
         let (c, d) = (mesh.origin(mesh.previous(f.h)), mesh.origin(mesh.previous(twin)));
         let place = self.middle(f.from, f.to);
         let metric = self.metric(place)?;
         let near = |n: NodeId| length_over(&metric, mesh.metric_ref(n), mesh.uv(n) - place) < least;
         if f.length < 2.0 && (near(c) || near(d)) {
-            return Ok(());
+            return Ok(None);
         }
         let fit = |h_ab: HalfEdgeId| {
             let (a, b, c) = (mesh.origin(h_ab), mesh.target(h_ab), mesh.origin(mesh.previous(h_ab)));
@@ -187,18 +205,19 @@ impl Adapter<'_> {
             after >= POOR || after >= NOT_MUCH_WORSE * mesh.triangle_quality([a, b, c])
         };
         if !(fit(f.h) && fit(twin)) {
-            return Ok(());
+            return Ok(None);
         }
         if mesh.element_count() + 2 > self.most_elements {
             return Err(Fault::new(format!("The metric asks for more than {} triangles", self.most_elements))
                 .at(format!("near ({}, {}), where the smallest size is {}", place.x, place.y, metric.min_size()))
                 .remedy("Make the sizes larger there, or allow more by max_quads"));
         }
-        if let Ok(m) = self.mesh.divide(f.h, place, metric) {
+        let made = self.mesh.divide(f.h, place, metric).ok();
+        if let Some(m) = made {
             self.done.divisions += 1;
             self.make_delaunay(m);
         }
-        Ok(())
+        Ok(made)
     }
 
     /// The place that halves the metric length of an edge when the size changes linearly along it.
@@ -310,7 +329,7 @@ impl Adapter<'_> {
 
     /// Divides edges longer than unit again, where that makes no edge much too short.
     fn split_long(&mut self, sampled: bool) -> Result<(), Fault> {
-        for f in self.long_edges(sampled)? {
+        for f in self.long_edges(self.mesh.edges(), sampled)? {
             self.divide(f, SHORT)?;
         }
         Ok(())

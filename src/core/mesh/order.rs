@@ -41,21 +41,41 @@ pub fn grouped<T: Copy + Default>(groups: usize, things: &[T], group: impl Fn(&T
     sorted
 }
 
-/// Distance along the Hilbert curve of order `bits` at which the cell (x, y) comes.
-fn hilbert_distance(bits: u32, mut x: u32, mut y: u32) -> u64 {
-    let mut distance = 0;
-    for level in (0..bits).rev() {
-        let side = 1_u32 << level;
-        let (right, up) = (u32::from(x & side != 0), u32::from(y & side != 0));
-        distance = distance << 2 | u64::from((3 * right) ^ up);
-        // Turn the quadrant so that the curve inside it begins where the last one ended.
-        if up == 0 {
-            if right == 1 {
-                x = !x & (2 * side - 1);
-                y = !y & (2 * side - 1);
-            }
-            std::mem::swap(&mut x, &mut y);
+/// The Hilbert curve as four ways to run through a square: for a way (0: from the lower left corner to the lower right, 1:
+/// its mirror at the diagonal, 2: 0 turned by 180 degrees, 3: 1 turned by 180 degrees) and a quadrant (`2 * right + up`), the
+/// place of the quadrant on the way (two lower bits) and the way through it (upper bits). A table has no branches to guess.
+const HILBERT: [[u8; 4]; 4] = {
+    let mut table = [[0; 4]; 4];
+    let mut way = 0;
+    while way < 4 {
+        let mut quadrant = 0;
+        while quadrant < 4 {
+            // Turned and mirrored to way 0, which takes lower left, upper left, upper right, lower right.
+            let turned = if way >= 2 { 3 - quadrant } else { quadrant };
+            let (right, up) = if way % 2 == 1 { (turned & 1, turned >> 1) } else { (turned >> 1, turned & 1) };
+            let place = (3 * right) ^ up;
+            // Way 0 enters the lower left quadrant by its mirror, and the lower right one by that turned.
+            let through = match (right, up) {
+                (0, 0) => way ^ 1,
+                (1, 0) => way ^ 3,
+                _ => way,
+            };
+            table[way][quadrant] = (place | through << 2) as u8;
+            quadrant += 1;
         }
+        way += 1;
+    }
+    table
+};
+
+/// Distance along the Hilbert curve of order `bits` at which the cell (x, y) comes.
+fn hilbert_distance(bits: u32, x: u32, y: u32) -> u64 {
+    let (mut distance, mut way) = (0, 0);
+    for level in (0..bits).rev() {
+        let quadrant = (x >> level & 1) << 1 | (y >> level & 1);
+        let next = HILBERT[way][quadrant as usize];
+        distance = distance << 2 | u64::from(next & 3);
+        way = usize::from(next >> 2);
     }
     distance
 }
