@@ -195,6 +195,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("clean_up_collapse", cleaned_up.collapses),
         ("clean_up_doublet", cleaned_up.doublets),
         ("clean_up_opening", cleaned_up.openings),
+        ("clean_up_pair", cleaned_up.pairs),
         ("clean_up_refused", cleaned_up.refused),
         ("clean_up_rotation", cleaned_up.rotations),
         ("last_resort_division", resort.divided),

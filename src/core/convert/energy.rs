@@ -18,11 +18,12 @@ const LENGTH_WEIGHT: f64 = 0.25;
 /// A node does not move farther than this in one step, in its metric.
 const LONGEST_MOVE: f64 = 0.5;
 
-/// Energy of the corner at p between the sides to `a` and to `b` (anticlockwise).
+/// Energy of the corner at p between the sides to `a` and to `b` (anticlockwise), by the metric at p and the root of its
+/// determinant.
 #[inline]
-fn corner(m: &Metric2, p: DVec2, a: DVec2, b: DVec2) -> f64 {
+fn corner(m: &Metric2, root: f64, p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let (a, b) = (a - p, b - p);
-    let x = m.det().sqrt() * a.perp_dot(b);
+    let x = root * a.perp_dot(b);
     if x <= 0.0 {
         return f64::INFINITY;
     }
@@ -37,46 +38,57 @@ fn length(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
     LENGTH_WEIGHT * (a + 1.0 / a + b + 1.0 / b - 4.0)
 }
 
-/// Energy of the corners of a quadrilateral.
-pub fn of_element(mesh: &Mesh, e: ElementId) -> f64 {
+/// What the clean-up judges a quadrilateral by: energy of its corners (1/sin^2 - 1, which leaves the lengths of a corner's
+/// sides to the next term) and half that of its sides' lengths (the other half is the neighbour's), infinite where it is not
+/// strictly convex; and its quality, as `Mesh::quality`.
+pub fn judge(mesh: &Mesh, e: ElementId) -> (f64, f64) {
     let n = mesh.quad(e);
     let p = n.map(|n| mesh.uv(n));
-    (0..4).map(|k| corner(mesh.metric_ref(n[k]), p[k], p[(k + 1) % 4], p[(k + 3) % 4])).sum()
+    let (mut energy, mut quality) = (0.0, f64::INFINITY);
+    for k in 0..4 {
+        let m = mesh.metric_ref(n[k]);
+        let (next, previous) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
+        let (a, b, x) = (m.norm2(next), m.norm2(previous), m.det().sqrt() * next.perp_dot(previous));
+        energy += if x > 0.0 { a * b / (x * x) - 1.0 } else { f64::INFINITY };
+        energy += 0.5 * LENGTH_WEIGHT * (a + 1.0 / a + b + 1.0 / b - 4.0);
+        quality = quality.min(2.0 * x / (a + b));
+    }
+    (energy, quality)
 }
 
-/// Energy of the length of the edge between two nodes.
-pub fn of_edge(mesh: &Mesh, a: NodeId, b: NodeId) -> f64 {
-    length(mesh.metric_ref(a), mesh.metric_ref(b), mesh.uv(b) - mesh.uv(a))
-}
+/// A corner that a star holds: its place, its metric and the root of the metric's determinant.
+type Corner<'a> = (DVec2, &'a Metric2, f64);
 
 /// What surrounds a free node: for each quadrilateral (node, b, c, d) its other corners.
 struct Star<'a> {
-    quads: SmallVec<[[(DVec2, &'a Metric2); 3]; 8]>,
+    quads: SmallVec<[(Corner<'a>, DVec2, Corner<'a>); 6]>,
 }
 
 impl<'a> Star<'a> {
     /// The star of a free node; none where an element around it is no quadrilateral.
     fn of(mesh: &'a Mesh, node: NodeId) -> Option<Star<'a>> {
-        let mut quads = SmallVec::new();
+        let mut quads: SmallVec<[(Corner<'a>, DVec2, Corner<'a>); 6]> = SmallVec::new();
+        let at = |n: NodeId| (mesh.uv(n), mesh.metric_ref(n), mesh.metric_ref(n).det().sqrt());
         for h in mesh.fan(node) {
             let e = h.element();
             if !mesh.is_quad(e) {
                 return None;
             }
-            let k = h.corner();
-            quads.push([1, 2, 3].map(|i| {
-                let n = mesh.origin(e.half_edge((k + i) % 4));
-                (mesh.uv(n), mesh.metric_ref(n))
-            }));
+            let [b, c, d] = [1, 2, 3].map(|i| mesh.origin(e.half_edge((h.corner() + i) % 4)));
+            // Neighbours in the fan share a side.
+            let b = quads.last().map_or_else(|| at(b), |last| last.2);
+            quads.push((b, mesh.uv(c), at(d)));
         }
         Some(Star { quads })
     }
 
     /// Energy of everything that depends on the node, with the node at `p`.
     fn energy(&self, p: DVec2, m: &Metric2) -> f64 {
+        let root = m.det().sqrt();
         let mut sum = 0.0;
-        for [(b, m_b), (c, _), (d, m_d)] in &self.quads {
-            sum += corner(m, p, *b, *d) + corner(m_b, *b, *c, p) + corner(m_d, *d, p, *c) + length(m, m_b, *b - p);
+        for ((b, m_b, root_b), c, (d, m_d, root_d)) in &self.quads {
+            sum += corner(m, root, p, *b, *d) + corner(m_b, *root_b, *b, *c, p) + corner(m_d, *root_d, *d, p, *c);
+            sum += length(m, m_b, *b - p);
         }
         sum
     }
@@ -85,33 +97,33 @@ impl<'a> Star<'a> {
     fn gradient(&self, p: DVec2, m: &Metric2) -> DVec2 {
         let root = m.det().sqrt();
         let mut sum = DVec2::ZERO;
-        for [(b, m_b), (c, _), (d, m_d)] in &self.quads {
+        for ((b, m_b, root_b), c, (d, m_d, root_d)) in &self.quads {
             // At the node: both sides turn with it.
             let (to_b, to_d) = (*b - p, *d - p);
-            let (numerator, x) = (m.norm2(to_b) + m.norm2(to_d), root * to_b.perp_dot(to_d));
-            sum += square_of_ratio(numerator, x, m.times(to_b + to_d) * -2.0, perp(*d - *b) * root);
+            let m_to_b = m.times(to_b);
+            let (a_b, a_d) = (to_b.dot(m_to_b), m.norm2(to_d));
+            let x = root * to_b.perp_dot(to_d);
+            sum += square_of_ratio(a_b + a_d, x, (m_to_b + m.times(to_d)) * -2.0, perp(*d - *b) * root);
             // At b, between c and the node; at d, between the node and c: one side turns.
-            let root_b = m_b.det().sqrt();
             let (to_c, to_p) = (*c - *b, p - *b);
-            let numerator = m_b.norm2(to_c) + m_b.norm2(to_p);
-            sum += square_of_ratio(numerator, root_b * to_c.perp_dot(to_p), m_b.times(to_p) * 2.0, perp(to_c) * root_b);
-            let root_d = m_d.det().sqrt();
+            let m_to_p = m_b.times(to_p);
+            let a_p = to_p.dot(m_to_p);
+            let x = root_b * to_c.perp_dot(to_p);
+            sum += square_of_ratio(m_b.norm2(to_c) + a_p, x, m_to_p * 2.0, perp(to_c) * *root_b);
+            // The edge to b, in the metrics of both ends.
+            sum += m_to_b * (-2.0 * LENGTH_WEIGHT * (1.0 - 1.0 / (a_b * a_b)));
+            sum += m_to_p * (2.0 * LENGTH_WEIGHT * (1.0 - 1.0 / (a_p * a_p)));
             let (to_p, to_c) = (p - *d, *c - *d);
-            let numerator = m_d.norm2(to_p) + m_d.norm2(to_c);
-            sum +=
-                square_of_ratio(numerator, root_d * to_p.perp_dot(to_c), m_d.times(to_p) * 2.0, -perp(to_c) * root_d);
-            // The edge to b.
-            for m in [m, *m_b] {
-                let a = m.norm2(to_b);
-                sum += m.times(to_b) * (-2.0 * LENGTH_WEIGHT * (1.0 - 1.0 / (a * a)));
-            }
+            let m_to_p = m_d.times(to_p);
+            let x = root_d * to_p.perp_dot(to_c);
+            sum += square_of_ratio(to_p.dot(m_to_p) + m_d.norm2(to_c), x, m_to_p * 2.0, -perp(to_c) * *root_d);
         }
         sum
     }
 }
 
 /// Gradient of (n / 2x)^2 from n, x and their gradients.
-#[inline]
+#[inline(always)]
 fn square_of_ratio(n: f64, x: f64, gradient_n: DVec2, gradient_x: DVec2) -> DVec2 {
     let r = n / (2.0 * x);
     (gradient_n - gradient_x * (2.0 * r)) * (r / x)
@@ -142,6 +154,10 @@ pub fn relax(mesh: &mut Mesh, node: NodeId, source: &dyn MetricSource) -> f64 {
     let e = [DVec2::new(1.0 / l11, 0.0), DVec2::new(-l21 / (l11 * l22), 1.0 / l22)];
     let along = |g: DVec2| DVec2::new(g.dot(e[0]), g.dot(e[1]));
     let g = along(star.gradient(p, &m));
+    // The second derivative is seldom below 10: the step would be below the thousandth that is worth the journal's memory.
+    if g.length_squared() < 1e-4 {
+        return 0.0;
+    }
     const DELTA: f64 = 1e-4;
     let row = |k: usize| (along(star.gradient(p + e[k] * DELTA, &m)) - g) / DELTA;
     let (h0, h1) = (row(0), row(1));
@@ -189,7 +205,8 @@ mod tests {
         let (m, around) =
             (metric(2.0, 0.3, 1.0), [metric(1.5, -0.2, 0.8), metric(1.0, 0.0, 1.0), metric(2.2, 0.5, 1.3)]);
         let corners = [DVec2::new(1.0, 0.1), DVec2::new(1.1, 1.0), DVec2::new(0.0, 0.9)];
-        let quad = std::array::from_fn(|k| (corners[k], &around[k]));
+        let at = |k: usize| (corners[k], &around[k], around[k].det().sqrt());
+        let quad = (at(0), corners[1], at(2));
         let star = Star { quads: SmallVec::from_iter([quad]) };
         let p = DVec2::new(0.1, -0.05);
         let gradient = star.gradient(p, &m);
@@ -203,7 +220,8 @@ mod tests {
     fn the_unit_square_of_the_metric_has_no_energy() {
         let m = Metric2 { uu: 4.0, uv: 0.0, vv: 25.0 };
         let p = [DVec2::ZERO, DVec2::new(0.5, 0.0), DVec2::new(0.0, 0.2)];
-        assert!(corner(&m, p[0], p[1], p[2]).abs() < 1e-12 && length(&m, &m, p[1]).abs() < 1e-12);
-        assert_eq!(corner(&m, p[0], p[2], p[1]), f64::INFINITY);
+        let root = m.det().sqrt();
+        assert!(corner(&m, root, p[0], p[1], p[2]).abs() < 1e-12 && length(&m, &m, p[1]).abs() < 1e-12);
+        assert_eq!(corner(&m, root, p[0], p[2], p[1]), f64::INFINITY);
     }
 }

@@ -132,9 +132,9 @@ impl Converter<'_> {
         let (at, other) = (self.base_node(base, side), self.base_node(base, side.other()));
         let (p, here) = (mesh.uv(at), mesh.uv(node));
         let Some(unit) = self.unit_place(base, side) else { return };
-        // The top goes half the way from the base's length to unit length: rows that run into larger or smaller sizes
-        // would keep the number of their columns for ever, and drift away from the metric.
-        let widen = (1.0 / base.length.sqrt()).clamp(0.5, 2.0);
+        // The top is to have unit length, not the base's: rows that run into larger or smaller sizes would keep the number of
+        // their columns for ever, and drift away from the metric.
+        let widen = (1.0 / base.length).clamp(0.5, 2.0);
         let parallel = mesh.uv(other_top) + (p - mesh.uv(other)) * widen;
         let there = 0.5 * (unit + parallel);
         let old = mesh.quality(element);

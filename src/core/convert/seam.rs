@@ -12,11 +12,10 @@ use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 const MOST_UNLIKE: f64 = 2.5;
 /// With this many dead elements at the node, angles up to `WIDE` are seamed too (Levik; spec 1).
 const CROWDED: usize = 5;
-const WIDE: f64 = std::f64::consts::FRAC_PI_4;
-/// Segments that are shorter than this on average, in the metric, are seamed up to `SHORT_ANGLE`: where sizes grow ahead of
-/// the front, columns must end, and this is where they do (docs/experiments.md).
+/// So they are where the segments are shorter than this on average, in the metric: where sizes grow ahead of the front,
+/// columns must end, and this is where they do (docs/experiments.md).
 const SHORT: f64 = 0.85;
-const SHORT_ANGLE: f64 = std::f64::consts::FRAC_PI_3;
+const WIDE: f64 = std::f64::consts::FRAC_PI_4;
 
 impl Converter<'_> {
     /// Seams at a node of the front where the frontal angle is small enough and the guards of spec 2.8 hold. All of it
@@ -32,9 +31,9 @@ impl Converter<'_> {
             let bound = self.parameters.theta_seam;
             let before = self.mesh.front_before(h);
             let short = 0.5 * (self.mesh.length(h) + self.mesh.length(before));
-            // The wider angles are ours: the paper's own reading has neither them nor placement.
-            let wider = |applies: bool, wide: f64| if applies && self.parameters.placement { wide } else { 0.0 };
-            if angle > bound.max(wider(crowded, WIDE)).max(wider(short < SHORT, SHORT_ANGLE)) {
+            // The wider angle is ours: the paper's own reading has neither it nor placement.
+            let wide = self.parameters.placement && (crowded || short < SHORT);
+            if angle > if wide { bound.max(WIDE) } else { bound } {
                 continue;
             }
             let (b, c) = (self.mesh.target(h), self.mesh.origin(before));

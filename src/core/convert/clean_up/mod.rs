@@ -1,0 +1,291 @@
+//! Clean-up of the structure around irregular nodes (spec 10, 2.11): diamond collapse, edge rotation, vertex opening and
+//! the removal of doublets, each tried as a transaction and kept when the energy of all that it moves falls.
+//!
+//! A worklist, not sweeps: the nodes whose valence is not ideal, and again the neighbours of whatever changed. Single
+//! changes come first, everywhere. Most irregular nodes that are then left are ends of columns that no single change moves
+//! downhill; pairs of changes do, and are tried at the worst nodes first, as far as a budget of trials reaches.
+
+mod candidate;
+mod region;
+
+use std::collections::VecDeque;
+
+use smallvec::SmallVec;
+
+use super::energy;
+use super::settle::{Nodes, settle, worst_quality};
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::NodeId;
+use crate::core::metric::field::MetricSource;
+use candidate::{Candidate, Ranked, Valences};
+use region::{Judged, Region};
+
+/// A kept change must leave every element around at least this quality, or not worse than the worst before.
+const LEAST_QUALITY: f64 = 0.2;
+/// The energy must fall by this much: differences below it are noise of the relaxation.
+const LEAST_GAIN: f64 = 1e-2;
+/// Candidates tried at one node, best valence gain first.
+const MOST_TRIALS: usize = 16;
+/// An element below this quality is poor: around it the structure may become worse where the mesh becomes better.
+const POOR: f64 = 0.4;
+/// A first change of a pair may raise the sum of squared excesses by this much, and the energy by no more than `MOST_RISE`.
+const MOST_WORSE: i32 = 2;
+const MOST_RISE: f64 = 4.0;
+/// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are.
+const HOPELESS: f64 = 6.0;
+/// Second changes tried after each first one.
+const SECOND_TRIALS: usize = 4;
+/// Trials of pairs: so many for every mesh, and one more for so many elements. Small meshes are searched to the end, and the
+/// time of large ones stays linear.
+const PAIR_TRIALS: usize = 20_000;
+const ELEMENTS_A_PAIR_TRIAL: usize = 20;
+
+/// What the clean-up did, by operation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CleanedUp {
+    /// Diamonds collapsed.
+    pub collapses: usize,
+    /// Edges rotated.
+    pub rotations: usize,
+    /// Vertices opened.
+    pub openings: usize,
+    /// Doublets removed.
+    pub doublets: usize,
+    /// Changes that were kept only together with a second one.
+    pub pairs: usize,
+    /// Trials taken back.
+    pub refused: usize,
+}
+
+/// Cleans up an all-quadrilateral mesh until no candidate lowers the energy, within a budget linear in its size.
+pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> CleanedUp {
+    let mut work = CleanUp::new(mesh, source);
+    work.enqueue_all(mesh);
+    // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
+    let mut looks = 20 * mesh.node_count() + 1000;
+    while let Some(node) = work.next(mesh).filter(|_| looks > 0) {
+        looks -= 1;
+        let change = work.single(mesh, node);
+        work.settle_accounts(mesh, change, keep_journal);
+    }
+    work.enqueue_worst_first(mesh);
+    work.trials_left = PAIR_TRIALS + mesh.element_count() / ELEMENTS_A_PAIR_TRIAL;
+    while let Some(node) = work.next(mesh).filter(|_| work.trials_left > 0) {
+        let change = work.single(mesh, node).or_else(|| work.pair(mesh, node));
+        work.settle_accounts(mesh, change, keep_journal);
+    }
+    work.done
+}
+
+/// The nodes around which a kept change has altered the mesh.
+type Touched = Nodes;
+
+/// What a trial that stands in the mesh has come to.
+struct Trial {
+    /// Change of the energy.
+    energy: f64,
+    /// The worst quality before and after.
+    quality: [f64; 2],
+    touched: Touched,
+}
+
+impl Trial {
+    /// The trial that this one and a second after it are together.
+    fn and(&self, second: Trial, mesh: &Mesh) -> Trial {
+        let mut touched = self.touched.clone();
+        touched.extend(second.touched.iter().copied().filter(|n| !self.touched.contains(n)));
+        touched.retain(|n| mesh.has_node(*n));
+        // What the second found was the first one's doing, and part of that may lie outside of the second's reach.
+        let after = second.quality[1].min(worst_quality(mesh, &touched));
+        Trial { energy: self.energy + second.energy, quality: [self.quality[0], after], touched }
+    }
+
+    fn is_good(&self) -> bool {
+        self.energy < -LEAST_GAIN && self.quality[1] >= self.quality[0].min(LEAST_QUALITY)
+    }
+}
+
+struct CleanUp<'a> {
+    source: &'a dyn MetricSource,
+    valences: Valences,
+    queue: VecDeque<NodeId>,
+    queued: Vec<bool>,
+    trials_left: usize,
+    /// Kept for their memory.
+    before: Region,
+    after: Region,
+    done: CleanedUp,
+}
+
+impl<'a> CleanUp<'a> {
+    fn new(mesh: &Mesh, source: &'a dyn MetricSource) -> Self {
+        CleanUp {
+            source,
+            valences: Valences::of(mesh),
+            queue: VecDeque::new(),
+            queued: Vec::new(),
+            trials_left: usize::MAX,
+            before: Region::default(),
+            after: Region::default(),
+            done: CleanedUp::default(),
+        }
+    }
+
+    // ---- the worklist ----
+
+    fn enqueue(&mut self, mesh: &Mesh, node: NodeId) {
+        if self.queued.len() <= node.index() {
+            self.queued.resize(mesh.node_slots(), false);
+        }
+        if !self.queued[node.index()] && self.valences.excess(mesh, node) != 0 {
+            self.queued[node.index()] = true;
+            self.queue.push_back(node);
+        }
+    }
+
+    fn enqueue_all(&mut self, mesh: &Mesh) {
+        mesh.nodes().for_each(|node| self.enqueue(mesh, node));
+    }
+
+    /// All irregular nodes, those with the greatest energy around them first.
+    fn enqueue_worst_first(&mut self, mesh: &Mesh) {
+        let mut nodes: Vec<(f64, NodeId)> = mesh
+            .nodes()
+            .filter(|&n| self.valences.excess(mesh, n) != 0)
+            .map(|n| (mesh.fan(n).map(|h| energy::judge(mesh, h.element()).0).sum::<f64>(), n))
+            .collect();
+        nodes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        nodes.into_iter().for_each(|(_, node)| self.enqueue(mesh, node));
+    }
+
+    /// The next irregular node that is still there.
+    fn next(&mut self, mesh: &Mesh) -> Option<NodeId> {
+        loop {
+            let node = self.queue.pop_front()?;
+            self.queued[node.index()] = false;
+            if mesh.has_node(node) {
+                return Some(node);
+            }
+        }
+    }
+
+    /// After a look at a node: what a kept change has touched is to be looked at again.
+    fn settle_accounts(&mut self, mesh: &mut Mesh, change: Option<Touched>, keep_journal: bool) {
+        for node in change.into_iter().flatten() {
+            for n in mesh.neighbours(node).collect::<Nodes>() {
+                self.enqueue(mesh, n);
+            }
+            self.enqueue(mesh, node);
+        }
+        if !keep_journal {
+            mesh.commit();
+        }
+    }
+
+    // ---- changes ----
+
+    /// Tries the candidates around one irregular node, best valence gain first, and keeps the first that is good.
+    fn single(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Touched> {
+        let worst = mesh.fan(node).map(|h| mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
+        for (_, candidate) in
+            self.valences.candidates(mesh, node, if worst < POOR { MOST_WORSE } else { 0 }, MOST_TRIALS)
+        {
+            let mark = mesh.mark();
+            if let Some(trial) = self.attempt(mesh, candidate, HOPELESS).filter(Trial::is_good) {
+                self.count(candidate);
+                return Some(trial.touched);
+            }
+            self.done.refused += 1;
+            mesh.take_back(mark);
+        }
+        None
+    }
+
+    /// Tries pairs of changes around one irregular node: first changes that cost little energy, cheapest first, each with
+    /// the second changes that make up for what it did to the valences.
+    fn pair(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Touched> {
+        let mut first: SmallVec<[(f64, Ranked); MOST_TRIALS]> = SmallVec::new();
+        for ranked in self.valences.candidates(mesh, node, MOST_WORSE, MOST_TRIALS) {
+            let mark = mesh.mark();
+            if let Some(trial) = self.attempt(mesh, ranked.1, MOST_RISE) {
+                if trial.is_good() {
+                    self.count(ranked.1);
+                    return Some(trial.touched);
+                }
+                first.push((trial.energy, ranked));
+            }
+            mesh.take_back(mark);
+        }
+        first.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (_, (gain, candidate)) in first {
+            let mark = mesh.mark();
+            if let Some(trial) = self.attempt(mesh, candidate, MOST_RISE)
+                && let Some((second, both)) = self.second(mesh, gain, &trial)
+            {
+                self.count(candidate);
+                self.count(second);
+                self.done.pairs += 1;
+                return Some(both.touched);
+            }
+            self.done.refused += 1;
+            mesh.take_back(mark);
+        }
+        None
+    }
+
+    /// A second change after a first one with this valence gain, such that both together are good.
+    fn second(&mut self, mesh: &mut Mesh, gain: i32, first: &Trial) -> Option<(Candidate, Trial)> {
+        let mut found: SmallVec<[Ranked; 32]> = SmallVec::new();
+        for &node in first.touched.iter().filter(|&&n| self.valences.excess(mesh, n) != 0) {
+            found.extend(self.valences.candidates(mesh, node, -gain, SECOND_TRIALS));
+        }
+        found.sort_unstable();
+        found.dedup();
+        found.truncate(SECOND_TRIALS);
+        for (_, candidate) in found {
+            let mark = mesh.mark();
+            if let Some(second) = self.attempt(mesh, candidate, HOPELESS - first.energy) {
+                let both = first.and(second, mesh);
+                if both.is_good() {
+                    return Some((candidate, both));
+                }
+            }
+            self.done.refused += 1;
+            mesh.take_back(mark);
+        }
+        None
+    }
+
+    /// Does a candidate and relaxes the nodes around. None where it cannot be done, or the energy has risen beyond `most`
+    /// when its own nodes are settled; whatever it did then is to be taken back.
+    fn attempt(&mut self, mesh: &mut Mesh, candidate: Candidate, most: f64) -> Option<Trial> {
+        self.trials_left = self.trials_left.saturating_sub(1);
+        let mut core = candidate.core(mesh);
+        self.before.gather(mesh, &core);
+        let before = self.before.judge(mesh, &self.valences);
+        candidate.apply(mesh, self.source, &mut core).ok()?;
+        if !settle(mesh, self.source, &core) {
+            return None;
+        }
+        self.after.gather(mesh, &core);
+        self.after.add_those_left_of(mesh, &self.before);
+        let rise = |after: Judged| after.energy - before.energy;
+        if rise(self.after.judge(mesh, &self.valences)) > most {
+            return None;
+        }
+        for &node in &self.after.nodes {
+            energy::relax(mesh, node, self.source);
+        }
+        let after = self.after.judge(mesh, &self.valences);
+        Some(Trial { energy: rise(after), quality: [before.quality, after.quality], touched: core })
+    }
+
+    fn count(&mut self, candidate: Candidate) {
+        match candidate {
+            Candidate::Doublet(_) => self.done.doublets += 1,
+            Candidate::Collapse(_) => self.done.collapses += 1,
+            Candidate::Rotate(..) => self.done.rotations += 1,
+            Candidate::Open(..) => self.done.openings += 1,
+        }
+    }
+}
