@@ -169,6 +169,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         rolled_back,
         deferred,
         seamed,
+        transitions,
         split,
         enhanced,
         removed,
@@ -186,6 +187,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("front_seam", seamed),
         ("front_split", split),
         ("front_step", steps),
+        ("front_transition_seam", transitions),
     ];
     let counts = [
         ("background_collapse", collapses),

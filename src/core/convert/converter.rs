@@ -51,8 +51,10 @@ pub struct Counts {
     pub deferred: u64,
     /// Quadrilaterals over small loops that were closed.
     pub closed: u64,
-    /// Seams.
+    /// Seams, those with a transition included.
     pub seamed: u64,
+    /// Of those, how many with a transition.
+    pub transitions: u64,
     /// Front splits.
     pub split: u64,
     /// Swaps of the enhancement.
@@ -221,9 +223,10 @@ impl<'a> Converter<'a> {
             Phase::RecoverTop { base, attempt, tops, swaps } => self.step_top(base, attempt, tops, swaps),
             Phase::Form { base, attempt, tops } => self.step_form(base, attempt, tops),
             Phase::Retry { base, attempt } => self.retry(base, attempt),
-            Phase::Enhance { element, mark, edges, budget } => self.step_enhance(element, mark, edges, budget),
-            Phase::Smooth { element, mark } => self.step_smooth(element, mark),
-            Phase::Seam { nodes } => self.step_seam(nodes)?,
+            Phase::Enhance { element, mark, edges, budget } => self.step_enhance(element, mark, edges, budget)?,
+            Phase::Smooth { element, mark } => self.step_smooth(element, mark)?,
+            Phase::Seam { element, nodes } => self.step_seam(element, nodes)?,
+            Phase::Split { element } => self.step_split(element)?,
             Phase::Close { waiting, left } => self.step_close(waiting, left)?,
             Phase::PostProcess => {
                 self.finished = finish(&mut self.mesh, self.source, self.history.is_some());
@@ -376,8 +379,13 @@ impl<'a> Converter<'a> {
                 let right_replaced = attempt.tops[1].is_some() && attempt.tops[0].is_none();
                 self.counts.right_replaced += u64::from(right_replaced);
                 self.counts.rescued += u64::from(attempt.tops[0].is_some());
-                let edges = if self.parameters.enhancement { self.edges_around(element) } else { SmallVec::new() };
-                (Phase::Enhance { element, mark: attempt.mark, edges, budget: ENHANCEMENTS }, event)
+                let mark = attempt.mark;
+                let next = if self.parameters.enhancement {
+                    Phase::Enhance { element, mark, edges: self.edges_around(element), budget: ENHANCEMENTS }
+                } else {
+                    Phase::Smooth { element, mark }
+                };
+                (next, event)
             }
             Err(why) => self.fail(base, attempt, why),
         }
@@ -438,54 +446,73 @@ impl<'a> Converter<'a> {
         Some(pair)
     }
 
-    /// One enhancement (4.3.6), until there is none; then smoothing.
+    /// One enhancement (4.3.6); smoothing in the same step where there is none.
     fn step_enhance(
         &mut self,
         element: ElementId,
         mark: Mark,
         mut edges: SmallVec<[HalfEdgeId; 24]>,
         budget: u8,
-    ) -> (Phase, Event) {
-        if self.parameters.enhancement && budget > 0 {
+    ) -> Result<(Phase, Event), Fault> {
+        let next = |edges| match budget - 1 {
+            0 => Phase::Smooth { element, mark },
+            budget => Phase::Enhance { element, mark, edges, budget },
+        };
+        if self.parameters.enhancement {
             while let Some(h) = edges.pop() {
                 if let Some((event, around)) = self.enhance_edge(h) {
                     self.counts.enhanced += 1;
                     edges.extend(around);
-                    return (Phase::Enhance { element, mark, edges, budget: budget - 1 }, event);
+                    return Ok((next(edges), event));
                 }
             }
             if let Some(event) = self.remove_a_node(element) {
                 self.counts.removed += 1;
-                let edges = self.edges_around(element);
-                return (Phase::Enhance { element, mark, edges, budget: budget - 1 }, event);
+                return Ok((next(self.edges_around(element)), event));
             }
         }
         self.step_smooth(element, mark)
     }
 
-    /// Smoothing (4.3.6); the queue then sees everything since the base was selected.
-    fn step_smooth(&mut self, element: ElementId, mark: Mark) -> (Phase, Event) {
-        let nodes = if self.parameters.smoothing { self.smooth_around(element) } else { 0 };
+    /// Smoothing (4.3.6): one sweep over the nodes around; seaming in the same step where it is switched off. The queue
+    /// then sees everything since the base was selected.
+    fn step_smooth(&mut self, element: ElementId, mark: Mark) -> Result<(Phase, Event), Fault> {
+        let moved = self.parameters.smoothing.then(|| self.smooth_around(element));
         self.refresh(mark);
-        let next = if self.parameters.seaming {
-            Phase::Seam { nodes: SmallVec::from_slice(&self.mesh.quad(element)) }
-        } else {
-            Phase::Select
-        };
-        (next, Event::Smoothed { nodes })
+        let corners = SmallVec::from_slice(&self.mesh.quad(element));
+        match moved {
+            Some(nodes) => Ok((Phase::Seam { element, nodes: corners }, Event::Smoothed { nodes })),
+            None => self.step_seam(element, corners),
+        }
     }
 
-    /// One seam (4.3.6), until there is none; a selection follows in the same step where nothing is to be seamed.
-    fn step_seam(&mut self, mut nodes: SmallVec<[NodeId; 8]>) -> Result<(Phase, Event), Fault> {
-        while let Some(at) = nodes.pop() {
+    /// One seam (4.3.6), or why one is refused; splitting in the same step where there is none.
+    fn step_seam(&mut self, element: ElementId, mut nodes: SmallVec<[NodeId; 8]>) -> Result<(Phase, Event), Fault> {
+        while self.parameters.seaming
+            && let Some(at) = nodes.pop()
+        {
             let mark = self.mesh.mark();
-            if let Some(event) = self.seam_at(at) {
+            let Some(event) = self.seam_at(at) else { continue };
+            if let Event::Seamed { node, .. } | Event::TransitionSeamed { node, .. } = event {
                 self.counts.seamed += 1;
+                self.counts.transitions += u64::from(matches!(event, Event::TransitionSeamed { .. }));
                 self.refresh(mark);
-                if let Event::Seamed { node, .. } = event {
-                    nodes.push(node);
-                }
-                return Ok((Phase::Seam { nodes }, event));
+                nodes.push(node);
+            }
+            let next = if nodes.is_empty() { Phase::Split { element } } else { Phase::Seam { element, nodes } };
+            return Ok((next, event));
+        }
+        self.step_split(element)
+    }
+
+    /// Front splitting (4.3.6); a selection follows in the same step where nothing is to be split.
+    fn step_split(&mut self, element: ElementId) -> Result<(Phase, Event), Fault> {
+        if self.parameters.splitting {
+            let mark = self.mesh.mark();
+            if let Some(event) = self.split_front(element) {
+                self.counts.split += 1;
+                self.refresh(mark);
+                return Ok((Phase::Select, event));
             }
         }
         self.select()

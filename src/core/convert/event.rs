@@ -37,6 +37,26 @@ pub enum Why {
     NoMetric,
 }
 
+/// Why two nodes of the front were not made one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", content = "value", rename_all = "snake_case")]
+pub enum Unmerged {
+    /// Both nodes are fixed.
+    BothFixed,
+    /// The longer segment is too long, and cannot be divided: it is on a boundary, or the front is beyond already.
+    Unlike,
+    /// A node would be left with two edges.
+    Doublet,
+    /// The edge between the two nodes cannot be recovered.
+    NotRecovered,
+    /// Something lies between the two segments.
+    NotEmpty,
+    /// An element would not be positive, or what is apart be glued.
+    NotPositive,
+    /// An element would have this quality, too much below what was.
+    Poor(f64),
+}
+
 /// Why a node was removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -192,14 +212,44 @@ pub enum Event {
         #[serde(serialize_with = "degrees")]
         angle: f64,
     },
+    /// Two front segments of unlike length were seamed: the longer one was divided before (4.3.6).
+    TransitionSeamed {
+        /// The node between them.
+        at: NodeId,
+        /// The node that the other end of the shorter one and the middle of the longer one became.
+        node: NodeId,
+        /// The frontal angle that was.
+        #[serde(serialize_with = "degrees")]
+        angle: f64,
+        /// Length of the longer one over that of the shorter.
+        ratio: f64,
+    },
+    /// Two front segments with a small angle were not seamed.
+    SeamRefused {
+        /// The node between them.
+        at: NodeId,
+        /// Their other ends.
+        ends: [NodeId; 2],
+        /// The frontal angle.
+        #[serde(serialize_with = "degrees")]
+        angle: f64,
+        /// Length of the longer one over that of the shorter.
+        ratio: f64,
+        /// Why.
+        why: Unmerged,
+    },
     /// The front was split at a slender element (4.3.6, fig. 19).
     Split {
         /// The node that two became.
         node: NodeId,
+        /// The one of them that is gone.
+        gone: NodeId,
         /// Metric area of the element.
         area: f64,
         /// Its width over its height.
         ratio: f64,
+        /// Segments of the two loops, where nothing else had become of the one.
+        segments: [u32; 2],
     },
     /// A small loop was closed (spec 2.7).
     Closed {
@@ -238,6 +288,8 @@ impl Event {
             Event::Enhanced { .. } => "enhanced",
             Event::Smoothed { .. } => "smoothed",
             Event::Seamed { .. } => "seamed",
+            Event::TransitionSeamed { .. } => "transition_seamed",
+            Event::SeamRefused { .. } => "seam_refused",
             Event::Split { .. } => "split",
             Event::Closed { .. } => "closed",
             Event::SecondPass => "second_pass",
@@ -302,7 +354,9 @@ mod tests {
             Event::Enhanced { new: ends },
             Event::Smoothed { nodes: 4 },
             Event::Seamed { at: node, node, angle: 0.5 },
-            Event::Split { node, area: 0.1, ratio: 6.0 },
+            Event::TransitionSeamed { at: node, node, angle: 0.5, ratio: 3.0 },
+            Event::SeamRefused { at: node, ends, angle: 0.5, ratio: 1.0, why: Unmerged::BothFixed },
+            Event::Split { node, gone: node, area: 0.1, ratio: 6.0, segments: [4, 6] },
             Event::Closed { segments: 4, quads: 1, quality: 0.5 },
             Event::SecondPass,
             Event::LastResort(Outcome::default()),

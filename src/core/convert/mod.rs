@@ -11,6 +11,7 @@ mod top;
 mod form;
 mod local;
 mod seam;
+pub mod split;
 mod close;
 pub mod settle;
 pub mod component;

@@ -109,8 +109,15 @@ pub enum Phase {
     },
     /// Small frontal angles at these nodes are to be seamed.
     Seam {
+        /// The new quadrilateral.
+        element: ElementId,
         /// Nodes to look at.
         nodes: SmallVec<[NodeId; 8]>,
+    },
+    /// The front may have to be split at a slender triangle.
+    Split {
+        /// The new quadrilateral.
+        element: ElementId,
     },
     /// Small loops that are left over are to be closed.
     Close {
@@ -140,7 +147,7 @@ impl Phase {
 
     /// Whether the local post-processing of the last quadrilateral (4.3.6) is under way.
     pub fn is_local_post_processing(&self) -> bool {
-        matches!(self, Phase::Enhance { .. } | Phase::Smooth { .. } | Phase::Seam { .. })
+        matches!(self, Phase::Enhance { .. } | Phase::Smooth { .. } | Phase::Seam { .. } | Phase::Split { .. })
     }
 
     /// The phase without the marks of the journal, which are history and not state.
@@ -154,7 +161,12 @@ impl Phase {
             | Phase::Form { attempt, .. }
             | Phase::Retry { attempt, .. } => attempt.mark = Mark::default(),
             Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => *mark = Mark::default(),
-            Phase::Select | Phase::Seam { .. } | Phase::Close { .. } | Phase::PostProcess | Phase::Done => {}
+            Phase::Select
+            | Phase::Seam { .. }
+            | Phase::Split { .. }
+            | Phase::Close { .. }
+            | Phase::PostProcess
+            | Phase::Done => {}
         }
         plain
     }

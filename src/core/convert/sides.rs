@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use glam::DVec2;
+
 use super::converter::Converter;
 use super::event::{Event, Why};
 use super::phase::{Attempt, Base};
@@ -124,15 +126,20 @@ impl Converter<'_> {
         if length < 2.0 * LEAST_HALF {
             return if forced { Err(Why::NoDivision(side)) } else { Ok(None) };
         }
-        let (p, q) = (mesh.uv(at), mesh.uv(top));
-        let (l_p, l_q) = (mesh.metric_ref(at).norm2(q - p).sqrt(), mesh.metric_ref(top).norm2(q - p).sqrt());
-        let middle = p + (q - p) * (l_q.sqrt() / (l_p.sqrt() + l_q.sqrt()));
+        let middle = self.metric_middle(at, top);
         let metric = self.source.metric(middle).map_err(|_| Why::NoMetric)?;
         match self.mesh.divide(h, middle, metric) {
             Ok(node) => Ok(Some((node, Event::SideDivided { side, node, length }))),
             Err(_) if forced => Err(Why::NoDivision(side)),
             Err(_) => Ok(None),
         }
+    }
+
+    /// The place between two nodes that halves the metric length.
+    pub(super) fn metric_middle(&self, a: NodeId, b: NodeId) -> DVec2 {
+        let (p, q) = (self.mesh.uv(a), self.mesh.uv(b));
+        let [l_p, l_q] = [a, b].map(|n| self.mesh.metric_ref(n).norm2(q - p).sqrt());
+        p + (q - p) * (l_q.sqrt() / (l_p.sqrt() + l_q.sqrt()))
     }
 
     /// The angle that a side aims at: the bisector of a frontal angle up to 225 degrees (it lies within 67 and 112 there),
