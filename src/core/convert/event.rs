@@ -67,6 +67,21 @@ pub enum Purpose {
     Enhancement,
 }
 
+/// A side edge, its angle, and how good that is. Angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SideEdge {
+    /// Which side.
+    pub side: Side,
+    /// Its top node.
+    pub node: NodeId,
+    /// Its angle with the base.
+    #[serde(serialize_with = "degrees")]
+    pub angle: f64,
+    /// How far that is from the direction aimed at.
+    #[serde(serialize_with = "degrees")]
+    pub deviation: f64,
+}
+
 /// What a step of the converter did or decided. Angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -104,34 +119,18 @@ pub enum Event {
     },
     /// An edge that is there was chosen as side (side edges iii, v).
     SideChosen {
-        /// Which side.
-        side: Side,
-        /// Its top node.
-        node: NodeId,
-        /// Its angle with the base.
-        #[serde(serialize_with = "degrees")]
-        angle: f64,
-        /// How far that is from the direction aimed at.
-        #[serde(serialize_with = "degrees")]
-        deviation: f64,
-        /// Number of edges considered.
-        considered: u8,
+        /// The edge.
+        #[serde(flatten)]
+        edge: SideEdge,
     },
     /// An edge was swapped to be the side (side edges iv, v).
     SideSwapped {
-        /// Which side.
-        side: Side,
-        /// Its top node.
-        node: NodeId,
-        /// Its angle with the base.
-        #[serde(serialize_with = "degrees")]
-        angle: f64,
-        /// How far that is from the direction aimed at.
-        #[serde(serialize_with = "degrees")]
-        deviation: f64,
-        /// Deviation of the best edge that was there.
-        #[serde(serialize_with = "degrees")]
-        instead_of: f64,
+        /// The edge that the swap has made.
+        #[serde(flatten)]
+        edge: SideEdge,
+        /// Deviation of the best edge that was there, if there was one.
+        #[serde(serialize_with = "degrees_if_any")]
+        instead_of: Option<f64>,
     },
     /// The side edge was divided (side edges vi).
     SideDivided {
@@ -271,6 +270,19 @@ pub enum Event {
 }
 
 impl Event {
+    /// Whether it changed what is around the last quadrilateral (4.3.6).
+    pub fn is_local_change(&self) -> bool {
+        matches!(
+            self,
+            Event::NodeRemoved { purpose: Purpose::Enhancement, .. }
+                | Event::Enhanced { .. }
+                | Event::Smoothed { .. }
+                | Event::Seamed { .. }
+                | Event::TransitionSeamed { .. }
+                | Event::Split { .. }
+        )
+    }
+
     /// The kind, as reports and breakpoints name it.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -300,8 +312,12 @@ impl Event {
     }
 }
 
-fn degrees<S: Serializer>(radians: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn degrees<S: Serializer>(radians: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     radians.to_degrees().serialize(serializer)
+}
+
+fn degrees_if_any<S: Serializer>(radians: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    radians.map(f64::to_degrees).serialize(serializer)
 }
 
 fn both_degrees<S: Serializer>(radians: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
@@ -316,9 +332,10 @@ mod tests {
     #[test]
     fn an_event_is_one_flat_object_with_its_kind_and_angles_in_degrees() {
         let node = NodeId(7);
-        let chosen = Event::SideChosen { side: Side::Left, node, angle: FRAC_PI_2, deviation: 0.0, considered: 3 };
+        let edge = SideEdge { side: Side::Left, node, angle: FRAC_PI_2, deviation: 0.0 };
+        let chosen = Event::SideChosen { edge };
         let json = serde_json::to_string(&chosen).unwrap();
-        let expected = r#"{"kind":"side_chosen","side":"left","node":7,"angle":90.0,"deviation":0.0,"considered":3}"#;
+        let expected = r#"{"kind":"side_chosen","side":"left","node":7,"angle":90.0,"deviation":0.0}"#;
         assert_eq!(json, expected);
         let json = |why| serde_json::to_string(&Event::RolledBack { attempt: 1, why }).unwrap();
         assert_eq!(json(Why::NotDisc), r#"{"kind":"rolled_back","attempt":1,"why":{"kind":"not_disc"}}"#);
@@ -330,6 +347,7 @@ mod tests {
     fn the_kind_is_the_same_in_a_file_as_in_a_report() {
         let (node, ends, side) = (NodeId(1), [NodeId(1), NodeId(2)], Side::Right);
         let theta = [1.0; 2];
+        let edge = SideEdge { side, node, angle: 1.0, deviation: 0.1 };
         let events = [
             Event::BaseSelected {
                 a: node,
@@ -344,7 +362,8 @@ mod tests {
                 within_reach: true,
             },
             Event::SideIsFront { side, node },
-            Event::SideSwapped { side, node, angle: 1.0, deviation: 0.1, instead_of: 0.2 },
+            Event::SideChosen { edge },
+            Event::SideSwapped { edge, instead_of: Some(0.2) },
             Event::SideDivided { side, node, length: 1.0 },
             Event::TopSwapped { across: ends, new: ends },
             Event::TopFound { ends, swaps: 0 },
