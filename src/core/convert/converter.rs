@@ -79,6 +79,8 @@ enum Undo {
 pub struct Converter<'a> {
     /// The mesh: live triangles and dead quadrilaterals.
     pub mesh: Mesh,
+    /// Quadrilaterals that stood at step 0.
+    pub(super) given: u64,
     /// What gives the metric anywhere.
     pub(super) source: &'a dyn MetricSource,
     /// Parameters; may be changed between two steps by [`Converter::set_parameters`].
@@ -106,6 +108,7 @@ impl<'a> Converter<'a> {
     /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2).
     pub fn new(mesh: Mesh, source: &'a dyn MetricSource, parameters: Parameters) -> Self {
         Converter {
+            given: mesh.elements().filter(|&e| mesh.is_quad(e)).count() as u64,
             mesh,
             source,
             parameters,

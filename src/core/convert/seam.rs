@@ -9,8 +9,8 @@ use super::event::{Event, Unmerged};
 use super::top::{MOST_SWAPS, Recovery};
 use crate::core::front::sector::Side;
 use crate::core::geometry::predicates::{convex, firm};
-use crate::core::mesh::half_edge::NewElement;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::half_edge::{Mesh, NewElement};
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
 /// Segments whose lengths differ by more than this factor need a transition seam.
 const MOST_UNLIKE: f64 = 2.5;
@@ -145,12 +145,16 @@ impl Converter<'_> {
             return Err(Unmerged::NotEmpty);
         }
         // The merge (fig. 18c).
-        self.merge(h_bc)
+        self.merge(h_bc, &|_, _| true)
     }
 
     /// Collapses a live edge between two nodes of the front at the fixed end, else in the middle or as near to it as stays valid
-    /// and good. Returns the merged node. What it has changed where it fails must be taken back.
-    pub(super) fn merge(&mut self, h_bc: HalfEdgeId) -> Result<NodeId, Unmerged> {
+    /// and, as far as elements are `judged`, good. Returns the merged node.
+    pub(super) fn merge(
+        &mut self,
+        h_bc: HalfEdgeId,
+        judged: &dyn Fn(&Mesh, ElementId) -> bool,
+    ) -> Result<NodeId, Unmerged> {
         let (b, c) = (self.mesh.origin(h_bc), self.mesh.target(h_bc));
         let h_cb = self.mesh.twin(h_bc).ok_or(Unmerged::BothFixed)?;
         let (gone, kept, h) = if self.mesh.is_fixed(b) { (c, b, h_cb) } else { (b, c, h_bc) };
@@ -175,7 +179,9 @@ impl Converter<'_> {
             }
             let mark = self.mesh.mark();
             self.mesh.collapse(h, place, metric);
-            let after = self.mesh.fan(kept).map(|h| self.mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
+            let mesh = &self.mesh;
+            let around = mesh.fan(kept).map(HalfEdgeId::element).filter(|&e| judged(mesh, e));
+            let after = around.map(|e| mesh.quality(e)).fold(f64::INFINITY, f64::min);
             if after >= 0.7 * worst {
                 return Ok(kept);
             }

@@ -81,7 +81,8 @@ impl Converter<'_> {
                     continue;
                 }
                 let mark = self.mesh.mark();
-                match self.merge(side) {
+                // Slender triangles may stay in a narrow region; quadrilaterals are for good.
+                match self.merge(side, &|mesh, e| mesh.is_quad(e)) {
                     Ok(node) => {
                         let gone = if node == ends[0] { ends[1] } else { ends[0] };
                         return Some(Event::Split { node, gone, area, ratio, segments: segments.map(|n| n as u32) });

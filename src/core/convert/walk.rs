@@ -54,7 +54,7 @@ pub fn standing(converter: &Converter<'_>) -> u64 {
     match converter.phase() {
         // Everything is a quadrilateral, also what the last resort made and what clean-up has put in its place.
         Phase::PostProcess | Phase::Done => converter.mesh.element_count() as u64,
-        _ => converter.counts.formed + converter.counts.closed,
+        _ => converter.given + converter.counts.formed + converter.counts.closed,
     }
 }
 
