@@ -3,6 +3,7 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use crate::core::convert::event::Cleaning;
 use crate::core::convert::settle::{Nodes, put};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
@@ -156,15 +157,16 @@ impl Candidate {
         core
     }
 
-    /// Does the change; `core` becomes the nodes that it leaves.
+    /// Does the change and says what it was; `core` becomes the nodes that it leaves.
     ///
     /// # Errors
     /// Where the operator refuses, or the field gives no metric at a node's new place: the rest is to be taken back.
-    pub fn apply(self, mesh: &mut Mesh, source: &dyn MetricSource, core: &mut Nodes) -> Result<(), Refusal> {
-        match self {
+    pub fn apply(self, mesh: &mut Mesh, source: &dyn MetricSource, core: &mut Nodes) -> Result<Cleaning, Refusal> {
+        Ok(match self {
             Candidate::Doublet(node) => {
                 mesh.remove_doublet(node)?;
                 core.retain(|n| *n != node);
+                Cleaning::DoubletRemoved { node }
             }
             Candidate::Collapse(h_ab) => {
                 let (a, c) = (mesh.origin(h_ab), mesh.target(mesh.next(h_ab)));
@@ -174,8 +176,13 @@ impl Candidate {
                 if !mesh.is_fixed(c) {
                     put_or_refuse(mesh, source, c, middle)?;
                 }
+                Cleaning::DiamondCollapsed { gone: a, kept: c }
             }
-            Candidate::Rotate(h, by) => mesh.rotate_edge(h, by)?,
+            Candidate::Rotate(h, by) => {
+                let n = mesh.hexagon(h)?;
+                mesh.rotate_edge(h, by)?;
+                Cleaning::EdgeRotated { old: [n[0], n[3]], new: [n[by], n[by + 3]] }
+            }
             Candidate::Open(h_vp, h_vq) => {
                 let (v, p, q) = (mesh.origin(h_vp), mesh.target(h_vp), mesh.target(h_vq));
                 let here = mesh.uv(v);
@@ -190,9 +197,9 @@ impl Candidate {
                     put_or_refuse(mesh, source, node, here + (middle - here) * 0.33)?;
                 }
                 core.push(w);
+                Cleaning::VertexOpened { node: v, new: w, along: [p, q] }
             }
-        }
-        Ok(())
+        })
     }
 }
 

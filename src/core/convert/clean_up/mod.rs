@@ -8,17 +8,17 @@
 mod candidate;
 mod region;
 
-use std::collections::VecDeque;
-
 use smallvec::SmallVec;
 
 use super::energy;
+use super::event::{Cleaning, Event};
 use super::settle::{Nodes, settle, worst_quality};
+use super::worklist::{ListMark, Worklist};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;
 use crate::core::metric::field::MetricSource;
 use candidate::{Candidate, Ranked, Valences};
-use region::{Judged, Region};
+use region::Region;
 
 /// A kept change must leave every element around at least this quality, or not worse than the worst before.
 const LEAST_QUALITY: f64 = 0.2;
@@ -53,40 +53,36 @@ pub struct CleanedUp {
     pub doublets: usize,
     /// Changes that were kept only together with a second one.
     pub pairs: usize,
+    /// Changes tried, each as often as it was.
+    pub trials: usize,
     /// Trials taken back.
     pub refused: usize,
 }
 
-/// Cleans up an all-quadrilateral mesh until no candidate lowers the energy, within a budget linear in its size.
-pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> CleanedUp {
-    let mut work = CleanUp::new(mesh, source);
-    work.enqueue_all(mesh);
-    // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
-    let mut looks = 20 * mesh.node_count() + 1000;
-    while let Some(node) = work.next(mesh).filter(|_| looks > 0) {
-        looks -= 1;
-        let change = work.single(mesh, node);
-        work.settle_accounts(mesh, change, keep_journal);
-    }
-    work.enqueue_worst_first(mesh);
-    work.trials_left = PAIR_TRIALS + mesh.element_count() / ELEMENTS_A_PAIR_TRIAL;
-    while let Some(node) = work.next(mesh).filter(|_| work.trials_left > 0) {
-        let change = work.single(mesh, node).or_else(|| work.pair(mesh, node));
-        work.settle_accounts(mesh, change, keep_journal);
-    }
-    work.done
+/// How far a clean-up looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reach {
+    /// Single changes, at every irregular node.
+    Singles,
+    /// Pairs of changes too, at the worst nodes first.
+    Pairs,
 }
-
-/// The nodes around which a kept change has altered the mesh.
-type Touched = Nodes;
 
 /// What a trial that stands in the mesh has come to.
 struct Trial {
-    /// Change of the energy.
-    energy: f64,
+    /// The energy before and after.
+    energy: [f64; 2],
     /// The worst quality before and after.
     quality: [f64; 2],
-    touched: Touched,
+    /// The nodes around which the mesh has changed.
+    touched: Nodes,
+    what: Cleaning,
+}
+
+/// A trial that was kept.
+struct Kept {
+    touched: Nodes,
+    event: Event,
 }
 
 impl Trial {
@@ -97,20 +93,30 @@ impl Trial {
         touched.retain(|n| mesh.has_node(*n));
         // What the second found was the first one's doing, and part of that may lie outside of the second's reach.
         let after = second.quality[1].min(worst_quality(mesh, &touched));
-        Trial { energy: self.energy + second.energy, quality: [self.quality[0], after], touched }
+        let energy = [self.energy[0], self.energy[1] + second.rise()];
+        Trial { energy, quality: [self.quality[0], after], touched, what: second.what }
+    }
+
+    fn rise(&self) -> f64 {
+        self.energy[1] - self.energy[0]
     }
 
     fn is_good(&self) -> bool {
-        self.energy < -LEAST_GAIN && self.quality[1] >= self.quality[0].min(LEAST_QUALITY)
+        self.rise() < -LEAST_GAIN && self.quality[1] >= self.quality[0].min(LEAST_QUALITY)
     }
 }
 
-struct CleanUp<'a> {
+/// A clean-up of an all-quadrilateral mesh under way: until no change that it reaches lowers the energy, within a budget
+/// linear in the size of the mesh.
+#[derive(Clone)]
+pub(super) struct CleanUp<'a> {
     source: &'a dyn MetricSource,
+    reach: Reach,
     valences: Valences,
-    queue: VecDeque<NodeId>,
-    queued: Vec<bool>,
-    trials_left: usize,
+    /// Irregular nodes.
+    list: Worklist,
+    /// Trials after which it ends.
+    most_trials: usize,
     /// Kept for their memory.
     before: Region,
     after: Region,
@@ -118,33 +124,88 @@ struct CleanUp<'a> {
 }
 
 impl<'a> CleanUp<'a> {
-    fn new(mesh: &Mesh, source: &'a dyn MetricSource) -> Self {
-        CleanUp {
+    /// A clean-up at its beginning, whose list writes down what it needs to be taken back where `recording`. It goes on
+    /// counting where `done` stands.
+    pub fn begin(
+        mesh: &Mesh,
+        source: &'a dyn MetricSource,
+        reach: Reach,
+        done: CleanedUp,
+        recording: bool,
+    ) -> CleanUp<'a> {
+        let most_trials = match reach {
+            Reach::Singles => usize::MAX,
+            Reach::Pairs => done.trials + PAIR_TRIALS + mesh.element_count() / ELEMENTS_A_PAIR_TRIAL,
+        };
+        let mut work = CleanUp {
             source,
+            reach,
             valences: Valences::of(mesh),
-            queue: VecDeque::new(),
-            queued: Vec::new(),
-            trials_left: usize::MAX,
+            // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
+            list: Worklist::new(20 * mesh.node_count() + 1000, recording),
+            most_trials,
             before: Region::default(),
             after: Region::default(),
-            done: CleanedUp::default(),
+            done,
+        };
+        match reach {
+            Reach::Singles => mesh.nodes().for_each(|node| work.enqueue(mesh, node)),
+            Reach::Pairs => work.enqueue_worst_first(mesh),
         }
+        work
     }
 
-    // ---- the worklist ----
+    /// One kept change, or pair of changes, of the structure: looks at the nodes that wait until there is one. None where no
+    /// node waits any more, or the budget is spent.
+    pub fn step(&mut self, mesh: &mut Mesh, keep_journal: bool) -> Option<Event> {
+        while self.done.trials < self.most_trials {
+            let node = self.list.take()?;
+            if !mesh.has_node(node) {
+                continue;
+            }
+            let kept = match self.reach {
+                Reach::Singles => self.single(mesh, node),
+                Reach::Pairs => self.single(mesh, node).or_else(|| self.pair(mesh, node)),
+            };
+            if !keep_journal {
+                mesh.commit();
+            }
+            if let Some(Kept { touched, event }) = kept {
+                for node in touched {
+                    for n in mesh.neighbours(node).collect::<Nodes>() {
+                        self.enqueue(mesh, n);
+                    }
+                    self.enqueue(mesh, node);
+                }
+                return Some(event);
+            }
+        }
+        None
+    }
+
+    /// What was done so far.
+    pub fn done(&self) -> CleanedUp {
+        self.done
+    }
+
+    pub fn list(&self) -> &Worklist {
+        &self.list
+    }
+
+    pub fn list_mut(&mut self) -> &mut Worklist {
+        &mut self.list
+    }
+
+    /// Takes the list back to a mark, at which `done` was done.
+    pub fn take_back(&mut self, mark: ListMark, done: CleanedUp) {
+        self.list.take_back(mark);
+        self.done = done;
+    }
 
     fn enqueue(&mut self, mesh: &Mesh, node: NodeId) {
-        if self.queued.len() <= node.index() {
-            self.queued.resize(mesh.node_slots(), false);
+        if !self.list.holds(node) && self.valences.excess(mesh, node) != 0 {
+            self.list.add(node);
         }
-        if !self.queued[node.index()] && self.valences.excess(mesh, node) != 0 {
-            self.queued[node.index()] = true;
-            self.queue.push_back(node);
-        }
-    }
-
-    fn enqueue_all(&mut self, mesh: &Mesh) {
-        mesh.nodes().for_each(|node| self.enqueue(mesh, node));
     }
 
     /// All irregular nodes, those with the greatest energy around them first.
@@ -155,45 +216,20 @@ impl<'a> CleanUp<'a> {
             .map(|n| (mesh.fan(n).map(|h| energy::judge(mesh, h.element()).0).sum::<f64>(), n))
             .collect();
         nodes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        nodes.into_iter().for_each(|(_, node)| self.enqueue(mesh, node));
-    }
-
-    /// The next irregular node that is still there.
-    fn next(&mut self, mesh: &Mesh) -> Option<NodeId> {
-        loop {
-            let node = self.queue.pop_front()?;
-            self.queued[node.index()] = false;
-            if mesh.has_node(node) {
-                return Some(node);
-            }
-        }
-    }
-
-    /// After a look at a node: what a kept change has touched is to be looked at again.
-    fn settle_accounts(&mut self, mesh: &mut Mesh, change: Option<Touched>, keep_journal: bool) {
-        for node in change.into_iter().flatten() {
-            for n in mesh.neighbours(node).collect::<Nodes>() {
-                self.enqueue(mesh, n);
-            }
-            self.enqueue(mesh, node);
-        }
-        if !keep_journal {
-            mesh.commit();
-        }
+        nodes.into_iter().for_each(|(_, node)| self.list.add(node));
     }
 
     // ---- changes ----
 
     /// Tries the candidates around one irregular node, best valence gain first, and keeps the first that is good.
-    fn single(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Touched> {
+    fn single(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
         let worst = mesh.fan(node).map(|h| mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
         for (_, candidate) in
             self.valences.candidates(mesh, node, if worst < POOR { MOST_WORSE } else { 0 }, MOST_TRIALS)
         {
             let mark = mesh.mark();
             if let Some(trial) = self.attempt(mesh, candidate, HOPELESS).filter(Trial::is_good) {
-                self.count(candidate);
-                return Some(trial.touched);
+                return Some(self.keep(candidate, trial));
             }
             self.done.refused += 1;
             mesh.take_back(mark);
@@ -203,16 +239,15 @@ impl<'a> CleanUp<'a> {
 
     /// Tries pairs of changes around one irregular node: first changes that cost little energy, cheapest first, each with
     /// the second changes that make up for what it did to the valences.
-    fn pair(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Touched> {
+    fn pair(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
         let mut first: SmallVec<[(f64, Ranked); MOST_TRIALS]> = SmallVec::new();
         for ranked in self.valences.candidates(mesh, node, MOST_WORSE, MOST_TRIALS) {
             let mark = mesh.mark();
             if let Some(trial) = self.attempt(mesh, ranked.1, MOST_RISE) {
                 if trial.is_good() {
-                    self.count(ranked.1);
-                    return Some(trial.touched);
+                    return Some(self.keep(ranked.1, trial));
                 }
-                first.push((trial.energy, ranked));
+                first.push((trial.rise(), ranked));
             }
             mesh.take_back(mark);
         }
@@ -225,7 +260,8 @@ impl<'a> CleanUp<'a> {
                 self.count(candidate);
                 self.count(second);
                 self.done.pairs += 1;
-                return Some(both.touched);
+                let event = Event::Cleaned { what: trial.what, then: Some(both.what), energy: both.energy };
+                return Some(Kept { touched: both.touched, event });
             }
             self.done.refused += 1;
             mesh.take_back(mark);
@@ -244,7 +280,7 @@ impl<'a> CleanUp<'a> {
         found.truncate(SECOND_TRIALS);
         for (_, candidate) in found {
             let mark = mesh.mark();
-            if let Some(second) = self.attempt(mesh, candidate, HOPELESS - first.energy) {
+            if let Some(second) = self.attempt(mesh, candidate, HOPELESS - first.rise()) {
                 let both = first.and(second, mesh);
                 if both.is_good() {
                     return Some((candidate, both));
@@ -259,25 +295,31 @@ impl<'a> CleanUp<'a> {
     /// Does a candidate and relaxes the nodes around. None where it cannot be done, or the energy has risen beyond `most`
     /// when its own nodes are settled; whatever it did then is to be taken back.
     fn attempt(&mut self, mesh: &mut Mesh, candidate: Candidate, most: f64) -> Option<Trial> {
-        self.trials_left = self.trials_left.saturating_sub(1);
+        self.done.trials += 1;
         let mut core = candidate.core(mesh);
         self.before.gather(mesh, &core);
         let before = self.before.judge(mesh, &self.valences);
-        candidate.apply(mesh, self.source, &mut core).ok()?;
+        let what = candidate.apply(mesh, self.source, &mut core).ok()?;
         if !settle(mesh, self.source, &core) {
             return None;
         }
         self.after.gather(mesh, &core);
         self.after.add_those_left_of(mesh, &self.before);
-        let rise = |after: Judged| after.energy - before.energy;
-        if rise(self.after.judge(mesh, &self.valences)) > most {
+        if self.after.judge(mesh, &self.valences).energy - before.energy > most {
             return None;
         }
         for &node in &self.after.nodes {
             energy::relax(mesh, node, self.source);
         }
         let after = self.after.judge(mesh, &self.valences);
-        Some(Trial { energy: rise(after), quality: [before.quality, after.quality], touched: core })
+        let energy = [before.energy, after.energy];
+        Some(Trial { energy, quality: [before.quality, after.quality], touched: core, what })
+    }
+
+    fn keep(&mut self, candidate: Candidate, trial: Trial) -> Kept {
+        self.count(candidate);
+        let event = Event::Cleaned { what: trial.what, then: None, energy: trial.energy };
+        Kept { touched: trial.touched, event }
     }
 
     fn count(&mut self, candidate: Candidate) {
