@@ -23,4 +23,5 @@ pub mod last_resort;
 pub mod energy;
 pub mod clean_up;
 pub mod finish;
+mod layers;
 pub mod conversion;

@@ -36,6 +36,8 @@ pub struct Mesh {
     level: Vec<u16>,
     /// Whether the front segment in this slot is put off.
     deferred: Vec<bool>,
+    /// Level of the boundary segments that start at a node; 0 where nothing is said. Given once, before the first change.
+    first_level: Vec<u16>,
     free_nodes: Vec<NodeId>,
     free_elements: Vec<ElementId>,
     journal: Journal,
@@ -139,6 +141,7 @@ impl Mesh {
             region: set.region.clone(),
             level: vec![0; elements],
             deferred: vec![false; 4 * elements],
+            first_level: Vec::new(),
             free_nodes: Vec::new(),
             free_elements: Vec::new(),
             journal: Journal::default(),
@@ -457,9 +460,17 @@ impl Mesh {
             region: elements.iter().map(|&e| self.region[e as usize]).collect(),
             level: elements.iter().map(|&e| self.level[e as usize]).collect(),
             deferred,
+            first_level: self.first_level_in(&nodes),
             journal,
             ..Mesh::default()
         }
+    }
+
+    fn first_level_in(&self, nodes: &[u32]) -> Vec<u16> {
+        if self.first_level.is_empty() {
+            return Vec::new();
+        }
+        nodes.iter().map(|&n| self.first_level(NodeId(n))).collect()
     }
 
     // ---- journal ----
@@ -645,6 +656,7 @@ impl Mesh {
         }
         self.free_nodes.iter().for_each(|n| number(u64::from(n.0)));
         self.free_elements.iter().for_each(|e| number(u64::from(e.0)));
+        self.first_level.iter().for_each(|&level| number(u64::from(level)));
     }
 
     // ---- the setters: every change passes here and is written down ----
@@ -690,6 +702,21 @@ impl Mesh {
             let old = std::mem::replace(&mut self.level[e.index()], level);
             self.journal.note(Entry::Level(e, old));
         }
+    }
+
+    /// The level of the boundary segment that starts at a node.
+    #[inline]
+    pub fn first_level(&self, node: NodeId) -> u16 {
+        self.first_level.get(node.index()).copied().unwrap_or(0)
+    }
+
+    /// Gives the boundary segment that starts at a node another level than 0: part of the mesh as it is given, and so not
+    /// of the journal.
+    pub(in crate::core) fn set_first_level(&mut self, node: NodeId, level: u16) {
+        if self.first_level.len() <= node.index() {
+            self.first_level.resize(self.uv.len(), 0);
+        }
+        self.first_level[node.index()] = level;
     }
 
     /// Puts a front segment off, or takes it up again.
