@@ -174,7 +174,7 @@ fn figure_17_a_node_moves_to_the_mean_of_centroids_weighted_by_areas() {
         // Eqs. (9), (10a) and (10b) as they are printed; the metric is the identity, so that lengths and angles are the plane's.
         let triangle = |a: DVec2, b: DVec2| {
             let (a, b) = (a - p, b - p);
-            0.5 * a.length() * b.length() * (a.angle_to(b)).sin()
+            0.5 * a.length() * b.length() * libm::sin(a.angle_to(b))
         };
         let (mut sum, mut total) = (DVec2::ZERO, 0.0);
         for e in mesh.fan(NodeId(4)).map(HalfEdgeId::element) {
@@ -217,6 +217,33 @@ fn figure_18_seaming_recovers_the_edge_between_the_far_ends_and_collapses_it() {
         assert!(mesh.is_quad(between.element()) && mesh.is_quad(edge(mesh, 1, 10).element()), "the seam is dead");
         // Two triangles for the quadrilateral that was formed, two for the seam.
         assert_eq!(mesh.elements().filter(|&e| mesh.is_triangle(e)).count(), live - 4);
+    });
+}
+
+#[test]
+fn a_transition_seam_divides_the_longer_segment_and_frees_a_triangle_of_the_quadrilateral_beyond() {
+    with_figure("transition-seam", |mut converter| {
+        let formed = step_until(&mut converter, |e| matches!(e, Event::Formed { .. }));
+        let Some(&Event::Formed { element, nodes, .. }) = formed.last() else { panic!() };
+        assert_eq!(nodes.map(|n| n.0), [2, 3, 4, 1]);
+        let live = |mesh: &Mesh| mesh.elements().filter(|&e| mesh.is_triangle(e)).count();
+        let before = live(&converter.mesh);
+        let events = step_until(&mut converter, |e| matches!(e, Event::TransitionSeamed { .. }));
+        let [Event::TransitionSeamed { at, node, angle, ratio }] = events[..] else { panic!("{events:?}") };
+        assert_eq!((at, node), (NodeId(1), NodeId(8)));
+        assert!(angle.to_degrees() < 30.0 && (2.5..2.7).contains(&ratio));
+        let mesh = &converter.mesh;
+        mesh.check().unwrap();
+        // Two more by the division, two fewer by the seam; the quadrilateral is the same one with its corner elsewhere.
+        assert_eq!(live(mesh), before);
+        let mut corners = mesh.quad(element).map(|n| n.0);
+        corners.sort_unstable();
+        assert_eq!(corners, [1, 2, 3, 8]);
+        let seam = edge(mesh, 1, 8);
+        assert!(mesh.is_quad(seam.element()) && mesh.is_quad(mesh.twin(seam).unwrap().element()), "the seam is dead");
+        assert!(
+            mesh.front_between(NodeId(8), NodeId(3)).is_some() && mesh.front_between(NodeId(3), NodeId(4)).is_some()
+        );
     });
 }
 

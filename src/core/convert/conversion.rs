@@ -7,7 +7,9 @@ use glam::DVec2;
 use super::converter::{Converter, Counts};
 use super::finish::Finished;
 use super::last_resort::Outcome;
+use super::layers;
 use crate::core::background::adapt::{Adapted, adapt};
+use crate::core::background::discretise::DividedDomain;
 use crate::core::background::import::{implied_metric, import};
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::fault::Fault;
@@ -71,6 +73,11 @@ pub struct Converted {
 /// # Errors
 /// Whatever is wrong with the case's geometry, metric or mesh.
 pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
+    let has_curves = matches!(case.domain, DomainSource::Curves { .. });
+    if !has_curves && !case.parameters.layered_loops.is_empty() {
+        return Err(Fault::new("layered_loops names curves, and the case has none")
+            .remedy("Leave it out: layers then holds for every loop"));
+    }
     let made = match &case.domain {
         DomainSource::Curves { curves, faces } => from_curves(case, curves, faces, watch)?,
         DomainSource::Elements { points, triangles, quads } => from_elements(case, points, triangles, quads)?,
@@ -121,10 +128,14 @@ fn from_curves(
     }
     let mut sizing = Sizing::new(fields, case.parameters.size_scale);
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
-    let (mut mesh, mut adapted) = adapted_mesh(case, &domain, &sizing, watch)?;
+    let layered = layers::layered_curves(&domain, &case.parameters)?;
+    let (mut mesh, mut adapted, mut divided) = adapted_mesh(case, &domain, &sizing, watch)?;
     if let Some(beta) = case.gradation {
         sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0);
-        (mesh, adapted) = adapted_mesh(case, &domain, &sizing, watch)?;
+        (mesh, adapted, divided) = adapted_mesh(case, &domain, &sizing, watch)?;
+    }
+    if let Some(curves) = layered {
+        layers::offset_only(&mut mesh, &divided, &curves, case.parameters.layers);
     }
     let regions = faces.iter().map(|face| face.name.clone()).collect();
     Ok(Background { mesh, sizing, regions, adapted, repairs: Vec::new() })
@@ -219,15 +230,16 @@ fn adapted_mesh(
     domain: &Domain,
     sizing: &Sizing,
     watch: &mut dyn Watch,
-) -> Result<(Mesh, Adapted), Fault> {
+) -> Result<(Mesh, Adapted, DividedDomain), Fault> {
     watch.tell(Stage::Triangulate, 0, 0);
-    let (_, set) = divide_and_triangulate(domain, sizing)?;
+    let (divided, set) = divide_and_triangulate(domain, sizing)?;
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
     refuse_the_endless(&set, sizing, case.parameters.max_quads)?;
     watch.tell(Stage::Adapt, 0, 0);
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (spec 3).
     let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
-    adapt(Mesh::from_triangles(&set, metric), sizing, most, watch)
+    let (mesh, adapted) = adapt(Mesh::from_triangles(&set, metric), sizing, most, watch)?;
+    Ok((mesh, adapted, divided))
 }
 
 /// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is the

@@ -24,4 +24,5 @@ pub mod energy;
 mod worklist;
 pub mod clean_up;
 pub mod finish;
+mod layers;
 pub mod conversion;

@@ -50,6 +50,8 @@ pub struct Parameters {
     pub eps2: f64,
     /// Rows that are offset from the boundary before anything else (0: none).
     pub layers: u32,
+    /// Curves on whose loops rows are offset; none: on all loops. Belongs to the case: later changes have no effect.
+    pub layered_loops: Vec<String>,
     /// Order of base segments.
     pub selection: Selection,
     /// What is held against `c` times the smallest H-value.
@@ -86,6 +88,7 @@ impl Default for Parameters {
             eps1: 0.1,
             eps2: 5.0,
             layers: 0,
+            layered_loops: Vec::new(),
             selection: Selection::Table1,
             selection_window: SelectionWindow::MetricLengthTimesH,
             bisector: true,
@@ -120,7 +123,7 @@ impl SelectionWindow {
 
 impl Parameters {
     /// The keys of files and of `--set`, in the order in which they are documented.
-    pub const KEYS: [&'static str; 20] = [
+    pub const KEYS: [&'static str; 21] = [
         "size_scale",
         "c",
         "theta_rect",
@@ -131,6 +134,7 @@ impl Parameters {
         "eps1",
         "eps2",
         "layers",
+        "layered_loops",
         "selection",
         "selection_window",
         "bisector",
@@ -166,6 +170,7 @@ impl Parameters {
         Parameters {
             size_scale: self.size_scale,
             layers: self.layers,
+            layered_loops: self.layered_loops.clone(),
             max_quads: self.max_quads,
             ..Parameters::paper()
         }
@@ -189,6 +194,7 @@ impl Parameters {
             "eps1" => self.eps1 = number(key, value, 0.0, 1.0)?,
             "eps2" => self.eps2 = number(key, value, 1.0, 1000.0)?,
             "layers" => self.layers = count(key, value, 0, 1000)? as u32,
+            "layered_loops" => self.layered_loops = names(value),
             "selection" => self.selection = word(key, value, &Selection::WORDS)?,
             "selection_window" => self.selection_window = word(key, value, &SelectionWindow::WORDS)?,
             "bisector" => self.bisector = flag(key, value)?,
@@ -217,6 +223,7 @@ impl Parameters {
             "eps1" => self.eps1.to_string(),
             "eps2" => self.eps2.to_string(),
             "layers" => self.layers.to_string(),
+            "layered_loops" => self.layered_loops.join(", "),
             "selection" => said(self.selection, &Selection::WORDS),
             "selection_window" => said(self.selection_window, &SelectionWindow::WORDS),
             "bisector" => self.bisector.to_string(),
@@ -303,6 +310,11 @@ fn word<T: Copy>(key: &str, value: &str, words: &[(&str, T)]) -> Result<T, Fault
         let known: Vec<_> = words.iter().map(|w| format!("\"{}\"", w.0)).collect();
         Fault::new(format!("{key} = {} is not known", quoted(value))).remedy(format!("Known: {}", known.join(", ")))
     })
+}
+
+/// Names between commas.
+fn names(value: &str) -> Vec<String> {
+    value.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
 }
 
 fn said<T: PartialEq>(value: T, words: &[(&'static str, T)]) -> String {

@@ -88,9 +88,13 @@ impl Segment {
     }
 }
 
-/// Rows from the boundary: 0 on it, else one more than the quadrilateral beyond.
+/// Rows from the boundary: 0 on it (where rows are offset from other loops only, as many as those), else one more than the
+/// quadrilateral beyond.
 pub fn front_level(mesh: &Mesh, h: HalfEdgeId) -> u16 {
-    mesh.twin(h).map_or(0, |t| mesh.level(t.element()).saturating_add(1))
+    match mesh.twin(h) {
+        Some(t) => mesh.level(t.element()).saturating_add(1),
+        None => mesh.first_level(mesh.origin(h)),
+    }
 }
 
 /// Numbers that order front segments, compared one after the other.

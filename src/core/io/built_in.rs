@@ -42,6 +42,7 @@ cases![
     "figure-17",
     "figure-18",
     "figure-19",
+    "transition-seam",
 ];
 
 /// Names and texts of all cases, figures last.

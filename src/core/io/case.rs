@@ -231,6 +231,10 @@ fn parameters(table: &Table<'_>) -> Result<Parameters, Fault> {
         let own = value.table()?;
         own.only(&Parameters::KEYS)?;
         for entry in own.entries() {
+            if entry.key() == "layered_loops" {
+                parameters.layered_loops = entry.texts()?;
+                continue;
+            }
             parameters.set(entry.key(), &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?;
         }
     }

@@ -223,6 +223,10 @@ fn word(stage: Stage) -> &'static str {
 fn parameters<S: Serializer>(parameters: &Parameters, serializer: S) -> Result<S::Ok, S::Error> {
     let mut map = serializer.serialize_map(Some(Parameters::KEYS.len()))?;
     for key in Parameters::KEYS {
+        if key == "layered_loops" {
+            map.serialize_entry(key, &parameters.layered_loops)?;
+            continue;
+        }
         let text = parameters.text_of(key).unwrap_or_default();
         match (text.parse::<u64>(), text.parse::<f64>(), text.parse::<bool>()) {
             (Ok(count), ..) => map.serialize_entry(key, &count)?,

@@ -42,6 +42,8 @@ pub struct Mesh {
     level: Vec<u16>,
     /// Whether the front segment in this slot is put off.
     deferred: Vec<bool>,
+    /// Level of the boundary segments that start at a node; 0 where nothing is said. Given once, before the first change.
+    first_level: Vec<u16>,
     free_nodes: Vec<NodeId>,
     free_elements: Vec<ElementId>,
     journal: Journal,
@@ -116,6 +118,7 @@ impl Mesh {
             region: set.region.clone(),
             level: vec![0; elements],
             deferred: vec![false; 4 * elements],
+            first_level: Vec::new(),
             free_nodes: Vec::new(),
             free_elements: Vec::new(),
             journal: Journal::default(),
@@ -435,10 +438,18 @@ impl Mesh {
             region: elements.iter().map(|&e| self.region[e as usize]).collect(),
             level: elements.iter().map(|&e| self.level[e as usize]).collect(),
             deferred,
+            first_level: self.first_level_in(&nodes),
             journal,
             refusals: self.refusals,
             ..Mesh::default()
         }
+    }
+
+    fn first_level_in(&self, nodes: &[u32]) -> Vec<u16> {
+        if self.first_level.is_empty() {
+            return Vec::new();
+        }
+        nodes.iter().map(|&n| self.first_level(NodeId(n))).collect()
     }
 
     /// Appends the canonical serialisation of the state: every array and both free lists, little-endian. Two meshes are
@@ -471,6 +482,8 @@ impl Mesh {
         }
         self.free_nodes.iter().for_each(|n| number(u64::from(n.0)));
         self.free_elements.iter().for_each(|e| number(u64::from(e.0)));
+        self.first_level.iter().for_each(|&level| number(u64::from(level)));
+        self.first_level.iter().for_each(|&level| number(u64::from(level)));
     }
 }
 

@@ -259,3 +259,19 @@ fn a_background_in_a_case_that_is_no_mesh_is_refused() {
         assert!(fault.to_string().contains(said), "{fault}");
     }
 }
+
+#[test]
+fn loops_with_layers_are_a_list_of_names() {
+    let parse = |value: &str| {
+        let text = "version = 1\nmesh = \"a.msh\"\n[parameters]\nlayered_loops = ";
+        Case::parse(&format!("{text}{value}\n"), "a", "a.toml", Path::new(""))
+    };
+    let long = "a name that is much longer than a message would show";
+    let names = parse(&format!("[\"hole\", \"{long}\"]")).unwrap().parameters.layered_loops;
+    assert_eq!(names, ["hole", long]);
+    assert!(parse("[]").unwrap().parameters.layered_loops.is_empty());
+    for (wrong, said) in [("\"hole\"", " = \"hole\" is not a list of names"), ("[1]", "[0] = 1 is not a text")] {
+        let fault = parse(wrong).unwrap_err().to_string();
+        assert!(fault.contains(&format!("a.toml, line 4: layered_loops{said}")), "{fault}");
+    }
+}

@@ -52,6 +52,21 @@ impl Mesh {
         }
     }
 
+    /// The level of the boundary segment that starts at a node.
+    #[inline]
+    pub fn first_level(&self, node: NodeId) -> u16 {
+        self.first_level.get(node.index()).copied().unwrap_or(0)
+    }
+
+    /// Gives the boundary segment that starts at a node another level than 0: part of the mesh as it is given, and so not
+    /// of the journal.
+    pub(in crate::core) fn set_first_level(&mut self, node: NodeId, level: u16) {
+        if self.first_level.len() <= node.index() {
+            self.first_level.resize(self.uv.len(), 0);
+        }
+        self.first_level[node.index()] = level;
+    }
+
     /// Puts a front segment off, or takes it up again.
     #[inline]
     pub(in crate::core) fn set_deferred(&mut self, h: HalfEdgeId, deferred: bool) {
