@@ -236,6 +236,20 @@ fn places(mesh: &Mesh) -> (Vec<DVec2>, Vec<u32>) {
     (points, place)
 }
 
+/// Refuses a background with a triangle so flat that rounding could invert what the last resort makes of it.
+fn refuse_needles(mesh: &Mesh) -> Result<(), Fault> {
+    for e in mesh.elements() {
+        let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
+        if !firm(a, b, c) {
+            return Err(Fault::new(format!(
+                "A triangle of the background mesh is too flat to be converted: {a}, {b}, {c}"
+            ))
+            .remedy("Make the boundary there less thin, its segments shorter, or the sizes less stretched"));
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -282,18 +296,4 @@ mod tests {
             assert!((one / other - 1.0).abs() < 1e-6, "at y = {y}: {one} and {other}");
         }
     }
-}
-
-/// Refuses a background with a triangle so flat that rounding could invert what the last resort makes of it.
-fn refuse_needles(mesh: &Mesh) -> Result<(), Fault> {
-    for e in mesh.elements() {
-        let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
-        if !firm(a, b, c) {
-            return Err(Fault::new(format!(
-                "A triangle of the background mesh is too flat to be converted: {a}, {b}, {c}"
-            ))
-            .remedy("Make the boundary there less thin, its segments shorter, or the sizes less stretched"));
-        }
-    }
-    Ok(())
 }
