@@ -120,14 +120,10 @@ mod tests {
     #[test]
     fn what_was_taken_and_added_is_taken_back_in_order() {
         let mut list = Worklist::new(10, true);
-        for n in [3, 1, 2] {
-            list.add(NodeId(n));
-        }
+        [3, 1, 2].into_iter().for_each(|n| list.add(NodeId(n)));
         let (mark, before) = (list.mark(), state(&list));
         assert_eq!([list.take(), list.take()], [Some(NodeId(3)), Some(NodeId(1))]);
-        for n in [3, 2, 7] {
-            list.add(NodeId(n));
-        }
+        [3, 2, 7].into_iter().for_each(|n| list.add(NodeId(n)));
         assert_eq!(list.len(), 3, "a node that waits is not added again");
         list.take_back(mark);
         assert_eq!(state(&list), before);
@@ -137,9 +133,7 @@ mod tests {
     #[test]
     fn nothing_is_taken_when_the_budget_is_spent() {
         let mut list = Worklist::new(1, false);
-        for n in [0, 1] {
-            list.add(NodeId(n));
-        }
+        [0, 1].into_iter().for_each(|n| list.add(NodeId(n)));
         assert_eq!([list.take(), list.take()], [Some(NodeId(0)), None]);
         assert_eq!(list.len(), 1);
     }
