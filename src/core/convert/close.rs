@@ -1,5 +1,5 @@
 //! Closing what is left of small loops (spec 2.7, 10 rule 4): quadrilaterals between the nodes of the loop, formed even where
-//! they are flat, mended by the rotation of an edge with a neighbour, and relaxed together with the elements around.
+//! they are flat, mended by the rotation of an edge with a neighbour or by a smaller one set into them, and relaxed together with the elements around.
 
 use smallvec::SmallVec;
 
@@ -23,8 +23,25 @@ const MOST_SEGMENTS: usize = 10;
 #[derive(Clone, Debug)]
 struct Way {
     quads: SmallVec<[[NodeId; 4]; 4]>,
-    /// Element, side, number of nodes to rotate by.
-    rotation: Option<(usize, u32, usize)>,
+    mend: Option<Mend>,
+}
+
+/// What is done to one of the elements over a loop, by its number.
+#[derive(Clone, Copy, Debug)]
+enum Mend {
+    /// A side is rotated with the neighbour's, by so many nodes.
+    Rotate(usize, u32, usize),
+    /// A smaller quadrilateral is set into it: every corner gets an edge of its own, also one between two sides in a line.
+    Inset(usize),
+}
+
+impl Mend {
+    /// All mends of so many elements, those that make no nodes first.
+    fn all(quads: usize) -> impl Iterator<Item = Mend> {
+        let rotations =
+            (0..quads).flat_map(|q| (0..4).flat_map(move |side| [1, 2].map(|by| Mend::Rotate(q, side, by))));
+        rotations.chain((0..quads).map(Mend::Inset))
+    }
 }
 
 impl Converter<'_> {
@@ -37,19 +54,18 @@ impl Converter<'_> {
             .map(|quads| quads.into_iter().map(|corners| corners.map(|k| ring[k])).collect())
             .collect();
         let mut best: Option<(f64, Way)> = None;
-        'ways: for rotated in [false, true] {
+        'ways: for mended in [false, true] {
             for quads in &coverings {
-                let count = quads.len();
-                if rotated && count > 2 {
+                if mended && quads.len() > 2 {
                     continue;
                 }
-                let rotations: SmallVec<[_; 16]> = if rotated {
-                    (0..count).flat_map(|q| (0..4).flat_map(move |k| [Some((q, k, 1)), Some((q, k, 2))])).collect()
-                } else {
-                    SmallVec::from_slice(&[None])
-                };
-                for rotation in rotations {
-                    let way = Way { quads: quads.clone(), rotation };
+                let mends: SmallVec<[_; 24]> =
+                    if mended { Mend::all(quads.len()).map(Some).collect() } else { SmallVec::from_slice(&[None]) };
+                for mend in mends {
+                    if matches!(mend, Some(Mend::Inset(_))) && best.as_ref().is_some_and(|b| b.0 >= LEAST_QUALITY) {
+                        break 'ways;
+                    }
+                    let way = Way { quads: quads.clone(), mend };
                     let mark = self.mesh.mark();
                     let quality = self.try_way(component, &ring, &way);
                     self.mesh.take_back(mark);
@@ -65,7 +81,7 @@ impl Converter<'_> {
         let (quality, way) = best.filter(|b| b.0 >= LEAST_QUALITY)?;
         let again = self.try_way(component, &ring, &way);
         debug_assert_eq!(again, Some(quality), "the same way leads to the same place");
-        let quads = way.quads.len();
+        let quads = way.quads.len() + if matches!(way.mend, Some(Mend::Inset(_))) { 4 } else { 0 };
         Some((quads as u64, Event::Closed { segments: ring.len() as u8, quads: quads as u8, quality }))
     }
 
@@ -88,14 +104,18 @@ impl Converter<'_> {
         let made = self.mesh.replace(&component.triangles, &new);
         inside.iter().for_each(|&n| self.mesh.release_node(n));
         let mut core = Nodes::from_slice(ring);
-        if let Some((q, side, by)) = way.rotation {
-            let h: HalfEdgeId = made[q].half_edge(side);
-            for n in self.mesh.hexagon(h).ok()? {
-                if !core.contains(&n) {
-                    core.push(n);
+        match way.mend {
+            None => {}
+            Some(Mend::Rotate(q, side, by)) => {
+                let h: HalfEdgeId = made[q].half_edge(side);
+                for n in self.mesh.hexagon(h).ok()? {
+                    if !core.contains(&n) {
+                        core.push(n);
+                    }
                 }
+                self.mesh.rotate_edge(h, by).ok()?;
             }
-            self.mesh.rotate_edge(h, by).ok()?;
+            Some(Mend::Inset(q)) => core.extend(self.inset(made[q])?),
         }
         let all_quads = core.iter().all(|&n| self.mesh.fan(n).all(|h| self.mesh.is_quad(h.element())));
         // Other live parts may touch: their nodes stay.
@@ -106,6 +126,23 @@ impl Converter<'_> {
         let around = Nodes::from_slice(ring);
         (settle(&mut self.mesh, self.source, &core) && super::settle::all_convex(&self.mesh, &around))
             .then(|| worst_quality(&self.mesh, &around))
+    }
+
+    /// Sets a smaller quadrilateral into one, half-way to its middle; returns the new nodes.
+    fn inset(&mut self, element: ElementId) -> Option<[NodeId; 4]> {
+        let outer = self.mesh.quad(element);
+        let places = outer.map(|n| self.mesh.uv(n));
+        let middle = 0.25 * (places[0] + places[1] + places[2] + places[3]);
+        let mut inner = outer;
+        for k in 0..4 {
+            let place = 0.5 * (places[k] + middle);
+            inner[k] = self.mesh.add_node(place, self.source.metric(place).ok()?);
+        }
+        let region = self.mesh.region(element);
+        let ring = (0..4).map(|k| [outer[k], outer[(k + 1) % 4], inner[(k + 1) % 4], inner[k]]);
+        let new: SmallVec<[NewElement; 5]> = ring.chain([inner]).map(|q| NewElement::quad(q, region)).collect();
+        self.mesh.replace(&[element], &new);
+        Some(inner)
     }
 }
 
