@@ -98,6 +98,8 @@ pub struct Converter<'a> {
     phase: Phase,
     /// Records of the steps, where a history is kept.
     history: Option<Vec<Record>>,
+    /// Whether steps leave the journal to whoever drives them, who forgets it where nothing is under way.
+    journal_kept: bool,
     /// What the step at hand took back, where a history is kept.
     undone: Option<Vec<Undone>>,
     /// Where the journal stood before the step at hand.
@@ -125,6 +127,7 @@ impl<'a> Converter<'a> {
             queue: None,
             phase: Phase::Select,
             history: None,
+            journal_kept: false,
             undone: None,
             step_mark: Mark::default(),
             second_pass: false,
@@ -209,6 +212,17 @@ impl<'a> Converter<'a> {
         true
     }
 
+    /// Lets the journal stand from step to step without keeping a history: it tells what the steps touched. Whoever drives
+    /// forgets it ([`Mesh::commit`]) where [`Phase::mark`] says that nothing is under way.
+    pub(in crate::core) fn keep_journal(&mut self) {
+        self.mesh.commit();
+        self.journal_kept = true;
+    }
+
+    fn keeps_journal(&self) -> bool {
+        self.journal_kept || self.history.is_some()
+    }
+
     /// Number of steps that can be taken back.
     pub fn history_len(&self) -> usize {
         self.history.as_ref().map_or(0, Vec::len)
@@ -253,9 +267,9 @@ impl<'a> Converter<'a> {
     /// Everything but the mesh and caches, history left out: with the mesh, a state to go on from.
     pub(in crate::core) fn without_mesh(&mut self) -> Converter<'a> {
         let (mesh, queue) = (std::mem::take(&mut self.mesh), self.queue.take());
-        let history = self.history.take();
+        let (history, journal_kept) = (self.history.take(), std::mem::take(&mut self.journal_kept));
         let rest = self.clone();
-        (self.mesh, self.queue, self.history) = (mesh, queue, history);
+        (self.mesh, self.queue, self.history, self.journal_kept) = (mesh, queue, history, journal_kept);
         rest
     }
 
@@ -330,7 +344,8 @@ impl<'a> Converter<'a> {
             Phase::Seam { nodes } => self.step_seam(nodes)?,
             Phase::Close { waiting, left } => self.step_close(waiting, left)?,
             Phase::PostProcess => {
-                self.finished = finish(&mut self.mesh, &*self.source, self.history.is_some());
+                let keep = self.keeps_journal();
+                self.finished = finish(&mut self.mesh, &*self.source, keep);
                 (Phase::Done, Event::PostProcessed)
             }
             Phase::Done => (Phase::Done, Event::Finished),
@@ -359,7 +374,7 @@ impl<'a> Converter<'a> {
 
     /// Base segment selection (4.3.3).
     fn select(&mut self) -> Result<(Phase, Event), Fault> {
-        if self.history.is_none() {
+        if !self.keeps_journal() {
             // Nobody steps back: what was done stays done, and its memory is free again.
             self.mesh.commit();
         }

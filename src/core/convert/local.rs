@@ -137,18 +137,13 @@ impl Converter<'_> {
             if self.mesh.can_move(node, place).is_err() {
                 continue;
             }
-            let old = (here, self.mesh.metric(node));
             let mark = self.mesh.mark();
             self.mesh.move_node(node, place, metric);
             let after = self.mesh.fan(node).map(|h| self.mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
             if after >= KEPT_QUALITY * before {
                 return true;
             }
-            if self.mesh.journal().is_recording() {
-                self.mesh.take_back(mark);
-            } else {
-                self.mesh.move_node(node, old.0, old.1);
-            }
+            self.mesh.take_back(mark);
         }
         false
     }

@@ -462,14 +462,19 @@ impl Cursor {
         Ok(event)
     }
 
-    /// Shortens the history to what the budget allows.
+    /// Shortens the history to what the budget allows; the last step can always be taken back.
     fn look_at_memory(&mut self, budget: usize) {
-        if self.step < self.look {
+        // The journal is most of it, and its size is known at once.
+        if self.step < self.look && self.converter.mesh.journal().bytes() <= budget {
             return;
         }
         self.look = self.step + LOOK;
-        if self.converter.history_bytes() > budget {
-            self.converter.shorten_history(self.converter.history_len() / 2);
+        while self.converter.history_bytes() > budget {
+            let before = self.converter.history_len();
+            self.converter.shorten_history(before / 2);
+            if self.converter.history_len() == before {
+                return;
+            }
         }
     }
 }

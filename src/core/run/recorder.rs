@@ -62,6 +62,7 @@ impl Recorder {
         let (mut converter, step) = (keyframes.state(last), frames[last].step);
         let free = converter.mesh.free_lists();
         run.enter(&mut converter, step)?;
+        converter.keep_journal();
         let touched = Touched::default();
         Ok(Recorder { run, converter, step, edition, touched, free, keyframe: step, since_whole: 0 })
     }
@@ -114,15 +115,17 @@ impl Recorder {
         let is_due = self.step >= self.keyframe + SPACING || *phase == Phase::Done;
         let can_be_kept = phase.mark().is_none();
         stretch.log.push(event, standing(&self.converter), at_rest);
-        if is_due && can_be_kept {
-            let keyframe = self.keyframe();
-            stretch.keyframes.push(keyframe);
+        if can_be_kept {
+            self.converter.mesh.commit();
+            if is_due {
+                let keyframe = self.keyframe();
+                stretch.keyframes.push(keyframe);
+            }
         }
         self.run.make_edits(&mut self.converter, self.step)
     }
 
     fn keyframe(&mut self) -> Keyframe {
-        self.converter.mesh.commit();
         let difference = self.converter.mesh.difference(&self.touched, &self.free);
         self.since_whole += difference.bytes();
         // Applying differences shall not cost much more than copying a mesh.
