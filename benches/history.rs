@@ -21,13 +21,17 @@ fn told([most, high, middle]: [f64; 3]) -> String {
 }
 
 fn timed(work: impl FnOnce()) -> f64 {
-    let start = std::time::Instant::now();
+    let start = meter::now();
     work();
-    start.elapsed().as_secs_f64()
+    meter::since(start)
+}
+
+fn go(history: &mut History, step: u64) {
+    assert_eq!(history.seek(step).unwrap(), step);
 }
 
 fn main() {
-    println!("History: largest, 95th of a hundred and median, in milliseconds on the clock");
+    println!("History, {}: largest, 95th of a hundred and median, in milliseconds", meter::clock());
     println!(
         "case          quads    steps  ahead: s  front: s  one quad forward         one quad back            \
          leap                     MiB"
@@ -51,17 +55,17 @@ fn main() {
         let (mut forward, mut back, mut leap) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..40 {
             let step = any();
-            leap.push(timed(|| drop(history.seek(step).unwrap())));
+            leap.push(timed(|| go(&mut history, step)));
             for _ in 0..40 {
                 let (nq, step) = (history.log().nq(history.step()), history.step());
                 let Some(next) = history.log().first_with(nq + 1, step) else { continue };
-                forward.push(timed(|| drop(history.seek(next).unwrap())));
+                forward.push(timed(|| go(&mut history, next)));
             }
             for _ in 0..100 {
                 let step = history.step();
                 let Some(nq) = history.log().nq(step).checked_sub(1) else { continue };
                 let Some(next) = history.log().first_with(nq, 0).filter(|&next| next < step) else { continue };
-                back.push(timed(|| drop(history.seek(next).unwrap())));
+                back.push(timed(|| go(&mut history, next)));
             }
         }
         println!(

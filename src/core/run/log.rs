@@ -1,12 +1,25 @@
 //! What every step did, in little memory: its kind and the quadrilaterals that stand after it for all steps, the whole event
 //! for as many as the budget allows (the others are had again by replay).
 
+use serde::Serialize;
+
+use super::front_count::FrontCount;
+use super::timeline::Sample;
 use crate::core::convert::event::Event;
 
 /// Steps of a chunk of events.
 const CHUNK: usize = 4096;
 /// Set beside the kind where local post-processing is done after the step.
 const AT_REST: u8 = 0x80;
+
+/// Least and largest angle of a quadrilateral, each in the metric of its node, in radians.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Angles {
+    /// The least one.
+    pub min: f32,
+    /// The largest one.
+    pub max: f32,
+}
 
 /// The steps of a run as far as they are known. Step s leads from state s - 1 to state s; the first is 1.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +30,11 @@ pub struct Log {
     chunks: Vec<Option<Box<[Event]>>>,
     /// The events of the last chunk, which is not full yet.
     tail: Vec<Event>,
+    /// The front after each step that changed its numbers.
+    fronts: Vec<(u64, FrontCount)>,
+    /// The angles of the quadrilaterals that were formed.
+    quads: Vec<(u64, Angles)>,
+    samples: Vec<Sample>,
     /// Kept chunks before this one were given up first.
     given_up: usize,
 }
@@ -56,6 +74,49 @@ impl Log {
         }
     }
 
+    /// The front after a step, in numbers.
+    pub fn front(&self, step: u64) -> FrontCount {
+        let count = self.fronts.partition_point(|point| point.0 <= step);
+        count.checked_sub(1).map_or(FrontCount::default(), |index| self.fronts[index].1)
+    }
+
+    /// The front after each step that changed its numbers; the first is that of step 0.
+    pub fn fronts(&self) -> &[(u64, FrontCount)] {
+        &self.fronts
+    }
+
+    /// The angles of the quadrilateral that a step formed, as it stood right after it.
+    pub fn angles(&self, step: u64) -> Option<Angles> {
+        let index = self.quads.binary_search_by_key(&step, |quad| quad.0).ok()?;
+        Some(self.quads[index].1)
+    }
+
+    /// Invariants and figures along the run, by step: about one a thousand steps.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// The kinds of steps from `from` to `until` (both included), as indices into [`Event::KINDS`].
+    pub fn kind_indices(&self, from: u64, until: u64) -> impl Iterator<Item = usize> + '_ {
+        let until = usize::try_from(until).unwrap_or(usize::MAX).min(self.kinds.len());
+        let from = usize::try_from(from.saturating_sub(1)).unwrap_or(usize::MAX).min(until);
+        self.kinds[from..until].iter().map(|kind| usize::from(kind & !AT_REST))
+    }
+
+    pub(super) fn push_front(&mut self, step: u64, front: FrontCount) {
+        if self.fronts.last().is_none_or(|last| last.1 != front) {
+            self.fronts.push((step, front));
+        }
+    }
+
+    pub(super) fn push_angles(&mut self, step: u64, angles: Angles) {
+        self.quads.push((step, angles));
+    }
+
+    pub(super) fn push_sample(&mut self, sample: Sample) {
+        self.samples.push(sample);
+    }
+
     /// Appends what a step did.
     ///
     /// # Panics
@@ -78,6 +139,9 @@ impl Log {
     pub(super) fn append(&mut self, later: Log) {
         self.kinds.extend(later.kinds);
         self.nq.extend(later.nq);
+        self.fronts.extend(later.fronts);
+        self.quads.extend(later.quads);
+        self.samples.extend(later.samples);
         for event in later.chunks.into_iter().flatten().flatten().chain(later.tail) {
             self.push_event(event);
         }
@@ -88,6 +152,10 @@ impl Log {
         let count = usize::try_from(step).unwrap_or(usize::MAX).min(self.kinds.len());
         self.kinds.truncate(count);
         self.nq.truncate(count);
+        let step = count as u64;
+        self.fronts.truncate(self.fronts.partition_point(|point| point.0 <= step));
+        self.quads.truncate(self.quads.partition_point(|quad| quad.0 <= step));
+        self.samples.truncate(self.samples.partition_point(|sample| sample.step <= step));
         if count < CHUNK * self.chunks.len() {
             let partial = self.chunks.swap_remove(count / CHUNK);
             self.chunks.truncate(count / CHUNK);
@@ -106,7 +174,14 @@ impl Log {
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
         let kept = self.chunks.iter().flatten().count() * CHUNK + self.tail.capacity();
-        self.kinds.capacity() + 4 * self.nq.capacity() + kept * size_of::<Event>() + 16 * self.chunks.capacity()
+        let figures = self.fronts.capacity() * size_of::<(u64, FrontCount)>()
+            + self.quads.capacity() * size_of::<(u64, Angles)>()
+            + self.samples.capacity() * size_of::<Sample>();
+        self.kinds.capacity()
+            + 4 * self.nq.capacity()
+            + figures
+            + kept * size_of::<Event>()
+            + 16 * self.chunks.capacity()
     }
 
     /// Gives events up, the oldest first, until no more than `budget` bytes are taken, as far as that is possible.
