@@ -177,6 +177,21 @@ impl Mesh {
 
     // ---- edge division (paper 4.2.3, fig. 7) ----
 
+    /// Whether [`divide`](Mesh::divide) of the edge at `uv` would give four positive triangles.
+    ///
+    /// # Errors
+    /// The refusal.
+    pub fn can_divide(&self, h_ab: HalfEdgeId, uv: DVec2) -> Result<(), Refusal> {
+        let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
+        if !self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()) {
+            return Err(Refusal::NotTriangles);
+        }
+        let nodes = [h_ab, h_ba, self.previous(h_ab), self.previous(h_ba)].map(|h| self.origin(h));
+        let [a, b, c, d] = nodes.map(|n| self.uv(n));
+        let positive = firm(a, uv, c) && firm(uv, b, c) && firm(b, uv, d) && firm(uv, a, d);
+        if positive { self.permit(Operation::Divide, &nodes) } else { Err(Refusal::NotPositive) }
+    }
+
     /// Divides an inner edge at `uv`, which must lie strictly inside the union of its two triangles.
     ///
     /// ```text
@@ -191,23 +206,15 @@ impl Mesh {
     /// T and U keep a; returns m. The edges a-m, m-b, c-m and m-d leave m or end there.
     ///
     /// # Errors
-    /// Refused where an element is no triangle or would not be positive.
+    /// As [`can_divide`](Mesh::can_divide).
     pub fn divide(&mut self, h_ab: HalfEdgeId, uv: DVec2, metric: Metric2) -> Result<NodeId, Refusal> {
+        self.can_divide(h_ab, uv)?;
         // Gather.
         let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
         let (t, u) = (h_ab.element(), h_ba.element());
-        if !self.is_triangle(t) || !self.is_triangle(u) {
-            return Err(Refusal::NotTriangles);
-        }
         let (h_bc, h_ca) = (self.next(h_ab), self.previous(h_ab));
         let (h_ad, h_db) = (self.next(h_ba), self.previous(h_ba));
         let (a, b, c, d) = (self.origin(h_ab), self.origin(h_ba), self.origin(h_ca), self.origin(h_db));
-        // Check.
-        let (p_a, p_b, p_c, p_d) = (self.uv(a), self.uv(b), self.uv(c), self.uv(d));
-        if !(firm(p_a, uv, p_c) && firm(uv, p_b, p_c) && firm(p_b, uv, p_d) && firm(uv, p_a, p_d)) {
-            return Err(Refusal::NotPositive);
-        }
-        self.permit(Operation::Divide, &[a, b, c, d])?;
         let (t_bc, t_ca, t_ad, t_db) = (self.twin(h_bc), self.twin(h_ca), self.twin(h_ad), self.twin(h_db));
         // Build: T = (a, m, c), T' = (m, b, c), U = (m, a, d), U' = (b, m, d).
         let m = self.new_node(uv, metric);

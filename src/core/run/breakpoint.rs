@@ -234,7 +234,7 @@ pub const FIELDS: &[Field] = &[
         holds: Holds::Degrees,
         doc: "how far the side edge is from the direction that was aimed at",
         of: |m| match *m.event {
-            Event::SideChosen { deviation, .. } | Event::SideSwapped { deviation, .. } => degrees(deviation),
+            Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => degrees(edge.deviation),
             _ => None,
         },
     },
@@ -260,7 +260,16 @@ pub const FIELDS: &[Field] = &[
         name: "seam.angle",
         holds: Holds::Degrees,
         doc: "frontal angle that was seamed",
-        of: of_event!(Event::Seamed { angle, .. } => degrees(angle)),
+        of: |m| match *m.event {
+            Event::Seamed { angle, .. } | Event::TransitionSeamed { angle, .. } => degrees(angle),
+            _ => None,
+        },
+    },
+    Field {
+        name: "split.ratio",
+        holds: Holds::Number,
+        doc: "width over height of the slender triangle at which the front was split",
+        of: of_event!(Event::Split { ratio, .. } => number(ratio)),
     },
     Field {
         name: "fallback",
@@ -278,10 +287,8 @@ pub const FIELDS: &[Field] = &[
 
 fn side(moment: &Moment<'_>) -> Option<Value> {
     let side = match *moment.event {
-        Event::SideIsFront { side, .. }
-        | Event::SideChosen { side, .. }
-        | Event::SideSwapped { side, .. }
-        | Event::SideDivided { side, .. } => side,
+        Event::SideIsFront { side, .. } | Event::SideDivided { side, .. } => side,
+        Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => edge.side,
         _ => return None,
     };
     Some(Value::Word(Holds::Side.words()[side.index()].into()))

@@ -163,6 +163,7 @@ pub(super) fn changes_front(event: &Event) -> bool {
             | Event::Deferred { .. }
             | Event::Enhanced { .. }
             | Event::Smoothed { .. }
+            | Event::SeamRefused { .. }
             | Event::SecondPass
             | Event::Finished
     )

@@ -100,8 +100,7 @@ impl History {
         let keyframes = Keyframes::new(Keyframe::first(raw.without_mesh(), raw.mesh.clone()));
         let run = Arc::new(run);
         let mut recorder = Recorder::resume(Arc::clone(&run), &keyframes, 0)?;
-        let mut log = Log::default();
-        recorder.begin(&mut log);
+        let log = recorder.begin();
         let mut now = Cursor { converter: raw, step: 0, look: LOOK };
         now.converter.keep_history();
         run.enter(&mut now.converter, 0)?;

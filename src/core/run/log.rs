@@ -27,6 +27,8 @@ pub struct Log {
     /// Index into [`Event::KINDS`], with [`AT_REST`].
     kinds: Vec<u8>,
     nq: Vec<u32>,
+    /// Quadrilaterals that stood at step 0.
+    given: u64,
     chunks: Vec<Option<Box<[Event]>>>,
     /// The events of the last chunk, which is not full yet.
     tail: Vec<Event>,
@@ -51,10 +53,10 @@ impl Log {
         self.kinds.get(index).map(|kind| Event::KINDS[usize::from(kind & !AT_REST)])
     }
 
-    /// The number of quadrilaterals that stand after a step; 0 at the beginning.
+    /// The number of quadrilaterals that stand after a step.
     pub fn nq(&self, step: u64) -> u64 {
         let index = usize::try_from(step).unwrap_or(usize::MAX).min(self.nq.len());
-        index.checked_sub(1).map_or(0, |index| u64::from(self.nq[index]))
+        index.checked_sub(1).map_or(self.given, |index| u64::from(self.nq[index]))
     }
 
     /// Whether no local post-processing (4.3.6) is under way after a step.
@@ -101,6 +103,11 @@ impl Log {
         let until = usize::try_from(until).unwrap_or(usize::MAX).min(self.kinds.len());
         let from = usize::try_from(from.saturating_sub(1)).unwrap_or(usize::MAX).min(until);
         self.kinds[from..until].iter().map(|kind| usize::from(kind & !AT_REST))
+    }
+
+    /// A log without steps.
+    pub(super) fn beginning_with(given: u64) -> Log {
+        Log { given, ..Log::default() }
     }
 
     pub(super) fn push_front(&mut self, step: u64, front: FrontCount) {

@@ -40,7 +40,7 @@ impl History {
     /// The first step at which at least so many quadrilaterals stand and no local post-processing is under way: where
     /// `convert --at nq=N` stops. `None` where it does not come to that, or where it is not known yet.
     pub fn step_with_quads(&mut self, nq: u64) -> Option<u64> {
-        if nq == 0 {
+        if nq <= self.log().nq(0) {
             return Some(0);
         }
         self.ahead(|history| history.log().first_with(nq, 0))

@@ -89,10 +89,12 @@ impl Recorder {
         })
     }
 
-    /// Front and sample of the state that it starts from, for the log.
-    pub(super) fn begin(&mut self, log: &mut Log) {
+    /// A log with what is known of the state that it starts from.
+    pub(super) fn begin(&mut self) -> Log {
+        let mut log = Log::beginning_with(standing(&self.converter));
         log.push_front(self.step, self.front.count());
         log.push_sample(self.sample());
+        log
     }
 
     fn sample(&mut self) -> Sample {

@@ -61,8 +61,8 @@ impl Lane {
             "formed" => Lane::Formed,
             "rolled_back" | "deferred" | "second_pass" => Lane::Failed,
             "enhanced" | "smoothed" | "node_removed" => Lane::Local,
-            _ if kind.starts_with("seam") => Lane::Seams,
-            _ if kind.starts_with("split") => Lane::Splits,
+            "seamed" | "transition_seamed" | "seam_refused" => Lane::Seams,
+            "split" => Lane::Splits,
             "closed" | "last_resort" => Lane::Closing,
             _ => Lane::Finishing,
         }
