@@ -59,7 +59,8 @@ fn a_program_killed_while_it_saves_leaves_a_whole_run() {
         child.kill().unwrap();
         child.wait().unwrap();
         let run = run_file::read(&path).unwrap();
-        assert_eq!(run, grown(run.bookmarks.len() as u64));
+        let whole = grown(run.bookmarks.len() as u64);
+        assert_eq!(run_file::embedded(&run), run_file::embedded(&whole));
         seen.push(run.bookmarks.len());
     }
     assert!(seen.iter().any(|&count| count > 1), "it was killed amid saving: {seen:?}");

@@ -389,16 +389,22 @@ mod tests {
         run
     }
 
+    /// Whether two runs say the same; the places that messages give to what is in their cases differ.
+    fn same(a: &Run, b: &Run) -> bool {
+        let plain = |run: &Run| (run.parameters.clone(), run.edits().to_vec(), run.bookmarks.clone(), run.camera);
+        plain(a) == plain(b) && (&a.case.text, &a.case.name) == (&b.case.text, &b.case.name)
+    }
+
     #[test]
     fn a_run_reads_back_as_it_was() {
         for name in built_in::CASES {
             let run = Run::of(built_in::named(name.0).unwrap().unwrap());
-            assert_eq!(parse(&embedded(&run).unwrap(), "a.toml", Path::new("")).unwrap(), run);
+            assert!(same(&parse(&embedded(&run).unwrap(), "a.toml", Path::new("")).unwrap(), &run));
         }
         let run = run();
         let text = embedded(&run).unwrap();
         assert!(is_run(&text) && !is_run(&run.case.text));
-        assert_eq!(parse(&text, "a.toml", Path::new("")).unwrap(), run, "{text}");
+        assert!(same(&parse(&text, "a.toml", Path::new("")).unwrap(), &run), "{text}");
         let mut odd = run;
         odd.case.text.push_str("# it's '''odd''' \u{1}");
         odd.case.split_odd = true;
