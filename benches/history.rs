@@ -9,7 +9,7 @@ use quadfront::core::io::built_in;
 use quadfront::core::mesh::half_edge::Mesh;
 use quadfront::core::mesh::ids::PointId;
 use quadfront::core::mesh::triangle_set::TriangleSet;
-use quadfront::core::metric::field::Sizing;
+use quadfront::core::metric::field::{Field, FieldSpec, Sizing};
 use quadfront::core::metric::tensor::Metric2;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::explain::SegmentTold;
@@ -101,8 +101,8 @@ fn front_table() {
         region: vec![0; count as usize],
     };
     let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 3 * count as usize]);
-    let nothing = Sizing::new(Vec::new(), 1.0);
-    let converter = Converter::new(mesh, &nothing, Parameters::default());
+    let field = Field::compile(&FieldSpec::Uniform { h: 1.0 }, &|_| None).unwrap();
+    let converter = Converter::new(mesh, Sizing::new(vec![field], 1.0), Parameters::default());
     let (table, seconds) = meter::median_of(5, || FrontTable::of(&converter));
     let row = *table.choice().unwrap();
     let (_, told) = meter::median_of(5, || SegmentTold::in_table(&converter, &table, row.a, row.b).unwrap());
