@@ -249,10 +249,8 @@ pub const FIELDS: &[Field] = &[
         holds: Holds::Flag,
         doc: "the front was left: a second pass, or the last resort at work",
         of: |m| {
-            Some(Value::Flag(match m.event {
-                Event::SecondPass | Event::Matched { .. } | Event::Patched { .. } => true,
-                _ => false,
-            }))
+            let left = matches!(m.event, Event::SecondPass | Event::Matched { .. } | Event::Patched { .. });
+            Some(Value::Flag(left))
         },
     },
 ];
