@@ -15,10 +15,13 @@ use super::phase::{Attempt, Base, Part, Phase};
 use super::top::{MOST_SWAPS, Recovery};
 use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
+use crate::core::front::segment::Segment;
 use crate::core::front::selection::{Choice, Queue};
+use crate::core::io::fingerprint::Fingerprint;
 use crate::core::journal::Mark;
 use crate::core::mesh::half_edge::{Mesh, Undone};
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::touched::Touched;
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::{Stage, Watch};
 
@@ -63,6 +66,7 @@ pub struct Counts {
 pub(super) struct Record {
     phase: Phase,
     second_pass: bool,
+    picked: Option<[NodeId; 2]>,
     counts: Counts,
     last_resort: Outcome,
     finished: Finished,
@@ -87,7 +91,7 @@ pub struct Converter<'a> {
     /// Quadrilaterals that stood at step 0.
     pub(super) given: u64,
     /// What gives the metric anywhere.
-    pub(super) source: &'a dyn MetricSource,
+    pub(super) source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Parameters; may be changed between two steps by [`Converter::set_parameters`].
     pub(super) parameters: Parameters,
     /// A cache: rebuilt from the mesh where it is missing, and then chooses the same.
@@ -95,12 +99,16 @@ pub struct Converter<'a> {
     phase: Phase,
     /// Records of the steps, where a history is kept.
     pub(super) history: Option<Vec<Record>>,
+    /// Whether steps leave the journal to whoever drives them, who forgets it where nothing is under way.
+    journal_kept: bool,
     /// What the step at hand took back, where a history is kept.
     undone: Option<Vec<Undone>>,
     /// Where the journal stood before the step at hand.
     step_mark: Mark,
     /// Whether the gates are wide: every segment was put off and taken up again.
     second_pass: bool,
+    /// The base segment that a person picked for the next selection.
+    picked: Option<[NodeId; 2]>,
     /// How often what happened.
     pub counts: Counts,
     /// What the last resort did.
@@ -112,19 +120,22 @@ pub struct Converter<'a> {
 }
 
 impl<'a> Converter<'a> {
-    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2).
-    pub fn new(mesh: Mesh, source: &'a dyn MetricSource, parameters: Parameters) -> Self {
+    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is lent
+    /// (`&sizing`) or shared (`Arc<Sizing>`).
+    pub fn new(mesh: Mesh, source: impl MetricSource + Send + Sync + 'a, parameters: Parameters) -> Self {
         Converter {
             given: mesh.elements().filter(|&e| mesh.is_quad(e)).count() as u64,
             mesh,
-            source,
+            source: Arc::new(source),
             parameters,
             queue: None,
             phase: Phase::Select,
             history: None,
+            journal_kept: false,
             undone: None,
             step_mark: Mark::default(),
             second_pass: false,
+            picked: None,
             counts: Counts::default(),
             last_resort: Outcome::default(),
             finished: Finished::default(),
@@ -148,6 +159,43 @@ impl<'a> Converter<'a> {
         self.queue = None;
     }
 
+    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its event says
+    /// so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
+    ///
+    /// # Errors
+    /// Where there is no such front segment now.
+    pub fn override_base(&mut self, a: NodeId, b: NodeId) -> Result<(), Fault> {
+        self.check_base(a, b)?;
+        self.pick(a, b);
+        Ok(())
+    }
+
+    /// Whether there is a front segment from A to B.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn check_base(&self, a: NodeId, b: NodeId) -> Result<(), Fault> {
+        let none = || {
+            Fault::new(format!("There is no front segment from node {} to node {}", a.0, b.0))
+                .remedy("Name its nodes so that the live triangles lie to its left")
+        };
+        self.front_segment(a, b).map(drop).ok_or_else(none)
+    }
+
+    /// As [`Converter::override_base`], without asking whether there is such a segment now.
+    pub(in crate::core) fn pick(&mut self, a: NodeId, b: NodeId) {
+        self.picked = Some([a, b]);
+    }
+
+    /// The base segment that a person picked for the next selection.
+    pub fn picked(&self) -> Option<[NodeId; 2]> {
+        self.picked
+    }
+
+    fn front_segment(&self, a: NodeId, b: NodeId) -> Option<HalfEdgeId> {
+        if self.mesh.has_node(a) && self.mesh.has_node(b) { self.mesh.front_between(a, b) } else { None }
+    }
+
     /// Keeps from now on what [`step_back`](Converter::step_back) needs.
     pub fn keep_history(&mut self) {
         self.mesh.commit();
@@ -164,6 +212,7 @@ impl<'a> Converter<'a> {
         }
         self.phase = record.phase;
         self.second_pass = record.second_pass;
+        self.picked = record.picked;
         self.counts = record.counts;
         self.last_resort = record.last_resort;
         self.finished = record.finished;
@@ -172,14 +221,100 @@ impl<'a> Converter<'a> {
         true
     }
 
+    /// Lets the journal stand from step to step without keeping a history: it tells what the steps touched. Whoever drives
+    /// forgets it ([`Mesh::commit`]) where [`Phase::mark`] says that nothing is under way.
+    pub(in crate::core) fn keep_journal(&mut self) {
+        self.mesh.commit();
+        self.journal_kept = true;
+    }
+
+    pub(super) fn keeps_journal(&self) -> bool {
+        self.journal_kept || self.history.is_some()
+    }
+
+    /// Number of steps that can be taken back.
+    pub fn history_len(&self) -> usize {
+        self.history.as_ref().map_or(0, Vec::len)
+    }
+
+    /// Bytes that the history takes: records, journal, and what rollbacks need to be taken back. Linear in its length.
+    pub fn history_bytes(&self) -> usize {
+        let records = self.history.as_ref().map_or(0, |records| {
+            let redo = |record: &Record| match &record.undo {
+                Undo::Redo(undone) => undone.capacity() * size_of::<Undone>(),
+                Undo::Journal(_) => 0,
+            };
+            records.capacity() * size_of::<Record>() + records.iter().map(redo).sum::<usize>()
+        });
+        records + self.mesh.journal().bytes() + self.finishing.log_bytes()
+    }
+
+    /// Bytes that everything but mesh, queue and history takes, beside its own size.
+    pub(in crate::core) fn bytes_of_rest(&self) -> usize {
+        let of = |component: &Component| size_of::<Component>() + component.triangles.len() * size_of::<ElementId>();
+        let phase = match &self.phase {
+            Phase::Close { waiting, left } => waiting.iter().chain(left).map(of).sum(),
+            // The plan is shared by all states that carry it out.
+            Phase::Match { left, .. } | Phase::Patch { left, .. } => left.iter().map(of).sum(),
+            _ => 0,
+        };
+        phase + self.finishing.bytes()
+    }
+
+    /// Forgets the older steps of the history, so that about `keep` can still be taken back: a few more where an attempt
+    /// was under way.
+    pub fn shorten_history(&mut self, keep: usize) {
+        let Some(records) = &mut self.history else { return };
+        // Later steps take back no further than to the selection at which nothing was under way.
+        let last = records.len().saturating_sub(keep);
+        let at_rest = |record: &Record| record.phase.mark().is_none();
+        let Some(first) = (0..=last).rev().find(|&i| records.get(i).is_some_and(at_rest)) else { return };
+        let Undo::Journal(mark) = records[first].undo else { return };
+        records.drain(..first);
+        records.shrink_to(2 * records.len());
+        self.mesh.forget_before(mark);
+    }
+
+    /// The ids of what the last step changed, from the history; false where there is none.
+    pub(in crate::core) fn note_last_step(&self, touched: &mut Touched) -> bool {
+        let Some(record) = self.history.as_ref().and_then(|records| records.last()) else { return false };
+        match &record.undo {
+            Undo::Journal(mark) => touched.note_since(&self.mesh, *mark),
+            Undo::Redo(undone) => touched.note_undone(&self.mesh, undone),
+        }
+        true
+    }
+
+    /// Everything but the mesh and caches, history left out: with the mesh, a state to go on from.
+    pub(in crate::core) fn without_mesh(&mut self) -> Converter<'a> {
+        let (mesh, queue) = (std::mem::take(&mut self.mesh), self.queue.take());
+        let (history, journal_kept) = (self.history.take(), std::mem::take(&mut self.journal_kept));
+        let rest = self.clone();
+        (self.mesh, self.queue, self.history, self.journal_kept) = (mesh, queue, history, journal_kept);
+        rest
+    }
+
+    /// The state that [`without_mesh`](Converter::without_mesh) was made of, on its mesh.
+    pub(in crate::core) fn with_mesh(&self, mesh: Mesh) -> Converter<'a> {
+        Converter { mesh, ..self.clone() }
+    }
+
     /// Appends the canonical serialisation of the state: mesh, front, phase and what the next steps depend on. Equal
     /// bytes are equal states; caches and counts are left out.
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         self.mesh.write_state(bytes);
         self.finishing.write_state(bytes);
         bytes.extend_from_slice(
-            format!("{:?} {:?} {:?}", self.phase.plain(), self.second_pass, self.parameters).as_bytes(),
+            format!("{:?} {:?} {:?} {:?}", self.phase.plain(), self.second_pass, self.picked, self.parameters)
+                .as_bytes(),
         );
+    }
+
+    /// The fingerprint of the state: equal states have equal ones.
+    pub fn fingerprint(&self) -> Fingerprint {
+        let mut bytes = Vec::new();
+        self.write_state(&mut bytes);
+        Fingerprint::of(&bytes)
     }
 
     fn queue(&mut self) -> &mut Queue {
@@ -219,6 +354,7 @@ impl<'a> Converter<'a> {
         let before = self.history.is_some().then(|| Record {
             phase: self.phase.clone(),
             second_pass: self.second_pass,
+            picked: self.picked,
             counts: self.counts,
             last_resort: self.last_resort,
             finished: self.finished,
@@ -274,12 +410,20 @@ impl<'a> Converter<'a> {
 
     /// Base segment selection (4.3.3).
     pub(super) fn select(&mut self) -> Result<(Phase, Event), Fault> {
-        if self.history.is_none() {
+        if !self.keeps_journal() {
             // Nobody steps back: what was done stays done, and its memory is free again.
             self.mesh.commit();
         }
+        let picked = match self.picked.take() {
+            Some([a, b]) => match self.front_segment(a, b) {
+                Some(h) => Some(Segment::measure(&self.mesh, h, &self.parameters)),
+                None => return Ok((Phase::Select, Event::PickLost { a, b })),
+            },
+            None => None,
+        };
         let mut queue = self.take_queue();
         let choice = queue.select(&self.mesh, &self.parameters);
+        let choice = picked.map_or(choice, |segment| Some(Choice::of_person(segment, choice, &self.parameters)));
         let taken_up = choice.is_none() && !self.second_pass && queue.take_up_all(&mut self.mesh, &self.parameters);
         self.queue = Some(queue);
         let Some(Choice { segment, h_min, within_reach }) = choice else {
@@ -312,6 +456,7 @@ impl<'a> Converter<'a> {
                 length_physical: segment.length_physical,
                 level: segment.level,
                 within_reach,
+                picked: picked.is_some(),
             },
         ))
     }
@@ -438,7 +583,7 @@ impl<'a> Converter<'a> {
             };
             return Ok((next, Event::LastResort(self.last_resort)));
         };
-        let plan = Plan::new(&self.mesh, &component.triangles, self.source)
+        let plan = Plan::new(&self.mesh, &component.triangles, &*self.source)
             .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
         let Outcome { triangles, unmatched, unmatched_at_all, .. } = plan.outcome();
         let event = Event::Matched { triangles, unmatched, unmatched_at_all, patches: plan.patches() };
@@ -450,7 +595,7 @@ impl<'a> Converter<'a> {
         let made = plan.carry_out(&mut self.mesh, patch);
         let (means, triangles) = (plan.means(patch), plan.triangles(patch).len());
         let event = Event::Patched { means, triangles, quads: made.len(), element: made[0] };
-        if self.history.is_none() {
+        if !self.keeps_journal() {
             self.mesh.commit();
         }
         if patch + 1 < plan.patches() {

@@ -143,6 +143,15 @@ pub enum Event {
         level: u16,
         /// Whether it is within c Hmin.
         within_reach: bool,
+        /// Whether a person picked it, whatever its rank.
+        picked: bool,
+    },
+    /// The front segment that a person picked is not on the front any more; the next step selects by the rules.
+    PickLost {
+        /// Its left node.
+        a: NodeId,
+        /// Its right node.
+        b: NodeId,
     },
     /// The neighbouring front segment is the side (side edges ii).
     SideIsFront {
@@ -343,6 +352,37 @@ pub enum Event {
 }
 
 impl Event {
+    /// All kinds, in the order of the variants.
+    pub const KINDS: &[&str] = &[
+        "base_selected",
+        "pick_lost",
+        "side_is_front",
+        "side_chosen",
+        "side_swapped",
+        "side_divided",
+        "top_swapped",
+        "top_found",
+        "node_removed",
+        "formed",
+        "rolled_back",
+        "deferred",
+        "enhanced",
+        "smoothed",
+        "seamed",
+        "transition_seamed",
+        "seam_refused",
+        "split",
+        "closed",
+        "second_pass",
+        "matched",
+        "patched",
+        "last_resort",
+        "cleaned",
+        "swept",
+        "post_processed",
+        "finished",
+    ];
+
     /// Whether it changed what is around the last quadrilateral (4.3.6).
     pub fn is_local_change(&self) -> bool {
         matches!(
@@ -360,6 +400,7 @@ impl Event {
     pub fn kind(&self) -> &'static str {
         match self {
             Event::BaseSelected { .. } => "base_selected",
+            Event::PickLost { .. } => "pick_lost",
             Event::SideIsFront { .. } => "side_is_front",
             Event::SideChosen { .. } => "side_chosen",
             Event::SideSwapped { .. } => "side_swapped",
@@ -443,7 +484,9 @@ mod tests {
                 length_physical: 1.0,
                 level: 0,
                 within_reach: true,
+                picked: false,
             },
+            Event::PickLost { a: node, b: node },
             Event::SideIsFront { side, node },
             Event::SideChosen { edge },
             Event::SideSwapped { edge, instead_of: Some(0.2) },
@@ -471,6 +514,7 @@ mod tests {
         ];
         for event in events {
             assert_eq!(serde_json::to_value(event).unwrap()["kind"], event.kind());
+            assert!(Event::KINDS.contains(&event.kind()), "{} is missing in the list of all kinds", event.kind());
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Global post-processing (paper 4.3.7): smoothing by the energy, clean-up of the structure, smoothing again, all by
 //! worklists. A step is one sweep of the smoothing, or one change of the structure.
 
+use std::sync::Arc;
+
 use super::clean_up::{CleanUp, CleanedUp, Reach};
 use super::converter::Converter;
 use super::energy;
@@ -40,6 +42,17 @@ impl Finishing<'_> {
     fn lists(&self) -> [Option<&Worklist>; 4] {
         let [singles, pairs] = self.clean_up.each_ref().map(|part| part.as_ref().map(CleanUp::list));
         [self.first_smoothing.as_ref(), singles, pairs, self.last_smoothing.as_ref()]
+    }
+
+    /// Bytes that the parts take.
+    pub fn bytes(&self) -> usize {
+        let lists = [&self.first_smoothing, &self.last_smoothing].into_iter().flatten();
+        lists.map(Worklist::bytes).sum::<usize>() + self.clean_up.iter().flatten().map(CleanUp::bytes).sum::<usize>()
+    }
+
+    /// Bytes of what the parts have written down for taking back.
+    pub fn log_bytes(&self) -> usize {
+        self.lists().into_iter().flatten().map(Worklist::log_bytes).sum()
     }
 
     /// Lets every part write down from now on what it needs to be taken back.
@@ -103,11 +116,11 @@ impl Converter<'_> {
 
     /// The next change of structure within reach.
     fn clean_up(&mut self, reach: Reach) -> Option<Event> {
-        let recording = self.history.is_some();
-        let (mesh, source, done) = (&mut self.mesh, self.source, self.finished.cleaned_up);
+        let (recording, keep_journal) = (self.history.is_some(), self.keeps_journal());
+        let (mesh, source, done) = (&mut self.mesh, Arc::clone(&self.source), self.finished.cleaned_up);
         let part = &mut self.finishing.clean_up[reach as usize];
         let part = part.get_or_insert_with(|| CleanUp::begin(mesh, source, reach, done, recording));
-        let event = part.step(mesh, recording);
+        let event = part.step(mesh, keep_journal);
         self.finished.cleaned_up = part.done();
         event
     }
@@ -115,7 +128,7 @@ impl Converter<'_> {
     /// Looks at every free node that waits: all in the first sweep of a part, then those around nodes that moved. None
     /// where no node waits any more.
     fn sweep(&mut self, part: Part) -> Option<Event> {
-        let recording = self.history.is_some();
+        let (recording, keep_journal) = (self.history.is_some(), self.keeps_journal());
         let mesh = &mut self.mesh;
         let list = match part {
             Part::FirstSmoothing => &mut self.finishing.first_smoothing,
@@ -126,7 +139,7 @@ impl Converter<'_> {
         for _ in 0..list.len() {
             let Some(node) = list.take() else { break };
             looked += 1;
-            let distance = energy::relax(mesh, node, self.source);
+            let distance = energy::relax(mesh, node, &*self.source);
             moved += u32::from(distance > 0.0);
             if distance > STIRRED {
                 for n in mesh.neighbours(node).chain([node]) {
@@ -135,7 +148,7 @@ impl Converter<'_> {
                     }
                 }
             }
-            if !recording {
+            if !keep_journal {
                 mesh.commit();
             }
         }

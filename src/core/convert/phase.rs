@@ -196,6 +196,26 @@ impl Phase {
         self.last_formed().is_some()
     }
 
+    /// The mark of the journal to which the work at hand may be taken back; `None` where nothing is under way.
+    pub fn mark(&self) -> Option<Mark> {
+        match self {
+            Phase::PrepareSide { attempt, .. }
+            | Phase::DivideSide { attempt, .. }
+            | Phase::RecoverTop { attempt, .. }
+            | Phase::Form { attempt, .. } => Some(attempt.mark),
+            Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => Some(*mark),
+            Phase::Select
+            | Phase::Defer { .. }
+            | Phase::Seam { .. }
+            | Phase::Split { .. }
+            | Phase::Close { .. }
+            | Phase::Match { .. }
+            | Phase::Patch { .. }
+            | Phase::PostProcess { .. }
+            | Phase::Done => None,
+        }
+    }
+
     /// The phase without the marks of the journal, which are history and not state.
     #[must_use]
     pub fn plain(&self) -> Phase {

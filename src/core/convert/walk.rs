@@ -74,7 +74,21 @@ pub fn walk(
     converter: &mut Converter<'_>,
     stop: Option<Stop>,
     watch: &mut dyn Watch,
+    tell: Option<Tell<'_>>,
+) -> Result<(), Fault> {
+    walk_editing(converter, stop, watch, tell, &mut |_| Ok(()))
+}
+
+/// As [`walk`]; after each step `edit` may change parameters, or pick the next base segment.
+///
+/// # Errors
+/// As [`walk`], and what `edit` says.
+pub fn walk_editing(
+    converter: &mut Converter<'_>,
+    stop: Option<Stop>,
+    watch: &mut dyn Watch,
     mut tell: Option<Tell<'_>>,
+    edit: &mut dyn FnMut(&mut Converter<'_>) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     let total = converter.mesh.element_count() as u64;
     watch.tell(Stage::Convert, 0, total);
@@ -104,6 +118,7 @@ pub fn walk(
             let step = converter.counts.steps;
             tell(&Told { step, nq, event: &event, candidates: candidates.as_ref(), quality });
         }
+        edit(converter)?;
         if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::Done) {
             shown = nq;
             watch.tell(Stage::Convert, 2 * nq, total);

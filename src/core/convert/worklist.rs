@@ -39,6 +39,16 @@ impl Worklist {
         self.log = Some(Vec::new());
     }
 
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        size_of::<NodeId>() * self.queue.capacity() + self.waits.capacity() + self.log_bytes()
+    }
+
+    /// Bytes of what is written down for taking back.
+    pub fn log_bytes(&self) -> usize {
+        size_of::<Change>() * self.log.as_ref().map_or(0, Vec::capacity)
+    }
+
     /// Number of nodes that wait.
     pub fn len(&self) -> usize {
         self.queue.len()

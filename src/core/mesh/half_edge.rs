@@ -7,9 +7,11 @@
 //! All changes go through the setters (`half_edge/setters.rs`), which write the old value into the journal;
 //! `half_edge/taking_back.rs` puts it back. Public ways to change are the operators only (`operators.rs`).
 
+mod difference;
 mod setters;
 mod taking_back;
 
+pub use difference::{Difference, FreeLists};
 pub use taking_back::Undone;
 
 use glam::DVec2;

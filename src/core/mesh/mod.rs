@@ -5,6 +5,7 @@ pub mod triangle_set;
 pub mod order;
 pub mod half_edge;
 pub mod refusals;
+pub mod touched;
 pub mod operators;
 pub mod quad_operators;
 pub mod check;

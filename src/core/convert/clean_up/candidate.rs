@@ -52,6 +52,11 @@ impl Valences {
         Valences { ideal }
     }
 
+    /// Bytes that they take.
+    pub fn bytes(&self) -> usize {
+        self.ideal.capacity()
+    }
+
     /// Elements at a node less those that fit it.
     #[inline]
     pub fn excess(&self, mesh: &Mesh, node: NodeId) -> i32 {

@@ -8,6 +8,8 @@
 mod candidate;
 mod region;
 
+use std::sync::Arc;
+
 use smallvec::SmallVec;
 
 use super::energy;
@@ -110,7 +112,7 @@ impl Trial {
 /// linear in the size of the mesh.
 #[derive(Clone)]
 pub(super) struct CleanUp<'a> {
-    source: &'a dyn MetricSource,
+    source: Arc<dyn MetricSource + Send + Sync + 'a>,
     reach: Reach,
     valences: Valences,
     /// Irregular nodes.
@@ -128,7 +130,7 @@ impl<'a> CleanUp<'a> {
     /// counting where `done` stands.
     pub fn begin(
         mesh: &Mesh,
-        source: &'a dyn MetricSource,
+        source: Arc<dyn MetricSource + Send + Sync + 'a>,
         reach: Reach,
         done: CleanedUp,
         recording: bool,
@@ -186,6 +188,11 @@ impl<'a> CleanUp<'a> {
     /// What was done so far.
     pub fn done(&self) -> CleanedUp {
         self.done
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        self.valences.bytes() + self.before.bytes() + self.after.bytes() + self.list.bytes()
     }
 
     pub fn list(&self) -> &Worklist {
@@ -299,8 +306,8 @@ impl<'a> CleanUp<'a> {
         let mut core = candidate.core(mesh);
         self.before.gather(mesh, &core);
         let before = self.before.judge(mesh, &self.valences);
-        let what = candidate.apply(mesh, self.source, &mut core).ok()?;
-        if !settle(mesh, self.source, &core) {
+        let what = candidate.apply(mesh, &*self.source, &mut core).ok()?;
+        if !settle(mesh, &*self.source, &core) {
             return None;
         }
         self.after.gather(mesh, &core);
@@ -309,7 +316,7 @@ impl<'a> CleanUp<'a> {
             return None;
         }
         for &node in &self.after.nodes {
-            energy::relax(mesh, node, self.source);
+            energy::relax(mesh, node, &*self.source);
         }
         let after = self.after.judge(mesh, &self.valences);
         let energy = [before.energy, after.energy];

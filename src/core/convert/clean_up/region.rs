@@ -25,6 +25,11 @@ pub struct Judged {
 }
 
 impl Region {
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        4 * (self.nodes.capacity() + self.node_seen.capacity() + self.element_seen.capacity())
+    }
+
     /// Some nodes with their neighbours.
     pub fn gather(&mut self, mesh: &Mesh, core: &[NodeId]) {
         self.nodes.clear();

@@ -58,6 +58,11 @@ impl Mesh {
         self.journal.forget();
     }
 
+    /// Keeps what was done before the mark and forgets how it was before.
+    pub(in crate::core) fn forget_before(&mut self, mark: Mark) {
+        self.journal.forget_before(mark);
+    }
+
     /// Takes back everything that was done after the mark, exactly: the arrays are the same to the last byte.
     pub fn take_back(&mut self, mark: Mark) {
         while let Some(entry) = self.journal.pop(mark) {
