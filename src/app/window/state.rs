@@ -1,0 +1,257 @@
+//! What the window knows: the run as far as it has been told, what a person has set, and what is open over the window.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::session::{Edit, Moment, Opened, Session, Source, Told, Tracked, Wake};
+use crate::app::input;
+use crate::core::fault::Fault;
+use crate::core::io::built_in;
+use crate::core::io::case::Case;
+use crate::render::camera::Camera;
+use crate::render::scene::{ColourBy, Layers, Outlined};
+
+/// What undo takes back: all that a person sets.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Kept {
+    /// Changed parameters.
+    pub edits: Vec<Edit>,
+    /// What is kept in the inspector.
+    pub picked: Option<Outlined>,
+    /// What is drawn.
+    pub layers: Layers,
+    /// What elements are coloured by.
+    pub colour_by: ColourBy,
+    /// Conditions to stop at, and whether they are on.
+    pub breakpoints: Vec<(String, bool)>,
+    /// Steps that a person has marked.
+    pub bookmarks: Vec<u64>,
+}
+
+/// Work that is under way.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    pub words: &'static str,
+    pub done: u64,
+    pub total: u64,
+}
+
+/// What the table of the front is sorted by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrontColumn {
+    Rank,
+    Nodes,
+    Class,
+    HValue,
+    Length,
+    ThetaA,
+    ThetaB,
+    Level,
+}
+
+/// Everything that the window knows.
+pub struct State {
+    wake: Wake,
+    pub session: Option<Session>,
+    /// What was opened, for messages.
+    pub source: Option<Source>,
+    pub opened: Option<Arc<Opened>>,
+    pub moment: Option<Arc<Moment>>,
+    /// Steps of the run, as far as they have been recorded.
+    pub track: Vec<Tracked>,
+    /// Whether that is all of them.
+    pub recorded: bool,
+    epoch: u64,
+    /// Asked of the session and not yet answered.
+    pub waiting: usize,
+    pub since: Option<Instant>,
+    pub progress: Option<Progress>,
+    pub faults: Vec<String>,
+    /// What was done, for a while.
+    pub notice: Option<(String, Instant)>,
+    pub kept: Kept,
+    pub undo: Vec<Kept>,
+    pub redo: Vec<Kept>,
+    pub hovered: Option<Outlined>,
+    /// The camera of the main view; none until a mesh is fitted to it.
+    pub camera: Option<Camera>,
+    /// Show the decision from near as soon as the view's size is known.
+    pub look: Option<Look>,
+    pub playing: Option<Instant>,
+    /// Quadrilaterals a second.
+    pub speed: f32,
+    pub sort: (FrontColumn, bool),
+    /// The classes shown in the table of the front.
+    pub classes: [bool; 4],
+    /// The row that the table is to show.
+    pub scroll_to: Option<Outlined>,
+    pub overlay: Over,
+    pub field: String,
+    pub breakpoint_field: String,
+    /// Changes when the mesh to be drawn changes.
+    pub mesh_epoch: u64,
+    /// Changes when what lies over it changes.
+    pub over_epoch: u64,
+    pub reset_layout: bool,
+    pub screenshot: bool,
+}
+
+/// Where the main view is to look next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    Fit,
+    Decision,
+    At(Outlined),
+}
+
+/// What is open over the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    Nothing,
+    Palette,
+    Help,
+    GoTo,
+    Path,
+}
+
+impl State {
+    /// A window in which nothing is open; `wake` is called from other threads when something is to be told.
+    pub fn new(wake: Wake) -> State {
+        State {
+            wake,
+            session: None,
+            source: None,
+            opened: None,
+            moment: None,
+            track: Vec::new(),
+            recorded: false,
+            epoch: 0,
+            waiting: 0,
+            since: None,
+            progress: None,
+            faults: Vec::new(),
+            notice: None,
+            kept: Kept::default(),
+            undo: Vec::new(),
+            redo: Vec::new(),
+            hovered: None,
+            camera: None,
+            look: None,
+            playing: None,
+            speed: 8.0,
+            sort: (FrontColumn::Rank, true),
+            classes: [true; 4],
+            scroll_to: None,
+            overlay: Over::Nothing,
+            field: String::new(),
+            breakpoint_field: String::new(),
+            mesh_epoch: 0,
+            over_epoch: 0,
+            reset_layout: false,
+            screenshot: false,
+        }
+    }
+
+    /// Opens a case or a mesh in place of what is open.
+    pub fn open(&mut self, source: Source) {
+        let named = source.clone();
+        self.session = Some(Session::open(move || read(&named), self.wake.clone()));
+        self.source = Some(source);
+        (self.opened, self.moment) = (None, None);
+        self.track.clear();
+        (self.recorded, self.epoch, self.waiting) = (false, 0, 1);
+        self.since = Some(Instant::now());
+        let kept = Kept { layers: self.kept.layers, colour_by: self.kept.colour_by, ..Kept::default() };
+        self.kept = kept;
+        self.undo.clear();
+        self.redo.clear();
+        (self.camera, self.playing, self.hovered) = (None, None, None);
+        self.look = Some(Look::Fit);
+    }
+
+    /// Whether the session still owes an answer.
+    pub fn is_busy(&self) -> bool {
+        self.waiting > 0
+    }
+
+    /// Tells a fault; it stays until it is closed.
+    pub fn complain(&mut self, fault: &Fault) {
+        let text = fault.to_string();
+        if !self.faults.contains(&text) {
+            self.faults.push(text);
+        }
+    }
+
+    /// Tells that something was done.
+    pub fn notice(&mut self, text: String) {
+        self.notice = Some((text, Instant::now()));
+    }
+
+    /// Hears what the session has to tell.
+    pub fn hear(&mut self) {
+        let Some(session) = &self.session else { return };
+        let told: Vec<Told> = session.hear().collect();
+        for told in told {
+            match told {
+                Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
+                Told::Opened(opened) => self.opened = Some(opened),
+                Told::Moment(moment) => self.arrive(moment),
+                Told::Track { epoch, from, steps } if epoch == self.epoch => {
+                    self.track.truncate(from as usize);
+                    self.track.extend(steps);
+                }
+                Told::Recorded { epoch } if epoch == self.epoch => self.recorded = true,
+                Told::Track { .. } | Told::Recorded { .. } => {}
+                Told::Fault(fault) => {
+                    self.complain(&fault);
+                    self.answered();
+                    self.playing = None;
+                }
+            }
+        }
+    }
+
+    fn answered(&mut self) {
+        self.waiting = self.waiting.saturating_sub(1);
+        if self.waiting == 0 {
+            (self.progress, self.since) = (None, None);
+        }
+    }
+
+    fn arrive(&mut self, moment: Arc<Moment>) {
+        if self.playing.is_some() && moment.phase == crate::core::convert::phase::Phase::Done {
+            self.playing = None;
+        }
+        self.moment = Some(moment);
+        self.answered();
+        self.mesh_epoch += 1;
+        self.over_epoch += 1;
+    }
+
+    /// The run is another from now on.
+    pub fn run_changed(&mut self) {
+        self.epoch += 1;
+        self.recorded = false;
+        if let Some(session) = &self.session {
+            session.set_edits(self.kept.edits.clone());
+            self.waiting += 1;
+            self.since.get_or_insert_with(Instant::now);
+        }
+    }
+
+    /// The value of a parameter at the step at hand.
+    pub fn parameter(&self, key: &str) -> Option<String> {
+        self.moment.as_ref()?.parameters.text_of(key)
+    }
+}
+
+/// Reads what is to be opened.
+fn read(source: &Source) -> Result<Case, Fault> {
+    match source {
+        Source::BuiltIn(name) => match built_in::named(name) {
+            Some(case) => case,
+            None => Err(Fault::new("There is no built-in case of this name").at(name.clone())),
+        },
+        Source::File(path) => input::case_of(path),
+    }
+}
