@@ -43,7 +43,8 @@ pub enum Entry {
     ElementFreed,
 }
 
-/// A place in the journal to which everything later can be taken back.
+/// A place in the journal to which everything later can be taken back. Places are counted from the journal's beginning, also
+/// where part of it is forgotten.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Mark(usize);
 
@@ -51,24 +52,31 @@ pub struct Mark(usize);
 #[derive(Clone, Debug)]
 pub struct Journal {
     entries: Vec<Entry>,
+    /// Number of entries that stood before those and are forgotten.
+    forgotten: usize,
     recording: bool,
 }
 
 impl Default for Journal {
     fn default() -> Self {
-        Journal { entries: Vec::new(), recording: true }
+        Journal { entries: Vec::new(), forgotten: 0, recording: true }
     }
 }
 
 impl Journal {
     /// The present place.
     pub fn mark(&self) -> Mark {
-        Mark(self.entries.len())
+        Mark(self.forgotten + self.entries.len())
     }
 
     /// Number of entries after a mark.
     pub fn len_since(&self, mark: Mark) -> usize {
-        self.entries.len() - mark.0
+        self.forgotten + self.entries.len() - mark.0
+    }
+
+    /// Bytes that the entries take.
+    pub fn bytes(&self) -> usize {
+        self.entries.capacity() * size_of::<Entry>()
     }
 
     /// Whether changes are written down.
@@ -80,18 +88,27 @@ impl Journal {
     pub fn set_recording(&mut self, recording: bool) {
         self.recording = recording;
         if !recording {
-            self.entries.clear();
+            self.forget();
         }
     }
 
     /// Forgets everything: what was done stays done. Where nobody keeps a history, this is the commit.
     pub fn forget(&mut self) {
+        self.forgotten += self.entries.len();
         self.entries.clear();
     }
 
-    /// The entries after a mark, oldest first.
+    /// Forgets everything before a mark: what was done until then stays done.
+    pub(crate) fn forget_before(&mut self, mark: Mark) {
+        let count = mark.0.saturating_sub(self.forgotten).min(self.entries.len());
+        self.entries.drain(..count);
+        self.entries.shrink_to(2 * self.entries.len());
+        self.forgotten += count;
+    }
+
+    /// The entries after a mark that are not forgotten, oldest first.
     pub(crate) fn since(&self, mark: Mark) -> &[Entry] {
-        &self.entries[mark.0..]
+        self.entries.get(mark.0.saturating_sub(self.forgotten)..).unwrap_or_default()
     }
 
     /// Writes an entry down.
@@ -104,6 +121,6 @@ impl Journal {
 
     /// Removes and returns the newest entry after the mark.
     pub(crate) fn pop(&mut self, mark: Mark) -> Option<Entry> {
-        if self.entries.len() > mark.0 { self.entries.pop() } else { None }
+        if self.forgotten + self.entries.len() > mark.0 { self.entries.pop() } else { None }
     }
 }

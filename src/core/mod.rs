@@ -9,4 +9,5 @@ pub mod mesh;
 pub mod background;
 pub mod front;
 pub mod convert;
+pub mod run;
 pub mod io;

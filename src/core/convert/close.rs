@@ -102,7 +102,7 @@ impl Converter<'_> {
             core.retain(|n| mesh.fan(*n).all(|h| mesh.is_quad(h.element())));
         }
         let around = Nodes::from_slice(ring);
-        (settle(&mut self.mesh, self.source, &core) && super::settle::all_convex(&self.mesh, &around))
+        (settle(&mut self.mesh, &*self.source, &core) && super::settle::all_convex(&self.mesh, &around))
             .then(|| worst_quality(&self.mesh, &around))
     }
 }

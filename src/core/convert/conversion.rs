@@ -97,9 +97,11 @@ pub fn convert_by(
 ) -> Result<Converted, Fault> {
     let Background { mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
     let triangles = mesh.element_count();
-    let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());
-    drive(&mut converter, watch)?;
-    let Converter { mesh, counts, last_resort, finished, .. } = converter;
+    let (mesh, counts, last_resort, finished) = {
+        let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());
+        drive(&mut converter, watch)?;
+        (converter.mesh, converter.counts, converter.last_resort, converter.finished)
+    };
     Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, counts, last_resort, finished })
 }
 

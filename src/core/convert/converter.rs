@@ -4,6 +4,8 @@
 //! changes go through the mesh's operators and so through the journal: an attempt that fails is taken back, and a person
 //! who steps back uses the same mechanism.
 
+use std::sync::Arc;
+
 use smallvec::SmallVec;
 
 use super::component::{Component, live_components};
@@ -15,10 +17,12 @@ use super::phase::{Attempt, Base, Phase};
 use super::top::{MOST_SWAPS, Recovery};
 use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
+use crate::core::front::segment::Segment;
 use crate::core::front::selection::{Choice, Queue};
 use crate::core::journal::Mark;
 use crate::core::mesh::half_edge::{Mesh, Undone};
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::touched::Touched;
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::{Stage, Watch};
 
@@ -66,6 +70,7 @@ pub struct Counts {
 struct Record {
     phase: Phase,
     second_pass: bool,
+    picked: Option<[NodeId; 2]>,
     counts: Counts,
     undo: Undo,
 }
@@ -85,7 +90,7 @@ pub struct Converter<'a> {
     /// The mesh: live triangles and dead quadrilaterals.
     pub mesh: Mesh,
     /// What gives the metric anywhere.
-    pub(super) source: &'a dyn MetricSource,
+    pub(super) source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Parameters; may be changed between two steps by [`Converter::set_parameters`].
     pub(super) parameters: Parameters,
     /// A cache: rebuilt from the mesh where it is missing, and then chooses the same.
@@ -99,6 +104,8 @@ pub struct Converter<'a> {
     step_mark: Mark,
     /// Whether the gates are wide: every segment was put off and taken up again.
     second_pass: bool,
+    /// The base segment that a person picked for the next selection.
+    picked: Option<[NodeId; 2]>,
     /// How often what happened.
     pub counts: Counts,
     /// What the last resort did.
@@ -108,11 +115,12 @@ pub struct Converter<'a> {
 }
 
 impl<'a> Converter<'a> {
-    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2).
-    pub fn new(mesh: Mesh, source: &'a dyn MetricSource, parameters: Parameters) -> Self {
+    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is lent
+    /// (`&sizing`) or shared (`Arc<Sizing>`).
+    pub fn new(mesh: Mesh, source: impl MetricSource + Send + Sync + 'a, parameters: Parameters) -> Self {
         Converter {
             mesh,
-            source,
+            source: Arc::new(source),
             parameters,
             queue: None,
             phase: Phase::Select,
@@ -120,6 +128,7 @@ impl<'a> Converter<'a> {
             undone: None,
             step_mark: Mark::default(),
             second_pass: false,
+            picked: None,
             counts: Counts::default(),
             last_resort: Outcome::default(),
             finished: Finished::default(),
@@ -142,6 +151,43 @@ impl<'a> Converter<'a> {
         self.queue = None;
     }
 
+    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its event says
+    /// so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
+    ///
+    /// # Errors
+    /// Where there is no such front segment now.
+    pub fn override_base(&mut self, a: NodeId, b: NodeId) -> Result<(), Fault> {
+        self.check_base(a, b)?;
+        self.pick(a, b);
+        Ok(())
+    }
+
+    /// Whether there is a front segment from A to B.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn check_base(&self, a: NodeId, b: NodeId) -> Result<(), Fault> {
+        let none = || {
+            Fault::new(format!("There is no front segment from node {} to node {}", a.0, b.0))
+                .remedy("Name its nodes so that the live triangles lie to its left")
+        };
+        self.front_segment(a, b).map(drop).ok_or_else(none)
+    }
+
+    /// As [`Converter::override_base`], without asking whether there is such a segment now.
+    pub(in crate::core) fn pick(&mut self, a: NodeId, b: NodeId) {
+        self.picked = Some([a, b]);
+    }
+
+    /// The base segment that a person picked for the next selection.
+    pub fn picked(&self) -> Option<[NodeId; 2]> {
+        self.picked
+    }
+
+    fn front_segment(&self, a: NodeId, b: NodeId) -> Option<HalfEdgeId> {
+        if self.mesh.has_node(a) && self.mesh.has_node(b) { self.mesh.front_between(a, b) } else { None }
+    }
+
     /// Keeps from now on what [`step_back`](Converter::step_back) needs.
     pub fn keep_history(&mut self) {
         self.mesh.commit();
@@ -157,9 +203,65 @@ impl<'a> Converter<'a> {
         }
         self.phase = record.phase;
         self.second_pass = record.second_pass;
+        self.picked = record.picked;
         self.counts = record.counts;
         self.queue = None;
         true
+    }
+
+    /// Number of steps that can be taken back.
+    pub fn history_len(&self) -> usize {
+        self.history.as_ref().map_or(0, Vec::len)
+    }
+
+    /// Bytes that the history takes: records, journal, and what rollbacks need to be taken back. Linear in its length.
+    pub fn history_bytes(&self) -> usize {
+        let records = self.history.as_ref().map_or(0, |records| {
+            let redo = |record: &Record| match &record.undo {
+                Undo::Redo(undone) => undone.capacity() * size_of::<Undone>(),
+                Undo::Journal(_) => 0,
+            };
+            records.capacity() * size_of::<Record>() + records.iter().map(redo).sum::<usize>()
+        });
+        records + self.mesh.journal().bytes()
+    }
+
+    /// Forgets the older steps of the history, so that about `keep` can still be taken back: a few more where an attempt
+    /// was under way.
+    pub fn shorten_history(&mut self, keep: usize) {
+        let Some(records) = &mut self.history else { return };
+        // Later steps take back no further than to the selection at which nothing was under way.
+        let last = records.len().saturating_sub(keep);
+        let at_rest = |record: &Record| record.phase.mark().is_none();
+        let Some(first) = (0..=last).rev().find(|&i| records.get(i).is_some_and(at_rest)) else { return };
+        let Undo::Journal(mark) = records[first].undo else { return };
+        records.drain(..first);
+        records.shrink_to(2 * records.len());
+        self.mesh.forget_before(mark);
+    }
+
+    /// The ids of what the last step changed, from the history; false where there is none.
+    pub(in crate::core) fn note_last_step(&self, touched: &mut Touched) -> bool {
+        let Some(record) = self.history.as_ref().and_then(|records| records.last()) else { return false };
+        match &record.undo {
+            Undo::Journal(mark) => touched.note_since(&self.mesh, *mark),
+            Undo::Redo(undone) => touched.note_undone(&self.mesh, undone),
+        }
+        true
+    }
+
+    /// Everything but the mesh and caches, history left out: with the mesh, a state to go on from.
+    pub(in crate::core) fn without_mesh(&mut self) -> Converter<'a> {
+        let (mesh, queue) = (std::mem::take(&mut self.mesh), self.queue.take());
+        let history = self.history.take();
+        let rest = self.clone();
+        (self.mesh, self.queue, self.history) = (mesh, queue, history);
+        rest
+    }
+
+    /// The state that [`without_mesh`](Converter::without_mesh) was made of, on its mesh.
+    pub(in crate::core) fn with_mesh(&self, mesh: Mesh) -> Converter<'a> {
+        Converter { mesh, ..self.clone() }
     }
 
     /// Appends the canonical serialisation of the state: mesh, front, phase and what the next steps depend on. Equal
@@ -167,7 +269,8 @@ impl<'a> Converter<'a> {
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         self.mesh.write_state(bytes);
         bytes.extend_from_slice(
-            format!("{:?} {:?} {:?}", self.phase.plain(), self.second_pass, self.parameters).as_bytes(),
+            format!("{:?} {:?} {:?} {:?}", self.phase.plain(), self.second_pass, self.picked, self.parameters)
+                .as_bytes(),
         );
     }
 
@@ -208,6 +311,7 @@ impl<'a> Converter<'a> {
         let before = self.history.is_some().then(|| Record {
             phase: self.phase.clone(),
             second_pass: self.second_pass,
+            picked: self.picked,
             counts: self.counts,
             undo: Undo::Journal(self.mesh.mark()),
         });
@@ -226,7 +330,7 @@ impl<'a> Converter<'a> {
             Phase::Seam { nodes } => self.step_seam(nodes)?,
             Phase::Close { waiting, left } => self.step_close(waiting, left)?,
             Phase::PostProcess => {
-                self.finished = finish(&mut self.mesh, self.source, self.history.is_some());
+                self.finished = finish(&mut self.mesh, &*self.source, self.history.is_some());
                 (Phase::Done, Event::PostProcessed)
             }
             Phase::Done => (Phase::Done, Event::Finished),
@@ -259,8 +363,16 @@ impl<'a> Converter<'a> {
             // Nobody steps back: what was done stays done, and its memory is free again.
             self.mesh.commit();
         }
+        let picked = match self.picked.take() {
+            Some([a, b]) => match self.front_segment(a, b) {
+                Some(h) => Some(Segment::measure(&self.mesh, h, &self.parameters)),
+                None => return Ok((Phase::Select, Event::PickLost { a, b })),
+            },
+            None => None,
+        };
         let mut queue = self.take_queue();
         let choice = queue.select(&self.mesh, &self.parameters);
+        let choice = picked.map_or(choice, |segment| Some(Choice::of_person(segment, choice, &self.parameters)));
         let taken_up = choice.is_none() && !self.second_pass && queue.take_up_all(&mut self.mesh, &self.parameters);
         self.queue = Some(queue);
         let Some(Choice { segment, h_min, within_reach }) = choice else {
@@ -293,6 +405,7 @@ impl<'a> Converter<'a> {
                 length_physical: segment.length_physical,
                 level: segment.level,
                 within_reach,
+                picked: picked.is_some(),
             },
         ))
     }
@@ -502,7 +615,7 @@ impl<'a> Converter<'a> {
         }
         let mut total = Outcome::default();
         for component in left {
-            let outcome = last_resort(&mut self.mesh, &component.triangles, self.source)
+            let outcome = last_resort(&mut self.mesh, &component.triangles, &*self.source)
                 .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
             total = total.plus(&outcome);
         }

@@ -74,6 +74,15 @@ pub enum Event {
         level: u16,
         /// Whether it is within c Hmin.
         within_reach: bool,
+        /// Whether a person picked it, whatever its rank.
+        picked: bool,
+    },
+    /// The front segment that a person picked is not on the front any more; the next step selects by the rules.
+    PickLost {
+        /// Its left node.
+        a: NodeId,
+        /// Its right node.
+        b: NodeId,
     },
     /// The neighbouring front segment is the side (side edges ii).
     SideIsFront {
@@ -221,10 +230,36 @@ pub enum Event {
 }
 
 impl Event {
+    /// All kinds, in the order of the variants.
+    pub const KINDS: &[&str] = &[
+        "base_selected",
+        "pick_lost",
+        "side_is_front",
+        "side_chosen",
+        "side_swapped",
+        "side_divided",
+        "top_swapped",
+        "top_found",
+        "node_removed",
+        "formed",
+        "rolled_back",
+        "deferred",
+        "enhanced",
+        "smoothed",
+        "seamed",
+        "split",
+        "closed",
+        "second_pass",
+        "last_resort",
+        "post_processed",
+        "finished",
+    ];
+
     /// The kind, as reports and breakpoints name it.
     pub fn kind(&self) -> &'static str {
         match self {
             Event::BaseSelected { .. } => "base_selected",
+            Event::PickLost { .. } => "pick_lost",
             Event::SideIsFront { .. } => "side_is_front",
             Event::SideChosen { .. } => "side_chosen",
             Event::SideSwapped { .. } => "side_swapped",
@@ -290,7 +325,9 @@ mod tests {
                 length_physical: 1.0,
                 level: 0,
                 within_reach: true,
+                picked: false,
             },
+            Event::PickLost { a: node, b: node },
             Event::SideIsFront { side, node },
             Event::SideSwapped { side, node, angle: 1.0, deviation: 0.1, instead_of: 0.2 },
             Event::SideDivided { side, node, length: 1.0 },
@@ -311,6 +348,7 @@ mod tests {
         ];
         for event in events {
             assert_eq!(serde_json::to_value(event).unwrap()["kind"], event.kind());
+            assert!(Event::KINDS.contains(&event.kind()), "{} is missing in the list of all kinds", event.kind());
         }
     }
 }

@@ -98,7 +98,7 @@ impl Converter<'_> {
             }
             let buried = self.mesh.fan(node).all(|h| !self.mesh.is_triangle(h.element()));
             if self.parameters.placement {
-                moved += u8::from(buried && energy::relax(&mut self.mesh, node, self.source) > 0.0);
+                moved += u8::from(buried && energy::relax(&mut self.mesh, node, &*self.source) > 0.0);
             } else {
                 moved += u8::from(self.smooth_by_area(node));
             }

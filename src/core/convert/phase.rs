@@ -143,6 +143,19 @@ impl Phase {
         matches!(self, Phase::Enhance { .. } | Phase::Smooth { .. } | Phase::Seam { .. })
     }
 
+    /// The mark of the journal to which the work at hand may be taken back; `None` where nothing is under way.
+    pub fn mark(&self) -> Option<Mark> {
+        match self {
+            Phase::PrepareSide { attempt, .. }
+            | Phase::DivideSide { attempt, .. }
+            | Phase::RecoverTop { attempt, .. }
+            | Phase::Form { attempt, .. }
+            | Phase::Retry { attempt, .. } => Some(attempt.mark),
+            Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => Some(*mark),
+            Phase::Select | Phase::Seam { .. } | Phase::Close { .. } | Phase::PostProcess | Phase::Done => None,
+        }
+    }
+
     /// The phase without the marks of the journal, which are history and not state.
     #[must_use]
     pub fn plain(&self) -> Phase {

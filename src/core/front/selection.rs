@@ -33,6 +33,15 @@ pub struct Choice {
     pub within_reach: bool,
 }
 
+impl Choice {
+    /// The choice of a segment that a person picked in place of what the rules choose.
+    pub fn of_person(segment: Segment, by_rule: Option<Choice>, parameters: &Parameters) -> Choice {
+        let h_min = by_rule.map_or(segment.h_value, |choice| choice.h_min);
+        let within_reach = segment.class < 4 && segment.window(parameters.selection_window) < parameters.c * h_min;
+        Choice { segment, h_min, within_reach }
+    }
+}
+
 /// All front segments, ordered for selection.
 #[derive(Clone, Debug, Default)]
 pub struct Queue {

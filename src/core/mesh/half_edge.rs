@@ -7,7 +7,11 @@
 //! All changes go through the private setters at the end, which write the old value into the journal. Public ways to
 //! change are the operators only (`operators.rs`).
 
+mod difference;
+
 use glam::DVec2;
+
+pub use self::difference::{Difference, FreeLists};
 
 use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
 use super::order::{grouped, hilbert_order};
@@ -482,6 +486,11 @@ impl Mesh {
     /// Keeps what was done and forgets how it was before.
     pub fn commit(&mut self) {
         self.journal.forget();
+    }
+
+    /// Keeps what was done before the mark and forgets how it was before.
+    pub(in crate::core) fn forget_before(&mut self, mark: Mark) {
+        self.journal.forget_before(mark);
     }
 
     /// Takes back everything that was done after the mark, exactly: the arrays are the same to the last byte.

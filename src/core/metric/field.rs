@@ -1,5 +1,7 @@
 //! Metric fields: what gives a tensor at a place (formula, uniform, table, boundary layer, intersection).
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::boundary_layer::BoundaryLayer;
@@ -53,6 +55,20 @@ pub trait MetricSource {
     /// # Errors
     /// Where the field is not positive definite and finite there (boxed: the happy path is hot).
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>>;
+}
+
+impl<T: MetricSource + ?Sized> MetricSource for &T {
+    #[inline]
+    fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
+        (**self).metric(uv)
+    }
+}
+
+impl<T: MetricSource + ?Sized> MetricSource for Arc<T> {
+    #[inline]
+    fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
+        (**self).metric(uv)
+    }
 }
 
 /// One field as a case gives it; several are intersected.

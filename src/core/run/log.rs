@@ -1,0 +1,210 @@
+//! What every step did, in little memory: its kind and the quadrilaterals that stand after it for all steps, the whole event
+//! for as many as the budget allows (the others are had again by replay).
+
+use crate::core::convert::event::Event;
+
+/// Steps of a chunk of events.
+const CHUNK: usize = 4096;
+/// Set beside the kind where local post-processing is done after the step.
+const AT_REST: u8 = 0x80;
+
+/// The steps of a run as far as they are known. Step s leads from state s - 1 to state s; the first is 1.
+#[derive(Clone, Debug, Default)]
+pub struct Log {
+    /// Index into [`Event::KINDS`], with [`AT_REST`].
+    kinds: Vec<u8>,
+    nq: Vec<u32>,
+    chunks: Vec<Option<Box<[Event]>>>,
+    /// The events of the last chunk, which is not full yet.
+    tail: Vec<Event>,
+    /// Kept chunks before this one were given up first.
+    given_up: usize,
+}
+
+impl Log {
+    /// The last step that is known.
+    pub fn known(&self) -> u64 {
+        self.kinds.len() as u64
+    }
+
+    /// The kind of what a step did, from 1 to [`known`](Log::known).
+    pub fn kind(&self, step: u64) -> Option<&'static str> {
+        let index = usize::try_from(step.checked_sub(1)?).ok()?;
+        self.kinds.get(index).map(|kind| Event::KINDS[usize::from(kind & !AT_REST)])
+    }
+
+    /// The number of quadrilaterals that stand after a step; 0 at the beginning.
+    pub fn nq(&self, step: u64) -> u64 {
+        let index = usize::try_from(step).unwrap_or(usize::MAX).min(self.nq.len());
+        index.checked_sub(1).map_or(0, |index| u64::from(self.nq[index]))
+    }
+
+    /// Whether no local post-processing (4.3.6) is under way after a step.
+    pub fn is_at_rest(&self, step: u64) -> bool {
+        match step.checked_sub(1) {
+            None => true,
+            Some(index) => self.kinds.get(index as usize).is_some_and(|kind| kind & AT_REST != 0),
+        }
+    }
+
+    /// What a step did; `None` where the step is not known, or its event was given up for memory.
+    pub fn event(&self, step: u64) -> Option<&Event> {
+        let index = usize::try_from(step.checked_sub(1)?).ok()?;
+        match self.chunks.get(index / CHUNK) {
+            Some(chunk) => chunk.as_ref()?.get(index % CHUNK),
+            None => self.tail.get(index - CHUNK * self.chunks.len()),
+        }
+    }
+
+    /// Appends what a step did.
+    ///
+    /// # Panics
+    /// Where the kind is missing in [`Event::KINDS`].
+    pub(super) fn push(&mut self, event: Event, nq: u64, at_rest: bool) {
+        let kind = Event::KINDS.iter().position(|&kind| kind == event.kind()).expect("KINDS lists all kinds") as u8;
+        self.kinds.push(kind | if at_rest { AT_REST } else { 0 });
+        self.nq.push(u32::try_from(nq).unwrap_or(u32::MAX));
+        self.push_event(event);
+    }
+
+    fn push_event(&mut self, event: Event) {
+        self.tail.push(event);
+        if self.tail.len() == CHUNK {
+            self.chunks.push(Some(std::mem::take(&mut self.tail).into()));
+        }
+    }
+
+    /// Appends the steps that follow.
+    pub(super) fn append(&mut self, later: Log) {
+        self.kinds.extend(later.kinds);
+        self.nq.extend(later.nq);
+        for event in later.chunks.into_iter().flatten().flatten().chain(later.tail) {
+            self.push_event(event);
+        }
+    }
+
+    /// Forgets all steps after this one.
+    pub(super) fn truncate(&mut self, step: u64) {
+        let count = usize::try_from(step).unwrap_or(usize::MAX).min(self.kinds.len());
+        self.kinds.truncate(count);
+        self.nq.truncate(count);
+        if count < CHUNK * self.chunks.len() {
+            let partial = self.chunks.swap_remove(count / CHUNK);
+            self.chunks.truncate(count / CHUNK);
+            // Where its events were given up, those that are left of the chunk are given up too: by an empty chunk they
+            // would be taken for others.
+            self.tail = match partial {
+                Some(chunk) => chunk[..count % CHUNK].to_vec(),
+                None => return self.truncate((count - count % CHUNK) as u64),
+            };
+        } else {
+            self.tail.truncate(count - CHUNK * self.chunks.len());
+        }
+        self.given_up = self.given_up.min(self.chunks.len());
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        let kept = self.chunks.iter().flatten().count() * CHUNK + self.tail.capacity();
+        self.kinds.capacity() + 4 * self.nq.capacity() + kept * size_of::<Event>() + 16 * self.chunks.capacity()
+    }
+
+    /// Gives events up, the oldest first, until no more than `budget` bytes are taken, as far as that is possible.
+    pub(super) fn give_up(&mut self, budget: usize) {
+        while self.bytes() > budget && self.given_up < self.chunks.len() {
+            self.chunks[self.given_up] = None;
+            self.given_up += 1;
+        }
+    }
+
+    /// The steps whose events stand in one chunk with that of `step`: from, to (the last one).
+    pub(super) fn chunk_of(&self, step: u64) -> (u64, u64) {
+        let first = step.saturating_sub(1) / CHUNK as u64 * CHUNK as u64;
+        (first + 1, self.known().min(first + CHUNK as u64))
+    }
+
+    /// The next step after `from` for which `holds`; kinds by their index in [`Event::KINDS`].
+    pub fn next_of(&self, from: u64, holds: impl Fn(&'static str) -> bool) -> Option<u64> {
+        let wanted = wanted(holds);
+        let first = usize::try_from(from).ok()?;
+        let found = self.kinds.get(first..)?.iter().position(|kind| wanted[usize::from(kind & !AT_REST)])?;
+        Some(from + found as u64 + 1)
+    }
+
+    /// The last step before or at `until` for which `holds`.
+    pub fn last_of(&self, until: u64, holds: impl Fn(&'static str) -> bool) -> Option<u64> {
+        let wanted = wanted(holds);
+        let count = usize::try_from(until).unwrap_or(usize::MAX).min(self.kinds.len());
+        let found = self.kinds[..count].iter().rposition(|kind| wanted[usize::from(kind & !AT_REST)])?;
+        Some(found as u64 + 1)
+    }
+
+    /// The first step of `steps` at whose end at least `nq` quadrilaterals stand and no local post-processing is under way.
+    pub fn first_with(&self, nq: u64, after: u64) -> Option<u64> {
+        let first = usize::try_from(after).ok()?;
+        let numbers = self.nq.get(first..)?.iter().zip(&self.kinds[first..]);
+        let found = numbers.into_iter().position(|(&n, kind)| u64::from(n) >= nq && kind & AT_REST != 0)?;
+        Some(after + found as u64 + 1)
+    }
+}
+
+fn wanted(holds: impl Fn(&'static str) -> bool) -> [bool; 128] {
+    let mut wanted = [false; 128];
+    for (i, kind) in Event::KINDS.iter().enumerate() {
+        wanted[i] = holds(kind);
+    }
+    wanted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::mesh::ids::NodeId;
+
+    fn event(i: u64) -> Event {
+        if i.is_multiple_of(10) { Event::SecondPass } else { Event::Deferred { a: NodeId(i as u32), b: NodeId(0) } }
+    }
+
+    fn log(steps: u64) -> Log {
+        let mut log = Log::default();
+        for i in 1..=steps {
+            log.push(event(i), i / 10, i % 10 > 4);
+        }
+        log
+    }
+
+    #[test]
+    fn steps_are_found_by_kind_and_by_number_of_quadrilaterals() {
+        let log = log(10_000);
+        assert_eq!(log.next_of(0, |kind| kind == "second_pass"), Some(10));
+        assert_eq!(log.next_of(10, |kind| kind == "second_pass"), Some(20));
+        assert_eq!(log.last_of(10, |kind| kind == "second_pass"), Some(10));
+        assert_eq!(log.last_of(9, |kind| kind == "second_pass"), None);
+        assert_eq!(log.next_of(10_000, |_| true), None);
+        assert_eq!((log.nq(0), log.nq(25), log.nq(99_999)), (0, 2, 1000));
+        assert_eq!(log.first_with(3, 0), Some(35));
+        assert_eq!(log.first_with(3, 36), Some(37));
+        assert_eq!((log.kind(0), log.kind(10), log.kind(11)), (None, Some("second_pass"), Some("deferred")));
+    }
+
+    #[test]
+    fn events_are_those_of_their_step_after_appending_truncating_and_giving_up() {
+        let mut whole = log(9000);
+        let mut later = Log::default();
+        for i in 9001..=13_000 {
+            later.push(event(i), i / 10, true);
+        }
+        whole.append(later);
+        assert!((1..=13_000).all(|i| whole.event(i) == Some(&event(i))));
+        whole.truncate(8195);
+        assert_eq!((whole.known(), whole.event(8196)), (8195, None));
+        assert!((1..=8195).all(|i| whole.event(i) == Some(&event(i))));
+        whole.give_up(0);
+        assert_eq!((whole.event(4096), whole.event(8192), whole.event(8193)), (None, None, Some(&event(8193))));
+        assert!(whole.bytes() < 16_384 * 8, "{}", whole.bytes());
+        whole.truncate(5000);
+        assert_eq!(whole.known(), 4096, "what is left of a chunk without events is not kept");
+        assert_eq!(whole.chunk_of(4097), (4097, 4096));
+        assert_eq!(whole.chunk_of(4096), (1, 4096));
+    }
+}

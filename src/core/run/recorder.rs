@@ -1,0 +1,139 @@
+//! Running ahead: a converter at the last known step that goes on, writes the log and sets keyframes. It may be lent to
+//! another thread, and hands over what it found in stretches.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::keyframes::{Keyframe, Keyframes};
+use super::log::Log;
+use super::run::Run;
+use crate::core::convert::converter::Converter;
+use crate::core::convert::phase::Phase;
+use crate::core::convert::walk::standing;
+use crate::core::fault::Fault;
+use crate::core::mesh::half_edge::FreeLists;
+use crate::core::mesh::touched::Touched;
+
+/// A keyframe is set at the first chance after so many steps: replaying them takes about a millisecond.
+pub(super) const SPACING: u64 = 1024;
+
+/// A converter that runs ahead.
+pub struct Recorder {
+    run: Arc<Run>,
+    converter: Converter<'static>,
+    step: u64,
+    /// Which edits it knows: what it finds is of use only to a history that knows the same.
+    edition: u64,
+    /// What was touched since the last keyframe, and the free lists of then.
+    touched: Touched,
+    free: FreeLists,
+    keyframe: u64,
+    /// Bytes of differences since the last whole mesh.
+    since_whole: usize,
+}
+
+/// What a stretch of steps did.
+pub struct Stretch {
+    pub(super) from: u64,
+    pub(super) edition: u64,
+    pub(super) log: Log,
+    pub(super) keyframes: Vec<Keyframe>,
+    pub(super) ended: bool,
+    pub(super) fault: Option<Fault>,
+}
+
+impl Stretch {
+    /// The last step of it.
+    pub fn until(&self) -> u64 {
+        self.from + self.log.known()
+    }
+
+    /// Whether nothing comes after it: the conversion is done, or cannot go on.
+    pub fn is_last(&self) -> bool {
+        self.ended || self.fault.is_some()
+    }
+}
+
+impl Recorder {
+    /// A recorder that goes on from the last keyframe.
+    pub(super) fn resume(run: Arc<Run>, keyframes: &Keyframes, edition: u64) -> Result<Recorder, Fault> {
+        let frames = keyframes.frames();
+        let last = frames.len() - 1;
+        let (mut converter, step) = (keyframes.state(last), frames[last].step);
+        let free = converter.mesh.free_lists();
+        run.enter(&mut converter, step)?;
+        let touched = Touched::default();
+        Ok(Recorder { run, converter, step, edition, touched, free, keyframe: step, since_whole: 0 })
+    }
+
+    /// The last step that it did.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// Whether it knows the edits of this edition.
+    pub(super) fn is_of(&self, edition: u64) -> bool {
+        self.edition == edition
+    }
+
+    /// Whether nothing is left to do.
+    pub fn is_done(&self) -> bool {
+        *self.converter.phase() == Phase::Done
+    }
+
+    /// Goes on for so many steps, or until it is done, cannot go on, or is told to stop.
+    pub fn run(&mut self, steps: u64, stop: &AtomicBool) -> Stretch {
+        let mut stretch = Stretch {
+            from: self.step,
+            edition: self.edition,
+            log: Log::default(),
+            keyframes: Vec::new(),
+            ended: false,
+            fault: None,
+        };
+        for _ in 0..steps {
+            if self.is_done() || stop.load(Ordering::Relaxed) {
+                break;
+            }
+            if let Err(fault) = self.advance(&mut stretch) {
+                stretch.fault = Some(fault);
+                break;
+            }
+        }
+        stretch.ended = self.is_done();
+        stretch
+    }
+
+    fn advance(&mut self, stretch: &mut Stretch) -> Result<(), Fault> {
+        let mark = self.converter.mesh.mark();
+        let event = self.converter.step()?;
+        self.step += 1;
+        self.touched.note_since(&self.converter.mesh, mark);
+        let phase = self.converter.phase();
+        let at_rest = !phase.is_local_post_processing();
+        let is_due = self.step >= self.keyframe + SPACING || *phase == Phase::Done;
+        let can_be_kept = phase.mark().is_none();
+        stretch.log.push(event, standing(&self.converter), at_rest);
+        if is_due && can_be_kept {
+            let keyframe = self.keyframe();
+            stretch.keyframes.push(keyframe);
+        }
+        self.run.make_edits(&mut self.converter, self.step)
+    }
+
+    fn keyframe(&mut self) -> Keyframe {
+        self.converter.mesh.commit();
+        let difference = self.converter.mesh.difference(&self.touched, &self.free);
+        self.since_whole += difference.bytes();
+        // Applying differences shall not cost much more than copying a mesh.
+        let is_whole = self.since_whole > self.converter.mesh.bytes() / 2;
+        if is_whole {
+            self.since_whole = 0;
+        }
+        let whole = is_whole.then(|| self.converter.mesh.clone());
+        self.touched.clear();
+        self.free = self.converter.mesh.free_lists();
+        self.keyframe = self.step;
+        Keyframe::after(self.step, self.converter.without_mesh(), difference, whole)
+    }
+}
