@@ -16,12 +16,15 @@ use crate::core::io::format::Format;
     after_help = "Exit codes: 0 done; 1 a checked mesh falls short; 2 bad input or usage; 130 stopped by Ctrl-C."
 )]
 pub(super) struct Cli {
+    /// Without a command the window opens on example 1
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Option<Command>,
 }
 
 #[derive(Subcommand)]
 pub(super) enum Command {
+    /// Open the window: step through a conversion, forward and back
+    Open(OpenArguments),
     /// Make an all-quadrilateral mesh of a case or of a triangle mesh
     Convert(ConvertArguments),
     /// Make the triangles that a conversion starts from, with their metric
@@ -75,6 +78,13 @@ pub(super) struct Destination {
     /// A picture (.svg), or - for standard output
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<Target>,
+}
+
+#[derive(Args)]
+pub(super) struct OpenArguments {
+    /// A built-in case, a case file (.toml) or a mesh
+    #[arg(value_name = "CASE|MESH", default_value = "example1")]
+    pub input: String,
 }
 
 #[derive(Args)]
@@ -172,6 +182,9 @@ mod tests {
             "quadfront check quads.msh --seams --branching",
             "quadfront render example1 -o example1.svg",
             "quadfront cases --json",
+            "quadfront",
+            "quadfront open",
+            "quadfront open plate.toml",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }

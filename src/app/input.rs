@@ -101,6 +101,18 @@ pub(super) fn read(source: &Source) -> Result<Input, Fault> {
     Ok(Input { case, _folder })
 }
 
+/// The case of a file: a case file, or a mesh as one.
+#[cfg(feature = "window")]
+pub(super) fn case_of(path: &Path) -> Result<Case, Fault> {
+    match kind(&path.display().to_string(), None)? {
+        Kind::File(path, InputFormat::Case) => Case::read(&path),
+        Kind::File(path, InputFormat::Mesh(_)) => Ok(Case::of_mesh(path, None)),
+        Kind::BuiltIn | Kind::StandardInput(_) => {
+            Err(Fault::new("This is no file").at(path.display().to_string()).remedy("Name a case or a mesh"))
+        }
+    }
+}
+
 fn read_plain(source: &Source) -> Result<Input, Fault> {
     let name = source.input.as_str();
     let alone = |case| Input { case, _folder: None };

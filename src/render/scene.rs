@@ -9,6 +9,7 @@ mod overlay;
 
 use glam::{DVec2, DVec3};
 
+pub use mesh::{angles, metric_area};
 pub use overlay::{Decision, Outlined, Overlay, front};
 
 use super::colour_map::ColourMap;

@@ -99,7 +99,7 @@ impl App {
                 }
             }
         }
-        let dropped = context.input(|input| input.raw.dropped_files.iter().find_map(|file| file.path.clone()));
+        let dropped = context.input(|input| input.raw.dropped_files.iter().next().map(|file| file.path().to_path_buf()));
         if let Some(path) = dropped {
             self.commands.push(Command::Open(Source::File(path)));
         }

@@ -4,10 +4,11 @@ use std::time::Instant;
 
 use super::command::Command;
 use super::files;
-use super::session::{Edit, Goal, Source};
+use super::session::{Goal, Source};
 use super::state::{Kept, Look, Over, State};
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
+use crate::core::run::run::{Edit, EditKind};
 use crate::render::scene::Layers;
 
 /// How many changes can be taken back.
@@ -33,8 +34,7 @@ impl State {
             Command::ShowDecision => self.look = Some(Look::Decision),
             Command::Set(key, value) => self.set(key, value),
             Command::ResetParameters => {
-                let step = self.moment.as_ref().map_or(0, |moment| moment.step);
-                self.keep(|kept| kept.edits.retain(|edit| edit.step > step));
+                self.keep(|kept| kept.edits.retain(|edit| !matches!(edit.kind, EditKind::Parameter { .. })));
             }
             Command::Layer(k) => self.keep(|kept| *layer(&mut kept.layers, k) = !*layer(&mut kept.layers, k)),
             Command::ColourBy(by) => self.keep(|kept| kept.colour_by = by),
@@ -110,18 +110,21 @@ impl State {
     }
 
     fn set(&mut self, key: &'static str, value: String) {
-        let Some(moment) = &self.moment else { return };
-        let (step, mut parameters) = (moment.step, moment.parameters.clone());
-        if let Err(fault) = parameters.set(key, &value) {
-            return self.complain(&fault);
-        }
-        if moment.parameters.text_of(key) == parameters.text_of(key) {
+        let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return };
+        if self.parameter(key).as_ref() == Some(&value) {
             return;
         }
+        match EditKind::parameter(key, &value) {
+            Ok(kind) => self.edit(Edit { step, kind }),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    fn edit(&mut self, edit: Edit) {
         self.keep(|kept| {
-            kept.edits.retain(|edit| edit.step != step || edit.key != key);
-            kept.edits.push(Edit { step, key: key.to_owned(), value });
-            kept.edits.sort_by_key(|edit| edit.step);
+            kept.edits.retain(|old| old.step != edit.step || !edit.kind.replaces(&old.kind));
+            let place = kept.edits.partition_point(|old| old.step <= edit.step);
+            kept.edits.insert(place, edit);
         });
     }
 
@@ -133,7 +136,17 @@ impl State {
         self.keep(|kept| kept.breakpoints.push((text, true)));
     }
 
-    fn to_breakpoint(&mut self, _forward: bool) {}
+    fn to_breakpoint(&mut self, forward: bool) {
+        let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return };
+        let on = self.kept.breakpoints.iter().filter(|b| b.1).filter_map(|b| self.hits.get(&b.0)?.as_ref().ok());
+        let hits = on.flatten().copied();
+        let next = if forward { hits.filter(|s| *s > step).min() } else { hits.filter(|s| *s < step).max() };
+        match (next, forward) {
+            (Some(step), _) => self.go(Goal::Step(step)),
+            (None, true) => self.notice("No breakpoint is met after this step.".to_owned()),
+            (None, false) => self.notice("No breakpoint is met before this step.".to_owned()),
+        }
+    }
 
     fn bookmark(&mut self) {
         let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return };
@@ -181,6 +194,16 @@ impl State {
         let text = self.field.trim().to_owned();
         self.overlay = Over::Nothing;
         self.open(Source::named(&text));
+    }
+
+    /// Writes the state at hand as vectors and, drawn from those, as pixels.
+    fn export(&mut self) {
+        let Some((moment, opened)) = self.moment.clone().zip(self.opened.clone()) else { return };
+        let stem = format!("{}-step-{}", opened.case.name, moment.step);
+        match files::export(&moment, &opened, &stem) {
+            Ok(names) => self.notice(format!("The figure was saved as {names}.")),
+            Err(fault) => self.complain(&fault),
+        }
     }
 
     fn ask_for_file(&mut self) {

@@ -7,9 +7,10 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::ColorImage;
 
-use super::session::{Source, Wake};
+use super::session::{Moment, Opened, Source, Wake};
 use crate::core::fault::Fault;
 use crate::core::io::{built_in, save};
+use crate::render::vector::svg;
 
 /// A dialog that has not answered for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -89,6 +90,21 @@ pub fn free_path(stem: &str, extension: &str) -> PathBuf {
         path = PathBuf::from(format!("{stem}-{number}.{extension}"));
     }
     path
+}
+
+/// Writes a state as a figure (SVG); its name, for people.
+///
+/// # Errors
+/// What the system says.
+pub fn export(moment: &Moment, opened: &Opened, stem: &str) -> Result<String, Fault> {
+    let picture = crate::render::picture::Picture {
+        title: opened.case.title.clone(),
+        description: format!("{}, step={}", opened.case.name, moment.step),
+        ..crate::render::picture::Picture::of_state(&moment.mesh, &moment.parameters, moment.phase.base())
+    };
+    let path = free_path(stem, "svg");
+    save::save(&path, |out| out.write_all(svg::write(&picture, svg::COLUMN).as_bytes()))?;
+    Ok(path.display().to_string())
 }
 
 /// Writes a picture of the window as PNG.

@@ -157,7 +157,7 @@ impl Layout {
         }
         let root = tiles.insert_container(Container::Linear(row));
         self.middle = Some(view);
-        self.tree = Some((Tree::new("docks", root, tiles), room));
+        self.tree = Some((Tree::new(egui::Id::unique("docks"), root, tiles), room));
     }
 
     /// After a change of the window's size the sides are as wide as before.
@@ -226,7 +226,7 @@ impl Behavior<Pane> for Docks<'_> {
         let text = ui.painter().layout_no_wrap(name.to_owned(), font, colour);
         let (_, rect) = ui.allocate_space(Vec2::new(text.size().x + 20.0, ui.available_height()));
         let response = ui.interact(rect, id, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::selected(egui::accesskit::Role::Tab, true, tab.active, name));
+        response.widget_info(|| WidgetInfo::selected(egui::Role::Tab, true, tab.active, name));
         if ui.is_rect_visible(rect) && !tab.is_being_dragged {
             let colour = if response.hovered() { ink(self.palette.strong) } else { colour };
             let at = egui::Align2::CENTER_CENTER.align_size_within_rect(text.size(), rect).min;

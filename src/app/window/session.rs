@@ -1,4 +1,9 @@
 //! The run at work, on threads of its own: the window asks for a state and is told when it is there, so that it never waits.
+//!
+//! One thread has the history and goes where it is asked to; another runs ahead with the history's recorder and hands over
+//! what it found. A goal that lies beyond what is known waits until that thread has come so far, or until it is stopped.
+
+mod goal;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -6,8 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-use crate::core::convert::conversion::{Background, background};
-use crate::core::convert::converter::{Converter, Counts};
+pub use goal::Goal;
+
+use crate::core::convert::conversion::Background;
+use crate::core::convert::converter::Counts;
 use crate::core::convert::event::Event;
 use crate::core::convert::parameters::Parameters;
 use crate::core::convert::phase::Phase;
@@ -18,40 +25,22 @@ use crate::core::io::case::Case;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::ElementId;
 use crate::core::progress::{Stage, Watch};
+use crate::core::run::history::{BUDGET, Changes, History};
+use crate::core::run::recorder::{Recorder, Stretch};
+use crate::core::run::run::{Edit, Run};
 use crate::render::scene;
 
 /// How often progress is told.
 const EVERY: Duration = Duration::from_millis(50);
+/// Steps that the recorder does before it hands them over: few at first, since somebody may be waiting.
+const STRETCH: [u64; 2] = [64, 8192];
 
-/// Where to go.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Goal {
-    /// To a step.
-    Step(u64),
-    /// So many steps on, or back.
-    Steps(i64),
-    /// So many quadrilaterals on, or back: until they stand and their local post-processing is done.
-    Quads(i64),
-    /// To where so many quadrilaterals stand.
-    ToQuads(u64),
-    /// To the next event of a kind, or the one before.
-    Kind(&'static str, bool),
-    /// To the end.
-    End,
-}
-
-/// A parameter that a person changed: from this step on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Edit {
-    pub step: u64,
-    pub key: String,
-    pub value: String,
-}
-
-/// What is asked of a session.
+/// What is asked of a session, by the window or by its own recorder.
 enum Ask {
     Go(Goal),
     Edits(Vec<Edit>),
+    Found(Stretch, Recorder),
+    Gone,
 }
 
 /// What a session tells.
@@ -60,14 +49,12 @@ pub enum Told {
     Progress { words: &'static str, done: u64, total: u64 },
     /// The case stands with its background mesh.
     Opened(Arc<Opened>),
-    /// A state is there.
-    Moment(Arc<Moment>),
-    /// More of the run's events, from the step that is named first.
-    Track { epoch: u64, from: u64, steps: Vec<Tracked> },
-    /// The run has been recorded to its end.
-    Recorded { epoch: u64 },
-    /// Something went wrong.
-    Fault(Fault),
+    /// A state is there; so many asks are answered by it.
+    Moment(Arc<Moment>, usize),
+    /// More of the run: steps after `from`, in place of what was known after it; whether the end is among them.
+    Track { from: u64, steps: Vec<Tracked>, end: bool },
+    /// Something went wrong; so many asks are answered by that.
+    Fault(Fault, usize),
 }
 
 /// A case that stands.
@@ -77,13 +64,16 @@ pub struct Opened {
 }
 
 /// What is kept of each step of the run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tracked {
-    pub event: Event,
+    /// What the step did.
+    pub kind: &'static str,
+    /// Quadrilaterals that stand after it.
     pub standing: u32,
+    /// Segments of the front after it; 0 where that is not known.
     pub front: u32,
-    /// Whether the local post-processing of the last quadrilateral is done.
-    pub settled: bool,
+    /// The quadrilateral that it formed, with its quality.
+    pub formed: Option<(ElementId, f32)>,
 }
 
 /// A state of the run, for looking at.
@@ -95,8 +85,11 @@ pub struct Moment {
     pub mesh: Mesh,
     pub parameters: Parameters,
     pub counts: Counts,
+    /// What the last step changed.
     pub changed: Vec<ElementId>,
     pub front: Vec<Segment>,
+    /// What is wrong with the mesh, where its invariants do not hold.
+    pub broken: Option<String>,
 }
 
 /// A run at work.
@@ -104,33 +97,39 @@ pub struct Session {
     ask: Sender<Ask>,
     told: Receiver<Told>,
     stop: Arc<AtomicBool>,
-    gone: Arc<AtomicBool>,
 }
 
 /// Called from other threads when there is something to be told.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 impl Session {
-    /// Starts work on a case that `read` reads.
-    pub fn open(read: impl FnOnce() -> Result<Case, Fault> + Send + 'static, wake: Wake) -> Session {
+    /// Starts work on a run that `read` reads.
+    pub fn open(read: impl FnOnce() -> Result<Run, Fault> + Send + 'static, wake: Wake) -> Session {
         let (ask, asked) = channel();
         let (tell, told) = channel();
-        let (stop, gone) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
+        let stop = Arc::new(AtomicBool::new(false));
         let voice = Voice { tell, wake, last: Instant::now() };
-        let flags = Flags { stop: stop.clone(), gone: gone.clone() };
-        std::thread::spawn(move || work(read, &asked, voice, flags));
-        Session { ask, told, stop, gone }
+        let (own, flag) = (ask.clone(), stop.clone());
+        std::thread::spawn(move || match Worker::open(read, own, voice, flag) {
+            Ok(mut worker) => worker.serve(&asked),
+            Err((voice, fault)) => voice.say(Told::Fault(fault, 1)),
+        });
+        Session { ask, told, stop }
     }
 
     /// Asks to go somewhere.
     pub fn go(&self, goal: Goal) {
-        // A session that has ended has told why.
-        let _ = self.ask.send(Ask::Go(goal));
+        self.ask(Ask::Go(goal));
     }
 
     /// Changes the run.
     pub fn set_edits(&self, edits: Vec<Edit>) {
-        let _ = self.ask.send(Ask::Edits(edits));
+        self.ask(Ask::Edits(edits));
+    }
+
+    fn ask(&self, ask: Ask) {
+        // A session that has ended has told why.
+        let _ = self.ask.send(ask);
     }
 
     /// Stops what is under way, where it is.
@@ -146,15 +145,9 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        self.gone.store(true, Ordering::Relaxed);
         self.stop();
+        self.ask(Ask::Gone);
     }
-}
-
-#[derive(Clone)]
-struct Flags {
-    stop: Arc<AtomicBool>,
-    gone: Arc<AtomicBool>,
 }
 
 struct Voice {
@@ -164,7 +157,7 @@ struct Voice {
 }
 
 impl Voice {
-    fn tell(&self, told: Told) {
+    fn say(&self, told: Told) {
         // Nobody listens any more: the window has opened something else.
         let _ = self.tell.send(told);
         (self.wake)();
@@ -173,12 +166,8 @@ impl Voice {
     fn progress(&mut self, words: &'static str, done: u64, total: u64) {
         if self.last.elapsed() >= EVERY {
             self.last = Instant::now();
-            self.tell(Told::Progress { words, done, total });
+            self.say(Told::Progress { words, done, total });
         }
-    }
-
-    fn again(&self) -> Voice {
-        Voice { tell: self.tell.clone(), wake: self.wake.clone(), last: Instant::now() }
     }
 }
 
@@ -195,210 +184,176 @@ impl Watch for Voice {
     }
 }
 
-fn work(
-    read: impl FnOnce() -> Result<Case, Fault>,
-    asked: &Receiver<Ask>,
-    mut voice: Voice,
-    flags: Flags,
-) {
-    let opened = read().and_then(|case| {
-        let background = background(&case, &mut voice)?;
-        Ok(Arc::new(Opened { case, background }))
-    });
-    let opened = match opened {
-        Ok(opened) => opened,
-        Err(fault) => return voice.tell(Told::Fault(fault)),
-    };
-    voice.tell(Told::Opened(opened.clone()));
-    let mut run = Run::new(&opened);
-    voice.tell(Told::Moment(Arc::new(run.moment())));
-    let mut ahead = Arc::new(AtomicBool::new(false));
-    let mut epoch = 0;
-    record(&opened, Vec::new(), epoch, ahead.clone(), voice.again());
-    while let Ok(ask) = asked.recv() {
-        flags.stop.store(false, Ordering::Relaxed);
-        if flags.gone.load(Ordering::Relaxed) {
-            break;
-        }
-        let done = match ask {
-            Ask::Go(goal) => run.go(goal, &mut voice, &flags.stop),
-            Ask::Edits(edits) => {
-                ahead.store(true, Ordering::Relaxed);
-                ahead = Arc::new(AtomicBool::new(false));
-                epoch += 1;
-                record(&opened, edits.clone(), epoch, ahead.clone(), voice.again());
-                run.set_edits(edits, &mut voice, &flags.stop)
-            }
-        };
-        match done {
-            Ok(()) => voice.tell(Told::Moment(Arc::new(run.moment()))),
-            Err(fault) => voice.tell(Told::Fault(fault)),
-        }
-    }
-    ahead.store(true, Ordering::Relaxed);
+/// The thread that has the history.
+struct Worker {
+    history: History,
+    own: Sender<Ask>,
+    voice: Voice,
+    stop: Arc<AtomicBool>,
+    /// Where to go as soon as that is known, and how many asks that answers.
+    pending: Option<(Goal, usize)>,
+    /// Tells the recorder's thread that what it does is of no use any more.
+    cancel: Arc<AtomicBool>,
+    /// Steps that the window has been told of.
+    tracked: u64,
+    triangles: u64,
 }
 
-/// Runs to the end on a thread of its own and tells of each step.
-fn record(opened: &Arc<Opened>, edits: Vec<Edit>, epoch: u64, cancel: Arc<AtomicBool>, voice: Voice) {
-    let opened = opened.clone();
-    std::thread::spawn(move || {
-        let mut run = Run::new(&opened);
-        run.edits = edits;
-        let mut from = 0;
-        let mut since = Instant::now();
-        while *run.converter.phase() != Phase::Done && !cancel.load(Ordering::Relaxed) {
-            if let Err(fault) = run.forward() {
-                return voice.tell(Told::Fault(fault));
-            }
-            if since.elapsed() > 2 * EVERY {
-                since = Instant::now();
-                voice.tell(Told::Track { epoch, from, steps: run.track[from as usize..].to_vec() });
-                from = run.track.len() as u64;
-            }
-        }
-        if !cancel.load(Ordering::Relaxed) {
-            voice.tell(Told::Track { epoch, from, steps: run.track[from as usize..].to_vec() });
-            voice.tell(Told::Recorded { epoch });
-        }
-    });
-}
-
-/// A converter with its edits and the record of the steps that it has done.
-struct Run<'a> {
-    converter: Converter<'a>,
-    initial: Parameters,
-    edits: Vec<Edit>,
-    track: Vec<Tracked>,
-}
-
-impl<'a> Run<'a> {
-    fn new(opened: &'a Opened) -> Run<'a> {
-        let parameters = opened.case.parameters.clone();
-        let background = &opened.background;
-        let mut converter = Converter::new(background.mesh.clone(), &background.sizing, parameters.clone());
-        converter.keep_history();
-        Run { converter, initial: parameters, edits: Vec::new(), track: Vec::new() }
-    }
-
-    fn step(&self) -> u64 {
-        self.converter.counts.steps
-    }
-
-    fn take_parameters(&mut self) {
-        let mut parameters = self.initial.clone();
-        for edit in self.edits.iter().filter(|edit| edit.step <= self.step()) {
-            // Edits were checked when they were made.
-            let _ = parameters.set(&edit.key, &edit.value);
-        }
-        if *self.converter.parameters() != parameters {
-            self.converter.set_parameters(parameters);
-        }
-    }
-
-    fn forward(&mut self) -> Result<(), Fault> {
-        self.take_parameters();
-        let event = self.converter.step()?;
-        let settled = !self.converter.phase().is_local_post_processing();
-        let tracked = Tracked {
-            event,
-            standing: standing(&self.converter) as u32,
-            front: self.track.last().map_or(0, |last| last.front),
-            settled,
+impl Worker {
+    fn open(
+        read: impl FnOnce() -> Result<Run, Fault>,
+        own: Sender<Ask>,
+        mut voice: Voice,
+        stop: Arc<AtomicBool>,
+    ) -> Result<Worker, (Voice, Fault)> {
+        let made = read().and_then(|run| {
+            let background = run.background(&mut voice)?;
+            let history = History::of(run, &background, BUDGET)?;
+            Ok((background, history))
+        });
+        let (background, history) = match made {
+            Ok(made) => made,
+            Err(fault) => return Err((voice, fault)),
         };
-        self.track.truncate(self.step() as usize - 1);
-        self.track.push(tracked);
-        Ok(())
+        let triangles = background.mesh.element_count() as u64;
+        voice.say(Told::Opened(Arc::new(Opened { case: history.run().case.clone(), background })));
+        let cancel = Arc::new(AtomicBool::new(false));
+        Ok(Worker { history, own, voice, stop, pending: Some((Goal::Step(0), 1)), cancel, tracked: 0, triangles })
     }
 
-    fn is_done(&self) -> bool {
-        *self.converter.phase() == Phase::Done
+    fn serve(&mut self, asked: &Receiver<Ask>) {
+        self.lend(STRETCH[0]);
+        self.arrive();
+        while let Ok(ask) = asked.recv() {
+            match ask {
+                Ask::Gone => break,
+                Ask::Go(goal) => self.go(goal),
+                Ask::Edits(edits) => self.edit(edits),
+                Ask::Found(stretch, recorder) => self.found(stretch, recorder),
+            }
+            if self.stop.swap(false, Ordering::Relaxed)
+                && let Some((_, asks)) = self.pending.take()
+            {
+                // Everything up to here can be looked at.
+                self.pending = Some((Goal::Step(self.history.log().known()), asks));
+            }
+            self.arrive();
+        }
+        self.cancel.store(true, Ordering::Relaxed);
     }
 
-    fn set_edits(&mut self, edits: Vec<Edit>, voice: &mut Voice, stop: &AtomicBool) -> Result<(), Fault> {
-        let step = self.step();
-        let first = self.edits.iter().chain(&edits).filter(|e| !(self.edits.contains(e) && edits.contains(e)));
-        let first = first.map(|e| e.step).min().unwrap_or(step);
-        while self.step() > first && self.converter.step_back() {}
-        self.track.truncate(self.step() as usize);
-        self.edits = edits;
-        self.take_parameters();
-        self.go(Goal::Step(step), voice, stop)
+    /// A goal replaces one that still waits; its asker is answered with the new one's.
+    fn go(&mut self, goal: Goal) {
+        let before = self.pending.take().map_or(0, |pending| pending.1);
+        self.pending = Some((goal, before + 1));
     }
 
-    fn go(&mut self, goal: Goal, voice: &mut Voice, stop: &AtomicBool) -> Result<(), Fault> {
-        let (step, nq) = (self.step(), standing(&self.converter));
-        let back_to = |target: u64| {
-            let found = self.track.iter().position(|t| t.settled && u64::from(t.standing) >= target);
-            if target == 0 { 0 } else { found.map_or(0, |i| i as u64 + 1) }
+    fn edit(&mut self, edits: Vec<Edit>) {
+        self.cancel.store(true, Ordering::Relaxed);
+        self.cancel = Arc::new(AtomicBool::new(false));
+        let step = self.history.step();
+        let before = self.history.run().edits();
+        let same = before.iter().zip(&edits).take_while(|(a, b)| a == b).count();
+        let first = [before.get(same), edits.get(same)].into_iter().flatten().map(|edit| edit.step).min();
+        if let Err(fault) = self.history.set_edits(edits) {
+            return self.voice.say(Told::Fault(fault, 1));
+        }
+        self.tracked = self.tracked.min(first.unwrap_or(u64::MAX)).min(self.history.log().known());
+        self.tell_track();
+        self.lend(STRETCH[0]);
+        self.go(Goal::Step(step));
+    }
+
+    /// Lets another thread run ahead for a stretch.
+    fn lend(&mut self, steps: u64) {
+        let Some(mut recorder) = self.history.lend() else { return };
+        let (own, cancel) = (self.own.clone(), self.cancel.clone());
+        std::thread::spawn(move || {
+            let stretch = recorder.run(steps, &cancel);
+            // The session may have ended meanwhile.
+            let _ = own.send(Ask::Found(stretch, recorder));
+        });
+    }
+
+    fn found(&mut self, stretch: Stretch, recorder: Recorder) {
+        self.history.accept(stretch);
+        if let Err(fault) = self.history.take_back(recorder) {
+            return self.voice.say(Told::Fault(fault, 0));
+        }
+        self.tell_track();
+        self.lend(self.history.log().known().clamp(STRETCH[0], STRETCH[1]));
+    }
+
+    fn tell_track(&mut self) {
+        let log = self.history.log();
+        let end = self.history.end().is_some();
+        let steps = (self.tracked + 1..=log.known()).filter_map(|step| {
+            let formed = match log.event(step) {
+                Some(Event::Formed { element, quality, .. }) => Some((*element, *quality as f32)),
+                _ => None,
+            };
+            Some(Tracked { kind: log.kind(step)?, standing: log.nq(step) as u32, front: 0, formed })
+        });
+        let told = Told::Track { from: self.tracked, steps: steps.collect(), end };
+        self.tracked = log.known();
+        self.voice.say(told);
+    }
+
+    /// Goes where it was asked to go, where that is known by now.
+    fn arrive(&mut self) {
+        let Some((goal, asks)) = self.pending else { return };
+        let end = self.history.end();
+        let Some(step) = goal.resolve(self.history.log(), self.history.step(), end) else {
+            let words = "Converting: quad";
+            return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
         };
-        match goal {
-            Goal::Step(target) => self.until(voice, stop, |run| run.step() >= target, target),
-            Goal::Steps(by) => {
-                let target = step.saturating_add_signed(by);
-                self.until(voice, stop, |run| run.step() >= target, target)
-            }
-            Goal::Quads(by) if by >= 0 => self.until(voice, stop, |run| run.has(nq + by as u64), u64::MAX),
-            Goal::Quads(by) => {
-                let within = step > back_to(nq);
-                let target = back_to(nq.saturating_sub(by.unsigned_abs() - u64::from(within)));
-                self.until(voice, stop, |_| true, target.min(step.saturating_sub(1)))
-            }
-            Goal::ToQuads(target) if target > nq => self.until(voice, stop, |run| run.has(target), u64::MAX),
-            Goal::ToQuads(target) => {
-                let target = back_to(target);
-                self.until(voice, stop, |_| true, target)
-            }
-            Goal::Kind(kind, true) => {
-                let seen = |run: &Run<'_>| run.step() > step && run.track.get(run.step() as usize - 1).is_some_and(|t| t.event.kind() == kind);
-                self.until(voice, stop, seen, u64::MAX)
-            }
-            Goal::Kind(kind, false) => {
-                let before = &self.track[..(step as usize).saturating_sub(1)];
-                let target = before.iter().rposition(|t| t.event.kind() == kind).map_or(0, |i| i as u64 + 1);
-                self.until(voice, stop, |_| true, target)
-            }
-            Goal::End => self.until(voice, stop, |_| false, u64::MAX),
+        self.pending = None;
+        match self.moment(step) {
+            Ok(moment) => self.voice.say(Told::Moment(Arc::new(moment), asks)),
+            Err(fault) => self.voice.say(Told::Fault(fault, asks)),
         }
     }
 
-    fn has(&self, quads: u64) -> bool {
-        standing(&self.converter) >= quads && !self.converter.phase().is_local_post_processing()
-    }
-
-    /// Back to `target` where that is before, else forward until `reached`, the end, or a stop.
-    fn until(
-        &mut self,
-        voice: &mut Voice,
-        stop: &AtomicBool,
-        reached: impl Fn(&Run<'a>) -> bool,
-        target: u64,
-    ) -> Result<(), Fault> {
-        while self.step() > target && self.converter.step_back() {
-            self.take_parameters();
-        }
-        while self.step() < target && !reached(self) && !self.is_done() && !stop.load(Ordering::Relaxed) {
-            self.forward()?;
-            voice.progress("Converting", self.step(), 0);
-        }
-        self.take_parameters();
-        Ok(())
-    }
-
-    fn moment(&mut self) -> Moment {
-        let step = self.step();
-        let converter = &self.converter;
-        Moment {
+    fn moment(&mut self, step: u64) -> Result<Moment, Fault> {
+        let step = step.min(self.history.log().known());
+        // What the very last step changed is seen by doing it again.
+        self.history.seek(step.saturating_sub(1))?;
+        self.history.take_changes();
+        self.history.seek(step)?;
+        let changed = match self.history.take_changes() {
+            Changes::Some { elements, .. } => elements,
+            Changes::Everything => Vec::new(),
+        };
+        let event = self.history.event(step)?;
+        let state = self.history.state();
+        Ok(Moment {
             step,
-            standing: standing(converter),
-            phase: converter.phase().plain(),
-            event: (step as usize).checked_sub(1).and_then(|i| self.track.get(i)).map(|t| t.event),
-            mesh: converter.mesh.clone(),
-            parameters: converter.parameters().clone(),
-            counts: converter.counts,
-            changed: Vec::new(),
-            front: scene::front(&converter.mesh, converter.parameters()),
-        }
+            standing: standing(state),
+            phase: state.phase().plain(),
+            event,
+            mesh: state.mesh.without_journal(),
+            parameters: state.parameters().clone(),
+            counts: state.counts,
+            changed,
+            front: ranked(scene::front(&state.mesh, state.parameters()), state.parameters()),
+            broken: state.mesh.check().err(),
+        })
     }
+}
+
+/// Segments in the order in which they come by table 1: those within reach by class and window, then the others by H-value.
+fn ranked(mut front: Vec<Segment>, parameters: &Parameters) -> Vec<Segment> {
+    let h_min = front.iter().map(|s| s.h_value).fold(f64::INFINITY, f64::min);
+    let place = |s: &Segment| {
+        let window = s.window(parameters.selection_window);
+        let within = s.class < 4 && window < parameters.c * h_min;
+        if within { (s.class, window) } else { (u8::MAX, s.h_value) }
+    };
+    front.sort_by(|a, b| {
+        let (x, y) = (place(a), place(b));
+        x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then(a.h.cmp(&b.h))
+    });
+    front
 }
 
 /// What a session is opened with.

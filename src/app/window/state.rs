@@ -1,13 +1,19 @@
 //! What the window knows: the run as far as it has been told, what a person has set, and what is open over the window.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::session::{Edit, Moment, Opened, Session, Source, Told, Tracked, Wake};
+use super::files::Dialog;
+use super::session::{Moment, Opened, Session, Source, Told, Tracked, Wake};
+use glam::DVec2;
+
 use crate::app::input;
+use crate::core::convert::phase::Phase;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
-use crate::core::io::case::Case;
+use crate::core::run::run::{Edit, Run};
+use crate::core::mesh::ids::NodeId;
 use crate::render::camera::Camera;
 use crate::render::scene::{ColourBy, Layers, Outlined};
 
@@ -51,7 +57,7 @@ pub enum FrontColumn {
 
 /// Everything that the window knows.
 pub struct State {
-    wake: Wake,
+    pub wake: Wake,
     pub session: Option<Session>,
     /// What was opened, for messages.
     pub source: Option<Source>,
@@ -61,7 +67,11 @@ pub struct State {
     pub track: Vec<Tracked>,
     /// Whether that is all of them.
     pub recorded: bool,
-    epoch: u64,
+    /// The dialog for files, while it is open.
+    pub dialog: Option<Dialog>,
+    /// The title of the window.
+    pub title: String,
+    pub toggle_theme: bool,
     /// Asked of the session and not yet answered.
     pub waiting: usize,
     pub since: Option<Instant>,
@@ -75,6 +85,11 @@ pub struct State {
     pub hovered: Option<Outlined>,
     /// The camera of the main view; none until a mesh is fitted to it.
     pub camera: Option<Camera>,
+    /// Whether the main view shows the whole mesh, and its size in points.
+    pub fitted: bool,
+    pub view_size: DVec2,
+    /// Whether what is hovered was met in the view, and not in a table.
+    pub hover_from_view: bool,
     /// Show the decision from near as soon as the view's size is known.
     pub look: Option<Look>,
     pub playing: Option<Instant>,
@@ -94,6 +109,14 @@ pub struct State {
     pub over_epoch: u64,
     pub reset_layout: bool,
     pub screenshot: bool,
+    /// The steps that the timeline shows, where that is not all.
+    pub timeline: Option<[f64; 2]>,
+    /// Where a drag of the timeline has asked to go.
+    pub seeking: Option<u64>,
+    /// A parameter that is being dragged.
+    pub tentative: Option<(&'static str, f64)>,
+    /// The steps at which each breakpoint is met, or what is wrong with it.
+    pub hits: BTreeMap<String, Result<Vec<u64>, String>>,
 }
 
 /// Where the main view is to look next.
@@ -125,7 +148,9 @@ impl State {
             moment: None,
             track: Vec::new(),
             recorded: false,
-            epoch: 0,
+            dialog: None,
+            title: String::new(),
+            toggle_theme: false,
             waiting: 0,
             since: None,
             progress: None,
@@ -136,6 +161,9 @@ impl State {
             redo: Vec::new(),
             hovered: None,
             camera: None,
+            fitted: true,
+            view_size: DVec2::ZERO,
+            hover_from_view: false,
             look: None,
             playing: None,
             speed: 8.0,
@@ -149,6 +177,10 @@ impl State {
             over_epoch: 0,
             reset_layout: false,
             screenshot: false,
+            timeline: None,
+            seeking: None,
+            tentative: None,
+            hits: BTreeMap::new(),
         }
     }
 
@@ -159,7 +191,7 @@ impl State {
         self.source = Some(source);
         (self.opened, self.moment) = (None, None);
         self.track.clear();
-        (self.recorded, self.epoch, self.waiting) = (false, 0, 1);
+        (self.recorded, self.waiting) = (false, 1);
         self.since = Some(Instant::now());
         let kept = Kept { layers: self.kept.layers, colour_by: self.kept.colour_by, ..Kept::default() };
         self.kept = kept;
@@ -195,48 +227,68 @@ impl State {
             match told {
                 Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
                 Told::Opened(opened) => self.opened = Some(opened),
-                Told::Moment(moment) => self.arrive(moment),
-                Told::Track { epoch, from, steps } if epoch == self.epoch => {
+                Told::Moment(moment, asks) => self.arrive(moment, asks),
+                Told::Track { from, steps, end } => {
                     self.track.truncate(from as usize);
                     self.track.extend(steps);
+                    self.recorded = end;
                 }
-                Told::Recorded { epoch } if epoch == self.epoch => self.recorded = true,
-                Told::Track { .. } | Told::Recorded { .. } => {}
-                Told::Fault(fault) => {
+                Told::Fault(fault, asks) => {
                     self.complain(&fault);
-                    self.answered();
+                    self.answered(asks);
                     self.playing = None;
                 }
             }
         }
     }
 
-    fn answered(&mut self) {
-        self.waiting = self.waiting.saturating_sub(1);
+    fn answered(&mut self, asks: usize) {
+        self.waiting = self.waiting.saturating_sub(asks);
         if self.waiting == 0 {
             (self.progress, self.since) = (None, None);
         }
     }
 
-    fn arrive(&mut self, moment: Arc<Moment>) {
-        if self.playing.is_some() && moment.phase == crate::core::convert::phase::Phase::Done {
+    fn arrive(&mut self, moment: Arc<Moment>, asks: usize) {
+        if self.playing.is_some() && moment.phase == Phase::Done {
             self.playing = None;
         }
         self.moment = Some(moment);
-        self.answered();
+        self.answered(asks);
         self.mesh_epoch += 1;
         self.over_epoch += 1;
     }
 
     /// The run is another from now on.
     pub fn run_changed(&mut self) {
-        self.epoch += 1;
         self.recorded = false;
         if let Some(session) = &self.session {
             session.set_edits(self.kept.edits.clone());
             self.waiting += 1;
             self.since.get_or_insert_with(Instant::now);
         }
+    }
+
+    /// The front segment or edge that is picked, from A to B.
+    pub fn picked_segment(&self) -> Option<[NodeId; 2]> {
+        match self.kept.picked {
+            Some(Outlined::Edge(ends)) => Some(ends),
+            _ => None,
+        }
+    }
+
+    /// The step at which each element was last made, where that is what elements are coloured by.
+    pub fn births(&self, by: ColourBy, moment: &Moment) -> Vec<u64> {
+        let mut births = vec![0; moment.mesh.element_slots()];
+        if by == ColourBy::Birth {
+            let steps = self.track.iter().take(moment.step as usize).zip(1..);
+            for (&(element, _), step) in steps.filter_map(|(step, k)| Some((step.formed.as_ref()?, k))) {
+                if let Some(birth) = births.get_mut(element.index()) {
+                    *birth = step;
+                }
+            }
+        }
+        births
     }
 
     /// The value of a parameter at the step at hand.
@@ -246,12 +298,12 @@ impl State {
 }
 
 /// Reads what is to be opened.
-fn read(source: &Source) -> Result<Case, Fault> {
+fn read(source: &Source) -> Result<Run, Fault> {
     match source {
         Source::BuiltIn(name) => match built_in::named(name) {
-            Some(case) => case,
+            Some(case) => case.map(Run::of),
             None => Err(Fault::new("There is no built-in case of this name").at(name.clone())),
         },
-        Source::File(path) => input::case_of(path),
+        Source::File(path) => input::case_of(path).map(Run::of),
     }
 }

@@ -86,6 +86,7 @@ pub fn event(event: &Event) -> String {
         Event::BaseSelected { a, b, class, h_value, .. } => {
             format!("base chosen: {}, class {class}, H {}", segment(a, b), size(h_value))
         }
+        Event::PickLost { a, b } => format!("{} was picked as base and is not on the front any more", segment(a, b)),
         Event::SideIsFront { side: s, node } => format!("{} side is the front, to node {}", side(s), node.0),
         Event::SideChosen { side: s, node, deviation, .. } => {
             format!("{} side chosen: node {}, {}° off the direction aimed at", side(s), node.0, degrees(deviation))

@@ -466,6 +466,26 @@ impl Mesh {
         }
     }
 
+    /// A copy for looking at: without the journal, which may be many times as large.
+    #[must_use]
+    pub fn without_journal(&self) -> Mesh {
+        Mesh {
+            uv: self.uv.clone(),
+            metric: self.metric.clone(),
+            anchor: self.anchor.clone(),
+            point: self.point.clone(),
+            origin: self.origin.clone(),
+            twin: self.twin.clone(),
+            sides: self.sides.clone(),
+            region: self.region.clone(),
+            level: self.level.clone(),
+            deferred: self.deferred.clone(),
+            free_nodes: self.free_nodes.clone(),
+            free_elements: self.free_elements.clone(),
+            journal: Journal::default(),
+        }
+    }
+
     // ---- journal ----
 
     /// The present place of the journal, to take back to.

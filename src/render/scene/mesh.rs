@@ -26,7 +26,7 @@ impl Shading {
                 let nodes: Vec<_> = mesh.corners(e).collect();
                 nodes.iter().map(|n| mesh.metric_ref(*n).min_size()).sum::<f64>() / nodes.len() as f64
             }
-            ColourBy::Angle => smallest_angle(mesh, e).to_degrees(),
+            ColourBy::Angle => angles(mesh, e)[0].to_degrees(),
             ColourBy::Level if mesh.is_quad(e) => f64::from(mesh.level(e)),
             ColourBy::Birth if mesh.is_quad(e) => births.get(e.index()).map_or(f64::NAN, |b| *b as f64),
             ColourBy::Level | ColourBy::Birth => f64::NAN,
@@ -58,14 +58,14 @@ impl Shading {
     }
 }
 
-/// The smallest inner angle of an element in the plane, radians.
-pub fn smallest_angle(mesh: &Mesh, e: ElementId) -> f64 {
+/// The least and the greatest inner angle of an element in the plane, radians.
+pub fn angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
     let angle = |h: HalfEdgeId| {
         let p = mesh.uv(mesh.origin(h));
         let (out, back) = (mesh.uv(mesh.target(h)) - p, mesh.uv(mesh.origin(mesh.previous(h))) - p);
-        libm::atan2(out.perp_dot(back), out.dot(back))
+        libm::atan2(out.perp_dot(back), out.dot(back)).rem_euclid(std::f64::consts::TAU)
     };
-    mesh.half_edges(e).map(angle).fold(f64::INFINITY, f64::min)
+    mesh.half_edges(e).map(angle).fold([f64::INFINITY, 0.0], |[low, high], a| [low.min(a), high.max(a)])
 }
 
 /// The area of an element in the metric of its nodes.
