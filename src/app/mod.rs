@@ -44,7 +44,11 @@ pub fn run() -> ExitCode {
         save::abandon();
         std::process::exit(INTERRUPTED);
     });
-    let done = match cli.command.as_ref().unwrap_or(&Command::Open(command_line::OpenArguments { input: "example1".to_owned() })) {
+    let done = match cli
+        .command
+        .as_ref()
+        .unwrap_or(&Command::Open(command_line::OpenArguments { input: "example1".to_owned() }))
+    {
         Command::Open(arguments) => open(&arguments.input),
         Command::Convert(arguments) => convert::convert(arguments),
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),

@@ -99,7 +99,8 @@ impl App {
                 }
             }
         }
-        let dropped = context.input(|input| input.raw.dropped_files.iter().next().map(|file| file.path().to_path_buf()));
+        let dropped =
+            context.input(|input| input.raw.dropped_files.iter().next().map(|file| file.path().to_path_buf()));
         if let Some(path) = dropped {
             self.commands.push(Command::Open(Source::File(path)));
         }
@@ -150,7 +151,10 @@ impl eframe::App for App {
         let palette = theme::palette(context.theme() == egui::Theme::Dark);
         let (state, commands) = (&mut self.state, &mut self.commands);
         let plain = Frame::NONE.fill(theme::ink(palette.panel));
-        Panel::top("menus").frame(plain).exact_size(32.0).show(ui, |ui| panels::top::show(ui, state, commands, palette));
+        Panel::top("menus")
+            .frame(plain)
+            .exact_size(32.0)
+            .show(ui, |ui| panels::top::show(ui, state, commands, palette));
         Panel::bottom("time")
             .frame(plain)
             .default_size(216.0)

@@ -3,9 +3,11 @@
 use std::time::Instant;
 
 use super::command::Command;
+use super::condition::Condition;
 use super::files;
 use super::session::{Goal, Source};
 use super::state::{Kept, Look, Over, State};
+use super::words;
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
 use crate::core::run::run::{Edit, EditKind};
@@ -33,6 +35,12 @@ impl State {
             Command::Fit => self.look = Some(Look::Fit),
             Command::ShowDecision => self.look = Some(Look::Decision),
             Command::Set(key, value) => self.set(key, value),
+            Command::ChooseBase([a, b]) => {
+                if let Some(step) = self.moment.as_ref().map(|moment| moment.step) {
+                    self.edit(Edit { step, kind: EditKind::Base { a, b } });
+                    self.notice(format!("The next base will be {}.", words::segment(a, b)));
+                }
+            }
             Command::ResetParameters => {
                 self.keep(|kept| kept.edits.retain(|edit| !matches!(edit.kind, EditKind::Parameter { .. })));
             }
@@ -133,14 +141,24 @@ impl State {
         if text.is_empty() || self.kept.breakpoints.iter().any(|b| b.0 == text) {
             return;
         }
-        self.keep(|kept| kept.breakpoints.push((text, true)));
+        match Condition::parse(&text) {
+            Ok(_) => self.keep(|kept| kept.breakpoints.push((text, true))),
+            Err(fault) => self.complain(&fault),
+        }
     }
 
     fn to_breakpoint(&mut self, forward: bool) {
         let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return };
-        let on = self.kept.breakpoints.iter().filter(|b| b.1).filter_map(|b| self.hits.get(&b.0)?.as_ref().ok());
-        let hits = on.flatten().copied();
-        let next = if forward { hits.filter(|s| *s > step).min() } else { hits.filter(|s| *s < step).max() };
+        let conditions: Vec<Condition> =
+            self.kept.breakpoints.iter().filter(|b| b.1).filter_map(|b| Condition::parse(&b.0).ok()).collect();
+        let met = |k: &usize| conditions.iter().any(|c| c.is_met(*k as u64 + 1, &self.track[*k]));
+        let known = self.track.len();
+        let next = if forward {
+            ((step as usize).min(known)..known).find(met)
+        } else {
+            (0..(step as usize).saturating_sub(1).min(known)).rev().find(met)
+        };
+        let next = next.map(|k| k as u64 + 1);
         match (next, forward) {
             (Some(step), _) => self.go(Goal::Step(step)),
             (None, true) => self.notice("No breakpoint is met after this step.".to_owned()),

@@ -4,6 +4,7 @@ use eframe::egui::{Key, Modifiers};
 
 use super::session::{Goal, Source};
 use crate::core::io::built_in;
+use crate::core::mesh::ids::NodeId;
 use crate::render::scene::{ColourBy, Outlined};
 
 /// What a person asks for.
@@ -29,6 +30,8 @@ pub enum Command {
     ShowDecision,
     /// Change a parameter from this step on.
     Set(&'static str, String),
+    /// Let the next selection choose this front segment, from A to B: a change of the run from this step on.
+    ChooseBase([NodeId; 2]),
     /// Put all parameters back to those of the case.
     ResetParameters,
     /// Switch a layer, counted from 0.
@@ -133,9 +136,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (NONE, Key::D, Command::ShowDecision),
         (NONE, Key::Escape, Command::Escape),
     ];
-    let digits = [
-        Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9,
-    ];
+    let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
     keys.extend(digits.into_iter().enumerate().map(|(k, key)| (NONE, key, Command::Layer(k))));
     keys
 }
@@ -155,6 +156,7 @@ impl Command {
             Command::Fit => "Fit the mesh to the view".into(),
             Command::ShowDecision => "Zoom to the decision".into(),
             Command::Set(key, value) => format!("Set {key} = {value}"),
+            Command::ChooseBase([a, b]) => format!("Choose {} as next base", super::words::segment(*a, *b)),
             Command::ResetParameters => "All parameters as the case has them".into(),
             Command::Layer(k) => format!("Layer: {}", LAYERS[*k]),
             Command::ColourBy(by) => format!("Colour by {}", by.name()),

@@ -17,6 +17,8 @@ use crate::render::scene::{ColourBy, Decision, Outlined, Shading};
 
 /// Labels in a view, and ellipses.
 const MOST_LABELS: usize = 150;
+/// Ids stand where the nearest neighbour is so many points away.
+const LEAST_FOR_IDS: f64 = 44.0;
 const MOST_ELLIPSES: usize = 60;
 /// Ellipses are drawn at this share of the unit length.
 const ELLIPSE: f64 = 0.25;
@@ -116,7 +118,14 @@ impl Over<'_> {
             let away = (at - middle).normalized();
             let away = if away.x.is_nan() || away == Vec2::ZERO { Vec2::new(0.0, -1.0) } else { away };
             let colour = ink(self.palette.accent);
-            self.label(at + 17.0 * away, Align2::CENTER_CENTER, &letter.to_string(), theme::semibold(13.0), colour, true);
+            self.label(
+                at + 17.0 * away,
+                Align2::CENTER_CENTER,
+                &letter.to_string(),
+                theme::semibold(13.0),
+                colour,
+                true,
+            );
         }
     }
 
@@ -184,12 +193,18 @@ impl Over<'_> {
             }
             let p = mesh.uv(node);
             let nearest = mesh.neighbours(node).map(|n| mesh.uv(n).distance_squared(p)).fold(f64::INFINITY, f64::min);
-            if nearest.sqrt() * scale < 34.0 {
+            if nearest.sqrt() * scale < LEAST_FOR_IDS {
                 continue;
             }
             let colour = ink(self.palette.weak);
-            if !self.label(at + Vec2::new(7.0, -9.0), Align2::LEFT_CENTER, &node.0.to_string(), theme::regular(11.5), colour, true)
-                && self.taken.len() >= MOST_LABELS
+            if !self.label(
+                at + Vec2::new(7.0, -9.0),
+                Align2::LEFT_CENTER,
+                &node.0.to_string(),
+                theme::regular(11.0),
+                colour,
+                false,
+            ) && self.taken.len() >= MOST_LABELS
             {
                 break;
             }
@@ -207,9 +222,11 @@ impl Over<'_> {
                 continue;
             }
             for side in Side::BOTH {
+                let at = [segment.a, segment.b][side.index()];
+                let has_arc = decision.base.is_some_and(|base| base.contains(&at));
                 if is_base && which != Which::Whole {
                     self.arc(segment, side);
-                } else if segment.theta[side.index()] < moment.parameters.theta_rect {
+                } else if !has_arc && segment.theta[side.index()] < moment.parameters.theta_rect {
                     self.wedge(segment, side);
                 }
             }
@@ -284,7 +301,9 @@ impl Over<'_> {
     /// The unit circle around the node of the lens, dashed, over a unit grid.
     fn unit_grid(&self, state: &State) {
         let (frame, palette) = (self.frame, self.palette);
-        let Some(origin) = super::viewport::lens_node(state, self.moment).and_then(|node| self.place(node.0)) else { return };
+        let Some(origin) = super::viewport::lens_node(state, self.moment).and_then(|node| self.place(node.0)) else {
+            return;
+        };
         let unit = frame.camera.scale as f32;
         let grid = Stroke::new(1.0, ink(palette.line));
         let lines = |from: f32, least: f32, most: f32| {
@@ -298,7 +317,8 @@ impl Over<'_> {
         for y in lines(origin.y, frame.rect.top(), frame.rect.bottom()) {
             self.painter.hline(frame.rect.x_range(), y, grid);
         }
-        let circle: Vec<Pos2> = (0..=96).map(|k| origin + unit * Vec2::angled(k as f32 * std::f32::consts::TAU / 96.0)).collect();
+        let circle: Vec<Pos2> =
+            (0..=96).map(|k| origin + unit * Vec2::angled(k as f32 * std::f32::consts::TAU / 96.0)).collect();
         let stroke = Stroke::new(1.0, ink(palette.weak));
         self.painter.extend(Shape::dashed_line(&circle, stroke, 4.0, 4.0));
     }

@@ -2,7 +2,8 @@
 
 use eframe::egui::{self, Color32, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo};
 use egui_tiles::{
-    Behavior, Container, Linear, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree, UiResponse,
+    Behavior, Container, Linear, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree,
+    UiResponse,
 };
 
 use super::command::Command;
@@ -130,7 +131,10 @@ impl Layout {
             }
             _ => {
                 left = vec![(tabs(&[Pane::Front]), 1.0), (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42)];
-                right = vec![(tabs(&[Pane::Inspector, Pane::History]), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), 0.42)];
+                right = vec![
+                    (tabs(&[Pane::Inspector, Pane::History]), 1.0),
+                    (tabs(&[Pane::Parameters, Pane::Layers]), 0.42),
+                ];
                 lens = match room {
                     Room::Wide => vec![(tabs(&[Pane::MetricLens]), 1.0), (tabs(&[Pane::Parametric]), 1.0)],
                     _ => Vec::new(),
@@ -216,7 +220,14 @@ impl Behavior<Pane> for Docks<'_> {
         pane.name().into()
     }
 
-    fn tab_ui(&mut self, tiles: &mut Tiles<Pane>, ui: &mut Ui, id: egui::Id, tile: TileId, tab: &TabState) -> egui::Response {
+    fn tab_ui(
+        &mut self,
+        tiles: &mut Tiles<Pane>,
+        ui: &mut Ui,
+        id: egui::Id,
+        tile: TileId,
+        tab: &TabState,
+    ) -> egui::Response {
         let name = match tiles.get(tile) {
             Some(Tile::Pane(pane)) => pane.name(),
             _ => "Group",
@@ -232,7 +243,10 @@ impl Behavior<Pane> for Docks<'_> {
             let at = egui::Align2::CENTER_CENTER.align_size_within_rect(text.size(), rect).min;
             ui.painter().galley_with_override_text_color(at, text, colour);
             if tab.active {
-                let rule = Rect::from_min_max(rect.left_bottom() + Vec2::new(3.0, -2.0), rect.right_bottom() - Vec2::new(3.0, 0.0));
+                let rule = Rect::from_min_max(
+                    rect.left_bottom() + Vec2::new(3.0, -2.0),
+                    rect.right_bottom() - Vec2::new(3.0, 0.0),
+                );
                 ui.painter().rect_filled(rule, 0.0, ink(self.palette.base));
             }
         }
@@ -242,7 +256,16 @@ impl Behavior<Pane> for Docks<'_> {
     fn top_bar_right_ui(&mut self, tiles: &Tiles<Pane>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
         let active = tabs.active.and_then(|id| tiles.get_pane(&id));
         match active {
-            Some(Pane::Space) => panels::legend::show(ui, self.state, self.commands, self.palette),
+            Some(Pane::Space) => {
+                // The tabs come first: what the legend has no room for is in the help.
+                let font = theme::medium(theme::BODY);
+                let width = |id: &TileId| {
+                    let name = tiles.get_pane(id).map_or("", |pane| pane.name());
+                    ui.painter().layout_no_wrap(name.to_owned(), font.clone(), Color32::WHITE).size().x + 20.0
+                };
+                let tabs: f32 = tabs.children.iter().map(width).sum();
+                panels::legend::show(ui, tabs + 12.0, self.state, self.commands, self.palette);
+            }
             Some(Pane::Parameters) => panels::parameters::reset(ui, self.state, self.commands),
             _ => {}
         }

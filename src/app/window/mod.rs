@@ -8,6 +8,7 @@ mod icons;
 mod theme;
 mod session;
 mod command;
+mod condition;
 mod files;
 mod state;
 mod apply;

@@ -14,7 +14,7 @@ pub mod plots;
 pub mod messages;
 pub mod over;
 
-use eframe::egui::{self, Align, Button, Frame, Margin, Response, RichText, Ui, WidgetInfo, Role};
+use eframe::egui::{self, Align, Button, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo};
 
 use super::command::Command;
 use super::theme::{self, ink};

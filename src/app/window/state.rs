@@ -1,6 +1,5 @@
 //! What the window knows: the run as far as it has been told, what a person has set, and what is open over the window.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -12,8 +11,8 @@ use crate::app::input;
 use crate::core::convert::phase::Phase;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
-use crate::core::run::run::{Edit, Run};
 use crate::core::mesh::ids::NodeId;
+use crate::core::run::run::{Edit, Run};
 use crate::render::camera::Camera;
 use crate::render::scene::{ColourBy, Layers, Outlined};
 
@@ -115,8 +114,6 @@ pub struct State {
     pub seeking: Option<u64>,
     /// A parameter that is being dragged.
     pub tentative: Option<(&'static str, f64)>,
-    /// The steps at which each breakpoint is met, or what is wrong with it.
-    pub hits: BTreeMap<String, Result<Vec<u64>, String>>,
 }
 
 /// Where the main view is to look next.
@@ -180,7 +177,6 @@ impl State {
             timeline: None,
             seeking: None,
             tentative: None,
-            hits: BTreeMap::new(),
         }
     }
 

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use eframe::egui::epaint::Shadow;
-use eframe::egui::style::{ScrollStyle, WidgetVisuals};
+use eframe::egui::style::{HandleShape, ScrollStyle, WidgetVisuals};
 use eframe::egui::{
-    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Vec2,
-    Visuals,
+    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle,
+    Vec2, Visuals,
 };
 
 use crate::render::palette::{DARK, LIGHT, Palette, Rgba};
@@ -125,7 +125,8 @@ fn visuals(palette: &Palette) -> Visuals {
     visuals.widgets.active = widget(palette.button, palette.strong, Stroke::new(1.0, ink(palette.weak)));
     visuals.widgets.open = widget(palette.button, palette.strong, line);
     // Rails and check boxes must be seen on the panel.
-    visuals.widgets.inactive.bg_fill = ink(if palette.dark { palette.line } else { palette.field });
+    visuals.widgets.inactive.bg_fill = ink(palette.line);
+    visuals.handle_shape = HandleShape::Circle;
     visuals.selection.bg_fill = ink(palette.accent_row);
     visuals.selection.stroke = Stroke::new(1.0, ink(palette.strong));
     visuals.panel_fill = ink(palette.panel);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, PaintCallbackInfo, PointerButton, Rect, Sense, Ui, Vec2, WidgetInfo, Role};
+use eframe::egui::{self, PaintCallbackInfo, PointerButton, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::wgpu;
 use glam::{DMat2, DVec2};
@@ -159,7 +159,8 @@ impl Views {
         let wanted = Some((state.mesh_epoch, palette.dark));
         let main = state.camera == Some(frame.camera);
         if self.seen_mesh != wanted || (main && !served) {
-            let anchor = if served && self.seen_mesh.is_some() || !main { self.scene.anchor } else { frame.camera.centre };
+            let anchor =
+                if served && self.seen_mesh.is_some() || !main { self.scene.anchor } else { frame.camera.centre };
             let by = state.kept.colour_by;
             self.shading = Shading::of(&moment.mesh, by, &state.births(by, moment));
             let scene = Arc::make_mut(&mut self.scene);

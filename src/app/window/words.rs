@@ -47,7 +47,17 @@ pub fn size(x: f64) -> String {
     if !(1e-4..1e5).contains(&magnitude) {
         return format!("{x:.2e}").replace('-', &MINUS.to_string());
     }
-    let decimals = if magnitude >= 100.0 { 1 } else if magnitude >= 10.0 { 2 } else if magnitude >= 1.0 { 3 } else if magnitude >= 0.01 { 4 } else { 5 };
+    let decimals = if magnitude >= 100.0 {
+        1
+    } else if magnitude >= 10.0 {
+        2
+    } else if magnitude >= 1.0 {
+        3
+    } else if magnitude >= 0.01 {
+        4
+    } else {
+        5
+    };
     fixed(x, decimals)
 }
 
@@ -103,14 +113,16 @@ pub fn event(event: &Event) -> String {
             1 => format!("top edge is there: {}, after 1 swap", edge(ends)),
             _ => format!("top edge is there: {}, after {swaps} swaps", edge(ends)),
         },
-        Event::NodeRemoved { node, purpose: Purpose::Recovery } => format!("node {} removed from the top's way", node.0),
+        Event::NodeRemoved { node, purpose: Purpose::Recovery } => {
+            format!("node {} removed from the top's way", node.0)
+        }
         Event::NodeRemoved { node, purpose: Purpose::Enhancement } => format!("node {} of low valence removed", node.0),
-        Event::Formed { element, quality, eaten, .. } => format!(
-            "quadrilateral {} stands: quality {}, {eaten} triangles eaten",
-            element.0,
-            fixed(quality, 2)
-        ),
-        Event::RolledBack { attempt, why: reason } => format!("attempt {} taken back: {}", u32::from(attempt) + 1, why(reason)),
+        Event::Formed { element, quality, eaten, .. } => {
+            format!("quadrilateral {} stands: quality {}, {eaten} triangles eaten", element.0, fixed(quality, 2))
+        }
+        Event::RolledBack { attempt, why: reason } => {
+            format!("attempt {} taken back: {}", u32::from(attempt) + 1, why(reason))
+        }
         Event::Deferred { a, b } => format!("segment {} put off", segment(a, b)),
         Event::Enhanced { new } => format!("edge {} swapped in beside the new quadrilateral", edge(new)),
         Event::Smoothed { nodes } => format!("{nodes} nodes smoothed"),

@@ -1,13 +1,13 @@
 //! Conditions to stop at, and steps that a person has marked.
 
-use eframe::egui::{Align, Key, Layout, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Align, Key, Layout, ScrollArea, TextEdit, Ui};
 
 use super::{icon_button, inset, note};
 use crate::app::window::command::Command;
+use crate::app::window::condition::Condition;
 use crate::app::window::icons;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
-use crate::app::window::theme;
 use crate::app::window::words;
 use crate::render::palette::Palette;
 
@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         let room = (ui.available_height() - 34.0).max(30.0);
         ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
             if state.kept.breakpoints.is_empty() {
-                ui.label(note("None yet. Try quad.min_angle < 30.", palette));
+                ui.label(note("None yet. Try quad.quality < 0.3.", palette));
             }
             for (k, (text, on)) in state.kept.breakpoints.iter().enumerate() {
                 ui.horizontal(|ui| {
@@ -30,15 +30,13 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
                         if icon_button(ui, icons::X, 13.0, &command, true).clicked() {
                             commands.push(command);
                         }
-                        if let Some(Ok(hits)) = state.hits.get(text) {
-                            ui.label(note(words::grouped(hits.len() as u64), palette)).on_hover_text("Hits in this run");
+                        if let Ok(condition) = Condition::parse(text) {
+                            let met =
+                                state.track.iter().zip(1..).filter(|(t, step)| condition.is_met(*step, t)).count();
+                            ui.label(note(words::grouped(met as u64), palette)).on_hover_text("Hits in this run");
                         }
                     });
                 });
-                if let Some(Err(fault)) = state.hits.get(text) {
-                    let text = RichText::new(fault).font(theme::regular(theme::HEAD)).color(theme::ink(palette.broken));
-                    ui.label(text);
-                }
             }
         });
         let field = TextEdit::singleline(&mut state.breakpoint_field)

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Sense, Ui, Vec2, WidgetInfo, Role};
+use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
 use egui_extras::{Column, TableBuilder};
 
 use crate::app::window::command::Command;
@@ -20,13 +20,13 @@ const ROW: f32 = 20.0;
 /// Heads with their widths and what is said about them.
 const COLUMNS: [(FrontColumn, &str, f32, &str); 8] = [
     (FrontColumn::Rank, "#", 32.0, "Rank: the order in which segments come by table 1"),
-    (FrontColumn::Nodes, "A → B", 84.0, "Nodes of the segment, the live triangles to its left"),
-    (FrontColumn::Class, "cl", 32.0, "Class of table 1"),
+    (FrontColumn::Nodes, "A → B", 78.0, "Nodes of the segment, the live triangles to its left"),
+    (FrontColumn::Class, "cl", 30.0, "Class of table 1"),
     (FrontColumn::HValue, "H", 50.0, "H-value, eq. 6, in units of the case"),
-    (FrontColumn::Length, "len", 36.0, "Length in the metric"),
-    (FrontColumn::ThetaA, "θA °", 42.0, "Frontal angle at A, degrees, in the metric of A"),
-    (FrontColumn::ThetaB, "θB °", 42.0, "Frontal angle at B, degrees, in the metric of B"),
-    (FrontColumn::Level, "lv", 22.0, "Level: rows from the boundary"),
+    (FrontColumn::Length, "len", 32.0, "Length in the metric"),
+    (FrontColumn::ThetaA, "θA °", 40.0, "Frontal angle at A, degrees, in the metric of A"),
+    (FrontColumn::ThetaB, "θB °", 40.0, "Frontal angle at B, degrees, in the metric of B"),
+    (FrontColumn::Level, "lv", 20.0, "Level: rows from the boundary"),
 ];
 
 /// Shows the panel.
@@ -74,7 +74,8 @@ fn chips(ui: &mut Ui, state: &mut State, moment: &Moment, palette: &Palette) {
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(8.0);
-            ui.label(super::note(words::grouped(moment.front.len() as u64), palette)).on_hover_text("Segments on the front");
+            ui.label(super::note(words::grouped(moment.front.len() as u64), palette))
+                .on_hover_text("Segments on the front");
         });
     });
     ui.add_space(5.0);
@@ -120,7 +121,7 @@ fn table(
     };
     let (picked, hovered) = (edge(state.kept.picked), edge(state.hovered));
     let decimals = words::decimals(moment.front.iter().map(|s| s.h_value));
-    ui.spacing_mut().item_spacing = Vec2::new(2.0, 0.0);
+    ui.spacing_mut().item_spacing = Vec2::new(1.0, 0.0);
     let mut builder = TableBuilder::new(ui)
         .id_salt("front")
         .striped(true)

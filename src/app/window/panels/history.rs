@@ -34,7 +34,13 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             for k in (now.saturating_sub(20)..(now + 8).min(state.track.len())).rev() {
                 let tracked = &state.track[k];
                 let text = format!("{}   {}", words::grouped(k as u64 + 1), words::kind(tracked.kind));
-                let colour = if k + 1 == now { palette.accent } else if k + 1 < now { palette.text } else { palette.hint };
+                let colour = if k + 1 == now {
+                    palette.accent
+                } else if k + 1 < now {
+                    palette.text
+                } else {
+                    palette.hint
+                };
                 let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
                 if ui.selectable_label(false, text).clicked() {
                     commands.push(Command::Go(Goal::Step(k as u64 + 1)));

@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             Some(Outlined::Edge(ends)) => {
                 let found = moment.front.iter().position(|s| [s.a, s.b] == ends || [s.b, s.a] == ends);
                 match found {
-                    Some(place) => segment(ui, &moment, place, palette),
+                    Some(place) => segment(ui, &moment, place, commands, palette),
                     None => edge(ui, &moment, ends, palette),
                 }
             }
@@ -48,7 +48,7 @@ fn gone(ui: &mut Ui, what: &str, palette: &Palette) {
     ui.label(note(format!("{what} does not exist at this step."), palette));
 }
 
-fn segment(ui: &mut Ui, moment: &Moment, place: usize, palette: &Palette) {
+fn segment(ui: &mut Ui, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {
     let s = &moment.front[place];
     title(ui, format!("Front segment {}", words::segment(s.a, s.b)), palette);
     ui.horizontal(|ui| {
@@ -62,16 +62,29 @@ fn segment(ui: &mut Ui, moment: &Moment, place: usize, palette: &Palette) {
     line(ui, "H = ½ ( 1/√λA + 1/√λB )".to_owned(), palette);
     ui.horizontal(|ui| {
         line(ui, format!("    = ½ ( {} + {} ) =", words::size(h[0]), words::size(h[1])), palette);
-        ui.label(RichText::new(words::size(s.h_value)).font(theme::semibold(theme::FORMULA)).color(ink(palette.strong)));
+        ui.label(
+            RichText::new(words::size(s.h_value)).font(theme::semibold(theme::FORMULA)).color(ink(palette.strong)),
+        );
     });
     heading(ui, "Frontal angles", "metric of the node", palette);
     for (side, name) in Side::BOTH.into_iter().zip(["θA", "θB"]) {
         angle(ui, moment, s, side, name, palette);
     }
     heading(ui, "Length", "", palette);
-    line(ui, format!("metric {}   ·   in the plane {}", words::fixed(s.length_metric, 3), words::size(s.length_physical)), palette);
+    line(
+        ui,
+        format!("metric {}   ·   in the plane {}", words::fixed(s.length_metric, 3), words::size(s.length_physical)),
+        palette,
+    );
     heading(ui, "Ends", "h1 ≤ h2 of the metric", palette);
     ends(ui, moment, &[("A", s.a), ("B", s.b)], palette);
+    if Decision::of(&moment.phase).base != Some([s.a, s.b]) {
+        ui.add_space(8.0);
+        let tip = "The next selection takes this segment, whatever its rank: a change of the run from this step on";
+        if ui.button("Choose as next base").on_hover_text(tip).clicked() {
+            commands.push(Command::ChooseBase([s.a, s.b]));
+        }
+    }
 }
 
 fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, palette: &Palette) {
@@ -126,11 +139,23 @@ fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], palette: &Palett
 fn edge(ui: &mut Ui, moment: &Moment, ends_of: [NodeId; 2], palette: &Palette) {
     title(ui, format!("Edge {}", words::edge(ends_of)), palette);
     let mesh = &moment.mesh;
-    let h = ends_of.iter().all(|n| mesh.has_node(*n)).then(|| mesh.half_edge_between(ends_of[0], ends_of[1]).or_else(|| mesh.half_edge_between(ends_of[1], ends_of[0]))).flatten();
+    let h = ends_of
+        .iter()
+        .all(|n| mesh.has_node(*n))
+        .then(|| {
+            mesh.half_edge_between(ends_of[0], ends_of[1]).or_else(|| mesh.half_edge_between(ends_of[1], ends_of[0]))
+        })
+        .flatten();
     let Some(h) = h else { return gone(ui, "The edge", palette) };
     let around = [Some(h), mesh.twin(h)];
     let dead = around.iter().flatten().all(|h| mesh.is_quad(h.element()));
-    let kind = if mesh.twin(h).is_none() { "boundary" } else if dead { "dead" } else { "live" };
+    let kind = if mesh.twin(h).is_none() {
+        "boundary"
+    } else if dead {
+        "dead"
+    } else {
+        "live"
+    };
     let of: Vec<String> = around.iter().flatten().map(|h| h.element().0.to_string()).collect();
     ui.label(note(format!("{kind}  ·  of elements {}", of.join(" and ")), palette));
     heading(ui, "Length", "eq. 4", palette);
@@ -176,7 +201,15 @@ fn element(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands: 
     let level = if quad { format!("  ·  level {}", mesh.level(e)) } else { String::new() };
     ui.label(note(format!("{}{level}", if quad { "dead" } else { "live" }), palette));
     heading(ui, "Quality", "metric", palette);
-    line(ui, format!("quality {}   ·   metric area {}", words::fixed(mesh.quality(e), 2), words::fixed(metric_area(mesh, e), 2)), palette);
+    line(
+        ui,
+        format!(
+            "quality {}   ·   metric area {}",
+            words::fixed(mesh.quality(e), 2),
+            words::fixed(metric_area(mesh, e), 2)
+        ),
+        palette,
+    );
     let [low, high] = angles(mesh, e);
     line(ui, format!("angles in the plane {}° to {}°", words::degrees(low), words::degrees(high)), palette);
     heading(ui, "Nodes", "h1 ≤ h2 of the metric", palette);

@@ -9,8 +9,8 @@ use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::render::palette::{Palette, Rgba};
 
-/// Shows the legend, from the right: buttons first.
-pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+/// Shows the legend, from the right: buttons first; `kept` points are left free for the tabs.
+pub fn show(ui: &mut Ui, kept: f32, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for (icon, command) in [(icons::CORNERS_OUT, Command::Fit), (icons::CROSSHAIR, Command::ShowDecision)] {
         if icon_button(ui, icon, theme::ICON, &command, state.moment.is_some()).clicked() {
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     for (colour, width, name) in entries {
         let text = ui.painter().layout_no_wrap(name.to_owned(), font.clone(), ink(palette.weak));
         let wanted = Vec2::new(text.size().x + 28.0, ui.available_height());
-        if ui.available_width() < wanted.x + 4.0 {
+        if ui.available_width() < wanted.x + kept {
             break;
         }
         let (rect, _) = ui.allocate_exact_size(wanted, Sense::hover());
@@ -47,7 +47,5 @@ fn layers(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pal
     let button = eframe::egui::RichText::new(icons::STACK).font(theme::regular(theme::ICON));
     let shown = ui.menu_button(button, |ui| super::layers::list(ui, state, commands, palette));
     let response = shown.response.on_hover_text("Layers and colours");
-    response.widget_info(|| {
-        eframe::egui::WidgetInfo::labeled(eframe::egui::Role::Button, true, "Layers and colours")
-    });
+    response.widget_info(|| eframe::egui::WidgetInfo::labeled(eframe::egui::Role::Button, true, "Layers and colours"));
 }

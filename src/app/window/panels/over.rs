@@ -1,6 +1,8 @@
 //! What opens over the window: every command by name, keys, and fields for a step or a path.
 
-use eframe::egui::{self, Align2, Area, Button, Context, Frame, Key, Margin, Order, RichText, ScrollArea, TextEdit, Ui, Vec2};
+use eframe::egui::{
+    self, Align2, Area, Button, Context, Frame, Key, Margin, Order, RichText, ScrollArea, TextEdit, Ui, Vec2,
+};
 
 use crate::app::window::command::{Command, keys};
 use crate::app::window::state::{Over, State};
@@ -21,7 +23,8 @@ pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, p
         .corner_radius(4.0)
         .inner_margin(Margin::same(12))
         .shadow(egui::Shadow { offset: [0, 6], blur: 18, spread: 0, color: egui::Color32::from_black_alpha(80) });
-    let area = Area::new(egui::Id::unique("over")).order(Order::Foreground).anchor(Align2::CENTER_TOP, Vec2::new(0.0, 60.0));
+    let area =
+        Area::new(egui::Id::unique("over")).order(Order::Foreground).anchor(Align2::CENTER_TOP, Vec2::new(0.0, 60.0));
     let shown = area.show(context, |ui| {
         frame.show(ui, |ui| {
             ui.set_width(WIDTH);
@@ -34,7 +37,8 @@ pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, p
                     }
                 }
                 Over::Path => {
-                    if field(ui, state, "The path of a case (.toml) or a mesh, or the name of a built-in case", "Path") {
+                    if field(ui, state, "The path of a case (.toml) or a mesh, or the name of a built-in case", "Path")
+                    {
                         state.open_field();
                     }
                 }

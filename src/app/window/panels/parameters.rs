@@ -1,6 +1,6 @@
 //! The parameters at the step at hand, live: a change holds from this step on.
 
-use eframe::egui::{self, Align, ComboBox, Layout, RichText, ScrollArea, Slider, Ui, Vec2, WidgetInfo, Role};
+use eframe::egui::{self, Align, ComboBox, Layout, RichText, Role, ScrollArea, Slider, Ui, Vec2, WidgetInfo};
 
 use super::{icon_button, inset};
 use crate::app::window::command::Command;
@@ -22,20 +22,69 @@ struct Number {
 }
 
 const NUMBERS: [Number; 7] = [
-    Number { key: "theta_rect", name: "θ rect", range: [90.0, 180.0], decimals: 1, unit: "°", paper: "paper 135",
-        tip: "Below this frontal angle the neighbouring front segment is the side edge (table 1)." },
-    Number { key: "c", name: "c", range: [0.5, 4.0], decimals: 2, unit: "", paper: "1.5–2.0",
-        tip: "A segment is within reach below c times the smallest H-value (section 4.3.3)." },
-    Number { key: "theta_seam", name: "θ seam", range: [0.0, 90.0], decimals: 1, unit: "°", paper: "30, fig. 12: 45",
-        tip: "At or below this frontal angle a front corner is closed by a seam (section 4.3.6)." },
-    Number { key: "side_deviation", name: "side off", range: [0.0, 90.0], decimals: 1, unit: "°", paper: "paper 30",
-        tip: "A side edge may be off the direction aimed at by this (eq. 8)." },
-    Number { key: "side_split", name: "side split", range: [1.0, 4.0], decimals: 2, unit: "×", paper: "paper 1.5",
-        tip: "A live side edge longer than this times the base is divided (section 4.3.4)." },
-    Number { key: "layers", name: "layers", range: [0.0, 20.0], decimals: 0, unit: "", paper: "none",
-        tip: "Rows that are offset from the boundary before anything else." },
-    Number { key: "theta_revr", name: "θ revr", range: [180.0, 360.0], decimals: 1, unit: "°", paper: "225; classifies only",
-        tip: "Above this a corner is a reversal (fig. 12). It classifies only: changing it changes nothing in the mesh." },
+    Number {
+        key: "theta_rect",
+        name: "θ rect",
+        range: [90.0, 180.0],
+        decimals: 1,
+        unit: "°",
+        paper: "paper 135",
+        tip: "Below this frontal angle the neighbouring front segment is the side edge (table 1).",
+    },
+    Number {
+        key: "c",
+        name: "c",
+        range: [0.5, 4.0],
+        decimals: 2,
+        unit: "",
+        paper: "1.5–2.0",
+        tip: "A segment is within reach below c times the smallest H-value (section 4.3.3).",
+    },
+    Number {
+        key: "theta_seam",
+        name: "θ seam",
+        range: [0.0, 90.0],
+        decimals: 1,
+        unit: "°",
+        paper: "30, fig. 12: 45",
+        tip: "At or below this frontal angle a front corner is closed by a seam (section 4.3.6).",
+    },
+    Number {
+        key: "side_deviation",
+        name: "side off",
+        range: [0.0, 90.0],
+        decimals: 1,
+        unit: "°",
+        paper: "paper 30",
+        tip: "A side edge may be off the direction aimed at by this (eq. 8).",
+    },
+    Number {
+        key: "side_split",
+        name: "side split",
+        range: [1.0, 4.0],
+        decimals: 2,
+        unit: "×",
+        paper: "paper 1.5",
+        tip: "A live side edge longer than this times the base is divided (section 4.3.4).",
+    },
+    Number {
+        key: "layers",
+        name: "layers",
+        range: [0.0, 20.0],
+        decimals: 0,
+        unit: "",
+        paper: "none",
+        tip: "Rows that are offset from the boundary before anything else.",
+    },
+    Number {
+        key: "theta_revr",
+        name: "θ revr",
+        range: [180.0, 360.0],
+        decimals: 1,
+        unit: "°",
+        paper: "225; classifies only",
+        tip: "Above this a corner is a reversal (fig. 12). It classifies only: changing it changes nothing in the mesh.",
+    },
 ];
 
 const SWITCHES: [(&str, &str, &str); 6] = [
@@ -83,7 +132,14 @@ pub fn reset(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-fn row(ui: &mut Ui, state: &mut State, parameters: &Parameters, number: &Number, commands: &mut Vec<Command>, palette: &Palette) {
+fn row(
+    ui: &mut Ui,
+    state: &mut State,
+    parameters: &Parameters,
+    number: &Number,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
     let in_force: f64 = parameters.text_of(number.key).and_then(|text| text.parse().ok()).unwrap_or(f64::NAN);
     // What is being dragged is not in force until it is let go.
     let mut value = state.tentative.filter(|t| t.0 == number.key).map_or(in_force, |t| t.1);

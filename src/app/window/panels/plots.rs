@@ -84,7 +84,8 @@ fn lengths(moment: &Moment) -> ([Vec<u32>; 2], f64) {
     let (mut sum, mut number) = (0.0, 0);
     for h in moment.mesh.edges() {
         let length = moment.mesh.length(h);
-        let dead = moment.mesh.is_quad(h.element()) || moment.mesh.twin(h).is_some_and(|t| moment.mesh.is_quad(t.element()));
+        let dead =
+            moment.mesh.is_quad(h.element()) || moment.mesh.twin(h).is_some_and(|t| moment.mesh.is_quad(t.element()));
         let bar = ((length / LONGEST * BARS as f64) as usize).min(BARS - 1);
         counts[usize::from(!dead)][bar] += 1;
         (sum, number) = (sum + length, number + 1);

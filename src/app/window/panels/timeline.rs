@@ -1,7 +1,7 @@
 //! The run along its steps: a lane for each kind of event, curves, bookmarks, and the play head. Click or drag to seek; the wheel
 //! zooms.
 
-use eframe::egui::{self, Align2, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, Role};
+use eframe::egui::{self, Align2, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
 
 use crate::app::window::command::Command;
 use crate::app::window::session::{Goal, Tracked};
@@ -33,7 +33,8 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         Pos2::new(rect.left() + LABELS, rect.top() + 4.0),
         Pos2::new((rect.right() - COUNTS).max(rect.left() + LABELS + 10.0), rect.bottom() - 4.0),
     );
-    let response = ui.interact(plot.expand2(Vec2::new(6.0, 4.0)), ui.scope_id().with("timeline"), Sense::click_and_drag());
+    let response =
+        ui.interact(plot.expand2(Vec2::new(6.0, 4.0)), ui.scope_id().with("timeline"), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, "Timeline"));
     let Some(moment) = state.moment.clone() else { return };
     let all = state.track.len().max(1) as f64;
@@ -41,7 +42,12 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
     if let Some(at) = response.hover_pos() {
         let scroll = ui.input(|input| input.smooth_scroll_delta());
         if scroll.y != 0.0 {
-            span = zoomed(span, all, f64::from((at.x - plot.left()) / plot.width()), libm::exp(f64::from(-scroll.y) * 0.004));
+            span = zoomed(
+                span,
+                all,
+                f64::from((at.x - plot.left()) / plot.width()),
+                libm::exp(f64::from(-scroll.y) * 0.004),
+            );
             state.timeline = (span[1] - span[0] < all).then_some(span);
         }
     }
@@ -131,14 +137,26 @@ fn ruler(painter: &egui::Painter, axis: &Axis, state: &State, palette: &Palette,
         let x = axis.x(tick);
         if (x - head).abs() > 34.0 {
             let text = words::grouped(tick as u64);
-            painter.text(Pos2::new(x, top), Align2::CENTER_TOP, text, theme::regular(theme::TIMELINE), ink(palette.weak));
+            painter.text(
+                Pos2::new(x, top),
+                Align2::CENTER_TOP,
+                text,
+                theme::regular(theme::TIMELINE),
+                ink(palette.weak),
+            );
         }
         tick += every;
     }
     for step in &state.kept.bookmarks {
         let x = axis.x(*step as f64);
         let font = theme::regular(theme::TIMELINE);
-        painter.text(Pos2::new(x, top + 12.0), Align2::CENTER_TOP, crate::app::window::icons::BOOKMARK, font, ink(palette.text));
+        painter.text(
+            Pos2::new(x, top + 12.0),
+            Align2::CENTER_TOP,
+            crate::app::window::icons::BOOKMARK,
+            font,
+            ink(palette.text),
+        );
     }
     top + 24.0
 }
@@ -200,7 +218,16 @@ enum Curve {
     Quality,
 }
 
-fn curve(painter: &egui::Painter, axis: &Axis, state: &State, palette: &Palette, y: f32, name: &str, of: Curve, now: u64) {
+fn curve(
+    painter: &egui::Painter,
+    axis: &Axis,
+    state: &State,
+    palette: &Palette,
+    y: f32,
+    name: &str,
+    of: Curve,
+    now: u64,
+) {
     let seen = axis.seen(state.track.len());
     let mut points: Vec<(u64, f32)> = Vec::new();
     let (mut worst, mut most) = (1.0_f32, 1.0_f32);
@@ -260,7 +287,13 @@ fn head(painter: &egui::Painter, axis: &Axis, palette: &Palette, step: u64, bott
     }
     let top = axis.plot.top();
     let accent = ink(palette.base);
-    painter.text(Pos2::new(x, top), Align2::CENTER_TOP, words::grouped(step), theme::semibold(theme::TIMELINE), ink(palette.accent));
+    painter.text(
+        Pos2::new(x, top),
+        Align2::CENTER_TOP,
+        words::grouped(step),
+        theme::semibold(theme::TIMELINE),
+        ink(palette.accent),
+    );
     painter.vline(x, top + 16.0..=bottom, Stroke::new(2.0, accent));
     let tip = [Pos2::new(x - 4.5, top + 14.0), Pos2::new(x + 4.5, top + 14.0), Pos2::new(x, top + 21.0)];
     painter.add(Shape::convex_polygon(tip.to_vec(), accent, Stroke::NONE));

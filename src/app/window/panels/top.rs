@@ -1,6 +1,6 @@
 //! The bar of menus, what is open, and the field for commands.
 
-use eframe::egui::{self, Align, Align2, Button, Layout, MenuBar, RichText, Sense, Ui, Vec2, WidgetInfo, Role};
+use eframe::egui::{self, Align, Align2, Button, Layout, MenuBar, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
 
 use crate::app::window::command::{Command, LAYERS};
 use crate::app::window::icons;
@@ -20,10 +20,11 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         ui.label(RichText::new("quadfront").font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
         ui.add_space(6.0);
         MenuBar::new().ui(ui, |ui| menus(ui, state, commands));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.add_space(8.0);
-            field(ui, commands, palette);
-        });
+    });
+    let right = egui::UiBuilder::new().max_rect(bar).layout(Layout::right_to_left(Align::Center));
+    ui.scope_builder(right, |ui| {
+        ui.add_space(8.0);
+        field(ui, bar.width(), commands, palette);
     });
     if let Some(opened) = &state.opened {
         let painter = ui.painter_at(bar);
@@ -100,8 +101,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 }
 
 /// Looks like a field and opens the palette.
-fn field(ui: &mut Ui, commands: &mut Vec<Command>, palette: &Palette) {
-    let width = if ui.available_width() > 420.0 { 250.0 } else { 60.0 };
+fn field(ui: &mut Ui, room: f32, commands: &mut Vec<Command>, palette: &Palette) {
+    let width = if room > 800.0 { 250.0 } else { 60.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, 22.0), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, Command::Palette.name()));
     let line = if response.hovered() { palette.hint } else { palette.line };

@@ -34,9 +34,7 @@ impl Goal {
             },
             Goal::ToQuads(quads) => with(quads, 0),
             Goal::Kind(wanted, true) => log.next_of(step, |kind| kind == wanted).or(end),
-            Goal::Kind(wanted, false) => {
-                Some(log.last_of(step.saturating_sub(1), |kind| kind == wanted).unwrap_or(0))
-            }
+            Goal::Kind(wanted, false) => Some(log.last_of(step.saturating_sub(1), |kind| kind == wanted).unwrap_or(0)),
             Goal::End => end,
         }
     }
