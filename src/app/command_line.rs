@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::input::{InputFormat, Stops, input_format, mesh_format, setting, stop, stops};
+use super::input::{InputFormat, Stops, input_format, mesh_format, pixels, setting, stop, stops};
 use super::output::Target;
 use crate::core::convert::walk::Stop;
 use crate::core::io::format::Format;
@@ -31,7 +31,7 @@ pub(super) enum Command {
     Background(BackgroundArguments),
     /// Examine a quadrilateral mesh in a file: exit 1 when it falls short
     Check(CheckArguments),
-    /// Draw a mesh, or the mesh of a case, as SVG
+    /// Draw a mesh, or the mesh of a case, as SVG or PNG
     Render(RenderArguments),
     /// List the built-in cases
     Cases(CasesArguments),
@@ -75,8 +75,8 @@ pub(super) struct Destination {
     /// Write Gmsh's version 2.2 instead of 4.1
     #[arg(long)]
     pub msh2: bool,
-    /// A picture (.svg), or - for standard output
-    #[arg(long, value_name = "FILE.svg")]
+    /// A picture (.svg .png), or - for standard output (SVG)
+    #[arg(long, value_name = "FILE")]
     pub picture: Option<Target>,
 }
 
@@ -141,11 +141,14 @@ pub(super) struct RenderArguments {
     #[command(flatten)]
     pub source: Source,
     /// Draw the conversion where so many quadrilaterals stand (nq=100) or after so many steps (step=812); several, in their
-    /// order, side by side (nq=50,100,150)
-    #[arg(long, value_name = "STOPS", value_parser = stops)]
+    /// order, side by side (nq=50,100,150,end)
+    #[arg(long, visible_alias = "strip", value_name = "STOPS", value_parser = stops)]
     pub at: Option<Stops>,
-    /// The picture (.svg), or - for standard output
-    #[arg(short, long, value_name = "FILE.svg")]
+    /// The size of a single picture in pixels (96 an inch), in place of the width of a column
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = pixels)]
+    pub size: Option<[u32; 2]>,
+    /// The picture (.svg .png), or - for standard output (SVG)
+    #[arg(short, long, value_name = "FILE")]
     pub out: Target,
 }
 
@@ -181,6 +184,8 @@ mod tests {
             "quadfront background example1 --out triangles.mesh",
             "quadfront check quads.msh --seams --branching",
             "quadfront render example1 -o example1.svg",
+            "quadfront render example1 --at step=812 --size 1920x1080 -o front.png",
+            "quadfront render example1 --strip nq=50,100,end -o strip.png",
             "quadfront cases --json",
             "quadfront",
             "quadfront open",

@@ -137,8 +137,8 @@ pub(super) fn frames(case: &Case, stops: &Stops, watch: &mut dyn Watch) -> Resul
     let mut frames = Vec::new();
     conversion::convert_by(case, watch, &mut |converter, watch| {
         for &stop in &stops.0 {
-            walk(converter, Some(stop), watch, &mut |_| {})?;
-            frames.push(Picture { title: stop_text(stop), ..picture(converter) });
+            walk(converter, stop, watch, &mut |_| {})?;
+            frames.push(Picture { title: stop.map_or_else(|| "end".to_owned(), stop_text), ..picture(converter) });
         }
         Ok(())
     })?;

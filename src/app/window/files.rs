@@ -8,9 +8,11 @@ use std::time::{Duration, Instant};
 use eframe::egui::ColorImage;
 
 use super::session::{Moment, Opened, Source, Wake};
+use crate::app::convert;
 use crate::core::fault::Fault;
 use crate::core::io::{built_in, save};
-use crate::render::vector::svg;
+use crate::render::picture::Picture;
+use crate::render::vector::{self, svg};
 
 /// A dialog that has not answered for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -92,19 +94,22 @@ pub fn free_path(stem: &str, extension: &str) -> PathBuf {
     path
 }
 
-/// Writes a state as a figure (SVG); its name, for people.
+/// Writes a state as a figure, as vectors and as pixels drawn from those; their names, for people.
 ///
 /// # Errors
 /// What the system says.
 pub fn export(moment: &Moment, opened: &Opened, stem: &str) -> Result<String, Fault> {
-    let picture = crate::render::picture::Picture {
+    let picture = Picture {
         title: opened.case.title.clone(),
-        description: format!("{}, step={}", opened.case.name, moment.step),
-        ..crate::render::picture::Picture::of_state(&moment.mesh, &moment.parameters, moment.phase.base())
+        description: format!("{}, at step={}", convert::describe(&opened.case), moment.step),
+        ..Picture::of_state(&moment.mesh, &moment.parameters, moment.phase.base())
     };
-    let path = free_path(stem, "svg");
-    save::save(&path, |out| out.write_all(svg::write(&picture, svg::COLUMN).as_bytes()))?;
-    Ok(path.display().to_string())
+    let vectors = svg::write(&picture, svg::COLUMN);
+    let pixels = vector::png::write(&vectors, convert::PRINT, &picture.description)?;
+    let names = ["svg", "png"].map(|extension| free_path(stem, extension));
+    save::save(&names[0], |out| out.write_all(vectors.as_bytes()))?;
+    save::save(&names[1], |out| out.write_all(&pixels))?;
+    Ok(format!("{} and {}", names[0].display(), names[1].display()))
 }
 
 /// Writes a picture of the window as PNG.

@@ -127,7 +127,8 @@ fn visuals(palette: &Palette) -> Visuals {
     // Rails and check boxes must be seen on the panel.
     visuals.widgets.inactive.bg_fill = ink(palette.line);
     visuals.handle_shape = HandleShape::Circle;
-    visuals.selection.bg_fill = ink(palette.accent_row);
+    // Neutral means you: amber rows are the algorithm's.
+    visuals.selection.bg_fill = ink(palette.selection.faded(0.13));
     visuals.selection.stroke = Stroke::new(1.0, ink(palette.strong));
     visuals.panel_fill = ink(palette.panel);
     visuals.window_fill = ink(palette.panel);

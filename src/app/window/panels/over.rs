@@ -73,7 +73,7 @@ fn palette_list(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, pal
     let found: Vec<Command> = Command::all().into_iter().filter(|c| *c != Command::Escape && fits(&c.name())).collect();
     let mut chosen = found.first().filter(|_| entered).cloned();
     ui.add_space(4.0);
-    ScrollArea::vertical().max_height(380.0).show(ui, |ui| {
+    ScrollArea::vertical().max_height(380.0).min_scrolled_height(380.0).show(ui, |ui| {
         for (k, command) in found.iter().enumerate() {
             let colour = if k == 0 { palette.strong } else { palette.text };
             let text = RichText::new(command.name()).color(ink(colour));
@@ -98,7 +98,7 @@ fn palette_list(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, pal
 fn help(ui: &mut Ui, palette: &Palette) {
     ui.label(RichText::new("Keys").font(theme::semibold(theme::TITLE)).color(ink(palette.strong)));
     ui.add_space(6.0);
-    ScrollArea::vertical().max_height(460.0).show(ui, |ui| {
+    ScrollArea::vertical().max_height(460.0).min_scrolled_height(460.0).show(ui, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing(Vec2::new(26.0, 3.0)).show(ui, |ui| {
             for (_, _, command) in keys() {
                 ui.label(RichText::new(command.key().unwrap_or_default()).color(ink(palette.strong)));
