@@ -16,7 +16,7 @@ run:
 
 test:
 	@tools/setup build run test
-	QUADFRONT_NEEDS_ADAPTER=1 cargo test --locked --features uitest
+	QUADFRONT_NEEDS_ADAPTER=1 XDG_RUNTIME_DIR=$$(tools/runtime-dir) cargo test --locked --features uitest
 	tools/end-to-end
 	cargo test --locked --no-default-features --lib
 

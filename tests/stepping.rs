@@ -43,7 +43,7 @@ fn running_is_a_loop_over_steps() {
 
 #[test]
 fn every_walk_of_steps_forward_and_back_meets_the_same_states() {
-    for (name, size_scale) in [("example1", 2.0), ("polar-1", 2.0), ("repeated-line", 1.5)] {
+    for (name, size_scale) in [("example1", 2.0), ("polar-1", 2.0), ("repeated-line", 1.5), ("airfoil", 2.0)] {
         with_case(name, size_scale, |mut converter| {
             let mut rolled_back = 0;
             let mut states = vec![fingerprint(&converter)];

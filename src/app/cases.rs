@@ -18,10 +18,10 @@ pub(super) fn cases(arguments: &CasesArguments) -> Result<(), Fault> {
 }
 
 fn file(name: &str) -> Result<&'static str, Fault> {
-    let case = built_in::CASES.iter().find(|case| case.0 == name);
+    let case = built_in::all().find(|case| case.0 == name);
     case.map(|case| case.1).ok_or_else(|| {
         let fault = Fault::new("There is no built-in case of this name").at(name);
-        match nearest(name, built_in::CASES.iter().map(|case| case.0)) {
+        match nearest(name, built_in::all().map(|case| case.0)) {
             Some(near) => fault.remedy(format!("The nearest is \"{near}\"; quadfront cases lists all")),
             None => fault.remedy("quadfront cases lists them"),
         }
@@ -29,12 +29,20 @@ fn file(name: &str) -> Result<&'static str, Fault> {
 }
 
 fn list(json: bool) -> Result<String, Fault> {
-    let titles = built_in::CASES.iter().filter_map(|case| built_in::named(case.0)?.map(|c| (case.0, c.title)).into());
-    let titles = titles.collect::<Result<Vec<_>, Fault>>()?;
+    let titles = |cases: &[(&'static str, &str)]| {
+        let titles = cases.iter().filter_map(|case| built_in::named(case.0)?.map(|c| (case.0, c.title)).into());
+        titles.collect::<Result<Vec<_>, Fault>>()
+    };
+    let (cases, figures) = (titles(built_in::CASES)?, titles(built_in::FIGURES)?);
     if json {
-        let list: Vec<_> = titles.iter().map(|(name, title)| json!({ "name": name, "title": title })).collect();
+        let all = cases.iter().map(|case| (false, case)).chain(figures.iter().map(|case| (true, case)));
+        let list: Vec<_> =
+            all.map(|(figure, (name, title))| json!({ "name": name, "title": title, "figure": figure })).collect();
         return Ok(format!("{:#}\n", serde_json::Value::from(list)));
     }
-    let width = titles.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    Ok(titles.iter().map(|(name, title)| format!("{name:width$}  {title}\n")).collect())
+    let width = built_in::all().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let lines = |titles: &[(&str, String)]| -> String {
+        titles.iter().map(|(name, title)| format!("{name:width$}  {title}\n")).collect()
+    };
+    Ok(format!("{}\nFigures of the paper, one operation each:\n\n{}", lines(&cases), lines(&figures)))
 }

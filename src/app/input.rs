@@ -175,7 +175,7 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
     if name == "-" {
         return Ok(Kind::StandardInput(from.unwrap_or(InputFormat::Case)));
     }
-    if from.is_none() && built_in::CASES.iter().any(|case| case.0 == name) {
+    if from.is_none() && built_in::all().any(|case| case.0 == name) {
         return Ok(Kind::BuiltIn);
     }
     let path = PathBuf::from(name);
@@ -199,7 +199,7 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
         Ok(format) => Ok(Kind::File(path, InputFormat::Mesh(format))),
         Err(_) if !path.exists() => {
             let fault = Fault::new("There is neither a built-in case nor a file of this name").at(name);
-            Err(match nearest(name, built_in::CASES.iter().map(|case| case.0)) {
+            Err(match nearest(name, built_in::all().map(|case| case.0)) {
                 Some(near) => {
                     fault.remedy(format!("The nearest built-in case is \"{near}\"; quadfront cases lists all"))
                 }

@@ -25,7 +25,7 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
     let case = &input.case;
     match &arguments.at {
         None => {
-            let quads = work::convert(case, None, &mut |_| {}, &mut progress)?;
+            let quads = work::convert(case, None, None, &mut progress)?;
             progress.finish();
             convert::draw(&arguments.out, case, quads.picture(case), arguments.size)
         }

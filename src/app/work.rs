@@ -7,7 +7,7 @@ use crate::core::background::adapt::Adapted;
 use crate::core::convert::conversion::{self, Background, Converted};
 use crate::core::convert::converter::{Converter, Counts};
 use crate::core::convert::phase::Base;
-use crate::core::convert::walk::{Stop, Told, walk};
+use crate::core::convert::walk::{Stop, Tell, Told, walk};
 use crate::core::fault::Fault;
 use crate::core::io::case::Case;
 use crate::core::io::export::Export;
@@ -64,7 +64,7 @@ pub(super) fn convert_telling(
     events: Option<&Target>,
     watch: &mut dyn Watch,
 ) -> Result<Quads, Fault> {
-    let Some(events) = events else { return convert(case, at, &mut |_| {}, watch) };
+    let Some(events) = events else { return convert(case, at, None, watch) };
     let mut quads = None;
     let written = events.write(|out| {
         let mut written = Ok(());
@@ -73,7 +73,7 @@ pub(super) fn convert_telling(
                 written = serde_json::to_writer(&mut *out, told).map_err(io::Error::from).and_then(|()| writeln!(out));
             }
         };
-        let done = quads.insert(convert(case, at, &mut tell, watch));
+        let done = quads.insert(convert(case, at, Some(&mut tell), watch));
         // What went wrong with the conversion is told in its own words; no file is left of it.
         if done.is_err() { Err(io::Error::other("the conversion failed")) } else { written }
     });
@@ -89,12 +89,12 @@ pub(super) fn convert_telling(
 pub(super) fn convert(
     case: &Case,
     at: Option<Stop>,
-    tell: &mut dyn FnMut(&Told<'_>),
+    mut tell: Option<Tell<'_>>,
     watch: &mut dyn Watch,
 ) -> Result<Quads, Fault> {
     let mut stopped = None;
     let converted = conversion::convert_by(case, watch, &mut |converter, watch| {
-        walk(converter, at, watch, tell)?;
+        walk(converter, at, watch, tell.take())?;
         stopped = at.map(|stop| (stop, converter.phase().base().copied()));
         Ok(())
     })?;
@@ -137,7 +137,7 @@ pub(super) fn frames(case: &Case, stops: &Stops, watch: &mut dyn Watch) -> Resul
     let mut frames = Vec::new();
     conversion::convert_by(case, watch, &mut |converter, watch| {
         for &stop in &stops.0 {
-            walk(converter, stop, watch, &mut |_| {})?;
+            walk(converter, stop, watch, None)?;
             frames.push(Picture { title: stop.map_or_else(|| "end".to_owned(), stop_text), ..picture(converter) });
         }
         Ok(())
@@ -169,6 +169,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         rolled_back,
         deferred,
         seamed,
+        transitions,
         split,
         enhanced,
         removed,
@@ -186,6 +187,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("front_seam", seamed),
         ("front_split", split),
         ("front_step", steps),
+        ("front_transition_seam", transitions),
     ];
     let counts = [
         ("background_collapse", collapses),

@@ -1,6 +1,6 @@
 //! Promise: every valid case becomes strictly convex quadrilaterals, its boundary untouched (spec 2.6, 2.10, 5).
 //!
-//! Rounds of the random test: 100, or what QUADFRONT_SOAK_ROUNDS says. QUADFRONT_SEED runs one case alone, and
+//! Rounds of the random tests: 60 and 100, or what QUADFRONT_SOAK_ROUNDS says. QUADFRONT_SEED runs one case alone, and
 //! QUADFRONT_SHOW=1 prints its text, which the command line takes as it is.
 #![allow(clippy::unwrap_used)]
 
@@ -10,6 +10,7 @@ mod promise;
 mod random;
 mod random_case;
 mod random_metric;
+mod refusals;
 mod shape;
 
 use std::collections::BTreeMap;
@@ -61,7 +62,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn count(&mut self, seed: u64, took: Duration, outcome: Result<Result<Kept, Fault>, String>) {
+    fn count(&mut self, seed: u64, took: Duration, outcome: Outcome) {
         // A long run says at once what it finds.
         match &outcome {
             Ok(Ok(_)) if took < SLOW => {}
@@ -100,8 +101,11 @@ fn kind(fault: &Fault) -> String {
     words.join("")
 }
 
-fn one(seed: u64) -> Result<Result<Kept, Fault>, String> {
-    catch_unwind(AssertUnwindSafe(|| keep(&random_case(seed)))).unwrap_or_else(|panic| {
+/// What came of one case: kept, refused by the program, or broken.
+type Outcome = Result<Result<Kept, Fault>, String>;
+
+fn caught(work: impl FnOnce() -> Outcome) -> Outcome {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let said = panic.downcast_ref::<String>().cloned();
         Err(format!("panic: {}", said.or(panic.downcast_ref::<&str>().map(|s| s.to_string())).unwrap_or_default()))
     })
@@ -123,6 +127,12 @@ fn every_built_in_case_keeps_the_promise_and_gives_the_same_bytes_again() {
 
 #[test]
 fn every_random_case_becomes_convex_quadrilaterals_with_its_boundary_untouched() {
+    all_random_cases(100, &|seed| keep(&random_case(seed)));
+}
+
+/// Holds `one` against the cases of seeds from 0 on: as many as are asked for, unless the environment says how many.
+fn all_random_cases(rounds: u64, one: &(dyn Fn(u64) -> Outcome + Sync)) {
+    let one = |seed| caught(|| one(seed));
     if let Some(seed) = number_from_environment("QUADFRONT_SEED") {
         if std::env::var_os("QUADFRONT_SHOW").is_some() {
             println!("{}", random_case(seed).text);
@@ -134,7 +144,7 @@ fn every_random_case_becomes_convex_quadrilaterals_with_its_boundary_untouched()
         }
         return;
     }
-    let rounds = number_from_environment("QUADFRONT_SOAK_ROUNDS").unwrap_or(100);
+    let rounds = number_from_environment("QUADFRONT_SOAK_ROUNDS").unwrap_or(rounds);
     let (next, tally) = (AtomicU64::new(0), Mutex::new(Tally::default()));
     std::thread::scope(|scope| {
         for _ in 0..2 {

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use glam::DVec2;
-use quadfront::core::convert::conversion::{background, convert};
+use quadfront::core::convert::conversion::{background, convert_by};
+use quadfront::core::convert::converter::Converter;
+use quadfront::core::convert::phase::Phase;
 use quadfront::core::fault::Fault;
 use quadfront::core::geometry::predicates::convex;
 use quadfront::core::io::case::Case;
@@ -21,16 +23,35 @@ pub struct Kept {
     pub templates: bool,
 }
 
+/// Steps of a conversion for each triangle that it starts from: more of them is a machine that does not end.
+const MOST_STEPS: u64 = 1000;
+
 /// Converts a case and holds the result against everything that is promised.
 ///
 /// `Ok(Err(fault))` where the program refuses the case.
 pub fn keep(case: &Case) -> Result<Result<Kept, Fault>, String> {
+    keep_by(case, &mut |_| {})
+}
+
+/// As [`keep`], with a converter that is prepared before it runs.
+pub fn keep_by(case: &Case, prepare: &mut dyn FnMut(&mut Converter<'_>)) -> Result<Result<Kept, Fault>, String> {
     let triangles = match background(case, &mut Nobody) {
         Ok(made) => made.mesh,
         Err(fault) => return Ok(Err(fault)),
     };
-    let converted = match convert(case, &mut Nobody) {
-        Ok(made) => made,
+    let mut ends = true;
+    let converted = convert_by(case, &mut Nobody, &mut |converter, _| {
+        prepare(converter);
+        let most = MOST_STEPS * (triangles.element_count() as u64 + 100);
+        while *converter.phase() != Phase::Done && ends {
+            converter.step()?;
+            ends = converter.counts.steps < most;
+        }
+        Ok(())
+    });
+    let converted = match converted {
+        Ok(made) if ends => made,
+        Ok(made) => return Err(format!("no end after {} steps", made.counts.steps)),
         Err(fault) => return Ok(Err(fault)),
     };
     let quads = converted.mesh;

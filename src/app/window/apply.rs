@@ -3,15 +3,16 @@
 use std::time::Instant;
 
 use super::command::Command;
-use super::condition::Condition;
 use super::files;
 use super::session::{Goal, Source};
 use super::state::{Kept, Look, Over, State};
 use super::words;
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
+use crate::core::run::breakpoint::Condition;
 use crate::core::run::run::{Edit, EditKind};
-use crate::render::scene::Layers;
+use crate::core::run::watch::Watched;
+use crate::render::scene::{Layers, Outlined};
 
 /// How many changes can be taken back.
 const UNDO: usize = 200;
@@ -32,6 +33,15 @@ impl State {
             }
             Command::Pick(picked) => self.keep(|kept| kept.picked = picked),
             Command::Show(what) => self.look = Some(Look::At(what)),
+            Command::LastTouch(what) => {
+                let Some(session) = &self.session else { return };
+                session.go_to_touch(match what {
+                    Outlined::Node(node) => Watched::Node(node),
+                    Outlined::Edge([a, b]) => Watched::Edge(a, b),
+                    Outlined::Element(element) => Watched::Element(element),
+                });
+                self.wait();
+            }
             Command::Fit => self.look = Some(Look::Fit),
             Command::ShowDecision => self.look = Some(Look::Decision),
             Command::Set(key, value) => self.set(key, value),
@@ -77,8 +87,7 @@ impl State {
     fn go(&mut self, goal: Goal) {
         let Some(session) = &self.session else { return };
         session.go(goal);
-        self.waiting += 1;
-        self.since.get_or_insert_with(Instant::now);
+        self.wait();
     }
 
     /// Changes what a person has set, so that it can be taken back.
@@ -102,6 +111,13 @@ impl State {
         }
         if self.kept.layers != before.layers || self.kept.colour_by != before.colour_by {
             self.mesh_epoch += 1;
+        }
+        if self.kept.breakpoints != before.breakpoints
+            && let Some(session) = &self.session
+        {
+            // Switched off, a breakpoint keeps its count.
+            let all = self.kept.breakpoints.iter().filter_map(|b| Condition::parse(&b.0).ok());
+            session.count(all.collect());
         }
         if self.kept.picked != before.picked {
             self.scroll_to = self.kept.picked;
@@ -148,22 +164,19 @@ impl State {
     }
 
     fn to_breakpoint(&mut self, forward: bool) {
-        let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return };
-        let conditions: Vec<Condition> =
-            self.kept.breakpoints.iter().filter(|b| b.1).filter_map(|b| Condition::parse(&b.0).ok()).collect();
-        let met = |k: &usize| conditions.iter().any(|c| c.is_met(*k as u64 + 1, &self.track[*k]));
-        let known = self.track.len();
-        let next = if forward {
-            ((step as usize).min(known)..known).find(met)
-        } else {
-            (0..(step as usize).saturating_sub(1).min(known)).rev().find(met)
-        };
-        let next = next.map(|k| k as u64 + 1);
-        match (next, forward) {
-            (Some(step), _) => self.go(Goal::Step(step)),
-            (None, true) => self.notice("No breakpoint is met after this step.".to_owned()),
-            (None, false) => self.notice("No breakpoint is met before this step.".to_owned()),
+        let conditions = self.conditions();
+        if conditions.is_empty() {
+            return self.notice("No breakpoint is on: write a condition in the panel Breakpoints.".to_owned());
         }
+        let Some(session) = &self.session else { return };
+        session.go_to_break(conditions, forward);
+        self.wait();
+    }
+
+    /// One more answer is owed.
+    fn wait(&mut self) {
+        self.waiting += 1;
+        self.since.get_or_insert_with(Instant::now);
     }
 
     fn bookmark(&mut self) {

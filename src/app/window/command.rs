@@ -24,6 +24,8 @@ pub enum Command {
     Pick(Option<Outlined>),
     /// Show something in the middle of the view.
     Show(Outlined),
+    /// Go back to the step that touched something last.
+    LastTouch(Outlined),
     /// Fit the whole mesh to the view.
     Fit,
     /// Show the base segment in the middle, from near.
@@ -88,7 +90,7 @@ pub const LAYERS: [&str; 9] = [
 ];
 
 /// Kinds of events that one can go to.
-pub const KINDS: [&str; 12] = [
+pub const KINDS: [&str; 13] = [
     "base_selected",
     "side_swapped",
     "side_divided",
@@ -99,6 +101,7 @@ pub const KINDS: [&str; 12] = [
     "deferred",
     "enhanced",
     "seamed",
+    "split",
     "closed",
     "last_resort",
 ];
@@ -153,6 +156,7 @@ impl Command {
             Command::Stop => "Stop".into(),
             Command::Pick(_) => "Select".into(),
             Command::Show(_) => "Show in the middle".into(),
+            Command::LastTouch(_) => "Who touched this last".into(),
             Command::Fit => "Fit the mesh to the view".into(),
             Command::ShowDecision => "Zoom to the decision".into(),
             Command::Set(key, value) => format!("Set {key} = {value}"),

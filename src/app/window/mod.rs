@@ -8,7 +8,6 @@ mod icons;
 mod theme;
 mod session;
 mod command;
-mod condition;
 mod files;
 mod state;
 mod apply;

@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 
 pub use goal::Goal;
 
+use crate::core::convert::candidates::Candidates;
 use crate::core::convert::conversion::Background;
-use crate::core::convert::converter::Counts;
 use crate::core::convert::event::Event;
 use crate::core::convert::parameters::Parameters;
 use crate::core::convert::phase::Phase;
@@ -23,12 +23,15 @@ use crate::core::fault::Fault;
 use crate::core::front::segment::Segment;
 use crate::core::io::case::Case;
 use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::ElementId;
+use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::progress::{Stage, Watch};
+use crate::core::run::breakpoint::{self, Condition};
+use crate::core::run::explain::SegmentTold;
+use crate::core::run::front_table::{FrontTable, Loop, Row};
 use crate::core::run::history::{BUDGET, Changes, History};
 use crate::core::run::recorder::{Recorder, Stretch};
 use crate::core::run::run::{Edit, Run};
-use crate::render::scene;
+use crate::core::run::watch::Watched;
 
 /// How often progress is told.
 const EVERY: Duration = Duration::from_millis(50);
@@ -38,6 +41,13 @@ const STRETCH: [u64; 2] = [64, 8192];
 /// What is asked of a session, by the window or by its own recorder.
 enum Ask {
     Go(Goal),
+    /// To the next step at which a condition holds, or the last one before.
+    Break(Vec<Condition>, bool),
+    /// To the step that touched something last.
+    Touch(Watched),
+    /// How often conditions hold.
+    Count(Vec<Condition>),
+    Explain([NodeId; 2]),
     Edits(Vec<Edit>),
     Found(Stretch, Recorder),
     Gone,
@@ -53,6 +63,12 @@ pub enum Told {
     Moment(Arc<Moment>, usize),
     /// More of the run: steps after `from`, in place of what was known after it; whether the end is among them.
     Track { from: u64, steps: Vec<Tracked>, end: bool },
+    /// How often each of the conditions holds in what is known of the run.
+    Hits(Vec<usize>),
+    /// Why a segment of the front was or was not chosen, at a step.
+    Explained(u64, Arc<SegmentTold>),
+    /// There is nothing of what was asked for; so many asks are answered by that.
+    Nothing(&'static str, usize),
     /// Something went wrong; so many asks are answered by that.
     Fault(Fault, usize),
 }
@@ -70,7 +86,7 @@ pub struct Tracked {
     pub kind: &'static str,
     /// Quadrilaterals that stand after it.
     pub standing: u32,
-    /// Segments of the front after it; 0 where that is not known.
+    /// Segments of the front after it.
     pub front: u32,
     /// The quadrilateral that it formed, with its quality.
     pub formed: Option<(ElementId, f32)>,
@@ -84,10 +100,18 @@ pub struct Moment {
     pub event: Option<Event>,
     pub mesh: Mesh,
     pub parameters: Parameters,
-    pub counts: Counts,
     /// What the last step changed.
     pub changed: Vec<ElementId>,
+    /// The front in the order in which a selection would take it.
     pub front: Vec<Segment>,
+    /// The same segments with their loops, and whether they are put off.
+    pub rows: Vec<Row>,
+    /// The loops of the front.
+    pub loops: Vec<Loop>,
+    /// What the step that led here chose a side edge from.
+    pub candidates: Option<Candidates>,
+    /// Why the base is the base.
+    pub base: Option<SegmentTold>,
     /// What is wrong with the mesh, where its invariants do not hold.
     pub broken: Option<String>,
 }
@@ -120,6 +144,26 @@ impl Session {
     /// Asks to go somewhere.
     pub fn go(&self, goal: Goal) {
         self.ask(Ask::Go(goal));
+    }
+
+    /// Asks to go to where a breakpoint is met, forward or backward.
+    pub fn go_to_break(&self, conditions: Vec<Condition>, forward: bool) {
+        self.ask(Ask::Break(conditions, forward));
+    }
+
+    /// Asks to go to the step that touched something last.
+    pub fn go_to_touch(&self, watched: Watched) {
+        self.ask(Ask::Touch(watched));
+    }
+
+    /// Asks how often conditions hold.
+    pub fn count(&self, conditions: Vec<Condition>) {
+        self.ask(Ask::Count(conditions));
+    }
+
+    /// Asks why a segment of the front was or was not chosen.
+    pub fn explain(&self, ends: [NodeId; 2]) {
+        self.ask(Ask::Explain(ends));
     }
 
     /// Changes the run.
@@ -184,6 +228,13 @@ impl Watch for Voice {
     }
 }
 
+/// Where to go.
+#[derive(Clone)]
+enum Aim {
+    Goal(Goal),
+    Break(Vec<Condition>, bool),
+}
+
 /// The thread that has the history.
 struct Worker {
     history: History,
@@ -191,7 +242,8 @@ struct Worker {
     voice: Voice,
     stop: Arc<AtomicBool>,
     /// Where to go as soon as that is known, and how many asks that answers.
-    pending: Option<(Goal, usize)>,
+    pending: Option<(Aim, usize)>,
+    conditions: Vec<Condition>,
     /// Tells the recorder's thread that what it does is of no use any more.
     cancel: Arc<AtomicBool>,
     /// Steps that the window has been told of.
@@ -218,7 +270,17 @@ impl Worker {
         let triangles = background.mesh.element_count() as u64;
         voice.say(Told::Opened(Arc::new(Opened { case: history.run().case.clone(), background })));
         let cancel = Arc::new(AtomicBool::new(false));
-        Ok(Worker { history, own, voice, stop, pending: Some((Goal::Step(0), 1)), cancel, tracked: 0, triangles })
+        Ok(Worker {
+            history,
+            own,
+            voice,
+            stop,
+            pending: Some((Aim::Goal(Goal::Step(0)), 1)),
+            conditions: Vec::new(),
+            cancel,
+            tracked: 0,
+            triangles,
+        })
     }
 
     fn serve(&mut self, asked: &Receiver<Ask>) {
@@ -227,7 +289,14 @@ impl Worker {
         while let Ok(ask) = asked.recv() {
             match ask {
                 Ask::Gone => break,
-                Ask::Go(goal) => self.go(goal),
+                Ask::Go(goal) => self.go(Aim::Goal(goal)),
+                Ask::Break(conditions, forward) => self.go(Aim::Break(conditions, forward)),
+                Ask::Touch(watched) => self.touch(watched),
+                Ask::Count(conditions) => {
+                    self.conditions = conditions;
+                    self.count();
+                }
+                Ask::Explain([a, b]) => self.explain(a, b),
                 Ask::Edits(edits) => self.edit(edits),
                 Ask::Found(stretch, recorder) => self.found(stretch, recorder),
             }
@@ -235,7 +304,7 @@ impl Worker {
                 && let Some((_, asks)) = self.pending.take()
             {
                 // Everything up to here can be looked at.
-                self.pending = Some((Goal::Step(self.history.log().known()), asks));
+                self.pending = Some((Aim::Goal(Goal::Step(self.history.log().known())), asks));
             }
             self.arrive();
         }
@@ -243,9 +312,40 @@ impl Worker {
     }
 
     /// A goal replaces one that still waits; its asker is answered with the new one's.
-    fn go(&mut self, goal: Goal) {
+    fn go(&mut self, aim: Aim) {
         let before = self.pending.take().map_or(0, |pending| pending.1);
-        self.pending = Some((goal, before + 1));
+        self.pending = Some((aim, before + 1));
+    }
+
+    /// Goes to the step that touched something last before the state at hand.
+    fn touch(&mut self, watched: Watched) {
+        match self.history.last_touch(watched, false) {
+            Ok(Some(step)) => self.go(Aim::Goal(Goal::Step(step))),
+            Ok(None) => self.voice.say(Told::Nothing("Nothing has touched it before this step.", 1)),
+            Err(fault) => self.voice.say(Told::Fault(fault, 1)),
+        }
+    }
+
+    fn explain(&self, a: NodeId, b: NodeId) {
+        let told = SegmentTold::of(self.history.state(), a, b);
+        if let Some(told) = told {
+            self.voice.say(Told::Explained(self.history.step(), Arc::new(told)));
+        }
+    }
+
+    /// Counts how often the conditions hold, in what is known and still kept of the run.
+    fn count(&self) {
+        let log = self.history.log();
+        let mut hits = vec![0; self.conditions.len()];
+        for step in (1..=log.known()).filter(|_| !self.conditions.is_empty()) {
+            let Some(event) = log.event(step) else { continue };
+            let moment =
+                breakpoint::Moment { step, nq: log.nq(step), event, front: log.front(step), angles: log.angles(step) };
+            for (hit, condition) in hits.iter_mut().zip(&self.conditions) {
+                *hit += usize::from(condition.holds(&moment));
+            }
+        }
+        self.voice.say(Told::Hits(hits));
     }
 
     fn edit(&mut self, edits: Vec<Edit>) {
@@ -261,7 +361,8 @@ impl Worker {
         self.tracked = self.tracked.min(first.unwrap_or(u64::MAX)).min(self.history.log().known());
         self.tell_track();
         self.lend(STRETCH[0]);
-        self.go(Goal::Step(step));
+        self.go(Aim::Goal(Goal::Step(step)));
+        self.count();
     }
 
     /// Lets another thread run ahead for a stretch.
@@ -281,6 +382,9 @@ impl Worker {
             return self.voice.say(Told::Fault(fault, 0));
         }
         self.tell_track();
+        if self.history.end().is_some() && !self.conditions.is_empty() {
+            self.count();
+        }
         self.lend(self.history.log().known().clamp(STRETCH[0], STRETCH[1]));
     }
 
@@ -292,7 +396,12 @@ impl Worker {
                 Some(Event::Formed { element, quality, .. }) => Some((*element, *quality as f32)),
                 _ => None,
             };
-            Some(Tracked { kind: log.kind(step)?, standing: log.nq(step) as u32, front: 0, formed })
+            Some(Tracked {
+                kind: log.kind(step)?,
+                standing: log.nq(step) as u32,
+                front: log.front(step).segments,
+                formed,
+            })
         });
         let told = Told::Track { from: self.tracked, steps: steps.collect(), end };
         self.tracked = log.known();
@@ -301,9 +410,30 @@ impl Worker {
 
     /// Goes where it was asked to go, where that is known by now.
     fn arrive(&mut self) {
-        let Some((goal, asks)) = self.pending else { return };
+        let Some((aim, asks)) = self.pending.clone() else { return };
         let end = self.history.end();
-        let Some(step) = goal.resolve(self.history.log(), self.history.step(), end) else {
+        let found = match &aim {
+            Aim::Goal(goal) => goal.resolve(self.history.log(), self.history.step(), end),
+            Aim::Break(conditions, forward) => {
+                let met = match forward {
+                    true => self.history.next_break(conditions),
+                    false => self.history.previous_break(conditions),
+                };
+                match met {
+                    Ok(Some((step, _))) => Some(step),
+                    Ok(None) if end.is_some() || !forward => {
+                        self.pending = None;
+                        return self.voice.say(Told::Nothing("No breakpoint is met there.", asks));
+                    }
+                    Ok(None) => None,
+                    Err(fault) => {
+                        self.pending = None;
+                        return self.voice.say(Told::Fault(fault, asks));
+                    }
+                }
+            }
+        };
+        let Some(step) = found else {
             let words = "Converting: quad";
             return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
         };
@@ -318,6 +448,7 @@ impl Worker {
         let step = step.min(self.history.log().known());
         // What the very last step changed is seen by doing it again.
         self.history.seek(step.saturating_sub(1))?;
+        let candidates = if step > 0 { self.history.state().candidates() } else { None };
         self.history.take_changes();
         self.history.seek(step)?;
         let changed = match self.history.take_changes() {
@@ -326,6 +457,9 @@ impl Worker {
         };
         let event = self.history.event(step)?;
         let state = self.history.state();
+        let table = FrontTable::of(state);
+        let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
+        let base = state.phase().base().and_then(|base| SegmentTold::in_table(state, &table, base.a, base.b));
         Ok(Moment {
             step,
             standing: standing(state),
@@ -333,27 +467,21 @@ impl Worker {
             event,
             mesh: state.mesh.without_journal(),
             parameters: state.parameters().clone(),
-            counts: state.counts,
             changed,
-            front: ranked(scene::front(&state.mesh, state.parameters()), state.parameters()),
+            front: rows.iter().map(segment).collect(),
+            rows,
+            loops: table.loops,
+            candidates,
+            base,
             broken: state.mesh.check().err(),
         })
     }
 }
 
-/// Segments in the order in which they come by table 1: those within reach by class and window, then the others by H-value.
-fn ranked(mut front: Vec<Segment>, parameters: &Parameters) -> Vec<Segment> {
-    let h_min = front.iter().map(|s| s.h_value).fold(f64::INFINITY, f64::min);
-    let place = |s: &Segment| {
-        let window = s.window(parameters.selection_window);
-        let within = s.class < 4 && window < parameters.c * h_min;
-        if within { (s.class, window) } else { (u8::MAX, s.h_value) }
-    };
-    front.sort_by(|a, b| {
-        let (x, y) = (place(a), place(b));
-        x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then(a.h.cmp(&b.h))
-    });
-    front
+/// A row of the table as the renderer wants it.
+fn segment(row: &Row) -> Segment {
+    let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, .. } = *row;
+    Segment { h, a, b, h_value, length_metric, length_physical, theta, class, level }
 }
 
 /// What a session is opened with.

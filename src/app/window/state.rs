@@ -12,6 +12,8 @@ use crate::core::convert::phase::Phase;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
 use crate::core::mesh::ids::NodeId;
+use crate::core::run::breakpoint::Condition;
+use crate::core::run::explain::SegmentTold;
 use crate::core::run::run::{Edit, Run};
 use crate::render::camera::Camera;
 use crate::render::scene::{ColourBy, Layers, Outlined};
@@ -52,6 +54,7 @@ pub enum FrontColumn {
     ThetaA,
     ThetaB,
     Level,
+    Loop,
 }
 
 /// Everything that the window knows.
@@ -114,6 +117,12 @@ pub struct State {
     pub seeking: Option<u64>,
     /// A parameter that is being dragged.
     pub tentative: Option<(&'static str, f64)>,
+    /// How often each breakpoint is met.
+    pub hits: Vec<usize>,
+    /// Why the picked segment was or was not chosen, at a step.
+    pub explained: Option<(u64, Arc<SegmentTold>)>,
+    /// What was asked to be explained last.
+    asked: Option<(u64, [NodeId; 2])>,
 }
 
 /// Where the main view is to look next.
@@ -177,6 +186,9 @@ impl State {
             timeline: None,
             seeking: None,
             tentative: None,
+            hits: Vec::new(),
+            explained: None,
+            asked: None,
         }
     }
 
@@ -193,6 +205,8 @@ impl State {
         self.kept = kept;
         self.undo.clear();
         self.redo.clear();
+        self.hits.clear();
+        (self.explained, self.asked, self.timeline) = (None, None, None);
         (self.camera, self.playing, self.hovered) = (None, None, None);
         self.look = Some(Look::Fit);
     }
@@ -229,6 +243,12 @@ impl State {
                     self.track.extend(steps);
                     self.recorded = end;
                 }
+                Told::Hits(hits) => self.hits = hits,
+                Told::Explained(step, told) => self.explained = Some((step, told)),
+                Told::Nothing(words, asks) => {
+                    self.notice(words.to_owned());
+                    self.answered(asks);
+                }
                 Told::Fault(fault, asks) => {
                     self.complain(&fault);
                     self.answered(asks);
@@ -263,6 +283,27 @@ impl State {
             self.waiting += 1;
             self.since.get_or_insert_with(Instant::now);
         }
+    }
+
+    /// Why a segment of the front was or was not chosen; asked for where it is not known yet.
+    pub fn explanation(&mut self, ends: [NodeId; 2]) -> Option<Arc<SegmentTold>> {
+        let step = self.moment.as_ref()?.step;
+        if let Some((at, told)) = &self.explained
+            && (*at, [told.row.a, told.row.b]) == (step, ends)
+        {
+            return Some(told.clone());
+        }
+        if self.asked != Some((step, ends)) {
+            self.asked = Some((step, ends));
+            self.session.as_ref()?.explain(ends);
+        }
+        None
+    }
+
+    /// The conditions of the breakpoints that are on.
+    pub fn conditions(&self) -> Vec<Condition> {
+        let on = self.kept.breakpoints.iter().filter(|b| b.1);
+        on.filter_map(|b| Condition::parse(&b.0).ok()).collect()
     }
 
     /// The front segment or edge that is picked, from A to B.

@@ -12,6 +12,8 @@ use super::labels;
 use super::session::Moment;
 use super::state::{Look, State};
 use super::theme::ink;
+use crate::core::convert::candidates::Passed;
+use crate::core::front::sector::Side;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::render::camera::Camera;
 use crate::render::gpu::{Painter, View};
@@ -175,7 +177,7 @@ impl Views {
                 front: &moment.front,
                 changed: &moment.changed,
                 decision: Decision::of(&moment.phase),
-                refused: &[],
+                refused: &refused(moment),
                 picked: state.kept.picked,
                 hovered: state.hovered,
                 background: background.map(|opened| &opened.background.mesh),
@@ -191,6 +193,14 @@ impl Views {
         let picture = Picture { scene: self.scene.clone(), view, index };
         ui.painter().add(Callback::new_paint_callback(frame.rect, picture));
     }
+}
+
+/// Edges that were there and are not the side, while one is chosen.
+fn refused(moment: &Moment) -> Vec<[NodeId; 2]> {
+    let (Some(tried), Some([a, b])) = (&moment.candidates, Decision::of(&moment.phase).base) else { return Vec::new() };
+    let from = if tried.side == Side::Left { a } else { b };
+    let edges = tried.edges.iter().filter(|edge| edge.swap.is_none() && edge.passed == Some(Passed::Farther));
+    edges.map(|edge| [from, edge.node]).collect()
 }
 
 /// What screen readers hear of the view.

@@ -1,6 +1,7 @@
 //! Numbers and events in words, as everywhere in the window: integers grouped by thin spaces, a true minus, an en dash for what
 //! is not defined.
 
+use crate::core::convert::candidates::Passed;
 use crate::core::convert::event::{Event, Purpose, Why};
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
@@ -98,11 +99,13 @@ pub fn event(event: &Event) -> String {
         }
         Event::PickLost { a, b } => format!("{} was picked as base and is not on the front any more", segment(a, b)),
         Event::SideIsFront { side: s, node } => format!("{} side is the front, to node {}", side(s), node.0),
-        Event::SideChosen { side: s, node, deviation, .. } => {
-            format!("{} side chosen: node {}, {}° off the direction aimed at", side(s), node.0, degrees(deviation))
+        Event::SideChosen { edge } => {
+            let off = degrees(edge.deviation);
+            format!("{} side chosen: node {}, {off}° off the direction aimed at", side(edge.side), edge.node.0)
         }
-        Event::SideSwapped { side: s, node, deviation, .. } => {
-            format!("{} side swapped in: node {}, {}° off the direction aimed at", side(s), node.0, degrees(deviation))
+        Event::SideSwapped { edge, .. } => {
+            let off = degrees(edge.deviation);
+            format!("{} side swapped in: node {}, {off}° off the direction aimed at", side(edge.side), edge.node.0)
         }
         Event::SideDivided { side: s, node, length } => {
             format!("{} side divided at new node {}; it was {} long", side(s), node.0, fixed(length, 2))
@@ -129,6 +132,16 @@ pub fn event(event: &Event) -> String {
         Event::Seamed { at, node, angle } => {
             format!("seam at node {}: {}° closed, ends joined in node {}", at.0, degrees(angle), node.0)
         }
+        Event::TransitionSeamed { at, node, angle, ratio } => format!(
+            "transition seam at node {}: {}° closed, one side {} times the other, joined in node {}",
+            at.0,
+            degrees(angle),
+            fixed(ratio, 1),
+            node.0
+        ),
+        Event::SeamRefused { at, angle, .. } => {
+            format!("no seam at node {}, of {}°: it cannot be joined", at.0, degrees(angle))
+        }
         Event::Split { node, .. } => format!("front split at node {}", node.0),
         Event::Closed { segments, quads, quality } => {
             format!("loop of {segments} segments closed by {quads} quadrilaterals, worst quality {}", fixed(quality, 2))
@@ -137,6 +150,19 @@ pub fn event(event: &Event) -> String {
         Event::LastResort(outcome) => format!("last resort: {} triangles left over", grouped(outcome.triangles as u64)),
         Event::PostProcessed => "whole mesh cleaned up and smoothed".to_owned(),
         Event::Finished => "done".to_owned(),
+    }
+}
+
+/// Why an edge is not the side.
+pub fn passed(passed: Passed) -> &'static str {
+    match passed {
+        Passed::Taken => "ends at a corner that is taken",
+        Passed::WideAngle => "front, but not below θrect",
+        Passed::SmallAngle => "the front is the side",
+        Passed::LaidDown => "this attempt has its own",
+        Passed::Farther => "another is nearer",
+        Passed::NotNeeded => "no swap is needed",
+        Passed::NotPositive => "the swap would fold over",
     }
 }
 

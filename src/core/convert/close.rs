@@ -9,6 +9,7 @@ use super::event::Event;
 use super::settle::{Nodes, settle, worst_quality};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::refusals::Operation;
 
 /// A closing is kept when every element around is at least this good.
 const LEAST_QUALITY: f64 = 0.1;
@@ -83,6 +84,7 @@ impl Converter<'_> {
                 }
             }
         }
+        self.mesh.permit(Operation::Close, way.quads.as_flattened()).ok()?;
         let made = self.mesh.replace(&component.triangles, &new);
         inside.iter().for_each(|&n| self.mesh.release_node(n));
         let mut core = Nodes::from_slice(ring);

@@ -12,11 +12,12 @@ use crate::core::background::import::{implied_metric, import};
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::{CurveSpec, Domain, FaceSpec};
-use crate::core::geometry::predicates::firm;
+use crate::core::geometry::predicates::{convex, firm};
 use crate::core::io::case::{Case, DomainSource};
 use crate::core::io::format::read_mesh;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::NodeId;
+use crate::core::io::mesh_file::MeshFile;
+use crate::core::mesh::half_edge::{Mesh, NewElement};
+use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::{Field, MetricSource, Place, Sizing};
 use crate::core::metric::gradation::bound_gradation;
@@ -72,6 +73,7 @@ pub struct Converted {
 pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
     let made = match &case.domain {
         DomainSource::Curves { curves, faces } => from_curves(case, curves, faces, watch)?,
+        DomainSource::Elements { points, triangles, quads } => from_elements(case, points, triangles, quads)?,
         DomainSource::Mesh { path, sol } => from_mesh(case, path, sol.as_deref(), watch)?,
     };
     refuse_needles(&made.mesh)?;
@@ -170,6 +172,50 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
     Ok(Background { mesh, sizing, regions: imported.regions, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
+/// A small mesh that the case itself holds, as it is: nodes keep its numbers, and its quadrilaterals stand already.
+fn from_elements(
+    case: &Case,
+    points: &[DVec2],
+    triangles: &[[u32; 3]],
+    quads: &[[u32; 4]],
+) -> Result<Background, Fault> {
+    if case.gradation.is_some() {
+        return Err(Fault::new("The case has a background and bounds the gradation").remedy("Leave gradation out"));
+    }
+    for (i, q) in quads.iter().enumerate() {
+        let [a, b, c, d] = q.map(|n| points[n as usize]);
+        if !convex(a, b, c, d) {
+            return Err(Fault::new(format!("quads[{i}] is not strictly convex and anticlockwise"))
+                .remedy("Give the numbers of its points anticlockwise, and no corner of 180 degrees or more"));
+        }
+    }
+    // Halved for the checks that triangle meshes go through; the halves are joined again afterwards.
+    let halves = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let file = MeshFile {
+        points: points.iter().map(|p| p.extend(0.0)).collect(),
+        triangles: triangles.iter().copied().chain(halves).collect(),
+        ..MeshFile::default()
+    };
+    let imported = import(&file, false)?;
+    if let Some(repair) = imported.repairs.first() {
+        return Err(Fault::new(format!("The background would have to be mended: {repair}"))
+            .remedy("Write it as it shall be: nothing is mended in a mesh that a case holds"));
+    }
+    let set = &imported.set;
+    let fields = case.fields.iter().map(|spec| Field::compile(spec, &|_| None)).collect::<Result<_, _>>()?;
+    let sizing = Sizing::new(fields, case.parameters.size_scale);
+    sizing.survey(&set.uv, &|_| false)?;
+    let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+    let mut mesh = Mesh::from_triangles(set, metric);
+    for first in (triangles.len() as u32..set.triangles.len() as u32).step_by(2) {
+        let [a, b, c] = mesh.triangle(ElementId(first));
+        let [_, _, d] = mesh.triangle(ElementId(first + 1));
+        mesh.replace(&[ElementId(first + 1), ElementId(first)], &[NewElement::quad([a, b, c, d], 0)]);
+    }
+    mesh.commit();
+    Ok(Background { mesh, sizing, regions: imported.regions, adapted: Adapted::default(), repairs: Vec::new() })
+}
+
 fn adapted_mesh(
     case: &Case,
     domain: &Domain,
@@ -215,7 +261,7 @@ fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, Fault> {
 
 /// Refuses a background with a triangle so flat that rounding could invert what the last resort makes of it.
 fn refuse_needles(mesh: &Mesh) -> Result<(), Fault> {
-    for e in mesh.elements() {
+    for e in mesh.elements().filter(|&e| mesh.is_triangle(e)) {
         let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
         if !firm(a, b, c) {
             return Err(Fault::new(format!(

@@ -6,8 +6,6 @@
 
 use std::sync::Arc;
 
-use smallvec::SmallVec;
-
 use super::component::{Component, live_components};
 use super::event::{Event, Why};
 use super::finish::{Finished, finish};
@@ -21,15 +19,10 @@ use crate::core::front::segment::Segment;
 use crate::core::front::selection::{Choice, Queue};
 use crate::core::journal::Mark;
 use crate::core::mesh::half_edge::{Mesh, Undone};
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::touched::Touched;
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::{Stage, Watch};
-
-/// Looks at edges for one enhancement: four times a ring's size (spec 2.8).
-const ENHANCEMENTS: u8 = 48;
-/// Every other edge at B, then at A, is tried up to here; the two Lee-Lo pairs come after.
-const ALTERNATIVES: u8 = 4;
 
 /// Least quality and largest new edge that a formation may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,8 +48,10 @@ pub struct Counts {
     pub deferred: u64,
     /// Quadrilaterals over small loops that were closed.
     pub closed: u64,
-    /// Seams.
+    /// Seams, those with a transition included.
     pub seamed: u64,
+    /// Of those, how many with a transition.
+    pub transitions: u64,
     /// Front splits.
     pub split: u64,
     /// Swaps of the enhancement.
@@ -89,6 +84,8 @@ enum Undo {
 pub struct Converter<'a> {
     /// The mesh: live triangles and dead quadrilaterals.
     pub mesh: Mesh,
+    /// Quadrilaterals that stood at step 0.
+    pub(super) given: u64,
     /// What gives the metric anywhere.
     pub(super) source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Parameters; may be changed between two steps by [`Converter::set_parameters`].
@@ -98,6 +95,8 @@ pub struct Converter<'a> {
     phase: Phase,
     /// Records of the steps, where a history is kept.
     history: Option<Vec<Record>>,
+    /// Whether steps leave the journal to whoever drives them, who forgets it where nothing is under way.
+    journal_kept: bool,
     /// What the step at hand took back, where a history is kept.
     undone: Option<Vec<Undone>>,
     /// Where the journal stood before the step at hand.
@@ -119,12 +118,14 @@ impl<'a> Converter<'a> {
     /// (`&sizing`) or shared (`Arc<Sizing>`).
     pub fn new(mesh: Mesh, source: impl MetricSource + Send + Sync + 'a, parameters: Parameters) -> Self {
         Converter {
+            given: mesh.elements().filter(|&e| mesh.is_quad(e)).count() as u64,
             mesh,
             source: Arc::new(source),
             parameters,
             queue: None,
             phase: Phase::Select,
             history: None,
+            journal_kept: false,
             undone: None,
             step_mark: Mark::default(),
             second_pass: false,
@@ -209,6 +210,17 @@ impl<'a> Converter<'a> {
         true
     }
 
+    /// Lets the journal stand from step to step without keeping a history: it tells what the steps touched. Whoever drives
+    /// forgets it ([`Mesh::commit`]) where [`Phase::mark`] says that nothing is under way.
+    pub(in crate::core) fn keep_journal(&mut self) {
+        self.mesh.commit();
+        self.journal_kept = true;
+    }
+
+    fn keeps_journal(&self) -> bool {
+        self.journal_kept || self.history.is_some()
+    }
+
     /// Number of steps that can be taken back.
     pub fn history_len(&self) -> usize {
         self.history.as_ref().map_or(0, Vec::len)
@@ -253,9 +265,9 @@ impl<'a> Converter<'a> {
     /// Everything but the mesh and caches, history left out: with the mesh, a state to go on from.
     pub(in crate::core) fn without_mesh(&mut self) -> Converter<'a> {
         let (mesh, queue) = (std::mem::take(&mut self.mesh), self.queue.take());
-        let history = self.history.take();
+        let (history, journal_kept) = (self.history.take(), std::mem::take(&mut self.journal_kept));
         let rest = self.clone();
-        (self.mesh, self.queue, self.history) = (mesh, queue, history);
+        (self.mesh, self.queue, self.history, self.journal_kept) = (mesh, queue, history, journal_kept);
         rest
     }
 
@@ -318,23 +330,7 @@ impl<'a> Converter<'a> {
         self.step_mark = self.mesh.mark();
         self.counts.steps += 1;
         let phase = std::mem::replace(&mut self.phase, Phase::Done);
-        let (next, event) = match phase {
-            Phase::Select => self.select()?,
-            Phase::PrepareSide { base, attempt, side, left } => self.step_side(base, attempt, side, left),
-            Phase::DivideSide { base, attempt, side, tops } => self.step_divide(base, attempt, side, tops),
-            Phase::RecoverTop { base, attempt, tops, swaps } => self.step_top(base, attempt, tops, swaps),
-            Phase::Form { base, attempt, tops } => self.step_form(base, attempt, tops),
-            Phase::Retry { base, attempt } => self.retry(base, attempt),
-            Phase::Enhance { element, mark, edges, budget } => self.step_enhance(element, mark, edges, budget),
-            Phase::Smooth { element, mark } => self.step_smooth(element, mark),
-            Phase::Seam { nodes } => self.step_seam(nodes)?,
-            Phase::Close { waiting, left } => self.step_close(waiting, left)?,
-            Phase::PostProcess => {
-                self.finished = finish(&mut self.mesh, &*self.source, self.history.is_some());
-                (Phase::Done, Event::PostProcessed)
-            }
-            Phase::Done => (Phase::Done, Event::Finished),
-        };
+        let (next, event) = self.act(phase)?;
         self.phase = next;
         if let (Some(history), Some(mut record)) = (&mut self.history, before) {
             if let Some(undone) = self.undone.take() {
@@ -345,8 +341,31 @@ impl<'a> Converter<'a> {
         Ok(event)
     }
 
+    /// What a phase asks for: the phase after it, and what was done.
+    fn act(&mut self, phase: Phase) -> Result<(Phase, Event), Fault> {
+        match phase {
+            Phase::Select => self.select(),
+            Phase::PrepareSide { base, attempt, side, left } => Ok(self.step_side(base, attempt, side, left)),
+            Phase::DivideSide { base, attempt, side, tops } => self.step_divide(base, attempt, side, tops),
+            Phase::RecoverTop { base, attempt, tops, swaps } => Ok(self.step_top(base, attempt, tops, swaps)),
+            Phase::Form { base, attempt, tops } => Ok(self.step_form(base, attempt, tops)),
+            Phase::Defer { base } => Ok(self.step_defer(base)),
+            Phase::Enhance { element, mark, edges, budget } => self.step_enhance(element, mark, edges, budget),
+            Phase::Smooth { element, mark } => self.step_smooth(element, mark),
+            Phase::Seam { element, nodes } => self.step_seam(element, nodes),
+            Phase::Split { element } => self.step_split(element),
+            Phase::Close { waiting, left } => self.step_close(waiting, left),
+            Phase::PostProcess => {
+                let keep = self.keeps_journal();
+                self.finished = finish(&mut self.mesh, &*self.source, keep);
+                Ok((Phase::Done, Event::PostProcessed))
+            }
+            Phase::Done => Ok((Phase::Done, Event::Finished)),
+        }
+    }
+
     /// Brings the queue up to date with what the journal holds since the mark.
-    fn refresh(&mut self, mark: Mark) {
+    pub(super) fn refresh(&mut self, mark: Mark) {
         let mut queue = self.take_queue();
         queue.refresh(&mut self.mesh, mark, &self.parameters);
         self.queue = Some(queue);
@@ -358,8 +377,8 @@ impl<'a> Converter<'a> {
     }
 
     /// Base segment selection (4.3.3).
-    fn select(&mut self) -> Result<(Phase, Event), Fault> {
-        if self.history.is_none() {
+    pub(super) fn select(&mut self) -> Result<(Phase, Event), Fault> {
+        if !self.keeps_journal() {
             // Nobody steps back: what was done stays done, and its memory is free again.
             self.mesh.commit();
         }
@@ -410,7 +429,7 @@ impl<'a> Converter<'a> {
         ))
     }
 
-    /// Takes an attempt back; the next one follows.
+    /// Takes an attempt back; the next one follows, or where there is none the segment is put off (spec 2.4 d).
     fn fail(&mut self, base: Base, attempt: Attempt, why: Why) -> (Phase, Event) {
         if self.history.is_some() {
             // What this very step did is not part of the state before it.
@@ -420,7 +439,11 @@ impl<'a> Converter<'a> {
             self.mesh.take_back(attempt.mark);
         }
         self.counts.rolled_back += 1;
-        (Phase::Retry { base, attempt }, Event::RolledBack { attempt: attempt.number, why })
+        let next = match self.next_attempt(&base, &attempt) {
+            Some(attempt) => Phase::PrepareSide { base, attempt, side: Side::Left, left: None },
+            None => Phase::Defer { base },
+        };
+        (next, Event::RolledBack { attempt: attempt.number, why })
     }
 
     fn step_side(&mut self, base: Base, attempt: Attempt, side: Side, left: Option<NodeId>) -> (Phase, Event) {
@@ -430,10 +453,13 @@ impl<'a> Converter<'a> {
                     Side::Left => [Some(top), None],
                     Side::Right => [left, Some(top)],
                 };
+                // A dead edge is never divided; what cannot be divided and must be fails in its own step.
                 let next = match event {
-                    // A dead edge is never divided.
                     Event::SideIsFront { .. } => self.after_side(base, attempt, side, tops),
-                    _ => Phase::DivideSide { base, attempt, side, tops },
+                    _ => match self.division(&base, &attempt, side, top) {
+                        Ok(None) => self.after_side(base, attempt, side, tops),
+                        _ => Phase::DivideSide { base, attempt, side, tops },
+                    },
                 };
                 (next, event)
             }
@@ -454,20 +480,17 @@ impl<'a> Converter<'a> {
         attempt: Attempt,
         side: Side,
         mut tops: [Option<NodeId>; 2],
-    ) -> (Phase, Event) {
-        let Some(top) = tops[side.index()] else { return self.fail(base, attempt, Why::NoSide(side)) };
-        match self.divide_side(&base, &attempt, side, top) {
-            Ok(Some((node, event))) => {
+    ) -> Result<(Phase, Event), Fault> {
+        let Some(top) = tops[side.index()] else { return Ok(self.fail(base, attempt, Why::NoSide(side))) };
+        match self.division(&base, &attempt, side, top) {
+            Ok(Some(division)) => {
+                let (node, event) = self.divide_side(side, division);
                 tops[side.index()] = Some(node);
-                (self.after_side(base, attempt, side, tops), event)
+                Ok((self.after_side(base, attempt, side, tops), event))
             }
-            // Nothing to divide is no operation: the next phase does its work in this same step.
-            Ok(None) => match self.after_side(base, attempt, side, tops) {
-                Phase::PrepareSide { base, attempt, side, left } => self.step_side(base, attempt, side, left),
-                Phase::RecoverTop { base, attempt, tops, swaps } => self.step_top(base, attempt, tops, swaps),
-                other => unreachable!("after a side comes a side or the top, not {other:?}"),
-            },
-            Err(why) => self.fail(base, attempt, why),
+            // Somebody has changed the parameters since it was judged.
+            Ok(None) => self.act(self.after_side(base, attempt, side, tops)),
+            Err(why) => Ok(self.fail(base, attempt, why)),
         }
     }
 
@@ -489,23 +512,14 @@ impl<'a> Converter<'a> {
                 let right_replaced = attempt.tops[1].is_some() && attempt.tops[0].is_none();
                 self.counts.right_replaced += u64::from(right_replaced);
                 self.counts.rescued += u64::from(attempt.tops[0].is_some());
-                let edges = if self.parameters.enhancement { self.edges_around(element) } else { SmallVec::new() };
-                (Phase::Enhance { element, mark: attempt.mark, edges, budget: ENHANCEMENTS }, event)
+                (self.begin_local(element, attempt.mark), event)
             }
             Err(why) => self.fail(base, attempt, why),
         }
     }
 
-    /// Finds the next attempt: divisions that are forced, then every other edge at B, then at A, then the Lee-Lo pairs of
-    /// the base triangle; none left puts the segment off (spec 2.4 d, 10 rules 1, 7, 9).
-    fn retry(&mut self, base: Base, attempt: Attempt) -> (Phase, Event) {
-        let mut number = attempt.number;
-        loop {
-            number = number.saturating_add(1);
-            let Some(next) = self.attempt(&base, number, attempt.mark) else { break };
-            let Some(next) = next else { continue };
-            return self.step_side(base, next, Side::Left, None);
-        }
+    /// Puts a segment off until something near it changes.
+    fn step_defer(&mut self, base: Base) -> (Phase, Event) {
         self.counts.deferred += 1;
         if let Some(h) = self.base_half_edge(&base) {
             let mut queue = self.take_queue();
@@ -513,95 +527,6 @@ impl<'a> Converter<'a> {
             self.queue = Some(queue);
         }
         (Phase::Select, Event::Deferred { a: base.a, b: base.b })
-    }
-
-    /// The attempt of a number: `None` past the last, `Some(None)` where it would be no different from another.
-    fn attempt(&self, base: &Base, number: u8, mark: Mark) -> Option<Option<Attempt>> {
-        let plain = Attempt { number, divide: [false; 2], tops: [None; 2], mark };
-        let is_front = base.theta.map(|t| t < self.parameters.theta_rect);
-        if number < ALTERNATIVES {
-            let divide = [[false, true], [true, false], [true, true]][usize::from(number) - 1];
-            let possible = !(divide[0] && is_front[0] || divide[1] && is_front[1]);
-            return Some(possible.then_some(Attempt { divide, ..plain }));
-        }
-        let h = self.base_half_edge(base)?;
-        let mut k = usize::from(number - ALTERNATIVES);
-        for (side, spokes) in
-            [(Side::Right, self.mesh.spokes(h, Side::Right)), (Side::Left, self.mesh.spokes(h, Side::Left))]
-        {
-            if let Some(spoke) = spokes.get(k) {
-                let mut tops = [None; 2];
-                tops[side.index()] = Some(spoke.node);
-                return Some(Some(Attempt { tops, ..plain }));
-            }
-            k -= spokes.len();
-        }
-        // The base triangle with its neighbour beyond the right edge, then the left one.
-        let apex = self.mesh.origin(self.mesh.previous(h));
-        let (edge, beyond_right) = match k {
-            0 => (self.mesh.next(h), true),
-            1 => (self.mesh.previous(h), false),
-            _ => return None,
-        };
-        let pair = self.mesh.twin(edge).filter(|t| self.mesh.is_triangle(t.element())).map(|t| {
-            let far = self.mesh.origin(self.mesh.previous(t));
-            let tops = if beyond_right { [Some(apex), Some(far)] } else { [Some(far), Some(apex)] };
-            Attempt { tops, ..plain }
-        });
-        Some(pair)
-    }
-
-    /// One enhancement (4.3.6), until there is none; then smoothing.
-    fn step_enhance(
-        &mut self,
-        element: ElementId,
-        mark: Mark,
-        mut edges: SmallVec<[HalfEdgeId; 24]>,
-        budget: u8,
-    ) -> (Phase, Event) {
-        if self.parameters.enhancement && budget > 0 {
-            while let Some(h) = edges.pop() {
-                if let Some((event, around)) = self.enhance_edge(h) {
-                    self.counts.enhanced += 1;
-                    edges.extend(around);
-                    return (Phase::Enhance { element, mark, edges, budget: budget - 1 }, event);
-                }
-            }
-            if let Some(event) = self.remove_a_node(element) {
-                self.counts.removed += 1;
-                let edges = self.edges_around(element);
-                return (Phase::Enhance { element, mark, edges, budget: budget - 1 }, event);
-            }
-        }
-        self.step_smooth(element, mark)
-    }
-
-    /// Smoothing (4.3.6); the queue then sees everything since the base was selected.
-    fn step_smooth(&mut self, element: ElementId, mark: Mark) -> (Phase, Event) {
-        let nodes = if self.parameters.smoothing { self.smooth_around(element) } else { 0 };
-        self.refresh(mark);
-        let next = if self.parameters.seaming {
-            Phase::Seam { nodes: SmallVec::from_slice(&self.mesh.quad(element)) }
-        } else {
-            Phase::Select
-        };
-        (next, Event::Smoothed { nodes })
-    }
-
-    /// One seam (4.3.6), until there is none; a selection follows in the same step where nothing is to be seamed.
-    fn step_seam(&mut self, mut nodes: SmallVec<[NodeId; 8]>) -> Result<(Phase, Event), Fault> {
-        while let Some(at) = nodes.pop() {
-            let mark = self.mesh.mark();
-            if let Some(event) = self.seam_at(at) {
-                self.counts.seamed += 1;
-                self.refresh(mark);
-                if let Event::Seamed { node, .. } = event {
-                    nodes.push(node);
-                }
-                return Ok((Phase::Seam { nodes }, event));
-            }
-        }
-        self.select()
     }
 
     /// Closes the next small loop that is left over (spec 2.7); what cannot be closed goes to the last resort together.

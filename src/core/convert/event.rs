@@ -37,6 +37,26 @@ pub enum Why {
     NoMetric,
 }
 
+/// Why two nodes of the front were not made one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", content = "value", rename_all = "snake_case")]
+pub enum Unmerged {
+    /// Both nodes are fixed.
+    BothFixed,
+    /// The longer segment is too long, and cannot be divided: it is on a boundary, or the front is beyond already.
+    Unlike,
+    /// A node would be left with two edges.
+    Doublet,
+    /// The edge between the two nodes cannot be recovered.
+    NotRecovered,
+    /// Something lies between the two segments.
+    NotEmpty,
+    /// An element would not be positive, or what is apart be glued.
+    NotPositive,
+    /// An element would have this quality, too much below what was.
+    Poor(f64),
+}
+
 /// Why a node was removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -45,6 +65,21 @@ pub enum Purpose {
     Recovery,
     /// Local structural enhancement (4.3.6, i).
     Enhancement,
+}
+
+/// A side edge, its angle, and how good that is. Angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SideEdge {
+    /// Which side.
+    pub side: Side,
+    /// Its top node.
+    pub node: NodeId,
+    /// Its angle with the base.
+    #[serde(serialize_with = "degrees")]
+    pub angle: f64,
+    /// How far that is from the direction aimed at.
+    #[serde(serialize_with = "degrees")]
+    pub deviation: f64,
 }
 
 /// What a step of the converter did or decided. Angles in radians.
@@ -93,34 +128,18 @@ pub enum Event {
     },
     /// An edge that is there was chosen as side (side edges iii, v).
     SideChosen {
-        /// Which side.
-        side: Side,
-        /// Its top node.
-        node: NodeId,
-        /// Its angle with the base.
-        #[serde(serialize_with = "degrees")]
-        angle: f64,
-        /// How far that is from the direction aimed at.
-        #[serde(serialize_with = "degrees")]
-        deviation: f64,
-        /// Number of edges considered.
-        considered: u8,
+        /// The edge.
+        #[serde(flatten)]
+        edge: SideEdge,
     },
     /// An edge was swapped to be the side (side edges iv, v).
     SideSwapped {
-        /// Which side.
-        side: Side,
-        /// Its top node.
-        node: NodeId,
-        /// Its angle with the base.
-        #[serde(serialize_with = "degrees")]
-        angle: f64,
-        /// How far that is from the direction aimed at.
-        #[serde(serialize_with = "degrees")]
-        deviation: f64,
-        /// Deviation of the best edge that was there.
-        #[serde(serialize_with = "degrees")]
-        instead_of: f64,
+        /// The edge that the swap has made.
+        #[serde(flatten)]
+        edge: SideEdge,
+        /// Deviation of the best edge that was there, if there was one.
+        #[serde(serialize_with = "degrees_if_any")]
+        instead_of: Option<f64>,
     },
     /// The side edge was divided (side edges vi).
     SideDivided {
@@ -201,14 +220,44 @@ pub enum Event {
         #[serde(serialize_with = "degrees")]
         angle: f64,
     },
+    /// Two front segments of unlike length were seamed: the longer one was divided before (4.3.6).
+    TransitionSeamed {
+        /// The node between them.
+        at: NodeId,
+        /// The node that the other end of the shorter one and the middle of the longer one became.
+        node: NodeId,
+        /// The frontal angle that was.
+        #[serde(serialize_with = "degrees")]
+        angle: f64,
+        /// Length of the longer one over that of the shorter.
+        ratio: f64,
+    },
+    /// Two front segments with a small angle were not seamed.
+    SeamRefused {
+        /// The node between them.
+        at: NodeId,
+        /// Their other ends.
+        ends: [NodeId; 2],
+        /// The frontal angle.
+        #[serde(serialize_with = "degrees")]
+        angle: f64,
+        /// Length of the longer one over that of the shorter.
+        ratio: f64,
+        /// Why.
+        why: Unmerged,
+    },
     /// The front was split at a slender element (4.3.6, fig. 19).
     Split {
         /// The node that two became.
         node: NodeId,
+        /// The one of them that is gone.
+        gone: NodeId,
         /// Metric area of the element.
         area: f64,
         /// Its width over its height.
         ratio: f64,
+        /// Segments of the two loops, where nothing else had become of the one.
+        segments: [u32; 2],
     },
     /// A small loop was closed (spec 2.7).
     Closed {
@@ -247,6 +296,8 @@ impl Event {
         "enhanced",
         "smoothed",
         "seamed",
+        "transition_seamed",
+        "seam_refused",
         "split",
         "closed",
         "second_pass",
@@ -254,6 +305,19 @@ impl Event {
         "post_processed",
         "finished",
     ];
+
+    /// Whether it changed what is around the last quadrilateral (4.3.6).
+    pub fn is_local_change(&self) -> bool {
+        matches!(
+            self,
+            Event::NodeRemoved { purpose: Purpose::Enhancement, .. }
+                | Event::Enhanced { .. }
+                | Event::Smoothed { .. }
+                | Event::Seamed { .. }
+                | Event::TransitionSeamed { .. }
+                | Event::Split { .. }
+        )
+    }
 
     /// The kind, as reports and breakpoints name it.
     pub fn kind(&self) -> &'static str {
@@ -273,6 +337,8 @@ impl Event {
             Event::Enhanced { .. } => "enhanced",
             Event::Smoothed { .. } => "smoothed",
             Event::Seamed { .. } => "seamed",
+            Event::TransitionSeamed { .. } => "transition_seamed",
+            Event::SeamRefused { .. } => "seam_refused",
             Event::Split { .. } => "split",
             Event::Closed { .. } => "closed",
             Event::SecondPass => "second_pass",
@@ -283,8 +349,12 @@ impl Event {
     }
 }
 
-fn degrees<S: Serializer>(radians: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn degrees<S: Serializer>(radians: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     radians.to_degrees().serialize(serializer)
+}
+
+fn degrees_if_any<S: Serializer>(radians: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    radians.map(f64::to_degrees).serialize(serializer)
 }
 
 fn both_degrees<S: Serializer>(radians: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
@@ -299,9 +369,10 @@ mod tests {
     #[test]
     fn an_event_is_one_flat_object_with_its_kind_and_angles_in_degrees() {
         let node = NodeId(7);
-        let chosen = Event::SideChosen { side: Side::Left, node, angle: FRAC_PI_2, deviation: 0.0, considered: 3 };
+        let edge = SideEdge { side: Side::Left, node, angle: FRAC_PI_2, deviation: 0.0 };
+        let chosen = Event::SideChosen { edge };
         let json = serde_json::to_string(&chosen).unwrap();
-        let expected = r#"{"kind":"side_chosen","side":"left","node":7,"angle":90.0,"deviation":0.0,"considered":3}"#;
+        let expected = r#"{"kind":"side_chosen","side":"left","node":7,"angle":90.0,"deviation":0.0}"#;
         assert_eq!(json, expected);
         let json = |why| serde_json::to_string(&Event::RolledBack { attempt: 1, why }).unwrap();
         assert_eq!(json(Why::NotDisc), r#"{"kind":"rolled_back","attempt":1,"why":{"kind":"not_disc"}}"#);
@@ -313,6 +384,7 @@ mod tests {
     fn the_kind_is_the_same_in_a_file_as_in_a_report() {
         let (node, ends, side) = (NodeId(1), [NodeId(1), NodeId(2)], Side::Right);
         let theta = [1.0; 2];
+        let edge = SideEdge { side, node, angle: 1.0, deviation: 0.1 };
         let events = [
             Event::BaseSelected {
                 a: node,
@@ -329,7 +401,8 @@ mod tests {
             },
             Event::PickLost { a: node, b: node },
             Event::SideIsFront { side, node },
-            Event::SideSwapped { side, node, angle: 1.0, deviation: 0.1, instead_of: 0.2 },
+            Event::SideChosen { edge },
+            Event::SideSwapped { edge, instead_of: Some(0.2) },
             Event::SideDivided { side, node, length: 1.0 },
             Event::TopSwapped { across: ends, new: ends },
             Event::TopFound { ends, swaps: 0 },
@@ -339,7 +412,9 @@ mod tests {
             Event::Enhanced { new: ends },
             Event::Smoothed { nodes: 4 },
             Event::Seamed { at: node, node, angle: 0.5 },
-            Event::Split { node, area: 0.1, ratio: 6.0 },
+            Event::TransitionSeamed { at: node, node, angle: 0.5, ratio: 3.0 },
+            Event::SeamRefused { at: node, ends, angle: 0.5, ratio: 1.0, why: Unmerged::BothFixed },
+            Event::Split { node, gone: node, area: 0.1, ratio: 6.0, segments: [4, 6] },
             Event::Closed { segments: 4, quads: 1, quality: 0.5 },
             Event::SecondPass,
             Event::LastResort(Outcome::default()),

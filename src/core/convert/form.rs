@@ -12,6 +12,7 @@ use crate::core::geometry::predicates::convex;
 use crate::core::mesh::half_edge::NewElement;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::quality::length_over;
+use crate::core::mesh::refusals::Operation;
 use crate::core::metric::measure::quad_quality;
 
 /// A quadrilateral does not eat more triangles than this.
@@ -114,7 +115,8 @@ impl Converter<'_> {
                 }
             }
         }
-        if sides == 4 && found.len() == 2 + 2 * inside.len() && inside.iter().all(|&n| !mesh.is_fixed(n)) {
+        let disc = sides == 4 && found.len() == 2 + 2 * inside.len() && inside.iter().all(|&n| !mesh.is_fixed(n));
+        if disc && mesh.permit(Operation::Form, &nodes).is_ok() {
             Ok(Enclosed { triangles: found, inside })
         } else {
             Err(Why::NotDisc)

@@ -30,6 +30,7 @@ use super::t_join::t_join;
 use crate::core::geometry::predicates::{convex, firm, orient};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::refusals::Operation;
 use crate::core::metric::field::{BadMetric, MetricSource};
 use crate::core::metric::measure::quad_quality;
 use crate::core::metric::tensor::Metric2;
@@ -159,7 +160,12 @@ impl Plan {
     /// # Errors
     /// [`Stuck`].
     pub fn new(mesh: &Mesh, component: &[ElementId], source: &dyn MetricSource) -> Result<Plan, Stuck> {
-        Planner::plan(mesh, component, source, &|_, _| true)
+        let operation = |means| match means {
+            Means::Merge => Operation::Merge,
+            Means::Recut => Operation::Recut,
+            Means::Templates => Operation::Match,
+        };
+        Planner::plan(mesh, component, source, &|means, pair| mesh.permits_pair(operation(means), pair))
     }
 
     /// What the whole plan does.

@@ -1,5 +1,5 @@
-//! Local post-processing around a new quadrilateral (paper 4.3.6): structural enhancement and area-weighted smoothing by
-//! eqs. (9) and (10), with the guards of spec 2.8.
+//! Local post-processing around a new quadrilateral (paper 4.3.6): the order of its four parts, structural enhancement, and
+//! area-weighted smoothing by eqs. (9) and (10), with the guards of spec 2.8. Seaming and splitting have modules of their own.
 
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -7,16 +7,107 @@ use smallvec::SmallVec;
 use super::converter::Converter;
 use super::energy;
 use super::event::{Event, Purpose};
+use super::phase::Phase;
+use crate::core::fault::Fault;
+use crate::core::journal::Mark;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::metric::tensor::Metric2;
 
+/// Looks at edges for one enhancement: four times a ring's size (spec 2.8).
+const ENHANCEMENTS: u8 = 48;
 /// A smoothed node must not let the worst quality around fall below this share of what it was.
 const KEPT_QUALITY: f64 = 0.9;
 
 impl Converter<'_> {
+    /// The first phase of the local post-processing around a new quadrilateral; the queue has not seen what the journal holds
+    /// since the mark.
+    pub(super) fn begin_local(&self, element: ElementId, mark: Mark) -> Phase {
+        if self.parameters.enhancement {
+            Phase::Enhance { element, mark, edges: self.edges_around(element), budget: ENHANCEMENTS }
+        } else {
+            Phase::Smooth { element, mark }
+        }
+    }
+
+    /// One enhancement (4.3.6); smoothing in the same step where there is none.
+    pub(super) fn step_enhance(
+        &mut self,
+        element: ElementId,
+        mark: Mark,
+        mut edges: SmallVec<[HalfEdgeId; 24]>,
+        budget: u8,
+    ) -> Result<(Phase, Event), Fault> {
+        let next = |edges| match budget - 1 {
+            0 => Phase::Smooth { element, mark },
+            budget => Phase::Enhance { element, mark, edges, budget },
+        };
+        if self.parameters.enhancement {
+            while let Some(h) = edges.pop() {
+                if let Some((event, around)) = self.enhance_edge(h) {
+                    self.counts.enhanced += 1;
+                    edges.extend(around);
+                    return Ok((next(edges), event));
+                }
+            }
+            if let Some(event) = self.remove_a_node(element) {
+                self.counts.removed += 1;
+                return Ok((next(self.edges_around(element)), event));
+            }
+        }
+        self.step_smooth(element, mark)
+    }
+
+    /// Smoothing (4.3.6): one sweep over the nodes around; seaming in the same step where it is switched off. The queue
+    /// then sees everything since the base was selected.
+    pub(super) fn step_smooth(&mut self, element: ElementId, mark: Mark) -> Result<(Phase, Event), Fault> {
+        let moved = self.parameters.smoothing.then(|| self.smooth_around(element));
+        self.refresh(mark);
+        let corners = SmallVec::from_slice(&self.mesh.quad(element));
+        match moved {
+            Some(nodes) => Ok((Phase::Seam { element, nodes: corners }, Event::Smoothed { nodes })),
+            None => self.step_seam(element, corners),
+        }
+    }
+
+    /// One seam (4.3.6), or why one is refused; splitting in the same step where there is none.
+    pub(super) fn step_seam(
+        &mut self,
+        element: ElementId,
+        mut nodes: SmallVec<[NodeId; 8]>,
+    ) -> Result<(Phase, Event), Fault> {
+        while self.parameters.seaming
+            && let Some(at) = nodes.pop()
+        {
+            let mark = self.mesh.mark();
+            let Some(event) = self.seam_at(at) else { continue };
+            if let Event::Seamed { node, .. } | Event::TransitionSeamed { node, .. } = event {
+                self.counts.seamed += 1;
+                self.counts.transitions += u64::from(matches!(event, Event::TransitionSeamed { .. }));
+                self.refresh(mark);
+                nodes.push(node);
+            }
+            let next = if nodes.is_empty() { Phase::Split { element } } else { Phase::Seam { element, nodes } };
+            return Ok((next, event));
+        }
+        self.step_split(element)
+    }
+
+    /// Front splitting (4.3.6); a selection follows in the same step where nothing is to be split.
+    pub(super) fn step_split(&mut self, element: ElementId) -> Result<(Phase, Event), Fault> {
+        if self.parameters.splitting {
+            let mark = self.mesh.mark();
+            if let Some(event) = self.split_front(element) {
+                self.counts.split += 1;
+                self.refresh(mark);
+                return Ok((Phase::Select, event));
+            }
+        }
+        self.select()
+    }
+
     /// Live edges around a quadrilateral: those at its nodes and those opposite to them.
-    pub(super) fn edges_around(&self, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
+    fn edges_around(&self, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
         let mesh = &self.mesh;
         let mut edges = SmallVec::new();
         for node in mesh.quad(element) {
@@ -31,8 +122,14 @@ impl Converter<'_> {
         edges
     }
 
+    /// The worst quality of the elements at the nodes of a quadrilateral, itself included.
+    pub fn quality_around(&self, element: ElementId) -> f64 {
+        let around = self.mesh.corners(element).flat_map(|n| self.mesh.fan(n));
+        around.map(|h| self.mesh.quality(h.element())).fold(f64::INFINITY, f64::min)
+    }
+
     /// Removes one live node beside the quadrilateral that has three or four triangles (i).
-    pub(super) fn remove_a_node(&mut self, element: ElementId) -> Option<Event> {
+    fn remove_a_node(&mut self, element: ElementId) -> Option<Event> {
         for corner in self.mesh.quad(element) {
             let around: SmallVec<[NodeId; 12]> = self.mesh.neighbours(corner).collect();
             for node in around {
@@ -45,7 +142,7 @@ impl Converter<'_> {
     }
 
     /// Swaps the edge if that lowers the largest angle of its two triangles (ii).
-    pub(super) fn enhance_edge(&mut self, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4])> {
+    fn enhance_edge(&mut self, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4])> {
         let mesh = &self.mesh;
         if !mesh.has_element(h.element()) || !mesh.is_triangle(h.element()) {
             return None;
@@ -73,7 +170,7 @@ impl Converter<'_> {
 
     /// Smooths around the quadrilateral in the paper's order: nodes of the triangles around it, then its own. With
     /// placement on, nodes of the front stay, and nodes that the quadrilateral buried are relaxed by the energy.
-    pub(super) fn smooth_around(&mut self, element: ElementId) -> u8 {
+    fn smooth_around(&mut self, element: ElementId) -> u8 {
         let corners = self.mesh.quad(element);
         let mut around: SmallVec<[NodeId; 24]> = SmallVec::new();
         for corner in corners {
@@ -137,18 +234,13 @@ impl Converter<'_> {
             if self.mesh.can_move(node, place).is_err() {
                 continue;
             }
-            let old = (here, self.mesh.metric(node));
             let mark = self.mesh.mark();
             self.mesh.move_node(node, place, metric);
             let after = self.mesh.fan(node).map(|h| self.mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
             if after >= KEPT_QUALITY * before {
                 return true;
             }
-            if self.mesh.journal().is_recording() {
-                self.mesh.take_back(mark);
-            } else {
-                self.mesh.move_node(node, old.0, old.1);
-            }
+            self.mesh.take_back(mark);
         }
         false
     }

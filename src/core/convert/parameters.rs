@@ -44,9 +44,9 @@ pub struct Parameters {
     pub side_split: f64,
     /// A side edge may be off its target direction by this (eq. 8).
     pub side_deviation: f64,
-    /// Metric area below which a triangle is small (section 4.2.3).
+    /// Metric area below which the front is split at a triangle (section 4.3.6, ii b).
     pub eps1: f64,
-    /// Metric width over height above which a triangle is flat (section 4.2.3).
+    /// Metric width over height above which the front is split at a triangle (section 4.3.6, ii c).
     pub eps2: f64,
     /// Rows that are offset from the boundary before anything else (0: none).
     pub layers: u32,

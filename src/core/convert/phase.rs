@@ -82,12 +82,10 @@ pub enum Phase {
         /// Tops C and D.
         tops: [NodeId; 2],
     },
-    /// The attempt has failed; the next one is to be found.
-    Retry {
+    /// Every attempt has failed: the segment is to be put off.
+    Defer {
         /// The base.
         base: Base,
-        /// The attempt that failed.
-        attempt: Attempt,
     },
     /// The local mesh is to be enhanced.
     Enhance {
@@ -109,8 +107,15 @@ pub enum Phase {
     },
     /// Small frontal angles at these nodes are to be seamed.
     Seam {
+        /// The new quadrilateral.
+        element: ElementId,
         /// Nodes to look at.
         nodes: SmallVec<[NodeId; 8]>,
+    },
+    /// The front may have to be split at a slender triangle.
+    Split {
+        /// The new quadrilateral.
+        element: ElementId,
     },
     /// Small loops that are left over are to be closed.
     Close {
@@ -133,14 +138,25 @@ impl Phase {
             | Phase::DivideSide { base, .. }
             | Phase::RecoverTop { base, .. }
             | Phase::Form { base, .. }
-            | Phase::Retry { base, .. } => Some(base),
+            | Phase::Defer { base } => Some(base),
+            _ => None,
+        }
+    }
+
+    /// The last quadrilateral, while its local post-processing (4.3.6) is under way.
+    pub fn last_formed(&self) -> Option<ElementId> {
+        match self {
+            Phase::Enhance { element, .. }
+            | Phase::Smooth { element, .. }
+            | Phase::Seam { element, .. }
+            | Phase::Split { element } => Some(*element),
             _ => None,
         }
     }
 
     /// Whether the local post-processing of the last quadrilateral (4.3.6) is under way.
     pub fn is_local_post_processing(&self) -> bool {
-        matches!(self, Phase::Enhance { .. } | Phase::Smooth { .. } | Phase::Seam { .. })
+        self.last_formed().is_some()
     }
 
     /// The mark of the journal to which the work at hand may be taken back; `None` where nothing is under way.
@@ -149,10 +165,15 @@ impl Phase {
             Phase::PrepareSide { attempt, .. }
             | Phase::DivideSide { attempt, .. }
             | Phase::RecoverTop { attempt, .. }
-            | Phase::Form { attempt, .. }
-            | Phase::Retry { attempt, .. } => Some(attempt.mark),
+            | Phase::Form { attempt, .. } => Some(attempt.mark),
             Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => Some(*mark),
-            Phase::Select | Phase::Seam { .. } | Phase::Close { .. } | Phase::PostProcess | Phase::Done => None,
+            Phase::Select
+            | Phase::Defer { .. }
+            | Phase::Seam { .. }
+            | Phase::Split { .. }
+            | Phase::Close { .. }
+            | Phase::PostProcess
+            | Phase::Done => None,
         }
     }
 
@@ -164,10 +185,15 @@ impl Phase {
             Phase::PrepareSide { attempt, .. }
             | Phase::DivideSide { attempt, .. }
             | Phase::RecoverTop { attempt, .. }
-            | Phase::Form { attempt, .. }
-            | Phase::Retry { attempt, .. } => attempt.mark = Mark::default(),
+            | Phase::Form { attempt, .. } => attempt.mark = Mark::default(),
             Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => *mark = Mark::default(),
-            Phase::Select | Phase::Seam { .. } | Phase::Close { .. } | Phase::PostProcess | Phase::Done => {}
+            Phase::Select
+            | Phase::Defer { .. }
+            | Phase::Seam { .. }
+            | Phase::Split { .. }
+            | Phase::Close { .. }
+            | Phase::PostProcess
+            | Phase::Done => {}
         }
         plain
     }

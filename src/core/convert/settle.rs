@@ -18,9 +18,13 @@ const UNTANGLE_ROUNDS: usize = 3;
 /// A few nodes that a change concerns.
 pub type Nodes = SmallVec<[NodeId; 12]>;
 
-/// Places a node without asking whether its elements are positive. False where the field gives no metric there.
+/// Places a node without asking whether its elements are positive. False where the field gives no metric there, or the move
+/// is refused.
 pub fn put(mesh: &mut Mesh, source: &dyn MetricSource, node: NodeId, uv: DVec2) -> bool {
     let Ok(metric) = source.metric(uv) else { return false };
+    if mesh.permit_move(node, uv).is_err() {
+        return false;
+    }
     mesh.move_node(node, uv, metric);
     true
 }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::candidates::Candidates;
 use super::converter::Converter;
 use super::event::Event;
 use super::phase::Phase;
@@ -36,19 +37,30 @@ pub struct Told<'e> {
     /// What it did.
     #[serde(flatten)]
     pub event: &'e Event,
+    /// What a side edge was chosen from, where one was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub candidates: Option<&'e Candidates>,
+    /// Worst quality of the elements around the last quadrilateral before and after, where its neighbourhood was improved
+    /// (4.3.6).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quality: Option<[f64; 2]>,
 }
+
+/// Who is told of each step.
+pub type Tell<'t> = &'t mut dyn FnMut(&Told<'_>);
 
 /// The number of quadrilaterals that stand.
 pub fn standing(converter: &Converter<'_>) -> u64 {
     match converter.phase() {
         // Everything is a quadrilateral, also what the last resort made and what clean-up has put in its place.
         Phase::PostProcess | Phase::Done => converter.mesh.element_count() as u64,
-        _ => converter.counts.formed + converter.counts.closed,
+        _ => converter.given + converter.counts.formed + converter.counts.closed,
     }
 }
 
 /// Steps until `stop` is reached, or to the end where there is none; the same states as
-/// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done.
+/// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What an event
+/// leaves unsaid (candidates, qualities) is only computed where somebody is told.
 ///
 /// # Errors
 /// As [`Converter::step`](super::converter::Converter::step); and where the conversion ends before the stop.
@@ -56,7 +68,21 @@ pub fn walk(
     converter: &mut Converter<'_>,
     stop: Option<Stop>,
     watch: &mut dyn Watch,
-    tell: &mut dyn FnMut(&Told<'_>),
+    tell: Option<Tell<'_>>,
+) -> Result<(), Fault> {
+    walk_editing(converter, stop, watch, tell, &mut |_| Ok(()))
+}
+
+/// As [`walk`]; after each step `edit` may change parameters, or pick the next base segment.
+///
+/// # Errors
+/// As [`walk`], and what `edit` says.
+pub fn walk_editing(
+    converter: &mut Converter<'_>,
+    stop: Option<Stop>,
+    watch: &mut dyn Watch,
+    mut tell: Option<Tell<'_>>,
+    edit: &mut dyn FnMut(&mut Converter<'_>) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     let total = converter.mesh.element_count() as u64;
     watch.tell(Stage::Convert, 0, total);
@@ -68,9 +94,26 @@ pub fn walk(
             Phase::PostProcess => watch.tell(Stage::Finish, 0, 0),
             _ => {}
         }
+        let (candidates, element, before) = match &tell {
+            Some(_) => {
+                let element = converter.phase().last_formed();
+                (converter.candidates(), element, element.map(|e| converter.quality_around(e)))
+            }
+            None => (None, None, None),
+        };
         let event = converter.step()?;
         let nq = standing(converter);
-        tell(&Told { step: converter.counts.steps, nq, event: &event });
+        if let Some(tell) = &mut tell {
+            let quality = match (element, before) {
+                (Some(element), Some(before)) if event.is_local_change() => {
+                    Some([before, converter.quality_around(element)])
+                }
+                _ => None,
+            };
+            let step = converter.counts.steps;
+            tell(&Told { step, nq, event: &event, candidates: candidates.as_ref(), quality });
+        }
+        edit(converter)?;
         if shown + 1024 <= nq && *converter.phase() != Phase::Done {
             shown = nq;
             watch.tell(Stage::Convert, 2 * nq, total);

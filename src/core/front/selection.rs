@@ -131,12 +131,13 @@ impl Queue {
     }
 
     /// Brings the queue up to date with everything that the journal holds since the mark: segments at nodes that moved
-    /// or whose elements changed, and their neighbours on the loop. Those are taken up again where they were put off.
+    /// or whose elements changed, and their neighbours on the loop, two where a node moved. Those are taken up again where they were put off.
     pub fn refresh(&mut self, mesh: &mut Mesh, mark: Mark, parameters: &Parameters) {
         self.grow(mesh);
         self.epoch = self.epoch.wrapping_add(1);
         let epoch = self.epoch;
         let mut nodes: SmallVec<[NodeId; 64]> = SmallVec::new();
+        let mut moved: SmallVec<[NodeId; 64]> = SmallVec::new();
         let mut touch = |node: NodeId, seen: &mut [u32]| {
             if mesh.has_node(node) && std::mem::replace(&mut seen[node.index()], epoch) != epoch {
                 nodes.push(node);
@@ -151,7 +152,10 @@ impl Queue {
                         touch(mesh.origin(h), &mut self.node_epoch);
                     }
                 }
-                Entry::Uv(node, _) => touch(node, &mut self.node_epoch),
+                Entry::Uv(node, _) => {
+                    touch(node, &mut self.node_epoch);
+                    moved.push(node);
+                }
                 Entry::Sides(e, _) => {
                     for corner in 0..4 {
                         if let Some(stamp) = self.stamp.get_mut(e.half_edge(corner).index()) {
@@ -176,6 +180,18 @@ impl Queue {
                 if mesh.is_front(p) {
                     segments.push(p);
                     segments.push(mesh.front_after(p));
+                }
+            }
+        }
+        // A node of the front that moves turns the segments beside it, and so the angles at their other ends.
+        for &node in moved.iter().filter(|&&n| mesh.has_node(n)) {
+            for h in mesh.fan(node) {
+                if mesh.is_front(h) {
+                    segments.push(mesh.front_after(h));
+                }
+                let p = mesh.previous(h);
+                if mesh.is_front(p) {
+                    segments.push(mesh.front_before(p));
                 }
             }
         }

@@ -1,4 +1,5 @@
-//! The built-in cases: the files of `assets/cases`, carried inside the program.
+//! The built-in cases: the files of `assets/cases`, carried inside the program, and apart from them the figures of the paper as small
+//! meshes that show one operation each.
 
 use std::path::Path;
 
@@ -6,14 +7,16 @@ use super::case::Case;
 use crate::core::fault::Fault;
 
 macro_rules! cases {
-    ($($name:literal),* $(,)?) => {
+    ($list:ident, $folder:literal, $($name:literal),* $(,)?) => {
         /// Name and text of each, in the order in which they are listed.
-        pub const CASES: &[(&str, &str)] =
-            &[$(($name, include_str!(concat!("../../../assets/cases/", $name, ".toml")))),*];
+        pub const $list: &[(&str, &str)] =
+            &[$(($name, include_str!(concat!("../../../assets/cases/", $folder, $name, ".toml")))),*];
     };
 }
 
 cases![
+    CASES,
+    "",
     "example1",
     "square-linear",
     "polar-1",
@@ -27,12 +30,31 @@ cases![
     "airfoil",
 ];
 
-/// The built-in case of a name; `None` where there is none.
+cases![
+    FIGURES,
+    "figures/",
+    "figure-5",
+    "figure-6",
+    "figure-7",
+    "figure-8",
+    "figure-14",
+    "figure-16",
+    "figure-17",
+    "figure-18",
+    "figure-19",
+];
+
+/// Names and texts of all cases, figures last.
+pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
+    CASES.iter().chain(FIGURES).copied()
+}
+
+/// The built-in case or figure of a name; `None` where there is none.
 ///
 /// # Errors
 /// None that a test has not seen: all of them parse.
 pub fn named(name: &str) -> Option<Result<Case, Fault>> {
-    let (name, text) = CASES.iter().find(|case| case.0 == name)?;
+    let (name, text) = all().find(|case| case.0 == name)?;
     Some(Case::parse(text, name, &format!("{name}.toml"), Path::new("")))
 }
 
@@ -42,17 +64,18 @@ mod tests {
 
     #[test]
     fn every_built_in_case_parses_and_has_a_title_and_notes() {
-        for (name, _) in CASES {
+        for (name, _) in all() {
             let case = named(name).unwrap().unwrap();
-            assert_eq!(case.name, *name);
-            assert!(case.title != *name && !case.notes.is_empty(), "{name}");
+            assert_eq!(case.name, name);
+            assert!(case.title != name && !case.notes.is_empty(), "{name}");
         }
     }
 
     #[test]
     fn every_file_of_the_folder_is_built_in() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/cases");
-        for entry in std::fs::read_dir(folder).unwrap() {
+        let files = [folder.join("figures"), folder].map(|folder| std::fs::read_dir(folder).unwrap());
+        for entry in files.into_iter().flatten() {
             let path = entry.unwrap().path();
             if path.extension().is_some_and(|e| e == "toml") {
                 let name = path.file_stem().unwrap().to_str().unwrap();

@@ -4,10 +4,12 @@
 
 mod table;
 mod geometry;
+mod elements;
 mod metric;
 
 use std::path::{Path, PathBuf};
 
+use glam::DVec2;
 use toml::de::DeTable;
 
 use self::table::{Source, Table};
@@ -29,6 +31,15 @@ pub enum DomainSource {
         curves: Vec<CurveSpec>,
         /// All faces, at least one.
         faces: Vec<FaceSpec>,
+    },
+    /// A small background that the case itself holds: the fixtures of the paper's figures.
+    Elements {
+        /// Coordinates of its points.
+        points: Vec<DVec2>,
+        /// Triangles, by the numbers of their points from 0; live.
+        triangles: Vec<[u32; 3]>,
+        /// Quadrilaterals that stand already.
+        quads: Vec<[u32; 4]>,
     },
     /// A triangle mesh in a file is the background.
     Mesh {
@@ -115,6 +126,7 @@ impl Case {
             "curve",
             "face",
             "metric",
+            "background",
             "mesh",
             "sol",
         ])?;
@@ -122,7 +134,7 @@ impl Case {
         let domain = domain(&table, folder)?;
         let curves = match &domain {
             DomainSource::Curves { curves, .. } => curves.as_slice(),
-            DomainSource::Mesh { .. } => &[],
+            DomainSource::Elements { .. } | DomainSource::Mesh { .. } => &[],
         };
         let fields = metric::fields(&table, curves)?;
         check_fields(&table, &domain, &fields)?;
@@ -173,14 +185,21 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         let value = table.get(key);
         value.map(|v| v.text().map(|name| folder.join(name))).transpose()
     };
-    if let Some(path) = file("mesh")? {
-        for key in ["curve", "face"] {
-            if let Some(value) = table.get(key) {
-                return Err(value
-                    .fault(format!("The case has a mesh and a {key}"))
-                    .remedy(format!("Leave out either mesh or every [[{key}]]")));
-            }
+    let alone = |own: &str, others: &[&str]| match others.iter().find_map(|key| table.get(key)) {
+        None => Ok(()),
+        Some(value) => {
+            let key = value.key();
+            let named = if ["curve", "face"].contains(&key) { format!("every [[{key}]]") } else { key.to_owned() };
+            let fault = value.fault(format!("The case has a {own} and a {key}"));
+            Err(fault.remedy(format!("Leave out either {own} or {named}")))
         }
+    };
+    if let Some(value) = table.get("background") {
+        alone("background", &["curve", "face", "mesh", "sol"])?;
+        return elements::elements(&value.table()?);
+    }
+    if let Some(path) = file("mesh")? {
+        alone("mesh", &["curve", "face"])?;
         return Ok(DomainSource::Mesh { path, sol: file("sol")? });
     }
     if let Some(value) = table.get("sol") {
@@ -196,7 +215,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
 
 fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) -> Result<(), Fault> {
     match domain {
-        DomainSource::Curves { .. } if fields.is_empty() => Err(table
+        DomainSource::Curves { .. } | DomainSource::Elements { .. } if fields.is_empty() => Err(table
             .fault("The case has no metric")
             .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1")),
         DomainSource::Mesh { sol: Some(_), .. } if !fields.is_empty() => {

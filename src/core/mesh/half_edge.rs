@@ -4,19 +4,23 @@
 //! Every node has one fan of elements (pinched nodes come in copies that share a `PointId`), and the fan of a node on a
 //! boundary is walked from its boundary half-edge, so that one turn anticlockwise sees all of it.
 //!
-//! All changes go through the private setters at the end, which write the old value into the journal. Public ways to
-//! change are the operators only (`operators.rs`).
+//! All changes go through the setters (`half_edge/setters.rs`), which write the old value into the journal;
+//! `half_edge/taking_back.rs` puts it back. Public ways to change are the operators only (`operators.rs`).
 
 mod difference;
+mod setters;
+mod taking_back;
+
+pub use difference::{Difference, FreeLists};
+pub use taking_back::Undone;
 
 use glam::DVec2;
 
-pub use self::difference::{Difference, FreeLists};
-
 use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
 use super::order::{grouped, hilbert_order};
+use super::refusals::Refusals;
 use super::triangle_set::TriangleSet;
-use crate::core::journal::{Entry, Journal, Mark};
+use crate::core::journal::Journal;
 use crate::core::metric::tensor::Metric2;
 
 /// Absence in the arrays; outside of them absence is `Option`.
@@ -43,36 +47,7 @@ pub struct Mesh {
     free_nodes: Vec<NodeId>,
     free_elements: Vec<ElementId>,
     journal: Journal,
-}
-
-/// What stands in the slots of an element.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Element {
-    origin: [u32; 4],
-    twin: [u32; 4],
-    deferred: [bool; 4],
-    sides: u8,
-    region: u32,
-    level: u16,
-}
-
-/// A change that was taken back, with what is needed to do it again.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Undone {
-    /// A value; the entry holds what stood there before it was put back.
-    Changed(Entry),
-    /// A node at the end: place, metric, anchor, point.
-    NodeAppended((DVec2, Metric2, u32, u32)),
-    /// An element at the end.
-    ElementAppended(Element),
-    /// The last free node was taken into use.
-    NodeTaken,
-    /// The last free element was taken into use.
-    ElementTaken,
-    /// A node was freed.
-    NodeFreed(NodeId),
-    /// An element was freed.
-    ElementFreed(ElementId),
+    pub(super) refusals: Option<Refusals>,
 }
 
 /// An element to be made: its nodes anticlockwise (three or four) and its region.
@@ -146,6 +121,7 @@ impl Mesh {
             free_nodes: Vec::new(),
             free_elements: Vec::new(),
             journal: Journal::default(),
+            refusals: None,
         };
         let mut by_side: Vec<(u64, u32)> = Vec::with_capacity(3 * elements);
         for (element, nodes) in set.triangles.iter().enumerate() {
@@ -462,6 +438,7 @@ impl Mesh {
             level: elements.iter().map(|&e| self.level[e as usize]).collect(),
             deferred,
             journal,
+            refusals: self.refusals,
             ..Mesh::default()
         }
     }
@@ -482,166 +459,9 @@ impl Mesh {
             deferred: self.deferred.clone(),
             free_nodes: self.free_nodes.clone(),
             free_elements: self.free_elements.clone(),
+            refusals: self.refusals.clone(),
             journal: Journal::default(),
         }
-    }
-
-    // ---- journal ----
-
-    /// The present place of the journal, to take back to.
-    pub fn mark(&self) -> Mark {
-        self.journal.mark()
-    }
-
-    /// The journal.
-    pub fn journal(&self) -> &Journal {
-        &self.journal
-    }
-
-    /// Starts or stops recording; see [`Journal::set_recording`].
-    pub fn set_recording(&mut self, recording: bool) {
-        self.journal.set_recording(recording);
-    }
-
-    /// Keeps what was done and forgets how it was before.
-    pub fn commit(&mut self) {
-        self.journal.forget();
-    }
-
-    /// Keeps what was done before the mark and forgets how it was before.
-    pub(in crate::core) fn forget_before(&mut self, mark: Mark) {
-        self.journal.forget_before(mark);
-    }
-
-    /// Takes back everything that was done after the mark, exactly: the arrays are the same to the last byte.
-    pub fn take_back(&mut self, mark: Mark) {
-        while let Some(entry) = self.journal.pop(mark) {
-            self.undo(entry);
-        }
-    }
-
-    /// Takes back everything that was done after the mark, and returns what [`redo`](Mesh::redo) needs to do it again.
-    pub fn take_back_to_redo(&mut self, mark: Mark) -> Vec<Undone> {
-        let mut undone = Vec::with_capacity(self.journal.len_since(mark));
-        while let Some(entry) = self.journal.pop(mark) {
-            undone.push(self.undo(entry));
-        }
-        undone
-    }
-
-    /// Does again what was taken back, journal entries included: arrays and journal are the same to the last byte as
-    /// before. Nothing may have changed between the two.
-    pub fn redo(&mut self, undone: Vec<Undone>) {
-        for change in undone.into_iter().rev() {
-            match change {
-                Undone::Changed(entry) => {
-                    let Undone::Changed(old) = self.undo(entry) else {
-                        unreachable!("a change of a value is one again")
-                    };
-                    self.journal.note(old);
-                }
-                Undone::NodeAppended(node) => self.append_node(node),
-                Undone::ElementAppended(element) => self.append_element(&element),
-                Undone::NodeTaken => {
-                    let node = self.free_nodes.pop().expect("it was put back when it was undone");
-                    self.journal.note(Entry::NodeTaken(node));
-                }
-                Undone::ElementTaken => {
-                    let e = self.free_elements.pop().expect("it was put back when it was undone");
-                    self.journal.note(Entry::ElementTaken(e));
-                }
-                Undone::NodeFreed(node) => {
-                    self.free_nodes.push(node);
-                    self.journal.note(Entry::NodeFreed);
-                }
-                Undone::ElementFreed(e) => {
-                    self.free_elements.push(e);
-                    self.journal.note(Entry::ElementFreed);
-                }
-            }
-        }
-    }
-
-    /// Puts the old value of an entry back; returns what was there instead.
-    #[inline]
-    fn undo(&mut self, entry: Entry) -> Undone {
-        use std::mem::replace;
-        Undone::Changed(match entry {
-            Entry::Origin(h, old) => Entry::Origin(h, replace(&mut self.origin[h.index()], old)),
-            Entry::Twin(h, old) => Entry::Twin(h, replace(&mut self.twin[h.index()], old)),
-            Entry::Sides(e, old) => Entry::Sides(e, replace(&mut self.sides[e.index()], old)),
-            Entry::Region(e, old) => Entry::Region(e, replace(&mut self.region[e.index()], old)),
-            Entry::Level(e, old) => Entry::Level(e, replace(&mut self.level[e.index()], old)),
-            Entry::Deferred(h, old) => Entry::Deferred(h, replace(&mut self.deferred[h.index()], old)),
-            Entry::Uv(n, old) => Entry::Uv(n, replace(&mut self.uv[n.index()], old)),
-            Entry::Metric(n, old) => Entry::Metric(n, replace(&mut self.metric[n.index()], old)),
-            Entry::Anchor(n, old) => Entry::Anchor(n, replace(&mut self.anchor[n.index()], old)),
-            Entry::NodeAppended => {
-                let last = self.uv.len() - 1;
-                let node = (self.uv[last], self.metric[last], self.anchor[last], self.point[last]);
-                self.uv.truncate(last);
-                self.metric.truncate(last);
-                self.anchor.truncate(last);
-                self.point.truncate(last);
-                return Undone::NodeAppended(node);
-            }
-            Entry::ElementAppended => {
-                let last = self.sides.len() - 1;
-                let slots = 4 * last..4 * last + 4;
-                let four = |array: &[u32]| {
-                    [array[slots.start], array[slots.start + 1], array[slots.start + 2], array[slots.start + 3]]
-                };
-                let element = Element {
-                    origin: four(&self.origin),
-                    twin: four(&self.twin),
-                    deferred: std::array::from_fn(|k| self.deferred[slots.start + k]),
-                    sides: self.sides[last],
-                    region: self.region[last],
-                    level: self.level[last],
-                };
-                self.origin.truncate(slots.start);
-                self.twin.truncate(slots.start);
-                self.deferred.truncate(slots.start);
-                self.sides.truncate(last);
-                self.region.truncate(last);
-                self.level.truncate(last);
-                return Undone::ElementAppended(element);
-            }
-            Entry::NodeTaken(n) => {
-                self.free_nodes.push(n);
-                return Undone::NodeTaken;
-            }
-            Entry::ElementTaken(e) => {
-                self.free_elements.push(e);
-                return Undone::ElementTaken;
-            }
-            Entry::NodeFreed => {
-                return Undone::NodeFreed(self.free_nodes.pop().expect("the journal says that a node was freed"));
-            }
-            Entry::ElementFreed => {
-                return Undone::ElementFreed(
-                    self.free_elements.pop().expect("the journal says that an element was freed"),
-                );
-            }
-        })
-    }
-
-    fn append_node(&mut self, (uv, metric, anchor, point): (DVec2, Metric2, u32, u32)) {
-        self.uv.push(uv);
-        self.metric.push(metric);
-        self.anchor.push(anchor);
-        self.point.push(point);
-        self.journal.note(Entry::NodeAppended);
-    }
-
-    fn append_element(&mut self, element: &Element) {
-        self.origin.extend(element.origin);
-        self.twin.extend(element.twin);
-        self.deferred.extend(element.deferred);
-        self.sides.push(element.sides);
-        self.region.push(element.region);
-        self.level.push(element.level);
-        self.journal.note(Entry::ElementAppended);
     }
 
     /// Appends the canonical serialisation of the state: every array and both free lists, little-endian. Two meshes are
@@ -675,130 +495,12 @@ impl Mesh {
         self.free_nodes.iter().for_each(|n| number(u64::from(n.0)));
         self.free_elements.iter().for_each(|e| number(u64::from(e.0)));
     }
-
-    // ---- the setters: every change passes here and is written down ----
-
-    #[inline]
-    pub(super) fn set_origin(&mut self, h: HalfEdgeId, node: NodeId) {
-        let old = std::mem::replace(&mut self.origin[h.index()], node.0);
-        self.journal.note(Entry::Origin(h, old));
-    }
-
-    #[inline]
-    fn set_twin(&mut self, h: HalfEdgeId, twin: Option<HalfEdgeId>) {
-        let old = std::mem::replace(&mut self.twin[h.index()], twin.map_or(NONE, |t| t.0));
-        self.journal.note(Entry::Twin(h, old));
-    }
-
-    /// Makes two half-edges each other's twins, or makes the first a boundary and the anchor of its node.
-    #[inline]
-    pub(super) fn hook(&mut self, h: HalfEdgeId, twin: Option<HalfEdgeId>) {
-        self.set_twin(h, twin);
-        match twin {
-            Some(t) => self.set_twin(t, Some(h)),
-            None => self.set_anchor(self.origin(h), h),
-        }
-    }
-
-    #[inline]
-    pub(super) fn set_sides(&mut self, e: ElementId, sides: u8) {
-        let old = std::mem::replace(&mut self.sides[e.index()], sides);
-        self.journal.note(Entry::Sides(e, old));
-    }
-
-    #[inline]
-    fn set_region(&mut self, e: ElementId, region: u32) {
-        let old = std::mem::replace(&mut self.region[e.index()], region);
-        self.journal.note(Entry::Region(e, old));
-    }
-
-    /// Gives a quadrilateral its level.
-    #[inline]
-    pub(in crate::core) fn set_level(&mut self, e: ElementId, level: u16) {
-        if self.level[e.index()] != level {
-            let old = std::mem::replace(&mut self.level[e.index()], level);
-            self.journal.note(Entry::Level(e, old));
-        }
-    }
-
-    /// Puts a front segment off, or takes it up again.
-    #[inline]
-    pub(in crate::core) fn set_deferred(&mut self, h: HalfEdgeId, deferred: bool) {
-        if self.deferred[h.index()] != deferred {
-            let old = std::mem::replace(&mut self.deferred[h.index()], deferred);
-            self.journal.note(Entry::Deferred(h, old));
-        }
-    }
-
-    #[inline]
-    fn set_anchor(&mut self, node: NodeId, h: HalfEdgeId) {
-        let old = std::mem::replace(&mut self.anchor[node.index()], h.0);
-        self.journal.note(Entry::Anchor(node, old));
-    }
-
-    /// Lets a free node be walked from a half-edge that leaves it; a fixed one keeps its boundary half-edge.
-    #[inline]
-    pub(super) fn reanchor(&mut self, h: HalfEdgeId) {
-        let node = self.origin(h);
-        if !self.is_fixed(node) {
-            self.set_anchor(node, h);
-        }
-    }
-
-    /// Moves a node and gives it the metric of its new place.
-    #[inline]
-    pub(super) fn set_place(&mut self, node: NodeId, uv: DVec2, metric: Metric2) {
-        let old = std::mem::replace(&mut self.uv[node.index()], uv);
-        self.journal.note(Entry::Uv(node, old));
-        let old = std::mem::replace(&mut self.metric[node.index()], metric);
-        self.journal.note(Entry::Metric(node, old));
-    }
-
-    /// Makes a free node that no element uses yet.
-    pub(super) fn new_node(&mut self, uv: DVec2, metric: Metric2) -> NodeId {
-        if let Some(node) = self.free_nodes.pop() {
-            self.journal.note(Entry::NodeTaken(node));
-            self.set_place(node, uv, metric);
-            return node;
-        }
-        self.append_node((uv, metric, NONE, NONE));
-        NodeId(self.uv.len() as u32 - 1)
-    }
-
-    /// Makes a tombstone of a free node that no element uses any more.
-    pub(super) fn free_node(&mut self, node: NodeId) {
-        debug_assert!(!self.is_fixed(node));
-        let old = std::mem::replace(&mut self.anchor[node.index()], NONE);
-        self.journal.note(Entry::Anchor(node, old));
-        self.free_nodes.push(node);
-        self.journal.note(Entry::NodeFreed);
-    }
-
-    /// Makes an element without nodes or twins yet.
-    pub(super) fn new_element(&mut self, sides: u8, region: u32) -> ElementId {
-        if let Some(e) = self.free_elements.pop() {
-            self.journal.note(Entry::ElementTaken(e));
-            self.set_sides(e, sides);
-            self.set_region(e, region);
-            self.set_level(e, 0);
-            return e;
-        }
-        let empty = Element { origin: [NONE; 4], twin: [NONE; 4], deferred: [false; 4], sides, region, level: 0 };
-        self.append_element(&empty);
-        ElementId(self.sides.len() as u32 - 1)
-    }
-
-    /// Makes a tombstone of an element.
-    pub(super) fn free_element(&mut self, e: ElementId) {
-        self.set_sides(e, 0);
-        self.free_elements.push(e);
-        self.journal.note(Entry::ElementFreed);
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::journal::Mark;
 
     #[test]
     fn a_mesh_put_in_order_records_where_it_did_before() {

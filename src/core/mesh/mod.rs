@@ -4,6 +4,7 @@ pub mod ids;
 pub mod triangle_set;
 pub mod order;
 pub mod half_edge;
+pub mod refusals;
 pub mod touched;
 pub mod operators;
 pub mod quad_operators;

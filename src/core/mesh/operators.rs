@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 
 use super::half_edge::{Mesh, NewElement};
 use super::ids::{ElementId, HalfEdgeId, NodeId};
+use super::refusals::Operation;
 use crate::core::geometry::predicates::{convex, firm};
 use crate::core::metric::tensor::Metric2;
 
@@ -30,6 +31,8 @@ pub enum Refusal {
     Joined,
     /// The node has not three or four triangles around it.
     Valence,
+    /// Nothing speaks against it, but a test wants it to fail; see [`Refusals`](super::refusals::Refusals).
+    Injected,
 }
 
 impl Mesh {
@@ -45,9 +48,9 @@ impl Mesh {
         if !self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()) {
             return Err(Refusal::NotTriangles);
         }
-        let (a, b) = (self.uv(self.origin(h_ab)), self.uv(self.origin(h_ba)));
-        let (c, d) = (self.uv(self.origin(self.previous(h_ab))), self.uv(self.origin(self.previous(h_ba))));
-        if firm(a, d, c) && firm(d, b, c) { Ok(()) } else { Err(Refusal::NotPositive) }
+        let nodes = [h_ab, h_ba, self.previous(h_ab), self.previous(h_ba)].map(|h| self.origin(h));
+        let [a, b, c, d] = nodes.map(|n| self.uv(n));
+        if firm(a, d, c) && firm(d, b, c) { self.permit(Operation::Swap, &nodes) } else { Err(Refusal::NotPositive) }
     }
 
     /// Replaces the edge shared by two triangles by the one that links the opposite nodes.
@@ -127,7 +130,7 @@ impl Mesh {
                 }
             }
         }
-        Ok(())
+        self.permit(Operation::Collapse, &[a, b])
     }
 
     /// Merges node a into node b at the place `at`; the two triangles at the edge go.
@@ -168,12 +171,26 @@ impl Mesh {
         self.free_element(h_ab.element());
         self.free_element(h_ba.element());
         self.free_node(a);
-        if at != self.uv(b) {
-            self.set_place(b, at, metric);
-        }
+        // Written down also where b stays: to all that were joined to a their neighbour has moved.
+        self.set_place(b, at, if at == self.uv(b) { self.metric(b) } else { metric });
     }
 
     // ---- edge division (paper 4.2.3, fig. 7) ----
+
+    /// Whether [`divide`](Mesh::divide) of the edge at `uv` would give four positive triangles.
+    ///
+    /// # Errors
+    /// The refusal.
+    pub fn can_divide(&self, h_ab: HalfEdgeId, uv: DVec2) -> Result<(), Refusal> {
+        let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
+        if !self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()) {
+            return Err(Refusal::NotTriangles);
+        }
+        let nodes = [h_ab, h_ba, self.previous(h_ab), self.previous(h_ba)].map(|h| self.origin(h));
+        let [a, b, c, d] = nodes.map(|n| self.uv(n));
+        let positive = firm(a, uv, c) && firm(uv, b, c) && firm(b, uv, d) && firm(uv, a, d);
+        if positive { self.permit(Operation::Divide, &nodes) } else { Err(Refusal::NotPositive) }
+    }
 
     /// Divides an inner edge at `uv`, which must lie strictly inside the union of its two triangles.
     ///
@@ -189,22 +206,15 @@ impl Mesh {
     /// T and U keep a; returns m. The edges a-m, m-b, c-m and m-d leave m or end there.
     ///
     /// # Errors
-    /// Refused where an element is no triangle or would not be positive.
+    /// As [`can_divide`](Mesh::can_divide).
     pub fn divide(&mut self, h_ab: HalfEdgeId, uv: DVec2, metric: Metric2) -> Result<NodeId, Refusal> {
+        self.can_divide(h_ab, uv)?;
         // Gather.
         let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
         let (t, u) = (h_ab.element(), h_ba.element());
-        if !self.is_triangle(t) || !self.is_triangle(u) {
-            return Err(Refusal::NotTriangles);
-        }
         let (h_bc, h_ca) = (self.next(h_ab), self.previous(h_ab));
         let (h_ad, h_db) = (self.next(h_ba), self.previous(h_ba));
         let (a, b, c, d) = (self.origin(h_ab), self.origin(h_ba), self.origin(h_ca), self.origin(h_db));
-        // Check.
-        let (p_a, p_b, p_c, p_d) = (self.uv(a), self.uv(b), self.uv(c), self.uv(d));
-        if !(firm(p_a, uv, p_c) && firm(uv, p_b, p_c) && firm(p_b, uv, p_d) && firm(uv, p_a, p_d)) {
-            return Err(Refusal::NotPositive);
-        }
         let (t_bc, t_ca, t_ad, t_db) = (self.twin(h_bc), self.twin(h_ca), self.twin(h_ad), self.twin(h_db));
         // Build: T = (a, m, c), T' = (m, b, c), U = (m, a, d), U' = (b, m, d).
         let m = self.new_node(uv, metric);
@@ -250,6 +260,7 @@ impl Mesh {
         if spokes.iter().any(|h| !self.is_triangle(h.element())) {
             return Err(Refusal::NotTriangles);
         }
+        self.permit(Operation::DeleteNode, &[node])?;
         let region = self.region(spokes[0].element());
         let ring: SmallVec<[NodeId; 4]> = spokes.iter().map(|&h| self.target(h)).collect();
         let sound = |n: [NodeId; 3]| firm(self.uv(n[0]), self.uv(n[1]), self.uv(n[2]));
@@ -381,7 +392,7 @@ impl Mesh {
             return Err(Refusal::FixedNode);
         }
         if self.fan(node).all(|h| self.stays_positive(h.element(), node, uv)) {
-            Ok(())
+            self.permit_move(node, uv)
         } else {
             Err(Refusal::NotPositive)
         }

@@ -10,6 +10,7 @@ use smallvec::SmallVec;
 use super::half_edge::{Mesh, NewElement};
 use super::ids::{ElementId, HalfEdgeId, NodeId};
 use super::operators::Refusal;
+use super::refusals::Operation;
 use crate::core::metric::tensor::Metric2;
 
 impl Mesh {
@@ -52,6 +53,7 @@ impl Mesh {
         if old.iter().any(|&e| e != q && self.corners(e).any(|n| n == c)) {
             return Err(Refusal::Link);
         }
+        self.permit(Operation::CollapseDiamond, &[a, b, c, d])?;
         let new: SmallVec<[NewElement; 8]> =
             old.iter().filter(|&&e| e != q).map(|&e| self.with_node_replaced(e, a, c)).collect();
         self.replace(&old, &new);
@@ -103,6 +105,7 @@ impl Mesh {
         if self.are_joined(n[by], n[by + 3]) {
             return Err(Refusal::Joined);
         }
+        self.permit(Operation::RotateEdge, &[n[by], n[by + 3]])?;
         let t = self.twin(h).ok_or(Refusal::OnBoundary)?;
         let region = self.region(h.element());
         let at = |k: usize| n[(by + k) % 6];
@@ -151,6 +154,7 @@ impl Mesh {
         if p == q || handed.len() < 2 || (!self.is_fixed(v) && kept < 2) {
             return Err(Refusal::Valence);
         }
+        self.permit(Operation::OpenVertex, &[v, p, q])?;
         let region = self.region(h_vp.element());
         let w = self.add_node(uv, metric);
         let mut new: SmallVec<[NewElement; 8]> = handed.iter().map(|&e| self.with_node_replaced(e, v, w)).collect();
@@ -186,6 +190,7 @@ impl Mesh {
         if x == y {
             return Err(Refusal::Link);
         }
+        self.permit(Operation::RemoveDoublet, &[v])?;
         let new = NewElement::quad([a, x, c, y], self.region(h_va.element()));
         let made = self.replace(&[h_va.element(), h_vc.element()], &[new]);
         self.release_node(v);

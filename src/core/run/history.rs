@@ -99,14 +99,15 @@ impl History {
         let mut raw = Converter::new(mesh, sizing, run.parameters.clone());
         let keyframes = Keyframes::new(Keyframe::first(raw.without_mesh(), raw.mesh.clone()));
         let run = Arc::new(run);
-        let recorder = Recorder::resume(Arc::clone(&run), &keyframes, 0)?;
+        let mut recorder = Recorder::resume(Arc::clone(&run), &keyframes, 0)?;
+        let log = recorder.begin();
         let mut now = Cursor { converter: raw, step: 0, look: LOOK };
         now.converter.keep_history();
         run.enter(&mut now.converter, 0)?;
         Ok(History {
             run,
             budget,
-            log: Log::default(),
+            log,
             keyframes,
             recorder: Some(recorder),
             edition: 0,
@@ -276,17 +277,30 @@ impl History {
     /// # Errors
     /// None that the way there has not met.
     pub fn event(&self, step: u64) -> Result<Option<Event>, Fault> {
-        if let Some(event) = self.log.event(step) {
-            return Ok(Some(*event));
+        if !(1..=self.log.known()).contains(&step) {
+            return Ok(None);
         }
-        let mut found = None;
-        if (1..=self.log.known()).contains(&step) {
-            self.replay(step - 1, step, &mut |_, _, event| found = Some(*event))?;
-        }
-        Ok(found)
+        Ok(self.events(step, step)?.first().copied())
     }
 
-    /// Walks the states after `from` up to `until` without moving the state at hand: tells step, state and event.
+    /// What the steps from `from` to `until` (both included) did, as far as they are known, by replay where their events were
+    /// given up.
+    ///
+    /// # Errors
+    /// None that the way there has not met.
+    pub fn events(&self, from: u64, until: u64) -> Result<Vec<Event>, Fault> {
+        let until = until.min(self.log.known());
+        let kept: Option<Vec<Event>> = (from..=until).map(|step| self.log.event(step).copied()).collect();
+        if let Some(events) = kept {
+            return Ok(events);
+        }
+        let mut events = Vec::new();
+        self.replay(from - 1, until, &mut |_, _, event| events.extend(event))?;
+        Ok(events)
+    }
+
+    /// Walks the states from `from` to `until` without moving the state at hand: tells step, state and the event that led
+    /// there, none for the first.
     ///
     /// # Errors
     /// None that the way there has not met.
@@ -294,14 +308,16 @@ impl History {
         &self,
         from: u64,
         until: u64,
-        tell: &mut dyn FnMut(u64, &Converter<'static>, &Event),
+        tell: &mut dyn FnMut(u64, &Converter<'static>, Option<&Event>),
     ) -> Result<(), Fault> {
         let mut cursor = self.cursor_before(from)?;
+        while cursor.step < from {
+            cursor.advance(&self.run)?;
+        }
+        tell(cursor.step, &cursor.converter, None);
         while cursor.step < until.min(self.log.known()) {
             let event = cursor.advance(&self.run)?;
-            if cursor.step > from {
-                tell(cursor.step, &cursor.converter, &event);
-            }
+            tell(cursor.step, &cursor.converter, Some(&event));
         }
         Ok(())
     }
@@ -462,14 +478,19 @@ impl Cursor {
         Ok(event)
     }
 
-    /// Shortens the history to what the budget allows.
+    /// Shortens the history to what the budget allows; the last step can always be taken back.
     fn look_at_memory(&mut self, budget: usize) {
-        if self.step < self.look {
+        // The journal is most of it, and its size is known at once.
+        if self.step < self.look && self.converter.mesh.journal().bytes() <= budget {
             return;
         }
         self.look = self.step + LOOK;
-        if self.converter.history_bytes() > budget {
-            self.converter.shorten_history(self.converter.history_len() / 2);
+        while self.converter.history_bytes() > budget {
+            let before = self.converter.history_len();
+            self.converter.shorten_history(before / 2);
+            if self.converter.history_len() == before {
+                return;
+            }
         }
     }
 }

@@ -1,6 +1,10 @@
 //! What every step did, in little memory: its kind and the quadrilaterals that stand after it for all steps, the whole event
 //! for as many as the budget allows (the others are had again by replay).
 
+use serde::Serialize;
+
+use super::front_count::FrontCount;
+use super::timeline::Sample;
 use crate::core::convert::event::Event;
 
 /// Steps of a chunk of events.
@@ -8,15 +12,31 @@ const CHUNK: usize = 4096;
 /// Set beside the kind where local post-processing is done after the step.
 const AT_REST: u8 = 0x80;
 
+/// Least and largest angle of a quadrilateral, each in the metric of its node, in radians.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Angles {
+    /// The least one.
+    pub min: f32,
+    /// The largest one.
+    pub max: f32,
+}
+
 /// The steps of a run as far as they are known. Step s leads from state s - 1 to state s; the first is 1.
 #[derive(Clone, Debug, Default)]
 pub struct Log {
     /// Index into [`Event::KINDS`], with [`AT_REST`].
     kinds: Vec<u8>,
     nq: Vec<u32>,
+    /// Quadrilaterals that stood at step 0.
+    given: u64,
     chunks: Vec<Option<Box<[Event]>>>,
     /// The events of the last chunk, which is not full yet.
     tail: Vec<Event>,
+    /// The front after each step that changed its numbers.
+    fronts: Vec<(u64, FrontCount)>,
+    /// The angles of the quadrilaterals that were formed.
+    quads: Vec<(u64, Angles)>,
+    samples: Vec<Sample>,
     /// Kept chunks before this one were given up first.
     given_up: usize,
 }
@@ -33,10 +53,10 @@ impl Log {
         self.kinds.get(index).map(|kind| Event::KINDS[usize::from(kind & !AT_REST)])
     }
 
-    /// The number of quadrilaterals that stand after a step; 0 at the beginning.
+    /// The number of quadrilaterals that stand after a step.
     pub fn nq(&self, step: u64) -> u64 {
         let index = usize::try_from(step).unwrap_or(usize::MAX).min(self.nq.len());
-        index.checked_sub(1).map_or(0, |index| u64::from(self.nq[index]))
+        index.checked_sub(1).map_or(self.given, |index| u64::from(self.nq[index]))
     }
 
     /// Whether no local post-processing (4.3.6) is under way after a step.
@@ -54,6 +74,54 @@ impl Log {
             Some(chunk) => chunk.as_ref()?.get(index % CHUNK),
             None => self.tail.get(index - CHUNK * self.chunks.len()),
         }
+    }
+
+    /// The front after a step, in numbers.
+    pub fn front(&self, step: u64) -> FrontCount {
+        let count = self.fronts.partition_point(|point| point.0 <= step);
+        count.checked_sub(1).map_or(FrontCount::default(), |index| self.fronts[index].1)
+    }
+
+    /// The front after each step that changed its numbers; the first is that of step 0.
+    pub fn fronts(&self) -> &[(u64, FrontCount)] {
+        &self.fronts
+    }
+
+    /// The angles of the quadrilateral that a step formed, as it stood right after it.
+    pub fn angles(&self, step: u64) -> Option<Angles> {
+        let index = self.quads.binary_search_by_key(&step, |quad| quad.0).ok()?;
+        Some(self.quads[index].1)
+    }
+
+    /// Invariants and figures along the run, by step: about one a thousand steps.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// The kinds of steps from `from` to `until` (both included), as indices into [`Event::KINDS`].
+    pub fn kind_indices(&self, from: u64, until: u64) -> impl Iterator<Item = usize> + '_ {
+        let until = usize::try_from(until).unwrap_or(usize::MAX).min(self.kinds.len());
+        let from = usize::try_from(from.saturating_sub(1)).unwrap_or(usize::MAX).min(until);
+        self.kinds[from..until].iter().map(|kind| usize::from(kind & !AT_REST))
+    }
+
+    /// A log without steps.
+    pub(super) fn beginning_with(given: u64) -> Log {
+        Log { given, ..Log::default() }
+    }
+
+    pub(super) fn push_front(&mut self, step: u64, front: FrontCount) {
+        if self.fronts.last().is_none_or(|last| last.1 != front) {
+            self.fronts.push((step, front));
+        }
+    }
+
+    pub(super) fn push_angles(&mut self, step: u64, angles: Angles) {
+        self.quads.push((step, angles));
+    }
+
+    pub(super) fn push_sample(&mut self, sample: Sample) {
+        self.samples.push(sample);
     }
 
     /// Appends what a step did.
@@ -78,6 +146,9 @@ impl Log {
     pub(super) fn append(&mut self, later: Log) {
         self.kinds.extend(later.kinds);
         self.nq.extend(later.nq);
+        self.fronts.extend(later.fronts);
+        self.quads.extend(later.quads);
+        self.samples.extend(later.samples);
         for event in later.chunks.into_iter().flatten().flatten().chain(later.tail) {
             self.push_event(event);
         }
@@ -88,6 +159,10 @@ impl Log {
         let count = usize::try_from(step).unwrap_or(usize::MAX).min(self.kinds.len());
         self.kinds.truncate(count);
         self.nq.truncate(count);
+        let step = count as u64;
+        self.fronts.truncate(self.fronts.partition_point(|point| point.0 <= step));
+        self.quads.truncate(self.quads.partition_point(|quad| quad.0 <= step));
+        self.samples.truncate(self.samples.partition_point(|sample| sample.step <= step));
         if count < CHUNK * self.chunks.len() {
             let partial = self.chunks.swap_remove(count / CHUNK);
             self.chunks.truncate(count / CHUNK);
@@ -106,7 +181,14 @@ impl Log {
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
         let kept = self.chunks.iter().flatten().count() * CHUNK + self.tail.capacity();
-        self.kinds.capacity() + 4 * self.nq.capacity() + kept * size_of::<Event>() + 16 * self.chunks.capacity()
+        let figures = self.fronts.capacity() * size_of::<(u64, FrontCount)>()
+            + self.quads.capacity() * size_of::<(u64, Angles)>()
+            + self.samples.capacity() * size_of::<Sample>();
+        self.kinds.capacity()
+            + 4 * self.nq.capacity()
+            + figures
+            + kept * size_of::<Event>()
+            + 16 * self.chunks.capacity()
     }
 
     /// Gives events up, the oldest first, until no more than `budget` bytes are taken, as far as that is possible.

@@ -15,7 +15,14 @@
 //! what follows from k on and nothing before.
 
 pub mod run;
+pub mod front_count;
 pub mod log;
+pub mod timeline;
 pub mod keyframes;
 pub mod recorder;
 pub mod history;
+mod playback;
+pub mod breakpoint;
+pub mod watch;
+pub mod front_table;
+pub mod explain;

@@ -4,15 +4,20 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::front_count::{FrontTracker, changes_front};
 use super::keyframes::{Keyframe, Keyframes};
-use super::log::Log;
+use super::log::{Angles, Log};
 use super::run::Run;
+use super::timeline::{Measures, Sample};
 use crate::core::convert::converter::Converter;
+use crate::core::convert::event::Event;
 use crate::core::convert::phase::Phase;
 use crate::core::convert::walk::standing;
 use crate::core::fault::Fault;
-use crate::core::mesh::half_edge::FreeLists;
+use crate::core::mesh::half_edge::{FreeLists, Mesh};
+use crate::core::mesh::ids::ElementId;
 use crate::core::mesh::touched::Touched;
+use crate::core::metric::measure::angle;
 
 /// A keyframe is set at the first chance after so many steps: replaying them takes about a millisecond.
 pub(super) const SPACING: u64 = 1024;
@@ -30,6 +35,10 @@ pub struct Recorder {
     keyframe: u64,
     /// Bytes of differences since the last whole mesh.
     since_whole: usize,
+    front: FrontTracker,
+    /// What was touched since the front was looked at.
+    since_front: Touched,
+    measures: Measures,
 }
 
 /// What a stretch of steps did.
@@ -62,8 +71,36 @@ impl Recorder {
         let (mut converter, step) = (keyframes.state(last), frames[last].step);
         let free = converter.mesh.free_lists();
         run.enter(&mut converter, step)?;
+        converter.keep_journal();
         let touched = Touched::default();
-        Ok(Recorder { run, converter, step, edition, touched, free, keyframe: step, since_whole: 0 })
+        let (front, measures) = (FrontTracker::of(&converter.mesh), Measures::of(&converter.mesh));
+        Ok(Recorder {
+            run,
+            converter,
+            step,
+            edition,
+            touched,
+            free,
+            keyframe: step,
+            since_whole: 0,
+            front,
+            since_front: Touched::default(),
+            measures,
+        })
+    }
+
+    /// A log with what is known of the state that it starts from.
+    pub(super) fn begin(&mut self) -> Log {
+        let mut log = Log::beginning_with(standing(&self.converter));
+        log.push_front(self.step, self.front.count());
+        log.push_sample(self.sample());
+        log
+    }
+
+    fn sample(&mut self) -> Sample {
+        let mesh = &self.converter.mesh;
+        let length = self.front.segments().map(|h| mesh.length(h)).sum();
+        self.measures.sample(mesh, self.step, standing(&self.converter), self.front.count(), length)
     }
 
     /// The last step that it did.
@@ -109,20 +146,39 @@ impl Recorder {
         let event = self.converter.step()?;
         self.step += 1;
         self.touched.note_since(&self.converter.mesh, mark);
+        self.since_front.note_since(&self.converter.mesh, mark);
+        if changes_front(&event) {
+            self.look_at_front(&event);
+            stretch.log.push_front(self.step, self.front.count());
+        }
+        if let Event::Formed { element, .. } = event {
+            stretch.log.push_angles(self.step, angles(&self.converter.mesh, element));
+        }
         let phase = self.converter.phase();
         let at_rest = !phase.is_local_post_processing();
         let is_due = self.step >= self.keyframe + SPACING || *phase == Phase::Done;
         let can_be_kept = phase.mark().is_none();
         stretch.log.push(event, standing(&self.converter), at_rest);
-        if is_due && can_be_kept {
-            let keyframe = self.keyframe();
-            stretch.keyframes.push(keyframe);
+        if can_be_kept {
+            self.converter.mesh.commit();
+            if is_due {
+                // Swaps have given other ids to the half-edges of the front.
+                self.look_at_front(&event);
+                self.measures.update(&self.converter.mesh, &self.touched);
+                stretch.log.push_sample(self.sample());
+                let keyframe = self.keyframe();
+                stretch.keyframes.push(keyframe);
+            }
         }
         self.run.make_edits(&mut self.converter, self.step)
     }
 
+    fn look_at_front(&mut self, event: &Event) {
+        self.front.update(&self.converter.mesh, &self.since_front, event);
+        self.since_front.clear();
+    }
+
     fn keyframe(&mut self) -> Keyframe {
-        self.converter.mesh.commit();
         let difference = self.converter.mesh.difference(&self.touched, &self.free);
         self.since_whole += difference.bytes();
         // Applying differences shall not cost much more than copying a mesh.
@@ -136,4 +192,16 @@ impl Recorder {
         self.keyframe = self.step;
         Keyframe::after(self.step, self.converter.without_mesh(), difference, whole)
     }
+}
+
+/// The angles of a quadrilateral.
+fn angles(mesh: &Mesh, element: ElementId) -> Angles {
+    let n = mesh.quad(element);
+    let corner = |k: usize| {
+        let p = mesh.uv(n[k]);
+        let (next, previous) = (mesh.uv(n[(k + 1) % 4]) - p, mesh.uv(n[(k + 3) % 4]) - p);
+        angle(mesh.metric_ref(n[k]), next, previous) as f32
+    };
+    let corners: [f32; 4] = std::array::from_fn(corner);
+    Angles { min: corners.into_iter().fold(f32::INFINITY, f32::min), max: corners.into_iter().fold(0.0, f32::max) }
 }

@@ -4,7 +4,6 @@ use eframe::egui::{Align, Key, Layout, ScrollArea, TextEdit, Ui};
 
 use super::{icon_button, inset, note};
 use crate::app::window::command::Command;
-use crate::app::window::condition::Condition;
 use crate::app::window::icons;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
@@ -17,7 +16,7 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         let room = (ui.available_height() - 34.0).max(30.0);
         ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
             if state.kept.breakpoints.is_empty() {
-                ui.label(note("None yet. Try quad.quality < 0.3.", palette));
+                ui.label(note("None yet. Try quad.min_angle < 30.", palette));
             }
             for (k, (text, on)) in state.kept.breakpoints.iter().enumerate() {
                 ui.horizontal(|ui| {
@@ -30,10 +29,8 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
                         if icon_button(ui, icons::X, 13.0, &command, true).clicked() {
                             commands.push(command);
                         }
-                        if let Ok(condition) = Condition::parse(text) {
-                            let met =
-                                state.track.iter().zip(1..).filter(|(t, step)| condition.is_met(*step, t)).count();
-                            ui.label(note(words::grouped(met as u64), palette)).on_hover_text("Hits in this run");
+                        if let Some(hits) = state.hits.get(k) {
+                            ui.label(note(words::grouped(*hits as u64), palette)).on_hover_text("Hits in this run");
                         }
                     });
                 });

@@ -18,15 +18,16 @@ use crate::render::scene::{Decision, Outlined};
 const ROW: f32 = 20.0;
 
 /// Heads with their widths and what is said about them.
-const COLUMNS: [(FrontColumn, &str, f32, &str); 8] = [
-    (FrontColumn::Rank, "#", 32.0, "Rank: the order in which segments come by table 1"),
-    (FrontColumn::Nodes, "A → B", 78.0, "Nodes of the segment, the live triangles to its left"),
-    (FrontColumn::Class, "cl", 30.0, "Class of table 1"),
-    (FrontColumn::HValue, "H", 50.0, "H-value, eq. 6, in units of the case"),
+const COLUMNS: [(FrontColumn, &str, f32, &str); 9] = [
+    (FrontColumn::Rank, "#", 28.0, "Rank: the order in which segments come by table 1"),
+    (FrontColumn::Nodes, "A → B", 72.0, "Nodes of the segment, the live triangles to its left"),
+    (FrontColumn::Class, "cl", 29.0, "Class of table 1"),
+    (FrontColumn::HValue, "H", 46.0, "H-value, eq. 6, in units of the case"),
     (FrontColumn::Length, "len", 32.0, "Length in the metric"),
     (FrontColumn::ThetaA, "θA °", 40.0, "Frontal angle at A, degrees, in the metric of A"),
     (FrontColumn::ThetaB, "θB °", 40.0, "Frontal angle at B, degrees, in the metric of B"),
     (FrontColumn::Level, "lv", 20.0, "Level: rows from the boundary"),
+    (FrontColumn::Loop, "lp", 18.0, "Loop of the front"),
 ];
 
 /// Shows the panel.
@@ -94,9 +95,11 @@ fn rows(state: &State, moment: &Moment) -> Vec<(usize, usize)> {
         FrontColumn::Length => a.length_metric.total_cmp(&b.length_metric),
         FrontColumn::ThetaA => a.theta[0].total_cmp(&b.theta[0]),
         FrontColumn::ThetaB => a.theta[1].total_cmp(&b.theta[1]),
-        FrontColumn::Level => a.level.cmp(&b.level),
+        FrontColumn::Level | FrontColumn::Loop => a.level.cmp(&b.level),
     };
-    if column != FrontColumn::Rank {
+    if column == FrontColumn::Loop {
+        rows.sort_by_key(|row| (moment.rows[row.0].front_loop, row.1));
+    } else if column != FrontColumn::Rank {
         rows.sort_by(|a, b| by(&moment.front[a.0], &moment.front[b.0]).then(a.1.cmp(&b.1)));
     }
     if !ascending {
@@ -152,7 +155,7 @@ fn table(
             row.set_selected(is_picked);
             row.set_hovered(hovered.is_some_and(|e| is(segment, e)));
             let texts = [
-                rank.to_string(),
+                if moment.rows[place].is_put_off { words::UNDEFINED.to_owned() } else { rank.to_string() },
                 words::segment(segment.a, segment.b),
                 String::new(),
                 words::fixed(segment.h_value, decimals),
@@ -160,6 +163,7 @@ fn table(
                 words::degrees(segment.theta[0]),
                 words::degrees(segment.theta[1]),
                 segment.level.to_string(),
+                (moment.rows[place].front_loop + 1).to_string(),
             ];
             for (k, text) in texts.into_iter().enumerate() {
                 row.col(|ui| {
@@ -184,7 +188,7 @@ fn table(
                 }
             });
             let response = row.response();
-            let name = words::segment(segment.a, segment.b);
+            let name = format!("Segment {}", words::segment(segment.a, segment.b));
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_picked, name.clone()));
             let ends = [segment.a, segment.b];
             if response.hovered() {

@@ -8,14 +8,16 @@ use crate::app::window::session::{Goal, Moment};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
+use crate::core::convert::candidates::Candidates;
 use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::run::explain::SegmentTold;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined, angles, metric_area};
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(moment) = state.moment.clone() else { return };
     let decision = Decision::of(&moment.phase).base.map(Outlined::Edge);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -26,12 +28,19 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             Some(Outlined::Edge(ends)) => {
                 let found = moment.front.iter().position(|s| [s.a, s.b] == ends || [s.b, s.a] == ends);
                 match found {
-                    Some(place) => segment(ui, &moment, place, commands, palette),
+                    Some(place) => segment(ui, state, &moment, place, commands, palette),
                     None => edge(ui, &moment, ends, palette),
                 }
+                last_touch(ui, Outlined::Edge(ends), commands);
             }
-            Some(Outlined::Node(n)) => node(ui, &moment, n, palette),
-            Some(Outlined::Element(e)) => element(ui, state, &moment, e, commands, palette),
+            Some(Outlined::Node(n)) => {
+                node(ui, &moment, n, palette);
+                last_touch(ui, Outlined::Node(n), commands);
+            }
+            Some(Outlined::Element(e)) => {
+                element(ui, state, &moment, e, commands, palette);
+                last_touch(ui, Outlined::Element(e), commands);
+            }
         });
     });
 }
@@ -48,14 +57,94 @@ fn gone(ui: &mut Ui, what: &str, palette: &Palette) {
     ui.label(note(format!("{what} does not exist at this step."), palette));
 }
 
-fn segment(ui: &mut Ui, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {
+/// The button that goes back to the step that touched something last.
+fn last_touch(ui: &mut Ui, what: Outlined, commands: &mut Vec<Command>) {
+    ui.add_space(6.0);
+    let command = Command::LastTouch(what);
+    if ui.button(command.name()).on_hover_text("Goes back to that step").clicked() {
+        commands.push(command);
+    }
+}
+
+/// Why the segment was or was not chosen, and within which bounds the choice would have been the same.
+fn why(ui: &mut Ui, told: &SegmentTold, palette: &Palette) {
+    heading(ui, if told.is_base { "Why this segment" } else { "Why not this segment" }, "table 1, 4.3.3", palette);
+    let mut reason = told.reason();
+    if let Some(first) = reason.get(..1).map(str::to_uppercase) {
+        reason.replace_range(..1, &first);
+    }
+    let text = |text: String| RichText::new(text).font(theme::regular(theme::TABLE));
+    ui.label(text(format!("{reason}.")).color(ink(palette.text)));
+    if told.h_min.is_finite() {
+        let reach = format!("Smallest H of those that wait: {}.", words::size(told.h_min));
+        ui.label(text(reach).color(ink(palette.weak)));
+    }
+    let mut margins = Vec::new();
+    if let Some([low, high]) = told.margin_of_c {
+        margins.push(format!("{} < c < {}", words::fixed(low, 3), bound(high, 3)));
+    }
+    if let Some([low, high]) = told.margin_of_theta_rect {
+        margins.push(format!("{}° < θrect ≤ {}°", words::fixed(low, 1), bound(high, 1)));
+    }
+    if !margins.is_empty() {
+        ui.label(text(format!("Same choice for {}.", margins.join(" and "))).color(ink(palette.weak)));
+    }
+}
+
+fn bound(x: f64, decimals: usize) -> String {
+    if x.is_finite() { words::fixed(x, decimals) } else { "∞".to_owned() }
+}
+
+/// What the step that led here chose a side from.
+fn candidates(ui: &mut Ui, candidates: &Candidates, palette: &Palette) {
+    let (side, end) = match candidates.side {
+        Side::Left => ("Left", "A"),
+        Side::Right => ("Right", "B"),
+    };
+    let aim = format!("aims at {}°, within {}°", words::degrees(candidates.target), words::degrees(candidates.limit));
+    heading(ui, &format!("{side} side at {end}"), &aim, palette);
+    eframe::egui::Grid::new("candidates").num_columns(5).spacing([9.0, 3.0]).striped(true).show(ui, |ui| {
+        for head in ["to", "angle °", "off °", "length", "verdict"] {
+            ui.label(RichText::new(head).font(theme::regular(theme::HEAD)).color(ink(palette.weak)));
+        }
+        ui.end_row();
+        for candidate in &candidates.edges {
+            let colour = if candidate.passed.is_none() { palette.accent } else { palette.text };
+            let to = match candidate.swap {
+                None => candidate.node.0.to_string(),
+                Some(ends) => format!("{} by {}", candidate.node.0, words::edge(ends)),
+            };
+            let verdict = candidate.passed.map_or("taken", words::passed);
+            let (angle, off) = (words::degrees(candidate.angle), words::degrees(candidate.deviation));
+            for text in [to, angle, off, words::fixed(candidate.length, 2), verdict.to_owned()] {
+                ui.label(RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour)));
+            }
+            ui.end_row();
+        }
+    });
+}
+
+fn segment(
+    ui: &mut Ui,
+    state: &mut State,
+    moment: &Moment,
+    place: usize,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
     let s = &moment.front[place];
     title(ui, format!("Front segment {}", words::segment(s.a, s.b)), palette);
     ui.horizontal(|ui| {
         if Decision::of(&moment.phase).base == Some([s.a, s.b]) {
             ui.label(RichText::new("base").font(theme::semibold(theme::TABLE)).color(ink(palette.accent)));
         }
-        ui.label(note(format!("class {}  ·  level {}  ·  rank {}", s.class, s.level, place + 1), palette));
+        let row = &moment.rows[place];
+        let ring = moment.loops.get(row.front_loop as usize).map_or(String::new(), |ring| {
+            let parity = if ring.segments.is_multiple_of(2) { "even" } else { "odd" };
+            format!("  ·  loop {} of {}, {parity} ({})", row.front_loop + 1, moment.loops.len(), ring.segments)
+        });
+        let rank = if row.is_put_off { "put off".to_owned() } else { format!("rank {}", place + 1) };
+        ui.label(note(format!("class {}  ·  level {}  ·  {rank}{ring}", s.class, s.level), palette));
     });
     heading(ui, "H-value", "eq. 6", palette);
     let h = [s.a, s.b].map(|n| moment.mesh.metric(n).min_size());
@@ -69,6 +158,19 @@ fn segment(ui: &mut Ui, moment: &Moment, place: usize, commands: &mut Vec<Comman
     heading(ui, "Frontal angles", "metric of the node", palette);
     for (side, name) in Side::BOTH.into_iter().zip(["θA", "θB"]) {
         angle(ui, moment, s, side, name, palette);
+    }
+    let ends_of = [s.a, s.b];
+    let is_base = moment.base.as_ref().is_some_and(|told| [told.row.a, told.row.b] == ends_of);
+    match &moment.base {
+        Some(told) if is_base => why(ui, told, palette),
+        _ => {
+            if let Some(told) = state.explanation(ends_of) {
+                why(ui, &told, palette);
+            }
+        }
+    }
+    if let Some(tried) = moment.candidates.as_ref().filter(|_| is_base) {
+        candidates(ui, tried, palette);
     }
     heading(ui, "Length", "", palette);
     line(

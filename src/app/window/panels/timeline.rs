@@ -22,7 +22,7 @@ const LANES: [(&str, &[&str]); 5] = [
     ("quad formed", &["formed"]),
     ("swap", &["side_swapped", "top_swapped", "enhanced"]),
     ("divide, delete", &["side_divided", "node_removed"]),
-    ("seam, close", &["seamed", "split", "closed", "last_resort"]),
+    ("seam, close", &["seamed", "transition_seamed", "split", "closed", "last_resort"]),
     ("rolled back", &["rolled_back", "deferred"]),
 ];
 
@@ -79,9 +79,6 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
     for (name, of) in [("front length", Curve::Front), ("quality, worst", Curve::Quality)] {
         if y + CURVE > plot.bottom() + 2.0 {
             break;
-        }
-        if of == Curve::Front && state.track.iter().all(|t| t.front == 0) {
-            continue;
         }
         curve(&painter, &axis, state, palette, y, name, of, moment.step);
         y += CURVE + GAP;

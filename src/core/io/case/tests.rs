@@ -214,3 +214,48 @@ fn damaged_cases_are_read_or_refused_and_never_panic() {
     }
     assert!(refused > 500, "{refused}");
 }
+
+#[test]
+fn a_small_background_may_stand_in_the_case_itself() {
+    let text = |elements: &str| {
+        format!(
+            "version = 1\n[background]\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\n{elements}\n\
+             [[metric]]\nkind = \"uniform\"\nh = 1\n"
+        )
+    };
+    let parse = |elements| Case::parse(&text(elements), "a", "a.toml", Path::new(""));
+    let case = parse("triangles = []\nquads = [[0, 1, 2, 3]]").unwrap();
+    let DomainSource::Elements { points, triangles, quads } = case.domain else { panic!() };
+    assert_eq!((points.len(), triangles.len(), quads), (4, 0, vec![[0, 1, 2, 3]]));
+    for (elements, said) in [
+        ("triangles = [[0, 1, 4]]", "a.toml, line 4: triangles[0][2] = 4 is not a whole number from 0 to 3"),
+        ("triangles = [[0, 1]]", "a.toml, line 4: triangles[0] = [0, 1] is not a list of 3 points by number"),
+        ("quads = []", "The key \"triangles\" is missing"),
+        ("triangles = []\nmesh = \"a\"", "The key \"mesh\" is not known"),
+    ] {
+        let fault = parse(elements).unwrap_err().to_string();
+        assert!(fault.contains(said), "{fault}");
+    }
+    let both = text("triangles = []").replace("version = 1", "version = 1\nmesh = \"a.msh\"");
+    let fault = Case::parse(&both, "a", "a.toml", Path::new("")).unwrap_err().to_string();
+    assert!(fault.contains("The case has a background and a mesh. Leave out either background or mesh"), "{fault}");
+}
+
+#[test]
+fn a_background_in_a_case_that_is_no_mesh_is_refused() {
+    for (elements, said) in [
+        ("triangles = []\nquads = [[0, 3, 2, 1]]", "quads[0] is not strictly convex and anticlockwise"),
+        ("triangles = [[0, 1, 2]]", "an all-quad mesh needs an even count"),
+        ("triangles = [[0, 1, 2], [0, 3, 2]]", "The background would have to be mended: 1 clockwise triangle"),
+        ("triangles = [[0, 1, 2], [0, 1, 3]]", "overlap"),
+    ] {
+        let text = format!(
+            "version = 1\n[background]\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\n{elements}\n\
+             [[metric]]\nkind = \"uniform\"\nh = 1\n"
+        );
+        let case = Case::parse(&text, "a", "a.toml", Path::new("")).unwrap();
+        let fault =
+            crate::core::convert::conversion::background(&case, &mut crate::core::progress::Nobody).unwrap_err();
+        assert!(fault.to_string().contains(said), "{fault}");
+    }
+}

@@ -5,7 +5,8 @@
 
 use glam::DVec2;
 
-use super::{Element, Mesh, NONE};
+use super::taking_back::Element;
+use super::{Mesh, NONE};
 use crate::core::journal::Mark;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::touched::Touched;

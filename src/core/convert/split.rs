@@ -1,0 +1,126 @@
+//! Front splitting (paper 4.3.6, fig. 19): where a new quadrilateral leaves a narrow region, two nodes of the front that face each
+//! other over a slender triangle become one, and the loop two even ones, before a slender quadrilateral is formed there.
+
+use smallvec::SmallVec;
+
+use super::converter::Converter;
+use super::event::Event;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId};
+
+/// Neither part of a loop that is split may be shorter: two segments would be one edge glued to itself.
+const LEAST_PART: usize = 4;
+
+/// A slender triangle between nodes of the front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slender {
+    /// The triangle.
+    pub element: ElementId,
+    /// Its only side on the front; one of the other two is to be collapsed.
+    pub base: HalfEdgeId,
+    /// Its metric area Ae.
+    pub area: f64,
+    /// Its width over its height re.
+    pub ratio: f64,
+}
+
+/// The sets of the paper's steps (i) and (ii) around a new quadrilateral.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Narrow {
+    /// T: live triangles at its nodes that have all their nodes on the front, ascending.
+    pub on_front: SmallVec<[ElementId; 16]>,
+    /// V: the slender ones of T, the smallest Ae/re first.
+    pub slender: SmallVec<[Slender; 4]>,
+}
+
+impl Converter<'_> {
+    /// Looks for slender triangles around a quadrilateral (steps i and ii).
+    pub fn narrow(&self, quad: ElementId) -> Narrow {
+        let mesh = &self.mesh;
+        let mut narrow = Narrow::default();
+        for node in mesh.quad(quad) {
+            let live = mesh.fan(node).map(HalfEdgeId::element).filter(|&e| mesh.is_triangle(e));
+            narrow.on_front.extend(live.filter(|&e| mesh.triangle(e).iter().all(|&n| self.is_on_front(n))));
+        }
+        narrow.on_front.sort_unstable();
+        narrow.on_front.dedup();
+        narrow.slender.extend(narrow.on_front.iter().filter_map(|&e| self.slender(e)));
+        narrow
+            .slender
+            .sort_by(|s, t| (s.area / s.ratio).total_cmp(&(t.area / t.ratio)).then(s.element.cmp(&t.element)));
+        narrow
+    }
+
+    /// Judges a triangle by the conditions (a) to (c) of step (ii).
+    fn slender(&self, element: ElementId) -> Option<Slender> {
+        let mesh = &self.mesh;
+        // (a) Two sides on the front are two adjacent front segments. Without any there is no base, and so no side edge.
+        let mut on_front = mesh.half_edges(element).filter(|&h| mesh.is_front(h));
+        let (Some(base), None) = (on_front.next(), on_front.next()) else { return None };
+        let area = metric_area(mesh, element);
+        if area >= self.parameters.eps1 {
+            return None;
+        }
+        let longest = mesh.half_edges(element).map(|h| mesh.length(h)).fold(0.0, f64::max);
+        let ratio = longest * longest / (2.0 * area);
+        (ratio > self.parameters.eps2).then_some(Slender { element, base, area, ratio })
+    }
+
+    /// Splits the front at the first slender triangle around a new quadrilateral that has a side edge whose collapse
+    /// leaves two even loops (step iii), the shorter side first. What would spoil an element is not done.
+    pub(super) fn split_front(&mut self, quad: ElementId) -> Option<Event> {
+        for Slender { base, area, ratio, .. } in self.narrow(quad).slender {
+            let mut sides = [self.mesh.next(base), self.mesh.previous(base)];
+            if self.mesh.length(sides[1]) < self.mesh.length(sides[0]) {
+                sides.swap(0, 1);
+            }
+            for side in sides {
+                let ends = [self.mesh.origin(side), self.mesh.target(side)];
+                let Some(segments) = self.parts(side) else { continue };
+                if segments.iter().any(|n| n % 2 == 1 || *n < LEAST_PART) {
+                    continue;
+                }
+                let mark = self.mesh.mark();
+                // Slender triangles may stay in a narrow region; quadrilaterals are for good.
+                match self.merge(side, &|mesh, e| mesh.is_quad(e)) {
+                    Ok(node) => {
+                        let gone = if node == ends[0] { ends[1] } else { ends[0] };
+                        return Some(Event::Split { node, gone, area, ratio, segments: segments.map(|n| n as u32) });
+                    }
+                    Err(_) => self.mesh.take_back(mark),
+                }
+            }
+        }
+        None
+    }
+
+    /// Segments of the two loops that the loop through both ends of a live edge would become by its collapse; `None`
+    /// where the ends lie on two loops, which no collapse splits.
+    fn parts(&self, side: HalfEdgeId) -> Option<[usize; 2]> {
+        let mesh = &self.mesh;
+        // The front segments that leave both ends, in the sector of the edge.
+        let from = mesh.front_after(mesh.previous(side));
+        let to = mesh.front_after(side);
+        let (mut h, mut count, mut parts) = (from, 0, [0; 2]);
+        loop {
+            if h == to {
+                parts[0] = count;
+            }
+            h = mesh.front_after(h);
+            count += 1;
+            if h == from {
+                break;
+            }
+        }
+        parts[1] = count - parts[0];
+        (parts[0] > 0).then_some(parts)
+    }
+}
+
+/// Area of a triangle in the mean metric of its nodes.
+fn metric_area(mesh: &Mesh, element: ElementId) -> f64 {
+    let nodes = mesh.triangle(element);
+    let [a, b, c] = nodes.map(|n| mesh.uv(n));
+    let root = nodes.iter().map(|&n| mesh.metric_ref(n).det().sqrt()).sum::<f64>() / 3.0;
+    0.5 * root * (b - a).perp_dot(c - a)
+}

@@ -1,0 +1,136 @@
+//! Failure injection: operations refused at random although nothing speaks against them. Whatever is refused, the result
+//! must be right; tests say so (spec 5).
+//!
+//! Whether an operation is refused is a pure function of the seed, the operation and where it is to happen: judging twice
+//! gives the same answer, a step taken back and done again meets the same refusals, and nothing must be remembered. A
+//! node that moves by the least bit is another place.
+//!
+//! The templates of the last resort ask nobody: the guarantee rests on them.
+
+use glam::DVec2;
+
+use super::half_edge::Mesh;
+use super::ids::{ElementId, NodeId};
+use super::operators::Refusal;
+
+/// What can be refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Operation {
+    /// Swapping an edge.
+    Swap,
+    /// Collapsing an edge, also as a seam or a split of the front.
+    Collapse,
+    /// Dividing an edge.
+    Divide,
+    /// Deleting a node.
+    DeleteNode,
+    /// Moving a node.
+    Move,
+    /// Collapsing a diamond.
+    CollapseDiamond,
+    /// Rotating an edge between two quadrilaterals.
+    RotateEdge,
+    /// Opening a vertex.
+    OpenVertex,
+    /// Removing a doublet.
+    RemoveDoublet,
+    /// Forming a quadrilateral.
+    Form,
+    /// Covering a small loop.
+    Close,
+    /// Merging two triangles, in the last resort.
+    Merge,
+    /// Matching two triangles that cannot be merged, in the last resort.
+    Match,
+    /// Cutting pairs of triangles anew, in the last resort.
+    Recut,
+}
+
+/// Which operations a mesh refuses, at random but always the same; see [`Mesh::set_refusals`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refusals {
+    seed: u64,
+    share: f64,
+}
+
+impl Refusals {
+    /// Refuses a share (from 0 to 1) of all operations.
+    pub fn new(seed: u64, share: f64) -> Self {
+        Refusals { seed, share }
+    }
+
+    /// Whether the operation is refused at a place, which the words name.
+    fn refuses(&self, operation: Operation, place: impl IntoIterator<Item = u64>) -> bool {
+        // The mixing function of splitmix64, word by word.
+        let mix = |hash: u64, word: u64| {
+            let mut z = (hash ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15);
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            z ^ (z >> 31)
+        };
+        let hash = place.into_iter().fold(mix(self.seed, operation as u64), mix);
+        ((hash >> 11) as f64) < self.share * (1_u64 << 53) as f64
+    }
+}
+
+impl Mesh {
+    /// Lets operations fail from now on as `refusals` says; `None`, as in every new mesh, lets all succeed that can. For
+    /// tests of what depends on operations that may fail.
+    pub fn set_refusals(&mut self, refusals: Option<Refusals>) {
+        self.refusals = refusals;
+    }
+
+    /// Asks whether an operation at some nodes may be done.
+    ///
+    /// # Errors
+    /// [`Refusal::Injected`], where refusals are set.
+    #[inline]
+    pub(in crate::core) fn permit(&self, operation: Operation, nodes: &[NodeId]) -> Result<(), Refusal> {
+        match &self.refusals {
+            None => Ok(()),
+            Some(refusals) => self.permit_by(refusals, operation, nodes),
+        }
+    }
+
+    #[cold]
+    fn permit_by(&self, refusals: &Refusals, operation: Operation, nodes: &[NodeId]) -> Result<(), Refusal> {
+        let words = nodes.iter().flat_map(|&n| [u64::from(n.0), self.uv(n).x.to_bits(), self.uv(n).y.to_bits()]);
+        if refusals.refuses(operation, words) { Err(Refusal::Injected) } else { Ok(()) }
+    }
+
+    /// Asks whether a node may move to `uv`.
+    ///
+    /// # Errors
+    /// [`Refusal::Injected`], where refusals are set.
+    #[inline]
+    pub(in crate::core) fn permit_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
+        match &self.refusals {
+            Some(refusals)
+                if refusals.refuses(Operation::Move, [u64::from(node.0), uv.x.to_bits(), uv.y.to_bits()]) =>
+            {
+                Err(Refusal::Injected)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether an operation on two neighbouring triangles, in either order, may be done.
+    pub(in crate::core) fn permits_pair(&self, operation: Operation, [t, u]: [ElementId; 2]) -> bool {
+        let words = [t.min(u), t.max(u)].map(|e| u64::from(e.0));
+        !self.refusals.is_some_and(|refusals| refusals.refuses(operation, words))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_share_that_is_refused_is_the_share_that_was_asked_for() {
+        for share in [0.0, 0.05, 0.8, 1.0] {
+            let refusals = Refusals::new(7, share);
+            let refused = (0..10_000).filter(|&n| refusals.refuses(Operation::Swap, [n, n + 1])).count();
+            assert!((refused as f64 / 1e4 - share).abs() < 0.02, "{refused} of 10,000, not {share}");
+        }
+    }
+}

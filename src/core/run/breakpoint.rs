@@ -1,0 +1,682 @@
+//! Breakpoints: conditions on what a step did and on the front after it, such as `kind == seamed && quad.min_angle < 30`.
+//!
+//! ```text
+//! condition  = both { "||" both }
+//! both       = one { "&&" one }
+//! one        = "!" one | "(" condition ")" | field [ ("==" | "!=" | "<" | "<=" | ">" | ">=") value ]
+//! value      = a number (angles in degrees) | a word
+//! ```
+//!
+//! A field that a step does not have (`quad.min_angle` where no quadrilateral was formed) fulfils no comparison.
+
+use super::front_count::FrontCount;
+use super::history::History;
+use super::log::Angles;
+use crate::core::convert::event::{Event, Why};
+use crate::core::convert::parameters::nearest;
+use crate::core::fault::Fault;
+
+/// What a condition is asked of.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// The step.
+    pub step: u64,
+    /// Quadrilaterals that stand after it.
+    pub nq: u64,
+    /// What it did.
+    pub event: &'a Event,
+    /// The front after it.
+    pub front: FrontCount,
+    /// The angles of the quadrilateral that it formed.
+    pub angles: Option<Angles>,
+}
+
+/// What a field holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// A number.
+    Number,
+    /// An angle in degrees.
+    Degrees,
+    /// Yes or no: the field alone is a condition.
+    Flag,
+    /// The kind of an event.
+    Kind,
+    /// Why an attempt was taken back.
+    Why,
+    /// left or right.
+    Side,
+}
+
+impl Holds {
+    /// The words that can be compared with; none for numbers and flags.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Holds::Kind => Event::KINDS,
+            Holds::Why => &[
+                "no_side",
+                "no_division",
+                "top_blocked",
+                "top_through_node",
+                "top_too_long",
+                "too_long",
+                "not_disc",
+                "not_convex",
+                "poor",
+                "odd_loop",
+                "no_metric",
+            ],
+            Holds::Side => &["left", "right"],
+            Holds::Flag => &["true", "false"],
+            Holds::Number | Holds::Degrees => &[],
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Value {
+    Number(f64),
+    Flag(bool),
+    Word(String),
+}
+
+/// A field that conditions can name.
+pub struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// What it holds.
+    pub holds: Holds,
+    /// What it means, for whoever writes a condition.
+    pub doc: &'static str,
+    of: fn(&Moment<'_>) -> Option<Value>,
+}
+
+fn number(n: impl Into<f64>) -> Option<Value> {
+    Some(Value::Number(n.into()))
+}
+
+fn degrees(radians: f64) -> Option<Value> {
+    number(radians.to_degrees())
+}
+
+/// A field of one kind of event.
+macro_rules! of_event {
+    ($pattern:pat => $value:expr) => {
+        |moment| match *moment.event {
+            $pattern => $value,
+            _ => None,
+        }
+    };
+}
+
+/// All fields, in the order in which they are offered.
+pub const FIELDS: &[Field] = &[
+    Field {
+        name: "kind",
+        holds: Holds::Kind,
+        doc: "what the step did",
+        of: |m| Some(Value::Word(m.event.kind().into())),
+    },
+    Field { name: "step", holds: Holds::Number, doc: "number of the step", of: |m| number(m.step as f64) },
+    Field { name: "nq", holds: Holds::Number, doc: "quadrilaterals that stand", of: |m| number(m.nq as f64) },
+    Field {
+        name: "quad.quality",
+        holds: Holds::Number,
+        doc: "quality of the quadrilateral that was formed, 0 to 1",
+        of: of_event!(Event::Formed { quality, .. } => number(quality)),
+    },
+    Field {
+        name: "quad.min_angle",
+        holds: Holds::Degrees,
+        doc: "least angle of the quadrilateral that was formed, in the metric",
+        of: |m| m.angles.and_then(|angles| degrees(angles.min.into())),
+    },
+    Field {
+        name: "quad.max_angle",
+        holds: Holds::Degrees,
+        doc: "largest angle of the quadrilateral that was formed, in the metric",
+        of: |m| m.angles.and_then(|angles| degrees(angles.max.into())),
+    },
+    Field {
+        name: "quad.level",
+        holds: Holds::Number,
+        doc: "row of the quadrilateral that was formed, counted from the boundary",
+        of: of_event!(Event::Formed { level, .. } => number(level)),
+    },
+    Field {
+        name: "quad.eaten",
+        holds: Holds::Number,
+        doc: "triangles that the quadrilateral ate",
+        of: of_event!(Event::Formed { eaten, .. } => number(eaten)),
+    },
+    Field {
+        name: "quad.attempt",
+        holds: Holds::Number,
+        doc: "which attempt formed the quadrilateral, from 0",
+        of: of_event!(Event::Formed { attempt, .. } => number(attempt)),
+    },
+    Field {
+        name: "quad.element",
+        holds: Holds::Number,
+        doc: "id of the quadrilateral that was formed",
+        of: of_event!(Event::Formed { element, .. } => number(element.0)),
+    },
+    Field {
+        name: "front.segments",
+        holds: Holds::Number,
+        doc: "segments of the front",
+        of: |m| number(m.front.segments),
+    },
+    Field {
+        name: "front.loops",
+        holds: Holds::Number,
+        doc: "closed chains of the front",
+        of: |m| number(m.front.loops),
+    },
+    Field {
+        name: "front.odd",
+        holds: Holds::Number,
+        doc: "loops with an odd number of segments",
+        of: |m| number(m.front.odd),
+    },
+    Field { name: "front.live", holds: Holds::Number, doc: "live triangles", of: |m| number(m.front.live) },
+    Field {
+        name: "base.class",
+        holds: Holds::Number,
+        doc: "class of table 1 of the chosen base segment, 1 to 4",
+        of: of_event!(Event::BaseSelected { class, .. } => number(class)),
+    },
+    Field {
+        name: "base.h_value",
+        holds: Holds::Number,
+        doc: "H-value (eq. 6) of the chosen base segment",
+        of: of_event!(Event::BaseSelected { h_value, .. } => number(h_value)),
+    },
+    Field {
+        name: "base.length",
+        holds: Holds::Number,
+        doc: "length of the chosen base segment in the metric",
+        of: of_event!(Event::BaseSelected { length_metric, .. } => number(length_metric)),
+    },
+    Field {
+        name: "base.level",
+        holds: Holds::Number,
+        doc: "rows between the chosen base segment and the boundary",
+        of: of_event!(Event::BaseSelected { level, .. } => number(level)),
+    },
+    Field {
+        name: "base.theta_a",
+        holds: Holds::Degrees,
+        doc: "frontal angle at the left node of the chosen base segment",
+        of: of_event!(Event::BaseSelected { theta, .. } => degrees(theta[0])),
+    },
+    Field {
+        name: "base.theta_b",
+        holds: Holds::Degrees,
+        doc: "frontal angle at the right node of the chosen base segment",
+        of: of_event!(Event::BaseSelected { theta, .. } => degrees(theta[1])),
+    },
+    Field {
+        name: "base.within_reach",
+        holds: Holds::Flag,
+        doc: "the chosen base segment is within c Hmin",
+        of: of_event!(Event::BaseSelected { within_reach, .. } => Some(Value::Flag(within_reach))),
+    },
+    Field {
+        name: "base.picked",
+        holds: Holds::Flag,
+        doc: "a person picked the base segment",
+        of: of_event!(Event::BaseSelected { picked, .. } => Some(Value::Flag(picked))),
+    },
+    Field { name: "side", holds: Holds::Side, doc: "which side edge the step is about", of: side },
+    Field {
+        name: "side.deviation",
+        holds: Holds::Degrees,
+        doc: "how far the side edge is from the direction that was aimed at",
+        of: |m| match *m.event {
+            Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => degrees(edge.deviation),
+            _ => None,
+        },
+    },
+    Field {
+        name: "recovery.failed",
+        holds: Holds::Flag,
+        doc: "the top edge could not be recovered",
+        of: |m| Some(Value::Flag(matches!(rolled_back(m), Some("top_blocked" | "top_through_node" | "top_too_long")))),
+    },
+    Field {
+        name: "recovery.swaps",
+        holds: Holds::Number,
+        doc: "swaps that the recovery of the top edge took",
+        of: of_event!(Event::TopFound { swaps, .. } => number(swaps)),
+    },
+    Field {
+        name: "rollback.why",
+        holds: Holds::Why,
+        doc: "why the attempt was taken back",
+        of: |m| rolled_back(m).map(|why| Value::Word(why.into())),
+    },
+    Field {
+        name: "seam.angle",
+        holds: Holds::Degrees,
+        doc: "frontal angle that was seamed",
+        of: |m| match *m.event {
+            Event::Seamed { angle, .. } | Event::TransitionSeamed { angle, .. } => degrees(angle),
+            _ => None,
+        },
+    },
+    Field {
+        name: "split.ratio",
+        holds: Holds::Number,
+        doc: "width over height of the slender triangle at which the front was split",
+        of: of_event!(Event::Split { ratio, .. } => number(ratio)),
+    },
+    Field {
+        name: "fallback",
+        holds: Holds::Flag,
+        doc: "the front was left: a second pass, or the last resort with something to do",
+        of: |m| {
+            Some(Value::Flag(match m.event {
+                Event::SecondPass => true,
+                Event::LastResort(outcome) => outcome.quads() > 0,
+                _ => false,
+            }))
+        },
+    },
+];
+
+fn side(moment: &Moment<'_>) -> Option<Value> {
+    let side = match *moment.event {
+        Event::SideIsFront { side, .. } | Event::SideDivided { side, .. } => side,
+        Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => edge.side,
+        _ => return None,
+    };
+    Some(Value::Word(Holds::Side.words()[side.index()].into()))
+}
+
+/// The word for why an attempt was taken back.
+fn rolled_back(moment: &Moment<'_>) -> Option<&'static str> {
+    let Event::RolledBack { why, .. } = moment.event else { return None };
+    Some(match why {
+        Why::NoSide(_) => "no_side",
+        Why::NoDivision(_) => "no_division",
+        Why::TopBlocked(_) => "top_blocked",
+        Why::TopThroughNode(_) => "top_through_node",
+        Why::TopTooLong => "top_too_long",
+        Why::TooLong(_) => "too_long",
+        Why::NotDisc => "not_disc",
+        Why::NotConvex => "not_convex",
+        Why::Poor(_) => "poor",
+        Why::OddLoop(_) => "odd_loop",
+        Why::NoMetric => "no_metric",
+    })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Comparison {
+    Equal,
+    Unequal,
+    Less,
+    AtMost,
+    Greater,
+    AtLeast,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Tree {
+    Any(Vec<Tree>),
+    All(Vec<Tree>),
+    Not(Box<Tree>),
+    /// Field by its index, compared with a value.
+    Compare(usize, Comparison, Value),
+}
+
+/// A condition that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    text: String,
+    tree: Tree,
+}
+
+impl Condition {
+    /// Reads a condition.
+    ///
+    /// # Errors
+    /// Where it is not one: with the position of the first character (from 1) that is wrong, and the nearest known name.
+    pub fn parse(text: &str) -> Result<Condition, Fault> {
+        let mut reader = Reader { text, at: 0 };
+        let tree = reader.any()?;
+        reader.skip_blanks();
+        if reader.at < text.len() {
+            return Err(reader.fault("Nothing was expected here").remedy("Join conditions by && or ||"));
+        }
+        Ok(Condition { text: text.trim().to_owned(), tree })
+    }
+
+    /// Its text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it holds.
+    pub fn holds(&self, moment: &Moment<'_>) -> bool {
+        self.tree.holds(moment)
+    }
+}
+
+impl Tree {
+    fn holds(&self, moment: &Moment<'_>) -> bool {
+        match self {
+            Tree::Any(trees) => trees.iter().any(|tree| tree.holds(moment)),
+            Tree::All(trees) => trees.iter().all(|tree| tree.holds(moment)),
+            Tree::Not(tree) => !tree.holds(moment),
+            Tree::Compare(field, comparison, value) => {
+                let Some(found) = (FIELDS[*field].of)(moment) else { return false };
+                match (&found, value) {
+                    (Value::Number(found), Value::Number(value)) => match comparison {
+                        Comparison::Equal => found == value,
+                        Comparison::Unequal => found != value,
+                        Comparison::Less => found < value,
+                        Comparison::AtMost => found <= value,
+                        Comparison::Greater => found > value,
+                        Comparison::AtLeast => found >= value,
+                    },
+                    _ => (found == *value) == (*comparison == Comparison::Equal),
+                }
+            }
+        }
+    }
+}
+
+struct Reader<'t> {
+    text: &'t str,
+    at: usize,
+}
+
+impl<'t> Reader<'t> {
+    fn rest(&self) -> &'t str {
+        &self.text[self.at..]
+    }
+
+    fn skip_blanks(&mut self) {
+        self.at = self.text.len() - self.rest().trim_start().len();
+    }
+
+    fn fault(&self, what: impl Into<String>) -> Fault {
+        self.fault_at(self.at, what)
+    }
+
+    fn fault_at(&self, at: usize, what: impl Into<String>) -> Fault {
+        Fault::new(what).at(format!("position {}", self.text[..at].chars().count() + 1))
+    }
+
+    fn take(&mut self, sign: &str) -> bool {
+        self.skip_blanks();
+        let found = self.rest().starts_with(sign);
+        if found {
+            self.at += sign.len();
+        }
+        found
+    }
+
+    fn any(&mut self) -> Result<Tree, Fault> {
+        let mut trees = vec![self.all()?];
+        while self.take("||") {
+            trees.push(self.all()?);
+        }
+        Ok(if trees.len() == 1 { trees.remove(0) } else { Tree::Any(trees) })
+    }
+
+    fn all(&mut self) -> Result<Tree, Fault> {
+        let mut trees = vec![self.one()?];
+        while self.take("&&") {
+            trees.push(self.one()?);
+        }
+        Ok(if trees.len() == 1 { trees.remove(0) } else { Tree::All(trees) })
+    }
+
+    fn one(&mut self) -> Result<Tree, Fault> {
+        // Signs are signs of nesting: a text of many is refused before it takes the stack.
+        let mut negated = 0;
+        while !self.rest_starts_with("!=") && self.take("!") {
+            negated += 1;
+        }
+        let tree = if self.take("(") {
+            let depth = self.text[..self.at].matches('(').count() - self.text[..self.at].matches(')').count();
+            if depth > 100 {
+                return Err(self.fault("The parentheses are nested too deep").remedy("Write it plainer"));
+            }
+            let tree = self.any()?;
+            if !self.take(")") {
+                return Err(self.fault("A parenthesis is not closed").remedy("Write ) here"));
+            }
+            tree
+        } else {
+            self.comparison()?
+        };
+        Ok(if negated % 2 == 1 { Tree::Not(Box::new(tree)) } else { tree })
+    }
+
+    fn rest_starts_with(&mut self, sign: &str) -> bool {
+        self.skip_blanks();
+        self.rest().starts_with(sign)
+    }
+
+    fn comparison(&mut self) -> Result<Tree, Fault> {
+        self.skip_blanks();
+        let start = self.at;
+        let name = self.word();
+        if name.is_empty() {
+            let what = if self.rest().is_empty() { "The condition ends here" } else { "A field was expected here" };
+            return Err(self.fault(what).remedy("Write for example kind == formed"));
+        }
+        let Some(field) = FIELDS.iter().position(|field| field.name == name) else {
+            let fault = self.fault_at(start, format!("The field \"{name}\" is not known"));
+            let known = FIELDS.iter().map(|field| field.name);
+            return Err(match nearest(name, known.clone()) {
+                Some(near) => fault.remedy(format!("The nearest known one is \"{near}\"")),
+                None => fault.remedy(format!("Known: {}", known.collect::<Vec<_>>().join(", "))),
+            });
+        };
+        let holds = FIELDS[field].holds;
+        let signs = [
+            ("==", Comparison::Equal),
+            ("!=", Comparison::Unequal),
+            ("<=", Comparison::AtMost),
+            (">=", Comparison::AtLeast),
+            ("<", Comparison::Less),
+            (">", Comparison::Greater),
+        ];
+        self.skip_blanks();
+        let sign = self.at;
+        let Some((_, comparison)) = signs.into_iter().find(|(sign, _)| self.take(sign)) else {
+            if holds == Holds::Flag {
+                return Ok(Tree::Compare(field, Comparison::Equal, Value::Flag(true)));
+            }
+            let example =
+                holds.words().first().map_or_else(|| format!("{name} < 30"), |word| format!("{name} == {word}"));
+            return Err(self.fault("A comparison is missing").remedy(format!("Write for example {example}")));
+        };
+        let is_number = matches!(holds, Holds::Number | Holds::Degrees);
+        if !is_number && !matches!(comparison, Comparison::Equal | Comparison::Unequal) {
+            return Err(self.fault_at(sign, format!("{name} has no order")).remedy("Compare it by == or !="));
+        }
+        self.value(name, holds).map(|value| Tree::Compare(field, comparison, value))
+    }
+
+    fn value(&mut self, name: &str, holds: Holds) -> Result<Value, Fault> {
+        self.skip_blanks();
+        let start = self.at;
+        let quoted = self.take("\"");
+        let word = self.word();
+        if quoted && !self.take("\"") {
+            return Err(self.fault("A quotation mark is missing").remedy("Words need none"));
+        }
+        if matches!(holds, Holds::Number | Holds::Degrees) {
+            return word.parse::<f64>().ok().filter(|n| n.is_finite()).map(Value::Number).ok_or_else(|| {
+                let unit = if holds == Holds::Degrees { " of degrees, without a unit" } else { "" };
+                self.fault_at(start, format!("{name} is compared with a number"))
+                    .remedy(format!("Write a number{unit}"))
+            });
+        }
+        let known = holds.words();
+        // Events are also called by what is done: a seam is seamed.
+        let word = match (holds, word) {
+            (Holds::Kind, "seam") => "seamed",
+            (Holds::Kind, "quad" | "form") => "formed",
+            (Holds::Kind, "base") => "base_selected",
+            (Holds::Kind, "rollback") => "rolled_back",
+            (_, word) => word,
+        };
+        match (known.contains(&word), holds) {
+            (true, Holds::Flag) => Ok(Value::Flag(word == "true")),
+            (true, _) => Ok(Value::Word(word.to_owned())),
+            (false, _) => {
+                let fault = self.fault_at(start, format!("{name} is never \"{word}\""));
+                Err(match nearest(word, known.iter().copied()) {
+                    Some(near) => fault.remedy(format!("The nearest known word is \"{near}\"")),
+                    None => fault.remedy(format!("Known: {}", known.join(", "))),
+                })
+            }
+        }
+    }
+
+    fn word(&mut self) -> &'t str {
+        self.skip_blanks();
+        let rest = self.rest();
+        let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+');
+        let end = rest.find(|c| !is_part(c)).unwrap_or(rest.len());
+        self.at += end;
+        &rest[..end]
+    }
+}
+
+impl History {
+    /// The next step after the state at hand at which one of the conditions holds, and its index. As far as it takes the run is
+    /// made known, unless the recorder is lent.
+    ///
+    /// # Errors
+    /// None that the way there has not met.
+    pub fn next_break(&mut self, conditions: &[Condition]) -> Result<Option<(u64, usize)>, Fault> {
+        let mut from = self.step();
+        loop {
+            let known = self.log().known();
+            while from < known {
+                let (_, until) = self.log().chunk_of(from + 1);
+                let events = self.events(from + 1, until)?;
+                let steps = (from + 1..).zip(&*events);
+                if let Some(found) = steps.into_iter().find_map(|(step, event)| self.broken(conditions, step, event)) {
+                    return Ok(Some(found));
+                }
+                from = until;
+            }
+            if conditions.is_empty() || self.ahead(|history| (history.log().known() > known).then_some(())).is_none() {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// The last step before the one that led to the state at hand at which one of the conditions holds, and its index.
+    ///
+    /// # Errors
+    /// None that the way there has not met.
+    pub fn previous_break(&self, conditions: &[Condition]) -> Result<Option<(u64, usize)>, Fault> {
+        let mut until = self.step().saturating_sub(1);
+        while until > 0 {
+            let (from, _) = self.log().chunk_of(until);
+            let events = self.events(from, until)?;
+            let steps = (from..).zip(&*events).collect::<Vec<_>>();
+            if let Some(found) = steps.into_iter().rev().find_map(|(step, event)| self.broken(conditions, step, event))
+            {
+                return Ok(Some(found));
+            }
+            until = from - 1;
+        }
+        Ok(None)
+    }
+
+    fn broken(&self, conditions: &[Condition], step: u64, event: &Event) -> Option<(u64, usize)> {
+        let log = self.log();
+        let moment = Moment { step, nq: log.nq(step), event, front: log.front(step), angles: log.angles(step) };
+        conditions.iter().position(|condition| condition.holds(&moment)).map(|index| (step, index))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::front::sector::Side;
+    use crate::core::mesh::ids::{ElementId, NodeId};
+
+    fn formed(quality: f64) -> Event {
+        Event::Formed { element: ElementId(7), nodes: [NodeId(1); 4], quality, eaten: 4, level: 3, attempt: 0 }
+    }
+
+    fn holds(text: &str, event: &Event, angles: Option<Angles>) -> bool {
+        let front = FrontCount { segments: 40, loops: 2, odd: 0, live: 500 };
+        Condition::parse(text).unwrap().holds(&Moment { step: 812, nq: 311, event, front, angles })
+    }
+
+    #[test]
+    fn conditions_bind_as_usual_and_compare_what_is_there() {
+        let angles = Some(Angles { min: 0.4, max: 2.0 });
+        let quad = formed(0.3);
+        for text in [
+            "quad.min_angle < 30",
+            "kind == formed",
+            "kind == quad && quad.quality<=.3",
+            "kind == seam || front.loops > 1",
+            "kind == seam && front.loops > 9 || step == 812",
+            "!(kind == seam) && !fallback",
+            "(kind == seam || kind == formed) && (nq >= 311)",
+            "quad.element == 7 && quad.eaten == 4 && quad.level != 2",
+        ] {
+            assert!(holds(text, &quad, angles), "{text}");
+        }
+        for text in ["fallback", "recovery.failed", "side == left", "base.class != 9", "kind == seam", "front.odd > 0"]
+        {
+            assert!(!holds(text, &quad, angles), "{text}");
+        }
+        assert!(!holds("quad.min_angle < 30", &Event::SecondPass, None));
+        assert!(holds("fallback", &Event::SecondPass, None));
+        let failed = Event::RolledBack { attempt: 0, why: Why::TopTooLong };
+        assert!(holds("recovery.failed && rollback.why == top_too_long", &failed, None));
+        let left = Event::SideIsFront { side: Side::Left, node: NodeId(1) };
+        assert!(holds("side == \"left\"", &left, None) && !holds("side == right", &left, None));
+    }
+
+    #[test]
+    fn a_bad_condition_is_told_with_its_position_and_the_nearest_name() {
+        let told = |text: &str| Condition::parse(text).unwrap_err().to_string();
+        insta::assert_snapshot!(
+            [
+                "",
+                "kind == seemed",
+                "kind = seamed",
+                "quad.min_angel < 30",
+                "nq > 5 && (step < 3",
+                "quad.min_angle < 30deg",
+                "quad.min_angle",
+                "kind < formed",
+                "nq > 5 6",
+                "colour == blue",
+                "fallback == maybe",
+                "&& nq > 5",
+                "kind == \"formed",
+            ]
+            .map(|text| format!("{text:?}: {}", told(text)))
+            .join("\n")
+        );
+        assert!(told(&"(".repeat(100_000)).contains("too deep"));
+        assert!(told(&"ä == 1 && x".repeat(3)).starts_with("position 1"));
+    }
+
+    #[test]
+    fn every_field_has_a_condition_that_can_be_read() {
+        for field in FIELDS {
+            let value = field.holds.words().first().copied().unwrap_or("1");
+            assert!(Condition::parse(&format!("{} == {value}", field.name)).is_ok(), "{}", field.name);
+            assert!(!field.doc.is_empty());
+        }
+    }
+}

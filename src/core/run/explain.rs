@@ -1,0 +1,492 @@
+//! Why: what a segment of the front, a node, an edge and an element are, with the numbers put into the paper's formulas, and why a
+//! segment was or was not chosen. Computed when asked for; every explanation has a text form.
+
+use std::fmt;
+
+use glam::DVec2;
+use serde::Serialize;
+
+use super::front_table::{FrontTable, Loop, Row};
+use crate::core::convert::converter::Converter;
+use crate::core::convert::parameters::{Parameters, Selection, SelectionWindow};
+use crate::core::front::sector::Side;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::metric::measure::angle;
+use crate::core::metric::tensor::Metric2;
+
+/// A metric with its eigenpairs: sizes h = 1 / sqrt(lambda) along orthonormal directions.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MetricTold {
+    /// The tensor (eq. 3): uu, uv, vv.
+    pub tensor: [f64; 3],
+    /// Eigenvalues.
+    pub lambda: [f64; 2],
+    /// Sizes that they ask for, in units of the case.
+    pub sizes: [f64; 2],
+    /// Directions that belong to them: the axes of the ellipse of unit length.
+    pub directions: [[f64; 2]; 2],
+}
+
+impl MetricTold {
+    /// Takes a metric apart.
+    pub fn of(metric: &Metric2) -> MetricTold {
+        let (lambda, directions) = metric.eigen();
+        MetricTold {
+            tensor: [metric.uu, metric.uv, metric.vv],
+            lambda,
+            sizes: lambda.map(|lambda| 1.0 / lambda.sqrt()),
+            directions: directions.map(|d| [d.x, d.y]),
+        }
+    }
+}
+
+/// What a frontal angle is (fig. 12).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Corner {
+    /// At most theta_seam: a seam closes it (4.3.6).
+    Seam,
+    /// Below theta_rect: the neighbouring segment is the side edge (table 1).
+    Rectangle,
+    /// Up to theta_revr: a side edge is to be found.
+    Flat,
+    /// Beyond theta_revr: a reversal.
+    Reversal,
+}
+
+impl Corner {
+    /// The class of a frontal angle.
+    pub fn of(theta: f64, parameters: &Parameters) -> Corner {
+        if theta <= parameters.theta_seam {
+            Corner::Seam
+        } else if theta < parameters.theta_rect {
+            Corner::Rectangle
+        } else if theta <= parameters.theta_revr {
+            Corner::Flat
+        } else {
+            Corner::Reversal
+        }
+    }
+
+    fn words(self, parameters: &Parameters) -> String {
+        let told = |name: &str, angle: f64| format!("{name} = {}", degrees(angle));
+        match self {
+            Corner::Seam => format!("at most {}: a seam", told("theta_seam", parameters.theta_seam)),
+            Corner::Rectangle => {
+                format!("below {}: the neighbouring segment is the side", told("theta_rect", parameters.theta_rect))
+            }
+            Corner::Flat => format!("not below {}: a side is to be found", told("theta_rect", parameters.theta_rect)),
+            Corner::Reversal => format!("beyond {}: a reversal", told("theta_revr", parameters.theta_revr)),
+        }
+    }
+}
+
+/// Why a segment would or would not be chosen by the rules if the base were selected now.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Verdict {
+    /// It comes first.
+    First,
+    /// It is put off until something near it changes.
+    PutOff,
+    /// Rows nearer to the boundary come first.
+    LaterLayer,
+    /// Its window is not below c Hmin (4.3.3, step ii): those that are within reach come first, then smaller H-values.
+    OutOfReach {
+        /// What is held against c Hmin.
+        window: f64,
+        /// c Hmin.
+        reach: f64,
+    },
+    /// It is of class 4: only where nothing is within reach such a segment is chosen, by its H-value (step iii).
+    ClassFour,
+    /// A segment of a better class is within reach.
+    BetterClass {
+        /// That class.
+        class: u8,
+    },
+    /// Others of its class are smaller in what they are ordered by.
+    Larger,
+}
+
+/// A segment of the front, explained.
+#[derive(Clone, Debug, Serialize)]
+pub struct SegmentTold {
+    /// Its numbers.
+    pub row: Row,
+    /// The metrics of A and B.
+    pub metric: [MetricTold; 2],
+    /// Length in the parametric plane; that in space is `row.length_physical`.
+    pub length_parametric: f64,
+    /// What its frontal angles are.
+    pub corners: [Corner; 2],
+    /// Its loop.
+    pub front_loop: Loop,
+    /// The smallest H-value of those that wait (step i).
+    pub h_min: f64,
+    /// How many come before it, of how many; none where it is put off.
+    pub rank: Option<(usize, usize)>,
+    /// Why it is, or is not, the first.
+    pub verdict: Verdict,
+    /// Whether it is the base of the quadrilateral at hand.
+    pub is_base: bool,
+    /// Between which values of c it would be chosen just so; where it is the first.
+    pub margin_of_c: Option<[f64; 2]>,
+    /// Between which values of theta_rect, in degrees.
+    pub margin_of_theta_rect: Option<[f64; 2]>,
+    #[serde(skip)]
+    parameters: Parameters,
+}
+
+impl SegmentTold {
+    /// Explains the front segment from A to B; none where there is no such one.
+    pub fn of(converter: &Converter<'_>, a: NodeId, b: NodeId) -> Option<SegmentTold> {
+        SegmentTold::in_table(converter, &FrontTable::of(converter), a, b)
+    }
+
+    /// The same with the table of the state's front at hand.
+    pub fn in_table(converter: &Converter<'_>, table: &FrontTable, a: NodeId, b: NodeId) -> Option<SegmentTold> {
+        let (mesh, parameters) = (&converter.mesh, converter.parameters());
+        let row = *table.find(a, b)?;
+        Some(SegmentTold {
+            row,
+            metric: [a, b].map(|n| MetricTold::of(mesh.metric_ref(n))),
+            length_parametric: mesh.uv(a).distance(mesh.uv(b)),
+            corners: row.theta.map(|theta| Corner::of(theta, parameters)),
+            front_loop: table.loops[row.front_loop as usize],
+            h_min: table.h_min,
+            rank: table.rank(&row).map(|rank| (rank, table.waiting_count())),
+            verdict: verdict(table, &row),
+            is_base: converter.phase().base().is_some_and(|base| base.a == a && base.b == b),
+            margin_of_c: table.margin_of_c(&row),
+            margin_of_theta_rect: table.margin_of_theta_rect(&row).map(|margin| margin.map(f64::to_degrees)),
+            parameters: parameters.clone(),
+        })
+    }
+}
+
+fn verdict(table: &FrontTable, row: &Row) -> Verdict {
+    let Some(choice) = table.choice().filter(|_| !row.is_put_off) else { return Verdict::PutOff };
+    if choice.h == row.h {
+        return Verdict::First;
+    }
+    if row.layer(&table.parameters) > table.layer {
+        return Verdict::LaterLayer;
+    }
+    if table.parameters.selection == Selection::Table1 {
+        if table.is_within_reach(row) {
+            if choice.class < row.class {
+                return Verdict::BetterClass { class: choice.class };
+            }
+        } else if row.class == 4 && table.is_within_reach(choice) {
+            return Verdict::ClassFour;
+        } else if row.class < 4 {
+            return Verdict::OutOfReach { window: row.window, reach: table.parameters.c * table.h_min };
+        }
+    }
+    Verdict::Larger
+}
+
+fn degrees(radians: f64) -> String {
+    format!("{:.1} deg", radians.to_degrees())
+}
+
+/// A number in five digits.
+fn five(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
+        let digits = 4 - libm::floor(libm::log10(x.abs().max(1e-3))) as i32;
+        format!("{x:.*}", digits.clamp(0, 8) as usize)
+    } else {
+        format!("{x:.4e}")
+    }
+}
+
+impl fmt::Display for MetricTold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [first, second] = [0, 1].map(|k| {
+            let [x, y] = self.directions[k];
+            format!("h = {} along ({x:.3}, {y:.3}), lambda = {}", five(self.sizes[k]), five(self.lambda[k]))
+        });
+        write!(f, "{first}; {second}")
+    }
+}
+
+impl fmt::Display for SegmentTold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Row { a, b, class, h_value, length_metric, length_physical, theta, level, .. } = self.row;
+        writeln!(f, "Segment {} - {}", a.0, b.0)?;
+        for (name, metric) in ["A", "B"].iter().zip(&self.metric) {
+            writeln!(f, "  M{name}: {metric}")?;
+        }
+        let largest = self.metric.map(|metric| metric.lambda[0].max(metric.lambda[1]).sqrt());
+        writeln!(
+            f,
+            "  H = 1/2 (1/{} + 1/{}) = {} (eq. 6); Hmin = {}",
+            five(largest[0]),
+            five(largest[1]),
+            five(h_value),
+            five(self.h_min)
+        )?;
+        writeln!(
+            f,
+            "  length: {} in space, {} parametric, {} metric",
+            five(length_physical),
+            five(self.length_parametric),
+            five(length_metric)
+        )?;
+        for (k, name) in ["A", "B"].iter().enumerate() {
+            writeln!(f, "  theta_{name} = {}, {}", degrees(theta[k]), self.corners[k].words(&self.parameters))?;
+        }
+        let parity = if self.front_loop.segments.is_multiple_of(2) { "even" } else { "odd" };
+        writeln!(
+            f,
+            "  priority {class} of table 1 (4.3.3), level {level}, loop {} of {} segments ({parity})",
+            self.row.front_loop, self.front_loop.segments
+        )?;
+        if let Some((rank, count)) = self.rank {
+            writeln!(f, "  rank {} of {count}", rank + 1)?;
+        }
+        writeln!(f, "  {}", self.reason())?;
+        if let Some([low, high]) = self.margin_of_c {
+            writeln!(f, "  the same choice for c from {} to {}", five(low), five(high))?;
+        }
+        if let Some([low, high]) = self.margin_of_theta_rect {
+            writeln!(f, "  the same choice for theta_rect from {low:.1} to {high:.1} deg")?;
+        }
+        Ok(())
+    }
+}
+
+impl SegmentTold {
+    /// Why it is, or is not, the first, in a sentence.
+    pub fn reason(&self) -> String {
+        let what = match (self.parameters.selection, self.parameters.selection_window) {
+            (Selection::Shortest, _) | (_, SelectionWindow::PhysicalLength) => "length",
+            (Selection::SmallestAngle, _) => "angle sum",
+            (Selection::Level, _) => "state, level and length",
+            (_, SelectionWindow::HValue) => "H-value",
+            (_, SelectionWindow::MetricLengthTimesH) => "metric length times H",
+        };
+        let reason = match self.verdict {
+            Verdict::First if self.row.class < 4 && self.row.window < self.parameters.c * self.h_min => {
+                format!("chosen: the smallest {what} of the best class within c Hmin (4.3.3, ii)")
+            }
+            Verdict::First => "chosen: the smallest H-value, since nothing is within c Hmin (4.3.3, iii)".to_owned(),
+            Verdict::PutOff => "put off: every attempt failed, until something near it changes".to_owned(),
+            Verdict::LaterLayer => "not chosen: rows nearer to the boundary are offset first".to_owned(),
+            Verdict::OutOfReach { window, reach } => {
+                format!("not chosen: {what} {} is not below c Hmin = {} (4.3.3, ii)", five(window), five(reach))
+            }
+            Verdict::ClassFour => {
+                "not chosen: no end is below theta_rect, and others are within reach (table 1)".to_owned()
+            }
+            Verdict::BetterClass { class } => {
+                format!("not chosen: a segment of priority {class} is within reach (table 1)")
+            }
+            Verdict::Larger => format!("not chosen: another of its priority has a smaller {what}"),
+        };
+        if self.is_base { format!("{reason}; it is the base of the quadrilateral at hand") } else { reason }
+    }
+}
+
+/// A node, explained.
+#[derive(Clone, Debug, Serialize)]
+pub struct NodeTold {
+    /// Its id.
+    pub node: NodeId,
+    /// Parametric coordinates.
+    pub uv: [f64; 2],
+    /// Coordinates in space.
+    pub xyz: [f64; 3],
+    /// Its metric.
+    pub metric: MetricTold,
+    /// Whether it may not move: it lies on the boundary.
+    pub is_fixed: bool,
+    /// Live triangles around it, anticlockwise.
+    pub live: Vec<ElementId>,
+    /// Dead quadrilaterals around it, anticlockwise.
+    pub dead: Vec<ElementId>,
+    /// Number of edges.
+    pub valence: usize,
+    /// Frontal angles in degrees, one for each live sector, with the segment that leaves there.
+    pub sectors: Vec<(HalfEdgeId, f64)>,
+}
+
+impl NodeTold {
+    /// Explains a node; none where there is no such one.
+    pub fn of(mesh: &Mesh, node: NodeId) -> Option<NodeTold> {
+        if !mesh.has_node(node) {
+            return None;
+        }
+        let uv = mesh.uv(node);
+        let (live, dead) = mesh.fan(node).map(HalfEdgeId::element).partition(|&e| mesh.is_triangle(e));
+        let leaving = mesh.fan(node).filter(|&h| mesh.is_front(h));
+        Some(NodeTold {
+            node,
+            uv: [uv.x, uv.y],
+            xyz: [uv.x, uv.y, 0.0],
+            metric: MetricTold::of(mesh.metric_ref(node)),
+            is_fixed: mesh.is_fixed(node),
+            live,
+            dead,
+            valence: mesh.valence(node),
+            sectors: leaving.map(|h| (h, mesh.frontal_angle(h, Side::Left).to_degrees())).collect(),
+        })
+    }
+}
+
+impl fmt::Display for NodeTold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [u, v] = self.uv;
+        let fixed = if self.is_fixed { ", on the boundary" } else { "" };
+        writeln!(f, "Node {} at ({u}, {v}){fixed}", self.node.0)?;
+        writeln!(f, "  M: {}", self.metric)?;
+        let ids = |elements: &[ElementId]| elements.iter().map(|e| e.0.to_string()).collect::<Vec<_>>().join(", ");
+        writeln!(f, "  {} edges; live triangles: {}; dead: {}", self.valence, ids(&self.live), ids(&self.dead))?;
+        for (_, theta) in &self.sectors {
+            writeln!(f, "  frontal angle {theta:.1} deg")?;
+        }
+        Ok(())
+    }
+}
+
+/// What an edge is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EdgeKind {
+    /// Between two live triangles: it can be changed.
+    Live,
+    /// On the merging front, with live triangles on one side.
+    Front,
+    /// Between two dead quadrilaterals.
+    Dead,
+    /// On the boundary, with a dead quadrilateral beside it.
+    Boundary,
+}
+
+/// An edge, explained.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EdgeTold {
+    /// Its ends.
+    pub ends: [NodeId; 2],
+    /// What it is.
+    pub kind: EdgeKind,
+    /// Whether it lies on the boundary.
+    pub is_boundary: bool,
+    /// Length in the metric.
+    pub length_metric: f64,
+    /// Length in space.
+    pub length_physical: f64,
+}
+
+impl EdgeTold {
+    /// Explains the edge between two nodes; none where they are not joined.
+    pub fn of(mesh: &Mesh, a: NodeId, b: NodeId) -> Option<EdgeTold> {
+        if !mesh.has_node(a) || !mesh.has_node(b) {
+            return None;
+        }
+        let h = mesh.half_edge_between(a, b).or_else(|| mesh.half_edge_between(b, a))?;
+        let beside = [Some(h), mesh.twin(h)].map(|h| h.map(|h| mesh.is_triangle(h.element())));
+        let kind = match beside {
+            [Some(true), Some(true)] => EdgeKind::Live,
+            [Some(false), Some(false)] => EdgeKind::Dead,
+            [Some(false), None] | [None, _] => EdgeKind::Boundary,
+            _ => EdgeKind::Front,
+        };
+        Some(EdgeTold {
+            ends: [a, b],
+            kind,
+            is_boundary: mesh.twin(h).is_none(),
+            length_metric: mesh.distance(a, b),
+            length_physical: mesh.uv(a).distance(mesh.uv(b)),
+        })
+    }
+}
+
+impl fmt::Display for EdgeTold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = match self.kind {
+            EdgeKind::Live => "live",
+            EdgeKind::Front if self.is_boundary => "front, on the boundary",
+            EdgeKind::Front => "front",
+            EdgeKind::Dead => "dead",
+            EdgeKind::Boundary => "boundary",
+        };
+        let [a, b] = self.ends.map(|n| n.0);
+        writeln!(f, "Edge {a} - {b}: {kind}")?;
+        writeln!(f, "  length: {} in space, {} metric", five(self.length_physical), five(self.length_metric))
+    }
+}
+
+/// An element, explained.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ElementTold {
+    /// Its id.
+    pub element: ElementId,
+    /// Whether it is a live triangle; else it is a dead quadrilateral.
+    pub is_live: bool,
+    /// Its nodes, anticlockwise.
+    pub nodes: Vec<NodeId>,
+    /// Quality, 0 to 1 (spec 2.1.5).
+    pub quality: f64,
+    /// Angles at its nodes in their metrics, in degrees.
+    pub angles_metric: Vec<f64>,
+    /// Angles at its nodes in space, in degrees.
+    pub angles_physical: Vec<f64>,
+    /// Area in space.
+    pub area: f64,
+    /// Area in the metric.
+    pub area_metric: f64,
+    /// Rows from the boundary.
+    pub level: u16,
+    /// Its region.
+    pub region: u32,
+}
+
+impl ElementTold {
+    /// Explains an element; none where there is no such one.
+    pub fn of(mesh: &Mesh, element: ElementId) -> Option<ElementTold> {
+        if !mesh.has_element(element) {
+            return None;
+        }
+        let nodes: Vec<NodeId> = mesh.corners(element).collect();
+        let count = nodes.len();
+        let angles = |metric: &dyn Fn(NodeId) -> Metric2| {
+            let corner = |k: usize| {
+                let p = mesh.uv(nodes[k]);
+                let (next, last) = (mesh.uv(nodes[(k + 1) % count]), mesh.uv(nodes[(k + count - 1) % count]));
+                angle(&metric(nodes[k]), next - p, last - p).to_degrees()
+            };
+            (0..count).map(corner).collect::<Vec<f64>>()
+        };
+        let p: Vec<DVec2> = nodes.iter().map(|&n| mesh.uv(n)).collect();
+        let area = 0.5 * (0..count).map(|k| (p[k] - p[0]).perp_dot(p[(k + 1) % count] - p[0])).sum::<f64>();
+        let root = nodes.iter().map(|&n| mesh.metric_ref(n).det().sqrt()).sum::<f64>() / count as f64;
+        Some(ElementTold {
+            element,
+            is_live: mesh.is_triangle(element),
+            quality: mesh.quality(element),
+            angles_metric: angles(&|n| mesh.metric(n)),
+            angles_physical: angles(&|_| Metric2::isotropic(1.0)),
+            area,
+            area_metric: root * area,
+            level: mesh.level(element),
+            region: mesh.region(element),
+            nodes,
+        })
+    }
+}
+
+impl fmt::Display for ElementTold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.is_live { "live triangle" } else { "dead quadrilateral" };
+        let nodes = self.nodes.iter().map(|n| n.0.to_string()).collect::<Vec<_>>().join(", ");
+        let angles = |list: &[f64]| list.iter().map(|a| format!("{a:.1}")).collect::<Vec<_>>().join(", ");
+        writeln!(f, "Element {}: {kind} of nodes {nodes}", self.element.0)?;
+        writeln!(f, "  quality {:.3}, level {}, region {}", self.quality, self.level, self.region)?;
+        writeln!(f, "  angles in the metric: {} deg", angles(&self.angles_metric))?;
+        writeln!(f, "  angles in space: {} deg", angles(&self.angles_physical))?;
+        writeln!(f, "  area: {} in space, {} metric", five(self.area), five(self.area_metric))
+    }
+}

@@ -1,0 +1,317 @@
+//! The front as a table: every segment with what its selection depends on (4.3.3), its loop, and the order in which the segments
+//! would be chosen.
+
+use std::collections::BTreeSet;
+
+use serde::{Serialize, Serializer};
+
+use crate::core::convert::converter::Converter;
+use crate::core::convert::parameters::{Parameters, Selection};
+use crate::core::front::segment::{Key, Segment};
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+
+/// One segment of the front.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Its half-edge in its live triangle.
+    pub h: HalfEdgeId,
+    /// Left node.
+    pub a: NodeId,
+    /// Right node.
+    pub b: NodeId,
+    /// Class of table 1.
+    pub class: u8,
+    /// H-value (eq. 6).
+    pub h_value: f64,
+    /// Length in the metric.
+    pub length_metric: f64,
+    /// Length in the plane.
+    pub length_physical: f64,
+    /// Frontal angles at A and B, radians.
+    #[serde(serialize_with = "degrees")]
+    pub theta: [f64; 2],
+    /// Rows from the boundary.
+    pub level: u16,
+    /// Its loop, by the order in which loops are met.
+    pub front_loop: u32,
+    /// Whether it is put off until something near it changes.
+    pub is_put_off: bool,
+    /// What is held against c Hmin.
+    pub window: f64,
+}
+
+fn degrees<S: Serializer>(radians: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
+    radians.map(f64::to_degrees).serialize(serializer)
+}
+
+/// One closed chain of the front.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Loop {
+    /// Number of its segments: it should be even (spec 2.6).
+    pub segments: u32,
+    /// Its length in the metric.
+    pub length_metric: f64,
+}
+
+/// What comes first in a selection: smaller comes before larger.
+pub(super) type Order = (u8, Key, HalfEdgeId);
+
+/// All segments of the front of a state.
+#[derive(Clone, Debug)]
+pub struct FrontTable {
+    /// The segments, by the half-edge.
+    pub rows: Vec<Row>,
+    /// The loops.
+    pub loops: Vec<Loop>,
+    /// The smallest H-value among those that wait (4.3.3, step i); infinite where none waits.
+    pub h_min: f64,
+    /// The least layer among those that wait, where rows are offset first.
+    pub(super) layer: u32,
+    pub(super) parameters: Parameters,
+}
+
+impl FrontTable {
+    /// The front of a state.
+    pub fn of(converter: &Converter<'_>) -> FrontTable {
+        let (mesh, parameters) = (&converter.mesh, converter.parameters().clone());
+        let mut rows = Vec::new();
+        let mut place = vec![0_u32; 4 * mesh.element_slots()];
+        for h in mesh.front() {
+            let segment = Segment::measure(mesh, h, &parameters);
+            rows.push(Row::of(&segment, mesh.is_deferred(h), &parameters));
+            place[h.index()] = rows.len() as u32;
+        }
+        let mut loops = Vec::new();
+        let mut seen = vec![false; rows.len()];
+        for first in 0..rows.len() {
+            if seen[first] {
+                continue;
+            }
+            let mut met = Loop { segments: 0, length_metric: 0.0 };
+            let mut at = first;
+            while !std::mem::replace(&mut seen[at], true) {
+                rows[at].front_loop = loops.len() as u32;
+                met.segments += 1;
+                met.length_metric += rows[at].length_metric;
+                // A loop of the front has nothing but segments of the front.
+                at = place[mesh.front_after(rows[at].h).index()] as usize - 1;
+            }
+            loops.push(met);
+        }
+        let waiting = || rows.iter().filter(|row| !row.is_put_off);
+        let layer = waiting().map(|row| row.layer(&parameters)).min().unwrap_or(0);
+        let h_min = waiting()
+            .filter(|row| row.layer(&parameters) == layer)
+            .map(|row| row.h_value)
+            .fold(f64::INFINITY, f64::min);
+        FrontTable { rows, loops, h_min, layer, parameters }
+    }
+
+    /// The segment from A to B.
+    pub fn find(&self, a: NodeId, b: NodeId) -> Option<&Row> {
+        self.rows.iter().find(|row| row.a == a && row.b == b)
+    }
+
+    /// The segment that a selection would choose by the rules; none where every segment is put off.
+    pub fn choice(&self) -> Option<&Row> {
+        self.waiting().min_by_key(|row| self.order(row))
+    }
+
+    /// How many segments would be chosen before this one, were it there alone: 0 for the choice itself. None where it is put
+    /// off.
+    pub fn rank(&self, row: &Row) -> Option<usize> {
+        if row.is_put_off {
+            return None;
+        }
+        let order = self.order(row);
+        Some(self.waiting().filter(|other| self.order(other) < order).count())
+    }
+
+    /// The places of the rows in the order in which a selection would take them; those that are put off come last.
+    pub fn in_order(&self) -> Vec<usize> {
+        let mut places: Vec<usize> = (0..self.rows.len()).collect();
+        places.sort_by_cached_key(|&place| (self.rows[place].is_put_off, self.order(&self.rows[place])));
+        places
+    }
+
+    /// Number of segments that wait to be chosen.
+    pub fn waiting_count(&self) -> usize {
+        self.waiting().count()
+    }
+
+    pub(super) fn waiting(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| !row.is_put_off)
+    }
+
+    /// Whether the segment is within c Hmin and of a class that counts (4.3.3, step ii).
+    pub fn is_within_reach(&self, row: &Row) -> bool {
+        row.class < 4 && row.layer(&self.parameters) == self.layer && row.window < self.parameters.c * self.h_min
+    }
+
+    /// What a segment is ordered by in a selection.
+    pub(super) fn order(&self, row: &Row) -> Order {
+        let layer = f64::from(row.layer(&self.parameters));
+        if self.parameters.selection != Selection::Table1 {
+            let Key([first, second, third]) = row.key(&self.parameters);
+            return (0, Key([layer * 1e9 + first, second, third]), row.h);
+        }
+        if self.is_within_reach(row) {
+            return (row.class, Key([layer, row.window, row.theta_sum()]), row.h);
+        }
+        (4, Key([layer, row.h_value, row.theta_sum()]), row.h)
+    }
+
+    /// Values of c from (excluded) and to (included) between which this very segment would be chosen, all else as it is; none
+    /// where it is not the choice, or where the order does not look at c.
+    pub fn margin_of_c(&self, row: &Row) -> Option<[f64; 2]> {
+        if self.parameters.selection != Selection::Table1 || self.choice()?.h != row.h {
+            return None;
+        }
+        let best = BestOfClass::of(self);
+        let c = self.parameters.c;
+        // The choice changes only where the best of a class comes within reach: there window = c Hmin.
+        let mut bounds: Vec<f64> = best.windows().map(|window| window / self.h_min).collect();
+        bounds.extend([0.0, f64::INFINITY]);
+        bounds.sort_unstable_by(f64::total_cmp);
+        let mut at = bounds.partition_point(|bound| *bound < c).clamp(1, bounds.len() - 1);
+        let stays = |low: f64, high: f64| {
+            let between = if high.is_finite() { 0.5 * (low + high) } else { low + 1.0 };
+            best.choice(between * self.h_min) == Some(row.h)
+        };
+        let (mut low, mut high) = (bounds[at - 1], bounds[at]);
+        for k in (1..at).rev() {
+            if bounds[k - 1] < bounds[k] && !stays(bounds[k - 1], bounds[k]) {
+                break;
+            }
+            low = bounds[k - 1];
+        }
+        while at + 1 < bounds.len() && (bounds[at] == bounds[at + 1] || stays(bounds[at], bounds[at + 1])) {
+            at += 1;
+            high = bounds[at];
+        }
+        Some([low, high])
+    }
+
+    /// Values of theta_rect from (excluded) and to (included), in radians, within 90 and 180 degrees, between which this very
+    /// segment would be chosen, all else as it is; none where it is not the choice, or where the order does not look at it.
+    pub fn margin_of_theta_rect(&self, row: &Row) -> Option<[f64; 2]> {
+        let rect = self.parameters.theta_rect;
+        if self.parameters.selection != Selection::Table1 || self.choice()?.h != row.h {
+            return None;
+        }
+        let limits = [std::f64::consts::FRAC_PI_2, std::f64::consts::PI];
+        // The classes change only where theta_rect passes a frontal angle.
+        let mut turns: Vec<(f64, usize)> = Vec::new();
+        for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| !row.is_put_off) {
+            turns.extend(row.theta.iter().filter(|t| (limits[0]..=limits[1]).contains(*t)).map(|&t| (t, i)));
+        }
+        turns.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // A frontal angle is below theta_rect or not: at theta_rect itself it is not.
+        let first_above = turns.partition_point(|turn| turn.0 < rect);
+        let reach = self.parameters.c * self.h_min;
+        let walk = |turns: &mut dyn Iterator<Item = (f64, usize)>, up: bool| {
+            let mut best = BestOfClass::of(self);
+            let mut turns = turns.peekable();
+            while let Some((angle, i)) = turns.next() {
+                let other = &self.rows[i];
+                // Above its angles the segment counts an end as a side; between equal turns nothing is decided.
+                let below = |t: f64| if up { t <= angle } else { t < angle };
+                best.put(self, other, class_of(other.theta.map(below)));
+                let decided = turns.peek().is_none_or(|next| next.0 != angle);
+                if decided && best.choice(reach) != Some(row.h) {
+                    return Some(angle);
+                }
+            }
+            None
+        };
+        let high = walk(&mut turns[first_above..].iter().copied(), true);
+        let low = walk(&mut turns[..first_above].iter().rev().copied(), false);
+        Some([low.unwrap_or(limits[0]), high.unwrap_or(limits[1])])
+    }
+}
+
+impl Row {
+    fn of(segment: &Segment, is_put_off: bool, parameters: &Parameters) -> Row {
+        Row {
+            h: segment.h,
+            a: segment.a,
+            b: segment.b,
+            class: segment.class,
+            h_value: segment.h_value,
+            length_metric: segment.length_metric,
+            length_physical: segment.length_physical,
+            theta: segment.theta,
+            level: segment.level,
+            front_loop: 0,
+            is_put_off,
+            window: segment.window(parameters.selection_window),
+        }
+    }
+
+    fn key(&self, parameters: &Parameters) -> Key {
+        let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, .. } = *self;
+        Segment { h, a, b, class, h_value, length_metric, length_physical, theta, level }.key(parameters)
+    }
+
+    fn theta_sum(&self) -> f64 {
+        self.theta[0] + self.theta[1]
+    }
+
+    pub(super) fn layer(&self, parameters: &Parameters) -> u32 {
+        u32::from(self.level).min(parameters.layers)
+    }
+}
+
+/// The class of table 1: whether the angles at A and at B are below theta_rect.
+fn class_of(below: [bool; 2]) -> u8 {
+    match below {
+        [true, true] => 1,
+        [true, false] => 2,
+        [false, true] => 3,
+        [false, false] => 4,
+    }
+}
+
+/// The segments of the first three classes in their order, those of the least layer.
+struct BestOfClass {
+    classes: [BTreeSet<(Key, HalfEdgeId)>; 3],
+    smallest: Option<HalfEdgeId>,
+}
+
+impl BestOfClass {
+    fn of(table: &FrontTable) -> BestOfClass {
+        let of_layer = || table.waiting().filter(|row| row.layer(&table.parameters) == table.layer);
+        let smallest = of_layer().min_by_key(|row| (Key([0.0, row.h_value, row.theta_sum()]), row.h));
+        let mut best = BestOfClass { classes: Default::default(), smallest: smallest.map(|row| row.h) };
+        for row in of_layer() {
+            best.put(table, row, row.class);
+        }
+        best
+    }
+
+    /// Puts a segment into a class, out of the one that it was in.
+    fn put(&mut self, table: &FrontTable, row: &Row, class: u8) {
+        if row.layer(&table.parameters) != table.layer {
+            return;
+        }
+        let entry = (Key([0.0, row.window, row.theta_sum()]), row.h);
+        for (k, waiting) in (1..).zip(&mut self.classes) {
+            if k == class {
+                waiting.insert(entry);
+            } else {
+                waiting.remove(&entry);
+            }
+        }
+    }
+
+    fn windows(&self) -> impl Iterator<Item = f64> + '_ {
+        self.classes.iter().filter_map(|waiting| waiting.first().map(|(Key([_, window, _]), _)| *window))
+    }
+
+    /// The choice where what is below `reach` is within it.
+    fn choice(&self, reach: f64) -> Option<HalfEdgeId> {
+        let firsts = self.classes.iter().filter_map(|waiting| waiting.first());
+        let within = firsts.into_iter().find(|(Key([_, window, _]), _)| *window < reach);
+        within.map(|(_, h)| *h).or(self.smallest)
+    }
+}
