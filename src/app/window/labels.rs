@@ -57,7 +57,7 @@ pub fn show(ui: &Ui, frame: &Frame, state: &State, moment: &Moment, palette: &Pa
         if which == Which::Main {
             over.pointed(state);
             over.front_labels();
-            over.node_ids();
+            over.node_ids(&decision);
         }
     }
     if which == Which::Main {
@@ -183,12 +183,13 @@ impl Over<'_> {
         }
     }
 
-    fn node_ids(&mut self) {
+    fn node_ids(&mut self, decision: &Decision) {
         let mesh = &self.moment.mesh;
         let scale = self.frame.camera.points_per_unit();
         for node in mesh.nodes() {
             let at = self.frame.place(mesh.uv(node));
-            if !self.frame.rect.contains(at) {
+            let lettered = decision.letters().any(|letter| letter.0 == node);
+            if lettered || !self.frame.rect.contains(at) {
                 continue;
             }
             let p = mesh.uv(node);
@@ -258,7 +259,7 @@ impl Over<'_> {
 
     fn arc(&mut self, segment: &Segment, side: Side) {
         let Some((centre, legs)) = self.corner(segment, side) else { return };
-        if legs.iter().any(|leg| leg.length() < 26.0) {
+        if legs.iter().any(|leg| leg.length() < 40.0) {
             return;
         }
         let points = arc(centre, legs, 26.0);

@@ -31,7 +31,10 @@ pub fn icon_button(ui: &mut Ui, icon: &str, size: f32, command: &Command, enable
 /// The head of a section, with its source at the right.
 pub fn heading(ui: &mut Ui, title: &str, source: &str, palette: &Palette) {
     ui.add_space(8.0);
+    let width = ui.max_rect().width();
     ui.horizontal(|ui| {
+        // What stands below may be wider than the panel: heads keep to it.
+        ui.set_max_width(width);
         ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             ui.label(RichText::new(source).font(theme::regular(theme::HEAD)).color(ink(palette.weak)));

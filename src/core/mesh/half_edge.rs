@@ -459,7 +459,7 @@ impl Mesh {
             deferred: self.deferred.clone(),
             free_nodes: self.free_nodes.clone(),
             free_elements: self.free_elements.clone(),
-            refusals: self.refusals.clone(),
+            refusals: self.refusals,
             journal: Journal::default(),
         }
     }

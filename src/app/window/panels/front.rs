@@ -20,14 +20,14 @@ const ROW: f32 = 20.0;
 /// Heads with their widths and what is said about them.
 const COLUMNS: [(FrontColumn, &str, f32, &str); 9] = [
     (FrontColumn::Rank, "#", 28.0, "Rank: the order in which segments come by table 1"),
-    (FrontColumn::Nodes, "A → B", 72.0, "Nodes of the segment, the live triangles to its left"),
-    (FrontColumn::Class, "cl", 29.0, "Class of table 1"),
-    (FrontColumn::HValue, "H", 46.0, "H-value, eq. 6, in units of the case"),
-    (FrontColumn::Length, "len", 32.0, "Length in the metric"),
-    (FrontColumn::ThetaA, "θA °", 40.0, "Frontal angle at A, degrees, in the metric of A"),
-    (FrontColumn::ThetaB, "θB °", 40.0, "Frontal angle at B, degrees, in the metric of B"),
-    (FrontColumn::Level, "lv", 20.0, "Level: rows from the boundary"),
-    (FrontColumn::Loop, "lp", 18.0, "Loop of the front"),
+    (FrontColumn::Nodes, "A → B", 71.0, "Nodes of the segment, the live triangles to its left"),
+    (FrontColumn::Class, "cl", 26.0, "Class of table 1"),
+    (FrontColumn::HValue, "H", 53.0, "H-value, eq. 6, in units of the case"),
+    (FrontColumn::Length, "len", 31.0, "Length in the metric"),
+    (FrontColumn::ThetaA, "θA °", 39.0, "Frontal angle at A, degrees, in the metric of A"),
+    (FrontColumn::ThetaB, "θB °", 39.0, "Frontal angle at B, degrees, in the metric of B"),
+    (FrontColumn::Level, "lv", 19.0, "Level: rows from the boundary"),
+    (FrontColumn::Loop, "lp", 17.0, "Loop of the front"),
 ];
 
 /// Shows the panel.

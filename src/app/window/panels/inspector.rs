@@ -103,25 +103,28 @@ fn candidates(ui: &mut Ui, candidates: &Candidates, palette: &Palette) {
     };
     let aim = format!("aims at {}°, within {}°", words::degrees(candidates.target), words::degrees(candidates.limit));
     heading(ui, &format!("{side} side at {end}"), &aim, palette);
-    eframe::egui::Grid::new("candidates").num_columns(5).spacing([9.0, 3.0]).striped(true).show(ui, |ui| {
-        for head in ["to", "angle °", "off °", "length", "verdict"] {
-            ui.label(RichText::new(head).font(theme::regular(theme::HEAD)).color(ink(palette.weak)));
-        }
-        ui.end_row();
-        for candidate in &candidates.edges {
-            let colour = if candidate.passed.is_none() { palette.accent } else { palette.text };
-            let to = match candidate.swap {
-                None => candidate.node.0.to_string(),
-                Some(ends) => format!("{} by {}", candidate.node.0, words::edge(ends)),
-            };
-            let verdict = candidate.passed.map_or("taken", words::passed);
-            let (angle, off) = (words::degrees(candidate.angle), words::degrees(candidate.deviation));
-            for text in [to, angle, off, words::fixed(candidate.length, 2), verdict.to_owned()] {
-                ui.label(RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour)));
+    eframe::egui::Grid::new("candidates").num_columns(5).min_col_width(20.0).spacing([8.0, 3.0]).striped(true).show(
+        ui,
+        |ui| {
+            for head in ["to", "angle °", "off °", "length", "verdict"] {
+                ui.label(RichText::new(head).font(theme::regular(theme::HEAD)).color(ink(palette.weak)));
             }
             ui.end_row();
-        }
-    });
+            for candidate in &candidates.edges {
+                let colour = if candidate.passed.is_none() { palette.accent } else { palette.text };
+                let to = match candidate.swap {
+                    None => candidate.node.0.to_string(),
+                    Some(ends) => format!("{} by {}", candidate.node.0, words::edge(ends)),
+                };
+                let verdict = candidate.passed.map_or("taken", words::passed);
+                let (angle, off) = (words::degrees(candidate.angle), words::degrees(candidate.deviation));
+                for text in [to, angle, off, words::fixed(candidate.length, 2), verdict.to_owned()] {
+                    ui.label(RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour)));
+                }
+                ui.end_row();
+            }
+        },
+    );
 }
 
 fn segment(
@@ -134,7 +137,7 @@ fn segment(
 ) {
     let s = &moment.front[place];
     title(ui, format!("Front segment {}", words::segment(s.a, s.b)), palette);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         if Decision::of(&moment.phase).base == Some([s.a, s.b]) {
             ui.label(RichText::new("base").font(theme::semibold(theme::TABLE)).color(ink(palette.accent)));
         }
@@ -207,35 +210,38 @@ fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, pale
 }
 
 fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], palette: &Palette) {
-    eframe::egui::Grid::new("ends").num_columns(6).spacing([12.0, 3.0]).striped(true).show(ui, |ui| {
-        for head in ["", "x", "y", "h1", "h2", "h1 axis °"] {
-            ui.label(RichText::new(head).font(theme::regular(theme::HEAD)).color(ink(palette.weak)));
-        }
-        ui.end_row();
-        for (name, node) in nodes {
-            let (p, metric) = (moment.mesh.uv(*node), moment.mesh.metric(*node));
-            let ([small, large], [_, across]) = metric.eigen();
-            let mut axis = libm::atan2(across.y, across.x).to_degrees();
-            if axis <= -90.0 {
-                axis += 180.0;
-            } else if axis > 90.0 {
-                axis -= 180.0;
-            }
-            let numbers = [1.0 / large.sqrt(), 1.0 / small.sqrt()];
-            let texts = [
-                format!("{name} {}", node.0),
-                words::size(p.x),
-                words::size(p.y),
-                words::size(numbers[0]),
-                words::size(numbers[1]),
-                words::fixed(axis, 1),
-            ];
-            for text in texts {
-                ui.label(RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text)));
+    eframe::egui::Grid::new("ends").num_columns(6).min_col_width(20.0).spacing([8.0, 3.0]).striped(true).show(
+        ui,
+        |ui| {
+            for head in ["", "x", "y", "h1", "h2", "h1 axis °"] {
+                ui.label(RichText::new(head).font(theme::regular(theme::HEAD)).color(ink(palette.weak)));
             }
             ui.end_row();
-        }
-    });
+            for (name, node) in nodes {
+                let (p, metric) = (moment.mesh.uv(*node), moment.mesh.metric(*node));
+                let ([small, large], [_, across]) = metric.eigen();
+                let mut axis = libm::atan2(across.y, across.x).to_degrees();
+                if axis <= -90.0 {
+                    axis += 180.0;
+                } else if axis > 90.0 {
+                    axis -= 180.0;
+                }
+                let numbers = [1.0 / large.sqrt(), 1.0 / small.sqrt()];
+                let texts = [
+                    format!("{name} {}", node.0),
+                    words::size(p.x),
+                    words::size(p.y),
+                    words::size(numbers[0]),
+                    words::size(numbers[1]),
+                    words::fixed(axis, 1),
+                ];
+                for text in texts {
+                    ui.label(RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text)));
+                }
+                ui.end_row();
+            }
+        },
+    );
 }
 
 fn edge(ui: &mut Ui, moment: &Moment, ends_of: [NodeId; 2], palette: &Palette) {

@@ -20,21 +20,27 @@ pub fn show(ui: &mut Ui, kept: f32, state: &State, commands: &mut Vec<Command>, 
     layers(ui, state, commands, palette);
     ui.add_space(4.0);
     let entries: [(Rgba, f32, &str); 7] = [
-        (palette.changed_edge, 2.5, "last change"),
-        (palette.front[3], 2.4, "4"),
-        (palette.front[2], 3.0, "3"),
-        (palette.front[1], 3.0, "2"),
-        (palette.front[0], 3.2, "class 1"),
-        (palette.side, 3.2, "sides, top"),
         (palette.base, 5.0, "base"),
+        (palette.side, 3.2, "sides, top"),
+        (palette.front[0], 3.2, "class 1"),
+        (palette.front[1], 3.0, "2"),
+        (palette.front[2], 3.0, "3"),
+        (palette.front[3], 2.4, "4"),
+        (palette.changed_edge, 2.5, "last change"),
     ];
     let font = theme::regular(theme::HEAD);
-    for (colour, width, name) in entries {
-        let text = ui.painter().layout_no_wrap(name.to_owned(), font.clone(), ink(palette.weak));
+    let texts = entries.map(|entry| ui.painter().layout_no_wrap(entry.2.to_owned(), font.clone(), ink(palette.weak)));
+    // As many as there is room for, the first ones first; they are laid down from the right.
+    let mut room = ui.available_width() - kept;
+    let count = texts
+        .iter()
+        .take_while(|text| {
+            room -= text.size().x + 32.0;
+            room >= 0.0
+        })
+        .count();
+    for ((colour, width, _), text) in entries.into_iter().zip(texts).take(count).collect::<Vec<_>>().into_iter().rev() {
         let wanted = Vec2::new(text.size().x + 28.0, ui.available_height());
-        if ui.available_width() < wanted.x + kept {
-            break;
-        }
         let (rect, _) = ui.allocate_exact_size(wanted, Sense::hover());
         let swatch = Rect::from_center_size(rect.left_center() + Vec2::new(9.0, 0.0), Vec2::new(14.0, width));
         ui.painter().rect_filled(swatch, 0.5 * width, ink(colour));

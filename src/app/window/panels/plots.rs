@@ -62,15 +62,16 @@ fn chart(ui: &mut Ui, id: &str, height: f32, range: [f64; 2], series: [(&str, Ve
         .allow_scroll(false)
         .allow_zoom(false)
         .allow_boxed_zoom(false)
-        .show_grid(Vec2b::new(false, true))
+        .show_grid(Vec2b::FALSE)
         .legend(Legend::default())
         .include_x(range[0])
         .include_x(range[1]);
     plot.show(ui, |plot| {
         for (k, (name, counts, colour)) in series.into_iter().enumerate() {
+            let fill = ink(colour);
             let bars = counts.iter().enumerate().map(|(i, count)| {
                 let middle = range[0] + (i as f64 + 0.3 + 0.4 * k as f64) * width;
-                Bar::new(middle, f64::from(*count)).width(0.36 * width)
+                Bar::new(middle, f64::from(*count)).width(0.36 * width).fill(fill)
             });
             let colour = if colour == palette.hint { colour.faded(0.7) } else { colour };
             plot.bar_chart(BarChart::new(name, bars.collect()).color(ink(colour)));
