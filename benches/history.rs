@@ -2,8 +2,18 @@
 //! and for a leap anywhere 16 ms at 10,000 and 100 ms at 100,000 quadrilaterals; 512 MiB for what is kept.
 #![allow(clippy::unwrap_used)]
 
+use glam::DVec2;
+use quadfront::core::convert::converter::Converter;
+use quadfront::core::convert::parameters::Parameters;
 use quadfront::core::io::built_in;
+use quadfront::core::mesh::half_edge::Mesh;
+use quadfront::core::mesh::ids::PointId;
+use quadfront::core::mesh::triangle_set::TriangleSet;
+use quadfront::core::metric::field::{Field, FieldSpec, Sizing};
+use quadfront::core::metric::tensor::Metric2;
 use quadfront::core::progress::Nobody;
+use quadfront::core::run::explain::SegmentTold;
+use quadfront::core::run::front_table::FrontTable;
 use quadfront::core::run::history::{BUDGET, History};
 use quadfront::core::run::run::Run;
 
@@ -31,6 +41,7 @@ fn go(history: &mut History, step: u64) {
 }
 
 fn main() {
+    front_table();
     println!("History, {}: largest, 95th of a hundred and median, in milliseconds", meter::clock());
     println!(
         "case          quads    steps  ahead: s  front: s  one quad forward         one quad back            \
@@ -77,4 +88,28 @@ fn main() {
             history.memory() as f64 / f64::from(1 << 20)
         );
     }
+}
+
+/// The table of a front of 100,000 segments: triangles that lie apart.
+fn front_table() {
+    let count = 33_334_u32;
+    let corner = |k: u32| DVec2::new(f64::from(k / 3 % 200) * 2.0, f64::from(k / 600) * 2.0);
+    let set = TriangleSet {
+        uv: (0..3 * count).map(|k| corner(k) + [DVec2::ZERO, DVec2::X, DVec2::Y][k as usize % 3]).collect(),
+        point: (0..3 * count).map(PointId).collect(),
+        triangles: (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+        region: vec![0; count as usize],
+    };
+    let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 3 * count as usize]);
+    let field = Field::compile(&FieldSpec::Uniform { h: 1.0 }, &|_| None).unwrap();
+    let converter = Converter::new(mesh, Sizing::new(vec![field], 1.0), Parameters::default());
+    let (table, seconds) = meter::median_of(5, || FrontTable::of(&converter));
+    let row = *table.choice().unwrap();
+    let (_, told) = meter::median_of(5, || SegmentTold::in_table(&converter, &table, row.a, row.b).unwrap());
+    println!(
+        "Front table of {} rows: {:.1} ms; one segment explained in it: {:.1} ms",
+        table.rows.len(),
+        1e3 * seconds,
+        1e3 * told
+    );
 }

@@ -160,10 +160,12 @@ fn a_pick_that_is_not_on_the_front_any_more_is_told_and_the_rules_choose() {
 
 #[test]
 fn running_ahead_elsewhere_gives_the_same_history() {
+    fn goes_anywhere<T: Send>(_: &T) {}
     let (run, background) = run_of("example1", 0.5);
     let mut alone = History::of(run.clone(), &background, BUDGET).unwrap();
     let end = alone.seek(u64::MAX).unwrap();
     let mut history = History::of(run, &background, BUDGET).unwrap();
+    goes_anywhere(&history);
     let mut recorder = history.lend().unwrap();
     assert!(history.lend().is_none());
     let (send, stretches) = std::sync::mpsc::channel();
@@ -298,6 +300,7 @@ fn what_touched_a_thing_is_found_forward_and_back_as_by_looking_at_every_state()
     let mut looks: Vec<_> = watched.iter().map(|&w| Look::at(&converter.mesh, w)).collect();
     let mut touches = vec![Vec::new(); watched.len()];
     let mut made = vec![None; watched.len()];
+    let mut killed = vec![None; watched.len()];
     for step in 1..=end {
         converter.step().unwrap();
         for (k, &w) in watched.iter().enumerate() {
@@ -306,6 +309,10 @@ fn what_touched_a_thing_is_found_forward_and_back_as_by_looking_at_every_state()
                 touches[k].push(step);
                 if look.is_quad() && !looks[k].is_quad() {
                     made[k] = Some(step);
+                }
+                let lives = |look: &Look| *look == Look::Absent || look.is_live_edge();
+                if lives(&looks[k]) && !lives(&look) {
+                    killed[k] = Some(step);
                 }
                 looks[k] = look;
             }
@@ -316,6 +323,9 @@ fn what_touched_a_thing_is_found_forward_and_back_as_by_looking_at_every_state()
         assert_eq!(history.last_touch(w, true).unwrap(), touches[k].last().copied());
         if let Watched::Element(e) = w {
             assert_eq!(history.made(e).unwrap(), made[k], "{w:?}");
+        }
+        if let Watched::Edge(a, b) = w {
+            assert_eq!(history.killed(a, b).unwrap(), killed[k], "{w:?}");
         }
     }
     history.seek(end / 3).unwrap();
@@ -381,7 +391,7 @@ fn moves() -> impl Strategy<Value = Move> {
 }
 
 fn rounds() -> u32 {
-    std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(60)
+    std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(120)
 }
 
 proptest! {

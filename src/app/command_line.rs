@@ -40,7 +40,7 @@ pub(super) enum Command {
 /// What a mesh is made from.
 #[derive(Args)]
 pub(super) struct Source {
-    /// A built-in case, a case file (.toml), a mesh (.msh .mesh .vtu .obj .inp), or - for standard input
+    /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp), or - for standard input
     #[arg(value_name = "CASE|MESH")]
     pub input: String,
     /// What is read where the name does not tell: toml (a case), msh, mesh, vtu, obj, inp

@@ -26,11 +26,11 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source)?;
-    let mut quads = work::convert_telling(&input.case, arguments.at, arguments.events.as_ref(), &mut progress)?;
+    let mut quads = work::convert_telling(&input.run, arguments.at, arguments.events.as_ref(), &mut progress)?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &quads.file)?;
     if let Some(target) = &destination.picture {
-        draw(target, &input.case, quads.picture(&input.case), None)?;
+        draw(target, &input.run.case, quads.picture(&input.run.case), None)?;
     }
     quads.report.timing = progress.finish();
     if let Some(target) = &arguments.report {
@@ -53,15 +53,15 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source)?;
-    let triangles = work::background(&input.case, &mut progress)?;
+    let triangles = work::background(&input.run.case, &mut progress)?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &triangles.file)?;
     if let Some(target) = &destination.picture {
-        draw(target, &input.case, Picture::of_mesh(&triangles.file), None)?;
+        draw(target, &input.run.case, Picture::of_mesh(&triangles.file), None)?;
     }
     let timing = progress.finish();
     if !source.quiet {
-        tell(&background_summary(&input.case, &triangles.statistics, &triangles.repairs, &timing), output_taken);
+        tell(&background_summary(&input.run.case, &triangles.statistics, &triangles.repairs, &timing), output_taken);
         remind(mesh_target.is_none() && destination.picture.is_none(), output_taken);
     }
     Ok(())

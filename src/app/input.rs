@@ -13,6 +13,9 @@ use crate::core::io::built_in;
 use crate::core::io::case::Case;
 use crate::core::io::format::{self, Format};
 use crate::core::io::mesh_file::MeshFile;
+use crate::core::io::run_file;
+use crate::core::io::save::load;
+use crate::core::run::run::Run;
 
 /// How messages call standard input.
 const STANDARD_INPUT: &str = "standard input";
@@ -96,23 +99,26 @@ pub(super) fn stop_text(stop: Stop) -> String {
     }
 }
 
-/// A case to work on; a mesh that came by standard input lies in a folder that goes with it.
+/// A run to work on; a mesh that came by standard input lies in a folder that goes with it.
 pub(super) struct Input {
-    pub case: Case,
+    /// The run. Its case has the parameters that are in force from step 0 on.
+    pub run: Run,
     _folder: Option<TempDir>,
 }
 
-/// The case of the arguments, with what they set.
+/// The run of the arguments, with what they set.
 pub(super) fn read(source: &Source) -> Result<Input, Fault> {
-    let Input { mut case, _folder } = read_plain(source)?;
+    let Input { mut run, _folder } = read_plain(source)?;
+    let parameters = &mut run.parameters;
     if source.paper {
-        case.parameters = case.parameters.read_as_paper();
+        *parameters = parameters.read_as_paper();
     }
     for (key, value) in &source.set {
-        case.parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
+        parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
     }
-    case.split_odd |= source.split_odd;
-    Ok(Input { case, _folder })
+    run.case.parameters = parameters.clone();
+    run.case.split_odd |= source.split_odd;
+    Ok(Input { run, _folder })
 }
 
 /// The case of a file: a case file, or a mesh as one.
@@ -129,11 +135,11 @@ pub(super) fn case_of(path: &Path) -> Result<Case, Fault> {
 
 fn read_plain(source: &Source) -> Result<Input, Fault> {
     let name = source.input.as_str();
-    let alone = |case| Input { case, _folder: None };
-    let case = match kind(name, source.from)? {
-        Kind::BuiltIn => built_in::named(name).expect("it was found by its name")?,
+    let alone = |case| Input { run: Run::of(case), _folder: None };
+    let run = match kind(name, source.from)? {
+        Kind::BuiltIn => Run::of(built_in::named(name).expect("it was found by its name")?),
         Kind::StandardInput(InputFormat::Case) => {
-            Case::from_bytes(&standard_input()?, "case", STANDARD_INPUT, Path::new(""))?
+            case_or_run(&standard_input()?, "case", STANDARD_INPUT, Path::new(""))?
         }
         Kind::StandardInput(InputFormat::Mesh(format)) => {
             // Meshes are read by path in `core`; the file's name is what its messages will say.
@@ -141,17 +147,29 @@ fn read_plain(source: &Source) -> Result<Input, Fault> {
             let folder = tempfile::tempdir().map_err(refuse)?;
             let path = folder.path().join("standard-input").with_extension(format.extension());
             std::fs::write(&path, standard_input()?).map_err(refuse)?;
-            return Ok(Input { case: Case::of_mesh(path, source.sol.clone()), _folder: Some(folder) });
+            let run = Run::of(Case::of_mesh(path, source.sol.clone()));
+            return Ok(Input { run, _folder: Some(folder) });
         }
         Kind::File(path, InputFormat::Mesh(_)) => return Ok(alone(Case::of_mesh(path, source.sol.clone()))),
-        Kind::File(path, InputFormat::Case) => Case::read(&path)?,
+        Kind::File(path, InputFormat::Case) => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            case_or_run(&load(&path)?, &stem, name, path.parent().unwrap_or(Path::new("")))?
+        }
     };
     if source.sol.is_some() {
         return Err(Fault::new("--sol goes with a mesh, and this is a case")
             .at(name)
             .remedy("Write mesh = \"...\" and sol = \"...\" in the case, or leave --sol out"));
     }
-    Ok(alone(case))
+    Ok(Input { run, _folder: None })
+}
+
+/// The run of a TOML file: a case from its beginning, or a run file.
+fn case_or_run(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) if run_file::is_run(text) => run_file::parse(text, file, folder),
+        _ => Case::from_bytes(bytes, name, file, folder).map(Run::of),
+    }
 }
 
 /// The mesh of a file or of standard input as it is; `None` where the input is a case.

@@ -22,15 +22,15 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source)?;
-    let case = &input.case;
+    let case = &input.run.case;
     match &arguments.at {
         None => {
-            let quads = work::convert(case, None, None, &mut progress)?;
+            let quads = work::convert(&input.run, None, None, &mut progress)?;
             progress.finish();
             convert::draw(&arguments.out, case, quads.picture(case), arguments.size)
         }
         Some(stops) => {
-            let mut frames = work::frames(case, stops, &mut progress)?;
+            let mut frames = work::frames(&input.run, stops, &mut progress)?;
             progress.finish();
             if frames.len() == 1 {
                 return convert::draw(&arguments.out, case, frames.remove(0), arguments.size);

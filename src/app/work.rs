@@ -7,7 +7,7 @@ use crate::core::background::adapt::Adapted;
 use crate::core::convert::conversion::{self, Background, Converted};
 use crate::core::convert::converter::{Converter, Counts};
 use crate::core::convert::phase::Base;
-use crate::core::convert::walk::{Stop, Tell, Told, walk};
+use crate::core::convert::walk::{Stop, Tell, Told, walk_editing};
 use crate::core::fault::Fault;
 use crate::core::io::case::Case;
 use crate::core::io::export::Export;
@@ -18,6 +18,7 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::soundness::{Allow, examine};
 use crate::core::metric::field::Place;
 use crate::core::progress::{Stage, Watch};
+use crate::core::run::run::Run;
 use crate::render::picture::Picture;
 
 use super::input::{Stops, stop_text};
@@ -57,14 +58,14 @@ pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles
     Ok(Triangles { file: export.file, statistics, repairs })
 }
 
-/// Converts a case and writes each event to `events` as it happens: the file appears when the conversion is done.
+/// Converts the case of a run and writes each event to `events` as it happens: the file appears when the conversion is done.
 pub(super) fn convert_telling(
-    case: &Case,
+    run: &Run,
     at: Option<Stop>,
     events: Option<&Target>,
     watch: &mut dyn Watch,
 ) -> Result<Quads, Fault> {
-    let Some(events) = events else { return convert(case, at, None, watch) };
+    let Some(events) = events else { return convert(run, at, None, watch) };
     let mut quads = None;
     let written = events.write(|out| {
         let mut written = Ok(());
@@ -73,7 +74,7 @@ pub(super) fn convert_telling(
                 written = serde_json::to_writer(&mut *out, told).map_err(io::Error::from).and_then(|()| writeln!(out));
             }
         };
-        let done = quads.insert(convert(case, at, Some(&mut tell), watch));
+        let done = quads.insert(convert(run, at, Some(&mut tell), watch));
         // What went wrong with the conversion is told in its own words; no file is left of it.
         if done.is_err() { Err(io::Error::other("the conversion failed")) } else { written }
     });
@@ -85,16 +86,18 @@ pub(super) fn convert_telling(
     }
 }
 
-/// Converts a case to its end or to a stop, checks and measures the result.
+/// Converts the case of a run to its end or to a stop, with the run's edits, checks and measures the result.
 pub(super) fn convert(
-    case: &Case,
+    run: &Run,
     at: Option<Stop>,
     mut tell: Option<Tell<'_>>,
     watch: &mut dyn Watch,
 ) -> Result<Quads, Fault> {
+    let case = &run.case;
     let mut stopped = None;
     let converted = conversion::convert_by(case, watch, &mut |converter, watch| {
-        walk(converter, at, watch, tell.take())?;
+        run.make_edits(converter, 0)?;
+        walk_editing(converter, at, watch, tell.take(), &mut |c| run.make_edits(c, c.counts.steps))?;
         stopped = at.map(|stop| (stop, converter.phase().base().copied()));
         Ok(())
     })?;
@@ -132,12 +135,13 @@ impl Quads {
     }
 }
 
-/// The pictures of a conversion at several stops, each with its stop as title.
-pub(super) fn frames(case: &Case, stops: &Stops, watch: &mut dyn Watch) -> Result<Vec<Picture>, Fault> {
+/// The pictures of a run at several stops, each with its stop as title.
+pub(super) fn frames(run: &Run, stops: &Stops, watch: &mut dyn Watch) -> Result<Vec<Picture>, Fault> {
     let mut frames = Vec::new();
-    conversion::convert_by(case, watch, &mut |converter, watch| {
+    conversion::convert_by(&run.case, watch, &mut |converter, watch| {
+        run.make_edits(converter, 0)?;
         for &stop in &stops.0 {
-            walk(converter, stop, watch, None)?;
+            walk_editing(converter, stop, watch, None, &mut |c| run.make_edits(c, c.counts.steps))?;
             frames.push(Picture { title: stop.map_or_else(|| "end".to_owned(), stop_text), ..picture(converter) });
         }
         Ok(())

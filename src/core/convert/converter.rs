@@ -17,6 +17,7 @@ use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
 use crate::core::front::selection::{Choice, Queue};
+use crate::core::io::fingerprint::Fingerprint;
 use crate::core::journal::Mark;
 use crate::core::mesh::half_edge::{Mesh, Undone};
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
@@ -284,6 +285,13 @@ impl<'a> Converter<'a> {
             format!("{:?} {:?} {:?} {:?}", self.phase.plain(), self.second_pass, self.picked, self.parameters)
                 .as_bytes(),
         );
+    }
+
+    /// The fingerprint of the state: equal states have equal ones.
+    pub fn fingerprint(&self) -> Fingerprint {
+        let mut bytes = Vec::new();
+        self.write_state(&mut bytes);
+        Fingerprint::of(&bytes)
     }
 
     fn queue(&mut self) -> &mut Queue {

@@ -2,7 +2,6 @@
 //! `assets/cases/README.md`. Deliberately absent: what the words mean geometrically (`geometry::domain`) and whether a
 //! formula can be evaluated (`metric::formula`).
 
-mod table;
 mod geometry;
 mod elements;
 mod metric;
@@ -12,8 +11,8 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 use toml::de::DeTable;
 
-use self::table::{Source, Table};
 use super::save::load;
+use super::table::{self, Source, Table};
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::{CurveSpec, FaceSpec};

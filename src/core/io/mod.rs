@@ -2,6 +2,7 @@
 
 pub mod mesh_file;
 pub mod save;
+pub mod fingerprint;
 pub mod scan;
 pub mod numbering;
 pub mod msh;
@@ -10,8 +11,10 @@ pub mod vtu;
 pub mod obj;
 pub mod inp;
 pub mod format;
+mod table;
 pub mod case;
 pub mod built_in;
 pub mod statistics;
 pub mod export;
 pub mod report;
+pub mod run_file;

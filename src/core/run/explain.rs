@@ -1,14 +1,14 @@
 //! Why: what a segment of the front, a node, an edge and an element are, with the numbers put into the paper's formulas, and why a
 //! segment was or was not chosen. Computed when asked for; every explanation has a text form.
 
-use std::fmt;
+mod words;
 
 use glam::DVec2;
 use serde::Serialize;
 
 use super::front_table::{FrontTable, Loop, Row};
 use crate::core::convert::converter::Converter;
-use crate::core::convert::parameters::{Parameters, Selection, SelectionWindow};
+use crate::core::convert::parameters::{Parameters, Selection};
 use crate::core::front::sector::Side;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
@@ -66,18 +66,6 @@ impl Corner {
             Corner::Flat
         } else {
             Corner::Reversal
-        }
-    }
-
-    fn words(self, parameters: &Parameters) -> String {
-        let told = |name: &str, angle: f64| format!("{name} = {}", degrees(angle));
-        match self {
-            Corner::Seam => format!("at most {}: a seam", told("theta_seam", parameters.theta_seam)),
-            Corner::Rectangle => {
-                format!("below {}: the neighbouring segment is the side", told("theta_rect", parameters.theta_rect))
-            }
-            Corner::Flat => format!("not below {}: a side is to be found", told("theta_rect", parameters.theta_rect)),
-            Corner::Reversal => format!("beyond {}: a reversal", told("theta_revr", parameters.theta_revr)),
         }
     }
 }
@@ -188,108 +176,6 @@ fn verdict(table: &FrontTable, row: &Row) -> Verdict {
     Verdict::Larger
 }
 
-fn degrees(radians: f64) -> String {
-    format!("{:.1} deg", radians.to_degrees())
-}
-
-/// A number in five digits.
-fn five(x: f64) -> String {
-    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
-        let digits = 4 - libm::floor(libm::log10(x.abs().max(1e-3))) as i32;
-        format!("{x:.*}", digits.clamp(0, 8) as usize)
-    } else {
-        format!("{x:.4e}")
-    }
-}
-
-impl fmt::Display for MetricTold {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [first, second] = [0, 1].map(|k| {
-            let [x, y] = self.directions[k];
-            format!("h = {} along ({x:.3}, {y:.3}), lambda = {}", five(self.sizes[k]), five(self.lambda[k]))
-        });
-        write!(f, "{first}; {second}")
-    }
-}
-
-impl fmt::Display for SegmentTold {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Row { a, b, class, h_value, length_metric, length_physical, theta, level, .. } = self.row;
-        writeln!(f, "Segment {} - {}", a.0, b.0)?;
-        for (name, metric) in ["A", "B"].iter().zip(&self.metric) {
-            writeln!(f, "  M{name}: {metric}")?;
-        }
-        let largest = self.metric.map(|metric| metric.lambda[0].max(metric.lambda[1]).sqrt());
-        writeln!(
-            f,
-            "  H = 1/2 (1/{} + 1/{}) = {} (eq. 6); Hmin = {}",
-            five(largest[0]),
-            five(largest[1]),
-            five(h_value),
-            five(self.h_min)
-        )?;
-        writeln!(
-            f,
-            "  length: {} in space, {} parametric, {} metric",
-            five(length_physical),
-            five(self.length_parametric),
-            five(length_metric)
-        )?;
-        for (k, name) in ["A", "B"].iter().enumerate() {
-            writeln!(f, "  theta_{name} = {}, {}", degrees(theta[k]), self.corners[k].words(&self.parameters))?;
-        }
-        let parity = if self.front_loop.segments.is_multiple_of(2) { "even" } else { "odd" };
-        writeln!(
-            f,
-            "  priority {class} of table 1 (4.3.3), level {level}, loop {} of {} segments ({parity})",
-            self.row.front_loop, self.front_loop.segments
-        )?;
-        if let Some((rank, count)) = self.rank {
-            writeln!(f, "  rank {} of {count}", rank + 1)?;
-        }
-        writeln!(f, "  {}", self.reason())?;
-        if let Some([low, high]) = self.margin_of_c {
-            writeln!(f, "  the same choice for c from {} to {}", five(low), five(high))?;
-        }
-        if let Some([low, high]) = self.margin_of_theta_rect {
-            writeln!(f, "  the same choice for theta_rect from {low:.1} to {high:.1} deg")?;
-        }
-        Ok(())
-    }
-}
-
-impl SegmentTold {
-    /// Why it is, or is not, the first, in a sentence.
-    pub fn reason(&self) -> String {
-        let what = match (self.parameters.selection, self.parameters.selection_window) {
-            (Selection::Shortest, _) | (_, SelectionWindow::PhysicalLength) => "length",
-            (Selection::SmallestAngle, _) => "angle sum",
-            (Selection::Level, _) => "state, level and length",
-            (_, SelectionWindow::HValue) => "H-value",
-            (_, SelectionWindow::MetricLengthTimesH) => "metric length times H",
-        };
-        let reason = match self.verdict {
-            Verdict::First if self.row.class < 4 && self.row.window < self.parameters.c * self.h_min => {
-                format!("chosen: the smallest {what} of the best class within c Hmin (4.3.3, ii)")
-            }
-            Verdict::First => "chosen: the smallest H-value, since nothing is within c Hmin (4.3.3, iii)".to_owned(),
-            Verdict::PutOff => "put off: every attempt failed, until something near it changes".to_owned(),
-            Verdict::LaterLayer => "not chosen: rows nearer to the boundary are offset first".to_owned(),
-            Verdict::OutOfReach { window, reach } => {
-                format!("not chosen: {what} {} is not below c Hmin = {} (4.3.3, ii)", five(window), five(reach))
-            }
-            Verdict::ClassFour => {
-                "not chosen: no end is below theta_rect, and others are within reach (table 1)".to_owned()
-            }
-            Verdict::BetterClass { class } => {
-                format!("not chosen: a segment of priority {class} is within reach (table 1)")
-            }
-            Verdict::Larger => format!("not chosen: another of its priority has a smaller {what}"),
-        };
-        if self.is_base { format!("{reason}; it is the base of the quadrilateral at hand") } else { reason }
-    }
-}
-
 /// A node, explained.
 #[derive(Clone, Debug, Serialize)]
 pub struct NodeTold {
@@ -333,21 +219,6 @@ impl NodeTold {
             valence: mesh.valence(node),
             sectors: leaving.map(|h| (h, mesh.frontal_angle(h, Side::Left).to_degrees())).collect(),
         })
-    }
-}
-
-impl fmt::Display for NodeTold {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [u, v] = self.uv;
-        let fixed = if self.is_fixed { ", on the boundary" } else { "" };
-        writeln!(f, "Node {} at ({u}, {v}){fixed}", self.node.0)?;
-        writeln!(f, "  M: {}", self.metric)?;
-        let ids = |elements: &[ElementId]| elements.iter().map(|e| e.0.to_string()).collect::<Vec<_>>().join(", ");
-        writeln!(f, "  {} edges; live triangles: {}; dead: {}", self.valence, ids(&self.live), ids(&self.dead))?;
-        for (_, theta) in &self.sectors {
-            writeln!(f, "  frontal angle {theta:.1} deg")?;
-        }
-        Ok(())
     }
 }
 
@@ -401,21 +272,6 @@ impl EdgeTold {
             length_metric: mesh.distance(a, b),
             length_physical: mesh.uv(a).distance(mesh.uv(b)),
         })
-    }
-}
-
-impl fmt::Display for EdgeTold {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kind = match self.kind {
-            EdgeKind::Live => "live",
-            EdgeKind::Front if self.is_boundary => "front, on the boundary",
-            EdgeKind::Front => "front",
-            EdgeKind::Dead => "dead",
-            EdgeKind::Boundary => "boundary",
-        };
-        let [a, b] = self.ends.map(|n| n.0);
-        writeln!(f, "Edge {a} - {b}: {kind}")?;
-        writeln!(f, "  length: {} in space, {} metric", five(self.length_physical), five(self.length_metric))
     }
 }
 
@@ -475,18 +331,5 @@ impl ElementTold {
             region: mesh.region(element),
             nodes,
         })
-    }
-}
-
-impl fmt::Display for ElementTold {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kind = if self.is_live { "live triangle" } else { "dead quadrilateral" };
-        let nodes = self.nodes.iter().map(|n| n.0.to_string()).collect::<Vec<_>>().join(", ");
-        let angles = |list: &[f64]| list.iter().map(|a| format!("{a:.1}")).collect::<Vec<_>>().join(", ");
-        writeln!(f, "Element {}: {kind} of nodes {nodes}", self.element.0)?;
-        writeln!(f, "  quality {:.3}, level {}, region {}", self.quality, self.level, self.region)?;
-        writeln!(f, "  angles in the metric: {} deg", angles(&self.angles_metric))?;
-        writeln!(f, "  angles in space: {} deg", angles(&self.angles_physical))?;
-        writeln!(f, "  area: {} in space, {} metric", five(self.area), five(self.area_metric))
     }
 }

@@ -4,18 +4,20 @@
 //! Everything that is kept stays within a budget: whole meshes, differences, events, and the journals of the state at hand and of
 //! the stretch before it, which is prepared while one steps back.
 
+mod editing;
+
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::keyframes::{Keyframe, Keyframes};
 use super::log::Log;
 use super::recorder::{Recorder, SPACING, Stretch};
-use super::run::{Bookmark, Camera, Edit, EditKind, OF_BACKGROUND, Run};
+use super::run::{EditKind, Run};
 use crate::core::convert::conversion::Background;
 use crate::core::convert::converter::Converter;
 use crate::core::convert::event::Event;
-use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
+use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::touched::Touched;
 use crate::core::progress::Watch;
@@ -55,6 +57,8 @@ pub struct History {
     now: Cursor,
     /// On its way from a keyframe to where the history of the state at hand begins.
     behind: Option<Cursor>,
+    /// A mesh whose memory can be used again.
+    spare: Mesh,
     /// What changed since somebody last took note of it.
     changed: Touched,
     /// Whether that is everything.
@@ -115,6 +119,7 @@ impl History {
             stuck: None,
             now,
             behind: None,
+            spare: Mesh::default(),
             changed: Touched::default(),
             all_changed: true,
         })
@@ -310,7 +315,7 @@ impl History {
         until: u64,
         tell: &mut dyn FnMut(u64, &Converter<'static>, Option<&Event>),
     ) -> Result<(), Fault> {
-        let mut cursor = self.cursor_before(from)?;
+        let mut cursor = self.cursor_before(from, Mesh::default())?;
         while cursor.step < from {
             cursor.advance(&self.run)?;
         }
@@ -327,20 +332,24 @@ impl History {
     }
 
     /// The state of the keyframe at or before a step, its edits made.
-    fn cursor_before(&self, step: u64) -> Result<Cursor, Fault> {
+    fn cursor_before(&self, step: u64, spare: Mesh) -> Result<Cursor, Fault> {
         let index = self.keyframes.at_or_before(step);
         let step = self.keyframes.frames()[index].step;
-        let mut converter = self.keyframes.state(index);
+        let mut converter = self.keyframes.state(index, spare);
         self.run.enter(&mut converter, step)?;
         Ok(Cursor { converter, step, look: step + LOOK })
     }
 
     fn leap(&mut self, step: u64) -> Result<(), Fault> {
-        self.now = self.cursor_before(step.saturating_sub(BEHIND))?;
+        if let Some(behind) = self.behind.take() {
+            self.spare = behind.converter.mesh;
+        }
+        let spare = std::mem::take(&mut self.now.converter.mesh);
+        self.now = self.cursor_before(step.saturating_sub(BEHIND), spare)?;
         self.now.converter.keep_history();
-        self.behind = None;
         self.all_changed = true;
-        Ok(())
+        // A leap has time for what a step back has not.
+        if self.now.step > 0 { self.prepare(0) } else { Ok(()) }
     }
 
     fn forward_one(&mut self) -> Result<(), Fault> {
@@ -355,7 +364,8 @@ impl History {
         if self.now.converter.history_len() == 0 {
             self.prepare(u64::MAX)?;
             // It is the same state; its history goes further back.
-            self.now = self.behind.take().expect("it was just prepared");
+            let further = self.behind.take().expect("it was just prepared");
+            self.spare = std::mem::replace(&mut self.now, further).converter.mesh;
         }
         self.note_changes();
         let step = self.now.step;
@@ -377,7 +387,8 @@ impl History {
         let mut behind = match self.behind.take() {
             Some(behind) => behind,
             None => {
-                let mut behind = self.cursor_before(begin.saturating_sub(BEHIND))?;
+                let spare = std::mem::take(&mut self.spare);
+                let mut behind = self.cursor_before(begin.saturating_sub(BEHIND), spare)?;
                 behind.converter.keep_history();
                 behind
             }
@@ -398,74 +409,6 @@ impl History {
             self.all_changed = true;
             self.changed.clear();
         }
-    }
-
-    // ---- editing ----
-
-    /// Makes an edit at the step at hand, in place of one that changes the same thing there. What follows from it on is
-    /// changed; what comes before stays.
-    ///
-    /// # Errors
-    /// A segment that is not on the front. Nothing is changed then.
-    pub fn edit(&mut self, kind: EditKind) -> Result<(), Fault> {
-        if let EditKind::Base { a, b } = kind {
-            self.now.converter.check_base(a, b)?;
-        }
-        self.set_edits(self.run.edits_with(Edit { step: self.now.step, kind }))
-    }
-
-    /// Replaces all edits of the run. The state at hand stays at its step, as it is with these edits, or at the end where the
-    /// run is shorter now.
-    ///
-    /// # Errors
-    /// An edit that is no valid one: nothing is changed then.
-    pub fn set_edits(&mut self, edits: Vec<Edit>) -> Result<(), Fault> {
-        let mut run = Run::clone(&self.run);
-        run.set_edits(edits);
-        run.parameters_at(u64::MAX)?;
-        let Some(first) = Run::first_difference(self.run.edits(), run.edits()) else { return Ok(()) };
-        self.change(run, first)
-    }
-
-    /// Replaces the parameters from step 0 on.
-    ///
-    /// # Errors
-    /// A change of what the background mesh is made with: that needs another history. Nothing is changed then.
-    pub fn set_parameters(&mut self, parameters: Parameters) -> Result<(), Fault> {
-        for key in OF_BACKGROUND {
-            if parameters.text_of(key) != self.run.parameters.text_of(key) {
-                return Err(
-                    Fault::new(format!("{key} belongs to the background mesh")).remedy("Open the run anew with it")
-                );
-            }
-        }
-        let mut run = Run::clone(&self.run);
-        run.parameters = parameters;
-        self.change(run, 0)
-    }
-
-    /// Replaces bookmarks and camera, which change no state.
-    pub fn annotate(&mut self, change: impl FnOnce(&mut Vec<Bookmark>, &mut Option<Camera>)) {
-        let run = Arc::make_mut(&mut self.run);
-        change(&mut run.bookmarks, &mut run.camera);
-    }
-
-    /// The run becomes another from a step on.
-    fn change(&mut self, run: Run, first: u64) -> Result<(), Fault> {
-        let step = self.now.step;
-        self.run = Arc::new(run);
-        self.log.truncate(first);
-        self.keyframes.truncate(self.log.known());
-        self.resume_recorder()?;
-        if step < first {
-            self.extend(step);
-            return Ok(());
-        }
-        self.extend(first);
-        self.leap(first)?;
-        let reached = self.seek(step);
-        // The run may end before, or be stuck there: then the state is its last one.
-        if self.stuck.is_some() { Ok(()) } else { reached.map(drop) }
     }
 }
 

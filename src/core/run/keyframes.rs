@@ -77,11 +77,14 @@ impl Keyframes {
         self.frames.partition_point(|frame| frame.step <= step) - 1
     }
 
-    /// The state of a keyframe.
-    pub(super) fn state(&self, index: usize) -> Converter<'static> {
+    /// The state of a keyframe, in the memory of a mesh that is not needed any more.
+    pub(super) fn state(&self, index: usize, spare: Mesh) -> Converter<'static> {
         let whole = self.frames[..=index].iter().rposition(|frame| frame.full.is_some());
         let whole = whole.expect("the first keyframe is whole");
-        let mut mesh = self.frames[whole].full.clone().expect("it was just found");
+        let mut mesh = spare;
+        if let Some(full) = &self.frames[whole].full {
+            mesh.become_same(full);
+        }
         for frame in &self.frames[whole + 1..=index] {
             if let Some(difference) = &frame.difference {
                 mesh.apply(difference);

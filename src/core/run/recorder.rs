@@ -68,7 +68,7 @@ impl Recorder {
     pub(super) fn resume(run: Arc<Run>, keyframes: &Keyframes, edition: u64) -> Result<Recorder, Fault> {
         let frames = keyframes.frames();
         let last = frames.len() - 1;
-        let (mut converter, step) = (keyframes.state(last), frames[last].step);
+        let (mut converter, step) = (keyframes.state(last, Mesh::default()), frames[last].step);
         let free = converter.mesh.free_lists();
         run.enter(&mut converter, step)?;
         converter.keep_journal();
@@ -182,7 +182,7 @@ impl Recorder {
         let difference = self.converter.mesh.difference(&self.touched, &self.free);
         self.since_whole += difference.bytes();
         // Applying differences shall not cost much more than copying a mesh.
-        let is_whole = self.since_whole > self.converter.mesh.bytes() / 2;
+        let is_whole = self.since_whole > self.converter.mesh.bytes() / 4;
         if is_whole {
             self.since_whole = 0;
         }

@@ -47,12 +47,15 @@ impl EditKind {
     /// # Errors
     /// An unknown key, a value of the wrong kind or out of range, a parameter of the background.
     pub fn parameter(key: &str, value: &str) -> Result<EditKind, Fault> {
-        Parameters::default().set(key, value)?;
+        let mut parameters = Parameters::default();
+        parameters.set(key, value)?;
         if OF_BACKGROUND.contains(&key) {
             return Err(Fault::new(format!("{key} belongs to the background mesh and cannot change at a step"))
                 .remedy("Change it for the whole run"));
         }
-        Ok(EditKind::Parameter { key: key.to_owned(), value: value.trim().to_owned() })
+        // As it is written everywhere else, so that a run reads back as it was.
+        let value = parameters.text_of(key).unwrap_or_else(|| value.trim().to_owned());
+        Ok(EditKind::Parameter { key: key.to_owned(), value })
     }
 
     /// Whether both change the same thing, so that the later one of a step replaces the earlier one.

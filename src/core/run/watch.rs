@@ -161,13 +161,8 @@ impl History {
     /// # Errors
     /// None that the way there has not met.
     pub fn killed(&self, a: NodeId, b: NodeId) -> Result<Option<u64>, Fault> {
-        let dies = |before: &Look, after: &Look| {
-            !after.is_live_edge()
-                && *after != Look::Absent
-                && before != after
-                && (before.is_live_edge() || *before == Look::Absent)
-        };
-        self.last_turn(Watched::Edge(a, b), self.step(), &dies)
+        let lives = |look: &Look| *look == Look::Absent || look.is_live_edge();
+        self.last_turn(Watched::Edge(a, b), self.step(), &|before, after| lives(before) && !lives(after))
     }
 
     fn last_turn(&self, watched: Watched, until: u64, turn: Turn<'_>) -> Result<Option<u64>, Fault> {

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::taking_back::Element;
 use super::{Mesh, NONE};
-use crate::core::journal::Mark;
+use crate::core::journal::{Journal, Mark};
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::touched::Touched;
 use crate::core::metric::tensor::Metric2;
@@ -145,6 +145,42 @@ impl Mesh {
             free_nodes: Tail::between(&free.nodes, &self.free_nodes),
             free_elements: Tail::between(&free.elements, &self.free_elements),
         }
+    }
+
+    /// Becomes the same state as another mesh, with nothing in the journal; memory that is there already is used again, which is
+    /// most of the cost of a copy.
+    pub(in crate::core) fn become_same(&mut self, other: &Mesh) {
+        // Every field is named, so that none can be forgotten.
+        let Mesh {
+            uv,
+            metric,
+            anchor,
+            point,
+            origin,
+            twin,
+            sides,
+            region,
+            level,
+            deferred,
+            free_nodes,
+            free_elements,
+            journal: _,
+            refusals,
+        } = other;
+        self.uv.clone_from(uv);
+        self.metric.clone_from(metric);
+        self.anchor.clone_from(anchor);
+        self.point.clone_from(point);
+        self.origin.clone_from(origin);
+        self.twin.clone_from(twin);
+        self.sides.clone_from(sides);
+        self.region.clone_from(region);
+        self.level.clone_from(level);
+        self.deferred.clone_from(deferred);
+        self.free_nodes.clone_from(free_nodes);
+        self.free_elements.clone_from(free_elements);
+        self.journal = Journal::default();
+        self.refusals.clone_from(refusals);
     }
 
     /// Becomes the later state of a difference whose earlier one this is. The journal must be empty, and stays so.

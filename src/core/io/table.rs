@@ -1,4 +1,4 @@
-//! The tables of a case file, read strictly: every fault has its file and line, unknown keys name the nearest known one.
+//! The tables of case files and run files, read strictly: every fault has its file and line, unknown keys name the nearest known one.
 
 use glam::DVec2;
 use toml::Spanned;

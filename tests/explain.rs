@@ -1,0 +1,165 @@
+//! Promise: what is told about a choice is true: the table of the front says what will be chosen, and a margin says how far a
+//! parameter may go without another choice.
+#![allow(clippy::unwrap_used)]
+
+use quadfront::core::convert::converter::Converter;
+use quadfront::core::convert::event::Event;
+use quadfront::core::convert::parameters::Parameters;
+use quadfront::core::convert::phase::Phase;
+use quadfront::core::io::built_in;
+use quadfront::core::mesh::ids::NodeId;
+use quadfront::core::progress::Nobody;
+use quadfront::core::run::explain::{Corner, EdgeKind, EdgeTold, ElementTold, NodeTold, SegmentTold, Verdict};
+use quadfront::core::run::front_table::FrontTable;
+use quadfront::core::run::run::Run;
+
+/// Calls `look` with each state before a selection and the base that was selected.
+fn selections(name: &str, settings: &[(&str, &str)], mut look: impl FnMut(u64, &Converter<'_>, [NodeId; 2])) {
+    let mut run = Run::of(built_in::named(name).unwrap().unwrap());
+    for (key, value) in settings {
+        run.parameters.set(key, value).unwrap();
+    }
+    let background = run.background(&mut Nobody).unwrap();
+    let mut converter = run.start(&background).unwrap();
+    while *converter.phase() != Phase::Done {
+        let before = converter.clone();
+        if let Event::BaseSelected { a, b, .. } = converter.step().unwrap() {
+            look(converter.counts.steps, &before, [a, b]);
+        }
+    }
+}
+
+/// What is selected from a state with other parameters.
+fn selected(state: &Converter<'_>, change: impl FnOnce(&mut Parameters)) -> Option<[NodeId; 2]> {
+    let mut converter = state.clone();
+    let mut parameters = state.parameters().clone();
+    change(&mut parameters);
+    converter.set_parameters(parameters);
+    match converter.step().unwrap() {
+        Event::BaseSelected { a, b, .. } => Some([a, b]),
+        _ => None,
+    }
+}
+
+#[test]
+fn the_first_of_the_front_table_is_what_is_selected_next() {
+    for settings in [
+        &[][..],
+        &[("selection_window", "physical_length"), ("c", "1.5")],
+        &[("selection_window", "h_value"), ("layers", "2")],
+        &[("selection", "shortest")],
+        &[("selection", "smallest_angle")],
+        &[("selection", "level"), ("layers", "1")],
+    ] {
+        let mut count = 0;
+        selections("example1", settings, |step, state, [a, b]| {
+            let table = FrontTable::of(state);
+            let choice = table.choice().unwrap();
+            assert_eq!([choice.a, choice.b], [a, b], "step {step}, {settings:?}");
+            assert_eq!(table.rank(choice), Some(0));
+            assert_eq!(table.loops.iter().map(|l| l.segments as usize).sum::<usize>(), table.rows.len());
+            assert!(table.loops.iter().all(|l| l.segments.is_multiple_of(2)));
+            count += 1;
+        });
+        assert!(count > 150, "{count}");
+    }
+}
+
+#[test]
+fn within_its_margins_a_choice_stays_and_beyond_them_it_does_not() {
+    let (mut checked, mut bounded) = (0, [0; 4]);
+    selections("example1", &[("c", "1.6")], |step, state, base| {
+        if !step.is_multiple_of(3) {
+            return;
+        }
+        let told = SegmentTold::of(state, base[0], base[1]).unwrap();
+        assert_eq!(told.verdict, Verdict::First);
+        let [low, high] = told.margin_of_c.unwrap();
+        let with_c = |c: f64| selected(state, |p| p.c = c);
+        let inside = low + (if high.is_finite() { high } else { low + 9.0 } - low) * 0.999;
+        for c in [inside, low + 1e-6 * (inside - low)] {
+            assert_eq!(with_c(c), Some(base), "step {step}, c = {c} of {low} to {high}");
+        }
+        if low > 0.0 {
+            assert_ne!(with_c(low * (1.0 - 1e-9)), Some(base), "step {step}, below {low}");
+            bounded[0] += 1;
+        }
+        if high.is_finite() {
+            assert_ne!(with_c(high * (1.0 + 1e-9)), Some(base), "step {step}, above {high}");
+            bounded[1] += 1;
+        }
+        let [low, high] = told.margin_of_theta_rect.unwrap().map(f64::to_radians);
+        // Only the classes shall change, not what else looks at theta_rect: a selection alone does not.
+        let with_rect = |theta: f64| selected(state, |p| p.theta_rect = theta);
+        for share in [1e-6, 0.3, 0.7, 1.0 - 1e-6] {
+            let theta = low + (high - low) * share;
+            assert_eq!(with_rect(theta), Some(base), "step {step}, theta_rect = {theta} of {low} to {high}");
+        }
+        if low > 90.001_f64.to_radians() {
+            assert_ne!(with_rect(low - 1e-9), Some(base), "step {step}, below {low}");
+            bounded[2] += 1;
+        }
+        if high < 179.999_f64.to_radians() {
+            assert_ne!(with_rect(high + 1e-9), Some(base), "step {step}, above {high}");
+            bounded[3] += 1;
+        }
+        checked += 1;
+    });
+    assert!(checked > 40, "{checked}");
+    assert!(bounded.iter().all(|&count| count > 3), "{bounded:?}");
+}
+
+#[test]
+fn every_segment_has_its_reason_in_words() {
+    let mut seen = std::collections::BTreeSet::new();
+    selections("example1", &[("layers", "1")], |step, state, base| {
+        if !step.is_multiple_of(40) {
+            return;
+        }
+        let table = FrontTable::of(state);
+        for row in &table.rows {
+            let told = SegmentTold::in_table(state, &table, row.a, row.b).unwrap();
+            assert_eq!(told.verdict == Verdict::First, [row.a, row.b] == base);
+            assert_eq!(told.rank.is_none(), told.verdict == Verdict::PutOff);
+            let text = told.to_string();
+            assert!(text.contains("eq. 6") && text.contains("hosen") || text.contains("put off"), "{text}");
+            seen.insert(format!("{:?}", told.verdict).split([' ', '{']).next().unwrap().to_owned());
+        }
+    });
+    for verdict in ["First", "LaterLayer", "OutOfReach", "BetterClass", "Larger"] {
+        assert!(seen.contains(verdict), "{verdict} is not among {seen:?}");
+    }
+}
+
+#[test]
+fn the_explanations_put_the_numbers_into_the_formulas() {
+    let mut texts = Vec::new();
+    // A case whose mesh is given: no text changes with the conversion.
+    selections("figure-19", &[], |_, state, [a, b]| {
+        if texts.is_empty() {
+            let mesh = &state.mesh;
+            let told = SegmentTold::of(state, a, b).unwrap();
+            let by_equation = 0.5 * told.metric.map(|m| 1.0 / m.lambda[1].sqrt()).iter().sum::<f64>();
+            assert!((told.row.h_value / by_equation - 1.0).abs() < 1e-12, "eq. (6)");
+            assert_eq!(told.corners[0] == Corner::Rectangle, told.row.theta[0] < 135_f64.to_radians());
+            texts.push(told.to_string());
+            let node = NodeTold::of(mesh, a).unwrap();
+            assert_eq!(node.live.len() + node.dead.len(), mesh.fan(a).count());
+            assert!(!node.sectors.is_empty());
+            texts.push(node.to_string());
+            let edge = EdgeTold::of(mesh, a, b).unwrap();
+            assert_eq!(edge.kind, EdgeKind::Front);
+            assert_eq!(edge, EdgeTold { ends: [a, b], ..EdgeTold::of(mesh, b, a).unwrap() });
+            texts.push(edge.to_string());
+            let quad = mesh.elements().find(|&e| mesh.is_quad(e));
+            for e in quad.into_iter().chain([mesh.half_edge_between(a, b).unwrap().element()]) {
+                let told = ElementTold::of(mesh, e).unwrap();
+                let sum: f64 = told.angles_physical.iter().sum();
+                assert!((sum - 180.0 * (told.nodes.len() as f64 - 2.0)).abs() < 1e-9, "{told}");
+                texts.push(told.to_string());
+            }
+            assert!(NodeTold::of(mesh, NodeId(1_000_000)).is_none());
+        }
+    });
+    insta::assert_snapshot!(texts.join("\n"));
+}
