@@ -144,12 +144,29 @@ fn a_segment_that_is_picked_in_the_table_is_explained_in_the_inspector() {
     harness.run_steps(3);
     harness.get_by_label(&format!("Front segment {name}"));
     harness.get_by_label("Why not this segment");
-    harness.get_by_label("Choose as next base").click();
+    harness.get_by_label("Choose as base").click();
     settle(&mut harness);
-    press(&mut harness, Modifiers::COMMAND, Key::ArrowRight);
     let state = &harness.state().state;
     let base = state.moment.as_ref().unwrap().phase.base().copied().unwrap();
     assert_eq!((base.a, base.b), (segment.a, segment.b), "the person's choice holds");
+}
+
+#[test]
+fn a_run_that_is_saved_opens_with_its_changes() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::Go(Goal::Step(60)));
+    apply(&mut harness, Command::Set("c", "1.5".to_owned()));
+    apply(&mut harness, Command::Bookmark);
+    let kinds =
+        |harness: &Harness<'static, App>| harness.state().state.track.iter().map(|t| t.kind).collect::<Vec<_>>();
+    let before = kinds(&harness);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.toml");
+    quadfront::core::io::run_file::write(&path, &harness.state().state.run().unwrap()).unwrap();
+    apply(&mut harness, Command::Open(Source::File(path)));
+    assert_eq!(kinds(&harness), before);
+    let kept = &harness.state().state.kept;
+    assert_eq!((kept.edits.len(), kept.bookmarks.as_slice()), (1, &[60][..]));
 }
 
 #[test]

@@ -121,16 +121,15 @@ pub(super) fn read(source: &Source) -> Result<Input, Fault> {
     Ok(Input { run, _folder })
 }
 
-/// The case of a file: a case file, or a mesh as one.
+/// The run of a file: a case or a mesh from its beginning, or a run file.
 #[cfg(feature = "window")]
-pub(super) fn case_of(path: &Path) -> Result<Case, Fault> {
-    match kind(&path.display().to_string(), None)? {
-        Kind::File(path, InputFormat::Case) => Case::read(&path),
-        Kind::File(path, InputFormat::Mesh(_)) => Ok(Case::of_mesh(path, None)),
-        Kind::BuiltIn | Kind::StandardInput(_) => {
-            Err(Fault::new("This is no file").at(path.display().to_string()).remedy("Name a case or a mesh"))
-        }
+pub(super) fn run_of(path: &Path) -> Result<Run, Fault> {
+    let input = path.display().to_string();
+    if input == "-" {
+        return Err(Fault::new("The window opens files").at(input).remedy("Name a case, a mesh or a run file"));
     }
+    let source = Source { input, from: None, sol: None, set: Vec::new(), paper: false, split_odd: false, quiet: true };
+    read(&source).map(|input| input.run)
 }
 
 fn read_plain(source: &Source) -> Result<Input, Fault> {

@@ -68,7 +68,7 @@ fn open(input: &str) -> Result<ExitCode, Fault> {
     // What does not exist is said where the command was given.
     let source = window::Source::named(input);
     if let window::Source::File(path) = &source {
-        input::case_of(path)?;
+        input::run_of(path)?;
     }
     window::open(source)
 }

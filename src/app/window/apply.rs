@@ -7,8 +7,11 @@ use super::files;
 use super::session::{Goal, Source};
 use super::state::{Kept, Look, Over, State};
 use super::words;
+use crate::core::convert::event::Event;
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
+use crate::core::io::run_file;
+use crate::core::mesh::ids::NodeId;
 use crate::core::run::breakpoint::Condition;
 use crate::core::run::run::{Edit, EditKind};
 use crate::core::run::watch::Watched;
@@ -45,12 +48,7 @@ impl State {
             Command::Fit => self.look = Some(Look::Fit),
             Command::ShowDecision => self.look = Some(Look::Decision),
             Command::Set(key, value) => self.set(key, value),
-            Command::ChooseBase([a, b]) => {
-                if let Some(step) = self.moment.as_ref().map(|moment| moment.step) {
-                    self.edit(Edit { step, kind: EditKind::Base { a, b } });
-                    self.notice(format!("The next base will be {}.", words::segment(a, b)));
-                }
-            }
+            Command::ChooseBase(ends) => self.choose_base(ends),
             Command::ResetParameters => {
                 self.keep(|kept| kept.edits.retain(|edit| !matches!(edit.kind, EditKind::Parameter { .. })));
             }
@@ -76,6 +74,7 @@ impl State {
             Command::Help => self.show(Over::Help),
             Command::Screenshot => self.screenshot = true,
             Command::Export => self.export(),
+            Command::SaveRun => self.save_run(),
             Command::Undo => self.take_back(true),
             Command::Redo => self.take_back(false),
             Command::ResetLayout => self.reset_layout = true,
@@ -150,6 +149,16 @@ impl State {
             let place = kept.edits.partition_point(|old| old.step <= edit.step);
             kept.edits.insert(place, edit);
         });
+    }
+
+    /// Where a base has just been selected, another takes its place; else the next selection takes it.
+    fn choose_base(&mut self, [a, b]: [NodeId; 2]) {
+        let Some(moment) = &self.moment else { return };
+        let selected = matches!(moment.event, Some(Event::BaseSelected { .. }));
+        let step = moment.step - u64::from(selected);
+        self.edit(Edit { step, kind: EditKind::Base { a, b } });
+        let which = if selected { "The base is now" } else { "The next base will be" };
+        self.notice(format!("{which} {}.", words::segment(a, b)));
     }
 
     fn add_breakpoint(&mut self, text: String) {
@@ -233,6 +242,16 @@ impl State {
         let stem = format!("{}-step-{}", opened.case.name, moment.step);
         match files::export(&moment, &opened, &stem) {
             Ok(names) => self.notice(format!("The figure was saved as {names}.")),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    /// Saves the run in the working folder, under a name that is free.
+    fn save_run(&mut self) {
+        let Some(run) = self.run() else { return };
+        let path = files::free_path(&format!("{}-run", run.case.name), "toml");
+        match run_file::write(&path, &run) {
+            Ok(()) => self.notice(format!("The run was saved as {}.", path.display())),
             Err(fault) => self.complain(&fault),
         }
     }

@@ -32,7 +32,7 @@ pub enum Command {
     ShowDecision,
     /// Change a parameter from this step on.
     Set(&'static str, String),
-    /// Let the next selection choose this front segment, from A to B: a change of the run from this step on.
+    /// Let the selection choose this front segment, from A to B: a change of the run.
     ChooseBase([NodeId; 2]),
     /// Put all parameters back to those of the case.
     ResetParameters,
@@ -62,6 +62,8 @@ pub enum Command {
     Screenshot,
     /// Save the state as a figure.
     Export,
+    /// Save the run: the case with everything that was changed.
+    SaveRun,
     /// Take back what a person did last.
     Undo,
     /// Do it again.
@@ -127,6 +129,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::Z, Command::Undo),
         (CTRL, Key::Y, Command::Redo),
         (CTRL, Key::O, Command::OpenPath),
+        (CTRL, Key::S, Command::SaveRun),
         (CTRL, Key::E, Command::Export),
         (CTRL, Key::B, Command::Bookmark),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
@@ -160,7 +163,7 @@ impl Command {
             Command::Fit => "Fit the mesh to the view".into(),
             Command::ShowDecision => "Zoom to the decision".into(),
             Command::Set(key, value) => format!("Set {key} = {value}"),
-            Command::ChooseBase([a, b]) => format!("Choose {} as next base", super::words::segment(*a, *b)),
+            Command::ChooseBase([a, b]) => format!("Choose {} as base", super::words::segment(*a, *b)),
             Command::ResetParameters => "All parameters as the case has them".into(),
             Command::Layer(k) => format!("Layer: {}", LAYERS[*k]),
             Command::ColourBy(by) => format!("Colour by {}", by.name()),
@@ -176,6 +179,7 @@ impl Command {
             Command::GoTo => "Go to a step or NQ…".into(),
             Command::Screenshot => "Save a picture of the window".into(),
             Command::Export => "Save a figure of this state".into(),
+            Command::SaveRun => "Save the run".into(),
             Command::Undo => "Undo".into(),
             Command::Redo => "Redo".into(),
             Command::Palette => "Every command by name".into(),

@@ -76,6 +76,8 @@ pub enum Told {
 /// A case that stands.
 pub struct Opened {
     pub case: Case,
+    /// The run as it was opened.
+    pub run: Run,
     pub background: Background,
 }
 
@@ -268,7 +270,11 @@ impl Worker {
             Err(fault) => return Err((voice, fault)),
         };
         let triangles = background.mesh.element_count() as u64;
-        voice.say(Told::Opened(Arc::new(Opened { case: history.run().case.clone(), background })));
+        voice.say(Told::Opened(Arc::new(Opened {
+            case: history.run().case.clone(),
+            run: history.run().clone(),
+            background,
+        })));
         let cancel = Arc::new(AtomicBool::new(false));
         Ok(Worker {
             history,

@@ -14,7 +14,7 @@ use crate::core::io::built_in;
 use crate::core::mesh::ids::NodeId;
 use crate::core::run::breakpoint::Condition;
 use crate::core::run::explain::SegmentTold;
-use crate::core::run::run::{Edit, Run};
+use crate::core::run::run::{Bookmark, Edit, Run};
 use crate::render::camera::Camera;
 use crate::render::scene::{ColourBy, Layers, Outlined};
 
@@ -236,7 +236,11 @@ impl State {
         for told in told {
             match told {
                 Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
-                Told::Opened(opened) => self.opened = Some(opened),
+                Told::Opened(opened) => {
+                    self.kept.edits = opened.run.edits().to_vec();
+                    self.kept.bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
+                    self.opened = Some(opened);
+                }
                 Told::Moment(moment, asks) => self.arrive(moment, asks),
                 Told::Track { from, steps, end } => {
                     self.track.truncate(from as usize);
@@ -328,6 +332,17 @@ impl State {
         births
     }
 
+    /// The run with everything that a person has changed.
+    pub fn run(&self) -> Option<Run> {
+        let mut run = self.opened.as_ref()?.run.clone();
+        run.set_edits(self.kept.edits.clone());
+        let name = |step: u64| run.bookmarks.iter().find(|mark| mark.step == step).map(|mark| mark.name.clone());
+        let marks = self.kept.bookmarks.iter();
+        let marks = marks.map(|step| Bookmark { step: *step, name: name(*step).unwrap_or_default() });
+        run.bookmarks = marks.collect();
+        Some(run)
+    }
+
     /// The value of a parameter at the step at hand.
     pub fn parameter(&self, key: &str) -> Option<String> {
         self.moment.as_ref()?.parameters.text_of(key)
@@ -341,6 +356,6 @@ fn read(source: &Source) -> Result<Run, Fault> {
             Some(case) => case.map(Run::of),
             None => Err(Fault::new("There is no built-in case of this name").at(name.clone())),
         },
-        Source::File(path) => input::case_of(path).map(Run::of),
+        Source::File(path) => input::run_of(path),
     }
 }

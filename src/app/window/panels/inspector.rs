@@ -185,8 +185,8 @@ fn segment(
     ends(ui, moment, &[("A", s.a), ("B", s.b)], palette);
     if Decision::of(&moment.phase).base != Some([s.a, s.b]) {
         ui.add_space(8.0);
-        let tip = "The next selection takes this segment, whatever its rank: a change of the run from this step on";
-        if ui.button("Choose as next base").on_hover_text(tip).clicked() {
+        let tip = "In place of the base that was just selected, or else at the next selection, whatever its rank: a change of the run";
+        if ui.button("Choose as base").on_hover_text(tip).clicked() {
             commands.push(Command::ChooseBase([s.a, s.b]));
         }
     }

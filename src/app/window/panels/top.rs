@@ -63,6 +63,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     ui.menu_button("Case", |ui| {
         item(ui, Command::OpenDialog, commands);
         item(ui, Command::OpenPath, commands);
+        item(ui, Command::SaveRun, commands);
         ui.separator();
         for (name, _) in built_in::CASES.iter().take(40) {
             item(ui, Command::Open(Source::BuiltIn((*name).to_owned())), commands);
