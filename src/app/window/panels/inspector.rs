@@ -149,6 +149,13 @@ fn segment(
         let rank = if row.is_put_off { "put off".to_owned() } else { format!("rank {}", place + 1) };
         ui.label(note(format!("class {}  ·  level {}  ·  {rank}{ring}", s.class, s.level), palette));
     });
+    if Decision::of(&moment.phase).base != Some([s.a, s.b]) {
+        ui.add_space(4.0);
+        let tip = "In place of the base that was just selected, or else at the next selection, whatever its rank: a change of the run";
+        if ui.button("Choose as base").on_hover_text(tip).clicked() {
+            commands.push(Command::ChooseBase([s.a, s.b]));
+        }
+    }
     heading(ui, "H-value", "eq. 6", palette);
     let h = [s.a, s.b].map(|n| moment.mesh.metric(n).min_size());
     line(ui, "H = ½ ( 1/√λA + 1/√λB )".to_owned(), palette);
@@ -183,13 +190,6 @@ fn segment(
     );
     heading(ui, "Ends", "h1 ≤ h2 of the metric", palette);
     ends(ui, moment, &[("A", s.a), ("B", s.b)], palette);
-    if Decision::of(&moment.phase).base != Some([s.a, s.b]) {
-        ui.add_space(8.0);
-        let tip = "In place of the base that was just selected, or else at the next selection, whatever its rank: a change of the run";
-        if ui.button("Choose as base").on_hover_text(tip).clicked() {
-            commands.push(Command::ChooseBase([s.a, s.b]));
-        }
-    }
 }
 
 fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, palette: &Palette) {
