@@ -57,11 +57,10 @@ fn main() {
         let mut history = History::of(run, &background, BUDGET).unwrap();
         let ahead = timed(|| history.extend(u64::MAX));
         let end = history.end().unwrap();
-        let last = history.log().last_of(end, |kind| kind == "formed").unwrap();
         let mut random = 1_u64;
         let mut any = move || {
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (random >> 33) % last
+            (random >> 33) % end
         };
         let (mut forward, mut back, mut leap) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..40 {

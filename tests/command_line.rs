@@ -380,3 +380,41 @@ fn a_metric_that_fails_between_the_nodes_of_a_given_mesh_is_refused() {
     let (code, _, err) = said(&run(&["convert", "case.toml", "-q", "-o", "quads.obj"], folder.path()));
     assert!(code == 2 && err.starts_with("error: (0.66") && err.contains("h1 = 0 is not positive"), "{err}");
 }
+
+#[test]
+#[cfg(unix)]
+fn a_pipe_that_is_closed_early_is_no_error() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in
+        [&["convert", "gear", "-o", "-", "--format", "msh"][..], &["convert", "gear", "--events", "-"], &["cases"]]
+    {
+        let mut child = command(arguments, folder.path()).spawn().unwrap();
+        drop(child.stdout.take());
+        let (code, _, err) = said(&child.wait_with_output().unwrap());
+        assert_eq!(code, 0, "{arguments:?}: {err}");
+        assert!(!err.contains("error"), "{arguments:?}: {err}");
+    }
+}
+
+#[test]
+fn a_metric_that_is_not_written_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, told) in [("a.obj", true), ("a.inp", true), ("a.mesh", false), ("a.msh", false), ("a.vtu", false)] {
+        let (code, _, err) = said(&run(&["background", "gear", "-o", name], folder.path()));
+        assert_eq!((code, err.contains("The metric is not written")), (0, told), "{name}: {err}");
+        assert_eq!(err.lines().count(), usize::from(told), "{err}");
+    }
+}
+
+#[test]
+fn a_metric_is_not_written_over_the_one_that_was_read() {
+    let folder = tempfile::tempdir().unwrap();
+    said(&run(&["background", "gear", "-o", "a.mesh"], folder.path()));
+    let before = std::fs::read(folder.path().join("a.sol")).unwrap();
+    std::fs::rename(folder.path().join("a.mesh"), folder.path().join("b.mesh")).unwrap();
+    let arguments = ["background", "b.mesh", "--sol", "a.sol", "-o", "./a.mesh"];
+    let (code, _, err) = said(&run(&arguments, folder.path()));
+    assert_eq!(code, 2);
+    assert!(err.contains("a.sol") && err.contains("over the file"), "{err}");
+    assert_eq!(std::fs::read(folder.path().join("a.sol")).unwrap(), before);
+}

@@ -29,7 +29,7 @@ fn the_candidates_of_a_side_name_the_one_that_the_next_step_chooses() {
     let mut seen = [0; 4];
     for (name, set) in [("example1", vec![]), ("crack", vec![]), ("polar-1", vec![("bisector", "false")])] {
         with_case(name, &set, |mut converter| {
-            while *converter.phase() != Phase::PostProcess {
+            while !matches!(converter.phase(), Phase::PostProcess { .. }) {
                 let candidates = converter.candidates();
                 let event = converter.step().unwrap();
                 let Some(candidates) = candidates else {

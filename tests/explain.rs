@@ -135,7 +135,7 @@ fn every_segment_has_its_reason_in_words() {
 fn the_explanations_put_the_numbers_into_the_formulas() {
     let mut texts = Vec::new();
     // A case whose mesh is given: no text changes with the conversion.
-    selections("figure-19", &[], |_, state, [a, b]| {
+    selections("figure-19", &[("selection", "table1")], |_, state, [a, b]| {
         if texts.is_empty() {
             let mesh = &state.mesh;
             let told = SegmentTold::of(state, a, b).unwrap();

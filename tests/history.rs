@@ -56,7 +56,7 @@ fn any_step_sought_from_any_other_is_that_of_a_fresh_run() {
         let end = history.seek(u64::MAX).unwrap();
         assert_eq!(history.end(), Some(end), "{name}");
         assert_eq!(bytes(history.state()), fresh(&run, &background, end), "{name}");
-        for share in [0.9, 0.05, 0.5, 0.47, 1.0, 0.0, 0.3, 0.31] {
+        for share in [0.9, 0.05, 0.5, 0.97, 0.47, 1.0, 0.0, 0.3, 0.31, 0.99, 0.985] {
             let step = (share * end as f64) as u64;
             assert_eq!(history.seek(step).unwrap(), step);
             assert!(bytes(history.state()) == fresh(&run, &background, step), "{name}, step {step} of {end}");

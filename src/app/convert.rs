@@ -50,6 +50,7 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     let (source, destination) = (&arguments.source, &arguments.destination);
     let mesh_target = MeshTarget::of(destination)?;
     let output_taken = output::check(&[destination.out.as_ref()], destination.picture.as_ref())?;
+    mesh_target.as_ref().map_or(Ok(()), |target| target.spare(source.sol.as_deref()))?;
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source)?;
@@ -62,6 +63,9 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     let timing = progress.finish();
     if !source.quiet {
         tell(&background_summary(&input.run.case, &triangles.statistics, &triangles.repairs, &timing), output_taken);
+        if let Some(lack) = mesh_target.as_ref().and_then(MeshTarget::lacks_metric) {
+            tell(&lack, true);
+        }
         remind(mesh_target.is_none() && destination.picture.is_none(), output_taken);
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! Where things go: files, which appear whole or not at all, and standard output.
 
 use std::convert::Infallible;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -52,8 +52,15 @@ impl Target {
             Target::File(path) => save::save(path, write),
             Target::StandardOutput => {
                 let mut out = BufWriter::with_capacity(1 << 18, io::stdout().lock());
-                let written = write(&mut out).and_then(|()| out.flush());
-                written.map_err(|error| Fault::new(format!("It cannot be written: {error}")).at("standard output"))
+                match write(&mut out).and_then(|()| out.flush()) {
+                    Ok(()) => Ok(()),
+                    Err(error) if error.kind() == ErrorKind::BrokenPipe => {
+                        // Who has closed the pipe has what is wanted; what waits to be written is not tried again.
+                        let _ = out.into_parts();
+                        Ok(())
+                    }
+                    Err(error) => Err(Fault::new(format!("It cannot be written: {error}")).at("standard output")),
+                }
             }
         }
     }
@@ -81,6 +88,32 @@ impl MeshTarget {
             return Err(Fault::new("--msh2 is for .msh").remedy("Leave it out, or write a .msh"));
         }
         Ok(Some(MeshTarget { target, format, options: WriteOptions { msh2: destination.msh2 } }))
+    }
+
+    /// Refuses a place where the metric would fall on the file that it is read from.
+    pub fn spare(&self, sol: Option<&Path>) -> Result<(), Fault> {
+        let (Target::File(path), Format::Medit, Some(sol)) = (&self.target, self.format, sol) else { return Ok(()) };
+        let beside = path.with_extension("sol");
+        let is_same = beside == sol || matches!((beside.canonicalize(), sol.canonicalize()), (Ok(a), Ok(b)) if a == b);
+        if !is_same {
+            return Ok(());
+        }
+        Err(Fault::new("The metric would be written over the file that it is read from")
+            .at(sol.display().to_string())
+            .remedy("Name the mesh otherwise: its metric goes to the .sol of the same name"))
+    }
+
+    /// Why the metric is not written with the mesh, where it is not.
+    pub fn lacks_metric(&self) -> Option<String> {
+        match (&self.target, self.format) {
+            (_, Format::Obj | Format::Inp) => {
+                Some(format!("The metric is not written: .{} has no place for it.\n", self.format.extension()))
+            }
+            (Target::StandardOutput, Format::Medit) => {
+                Some("The metric is not written: a .mesh has it in a second file.\n".to_owned())
+            }
+            _ => None,
+        }
     }
 
     /// Writes the mesh; to standard output without what Medit keeps in a second file.

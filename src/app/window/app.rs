@@ -99,8 +99,7 @@ impl App {
                 }
             }
         }
-        let dropped =
-            context.input(|input| input.raw.dropped_files.iter().next().map(|file| file.path().to_path_buf()));
+        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
         if let Some(path) = dropped {
             self.commands.push(Command::Open(Source::File(path)));
         }

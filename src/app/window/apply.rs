@@ -25,7 +25,7 @@ impl State {
     pub fn apply(&mut self, command: Command) {
         match command {
             Command::Go(goal) => self.go(goal),
-            Command::ToBreakpoint(forward) => self.to_breakpoint(forward),
+            Command::ToBreakpoint(forward) => self.seek_breakpoint(forward),
             Command::Play => self.playing = if self.playing.is_some() { None } else { Some(Instant::now()) },
             Command::Speed(speed) => self.speed = speed,
             Command::Stop => {
@@ -172,7 +172,7 @@ impl State {
         }
     }
 
-    fn to_breakpoint(&mut self, forward: bool) {
+    fn seek_breakpoint(&mut self, forward: bool) {
         let conditions = self.conditions();
         if conditions.is_empty() {
             return self.notice("No breakpoint is on: write a condition in the panel Breakpoints.".to_owned());

@@ -49,7 +49,7 @@ enum Ask {
     Count(Vec<Condition>),
     Explain([NodeId; 2]),
     Edits(Vec<Edit>),
-    Found(Stretch, Recorder),
+    Found(Box<(Stretch, Recorder)>),
     Gone,
 }
 
@@ -304,7 +304,7 @@ impl Worker {
                 }
                 Ask::Explain([a, b]) => self.explain(a, b),
                 Ask::Edits(edits) => self.edit(edits),
-                Ask::Found(stretch, recorder) => self.found(stretch, recorder),
+                Ask::Found(found) => self.found(found.0, found.1),
             }
             if self.stop.swap(false, Ordering::Relaxed)
                 && let Some((_, asks)) = self.pending.take()
@@ -378,7 +378,7 @@ impl Worker {
         std::thread::spawn(move || {
             let stretch = recorder.run(steps, &cancel);
             // The session may have ended meanwhile.
-            let _ = own.send(Ask::Found(stretch, recorder));
+            let _ = own.send(Ask::Found(Box::new((stretch, recorder))));
         });
     }
 

@@ -147,6 +147,18 @@ pub fn event(event: &Event) -> String {
             format!("loop of {segments} segments closed by {quads} quadrilaterals, worst quality {}", fixed(quality, 2))
         }
         Event::SecondPass => "every segment is put off: all are taken up again with wider gates".to_owned(),
+        Event::Matched { triangles, unmatched, .. } => format!(
+            "last resort: {} triangles paired, {} without a partner",
+            grouped(triangles as u64),
+            grouped(unmatched as u64)
+        ),
+        Event::Patched { triangles, quads, element, .. } => {
+            format!("last resort: {quads} quadrilaterals of {triangles} triangles, from element {}", element.0)
+        }
+        Event::Cleaned { energy: [before, after], .. } => {
+            format!("structure cleaned up at one place: energy {} to {}", size(before), size(after))
+        }
+        Event::Swept { looked, moved } => format!("{moved} of {looked} nodes smoothed by the energy"),
         Event::LastResort(outcome) => format!("last resort: {} triangles left over", grouped(outcome.triangles as u64)),
         Event::PostProcessed => "whole mesh cleaned up and smoothed".to_owned(),
         Event::Finished => "done".to_owned(),

@@ -3,13 +3,15 @@
 //!
 //! A worklist, not sweeps: the nodes whose valence is not ideal, and again the neighbours of whatever changed.
 
-use std::collections::VecDeque;
+use std::sync::Arc;
 
 use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::energy;
+use super::event::{Cleaning, Event};
 use super::settle::{Nodes, elements_around, put, settle};
+use super::worklist::{ListMark, Worklist};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::operators::Refusal;
@@ -49,32 +51,6 @@ enum Candidate {
     Open(HalfEdgeId, HalfEdgeId),
 }
 
-/// Cleans up an all-quadrilateral mesh until no candidate lowers the energy, within a budget linear in its size.
-pub fn clean_up(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> CleanedUp {
-    let ideal = boundary_ideals(mesh);
-    let mut work = CleanUp { source, ideal, queue: VecDeque::new(), queued: Vec::new(), done: CleanedUp::default() };
-    let nodes: Vec<NodeId> = mesh.nodes().collect();
-    for node in nodes {
-        work.enqueue(mesh, node);
-    }
-    // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
-    let mut budget = 20 * mesh.node_count() + 1000;
-    while let Some(node) = work.queue.pop_front() {
-        work.queued[node.index()] = false;
-        if budget == 0 {
-            break;
-        }
-        budget -= 1;
-        if mesh.has_node(node) {
-            work.mend(mesh, node);
-            if !keep_journal {
-                mesh.commit();
-            }
-        }
-    }
-    work.done
-}
-
 /// Valence that fits the angle of the domain at each fixed node: round(theta / 90 degrees) + 1; 0 for free nodes.
 fn boundary_ideals(mesh: &Mesh) -> Vec<u8> {
     let mut ideal = vec![0; mesh.node_slots()];
@@ -92,13 +68,72 @@ fn boundary_ideals(mesh: &Mesh) -> Vec<u8> {
     ideal
 }
 
-struct CleanUp<'a> {
-    source: &'a dyn MetricSource,
+/// The clean-up of an all-quadrilateral mesh under way: until no candidate lowers the energy, within a budget linear in the
+/// size of the mesh.
+#[derive(Clone)]
+pub(super) struct CleanUp<'a> {
+    source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Ideal valence of fixed nodes.
     ideal: Vec<u8>,
-    queue: VecDeque<NodeId>,
-    queued: Vec<bool>,
+    /// Irregular nodes.
+    list: Worklist,
     done: CleanedUp,
+}
+
+/// A candidate that was kept.
+struct Kept {
+    /// Nodes whose surroundings changed.
+    touched: Nodes,
+    event: Event,
+}
+
+impl<'a> CleanUp<'a> {
+    /// A clean-up at its beginning, whose list writes down what it needs to be taken back where `recording`.
+    pub fn begin(mesh: &Mesh, source: Arc<dyn MetricSource + Send + Sync + 'a>, recording: bool) -> CleanUp<'a> {
+        // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
+        let list = Worklist::new(20 * mesh.node_count() + 1000, recording);
+        let mut work = CleanUp { source, ideal: boundary_ideals(mesh), list, done: CleanedUp::default() };
+        mesh.nodes().for_each(|node| work.enqueue(mesh, node));
+        work
+    }
+
+    /// One change of structure: looks at the nodes that wait until a candidate is kept. None where no node waits any more.
+    pub fn step(&mut self, mesh: &mut Mesh, keep_journal: bool) -> Option<Event> {
+        while let Some(node) = self.list.take() {
+            let event = if mesh.has_node(node) { self.mend(mesh, node) } else { None };
+            if !keep_journal {
+                mesh.commit();
+            }
+            if event.is_some() {
+                return event;
+            }
+        }
+        None
+    }
+
+    /// What was done so far.
+    pub fn done(&self) -> CleanedUp {
+        self.done
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        self.ideal.capacity() + self.list.bytes()
+    }
+
+    pub fn list(&self) -> &Worklist {
+        &self.list
+    }
+
+    pub fn list_mut(&mut self) -> &mut Worklist {
+        &mut self.list
+    }
+
+    /// Takes the list back to a mark, at which `done` was done.
+    pub fn take_back(&mut self, mark: ListMark, done: CleanedUp) {
+        self.list.take_back(mark);
+        self.done = done;
+    }
 }
 
 impl CleanUp<'_> {
@@ -112,32 +147,26 @@ impl CleanUp<'_> {
     }
 
     fn enqueue(&mut self, mesh: &Mesh, node: NodeId) {
-        if self.queued.len() <= node.index() {
-            self.queued.resize(mesh.node_slots(), false);
-        }
-        if !self.queued[node.index()] && self.excess(mesh, node) != 0 {
-            self.queued[node.index()] = true;
-            self.queue.push_back(node);
+        if !self.list.holds(node) && self.excess(mesh, node) != 0 {
+            self.list.add(node);
         }
     }
 
     /// Tries the candidates around one irregular node, best valence gain first, and keeps the first that is good.
-    fn mend(&mut self, mesh: &mut Mesh, node: NodeId) {
+    fn mend(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Event> {
         let mut candidates = self.candidates(mesh, node);
         candidates.sort_unstable();
         candidates.truncate(MOST_TRIALS);
-        for (_, candidate) in candidates {
-            if let Some(touched) = self.attempt(mesh, candidate) {
-                for node in touched {
-                    let around: Nodes = mesh.neighbours(node).collect();
-                    for n in around {
-                        self.enqueue(mesh, n);
-                    }
-                    self.enqueue(mesh, node);
-                }
-                return;
+        let Kept { touched, event } =
+            candidates.into_iter().find_map(|(_, candidate)| self.attempt(mesh, candidate))?;
+        for node in touched {
+            let around: Nodes = mesh.neighbours(node).collect();
+            for n in around {
+                self.enqueue(mesh, n);
             }
+            self.enqueue(mesh, node);
         }
+        Some(event)
     }
 
     /// Changes around a node that do not raise the sum of squared excesses (or only by two where an element there is
@@ -212,35 +241,37 @@ impl CleanUp<'_> {
     }
 
     /// Does a candidate, relaxes the nodes around, and keeps it if the energy falls; else takes all of it back.
-    /// Returns the nodes whose surroundings changed.
-    fn attempt(&mut self, mesh: &mut Mesh, candidate: Candidate) -> Option<Nodes> {
+    fn attempt(&mut self, mesh: &mut Mesh, candidate: Candidate) -> Option<Kept> {
         let mut core = core_nodes(mesh, candidate);
         let (energy_before, quality_before) = self.patch(mesh, &core);
         let mark = mesh.mark();
-        let kept = self.apply(mesh, candidate, &mut core).is_ok() && settle(mesh, self.source, &core) && {
+        let done = self.apply(mesh, candidate, &mut core).ok().filter(|_| settle(mesh, &*self.source, &core));
+        let kept = done.and_then(|what| {
             let (energy, quality) = self.patch(mesh, &core);
-            energy < energy_before - LEAST_GAIN && quality >= quality_before.min(LEAST_QUALITY)
-        };
-        if !kept {
+            let falls = energy < energy_before - LEAST_GAIN && quality >= quality_before.min(LEAST_QUALITY);
+            falls.then_some(Event::Cleaned { what, energy: [energy_before, energy] })
+        });
+        let Some(event) = kept else {
             mesh.take_back(mark);
             self.done.refused += 1;
             return None;
-        }
+        };
         match candidate {
             Candidate::Doublet(_) => self.done.doublets += 1,
             Candidate::Collapse(_) => self.done.collapses += 1,
             Candidate::Rotate(..) => self.done.rotations += 1,
             Candidate::Open(..) => self.done.openings += 1,
         }
-        Some(core)
+        Some(Kept { touched: core, event })
     }
 
     /// Does the change of structure; `core` becomes the nodes that it leaves.
-    fn apply(&self, mesh: &mut Mesh, candidate: Candidate, core: &mut Nodes) -> Result<(), Refusal> {
-        match candidate {
+    fn apply(&self, mesh: &mut Mesh, candidate: Candidate, core: &mut Nodes) -> Result<Cleaning, Refusal> {
+        Ok(match candidate {
             Candidate::Doublet(node) => {
                 mesh.remove_doublet(node)?;
                 core.retain(|n| *n != node);
+                Cleaning::DoubletRemoved { node }
             }
             Candidate::Collapse(h_ab) => {
                 let (a, c) = (mesh.origin(h_ab), mesh.target(mesh.next(h_ab)));
@@ -248,10 +279,15 @@ impl CleanUp<'_> {
                 mesh.collapse_diamond(h_ab)?;
                 core.retain(|n| *n != a);
                 if !mesh.is_fixed(c) {
-                    put_or_refuse(mesh, self.source, c, middle)?;
+                    put_or_refuse(mesh, &*self.source, c, middle)?;
                 }
+                Cleaning::DiamondCollapsed { gone: a, kept: c }
             }
-            Candidate::Rotate(h, by) => mesh.rotate_edge(h, by)?,
+            Candidate::Rotate(h, by) => {
+                let n = mesh.hexagon(h)?;
+                mesh.rotate_edge(h, by)?;
+                Cleaning::EdgeRotated { old: [n[0], n[3]], new: [n[by], n[by + 3]] }
+            }
             Candidate::Open(h_vp, h_vq) => {
                 let (v, p, q) = (mesh.origin(h_vp), mesh.target(h_vp), mesh.target(h_vq));
                 let here = mesh.uv(v);
@@ -263,12 +299,12 @@ impl CleanUp<'_> {
                     }
                     let own: Nodes = mesh.neighbours(node).filter(|&n| n != p && n != q).collect();
                     let middle = own.iter().fold(DVec2::ZERO, |s, &n| s + mesh.uv(n)) / own.len().max(1) as f64;
-                    put_or_refuse(mesh, self.source, node, here + (middle - here) * 0.33)?;
+                    put_or_refuse(mesh, &*self.source, node, here + (middle - here) * 0.33)?;
                 }
                 core.push(w);
+                Cleaning::VertexOpened { node: v, new: w, along: [p, q] }
             }
-        }
-        Ok(())
+        })
     }
 
     /// Energy of everything that depends on the core nodes, and the worst quality of the elements there.

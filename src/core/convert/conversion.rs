@@ -248,15 +248,40 @@ fn refuse_the_endless(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Res
         .remedy("Make the sizes larger, or allow more by max_quads"))
 }
 
-/// The field at the nodes of a mesh with its gradation bounded, as a table.
+/// The field at the nodes of a mesh with its gradation bounded, as a table. Nodes at the same place (on curves between
+/// faces, on both sides of cracks) are one node of it: bounded each for itself they would differ, and the metric along the
+/// curve would be now that of one side, now that of the other, as rounding has it.
 fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, Fault> {
-    let points: Vec<DVec2> = (0..mesh.node_slots() as u32).map(|n| mesh.uv(NodeId(n))).collect();
+    let (points, place) = places(mesh);
     let mut metrics = points.iter().map(|&uv| sizing.metric3(&Place::in_plane(uv))).collect::<Result<Vec<_>, _>>()?;
-    let edges: Vec<[u32; 2]> = mesh.edges().map(|h| [mesh.origin(h).0, mesh.target(h).0]).collect();
+    let edges: Vec<[u32; 2]> =
+        mesh.edges().map(|h| [mesh.origin(h), mesh.target(h)].map(|n| place[n.index()])).collect();
     let in_space: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
     bound_gradation(&in_space, &edges, &mut metrics, beta);
-    let triangles: Vec<[u32; 3]> = mesh.elements().map(|e| mesh.triangle(e).map(|n| n.0)).collect();
+    let triangles: Vec<[u32; 3]> = mesh.elements().map(|e| mesh.triangle(e).map(|n| place[n.index()])).collect();
     Field::table(&points, &triangles, metrics)
+}
+
+/// The different places of a mesh's nodes in the order of the first node there, and which of them each node slot has.
+fn places(mesh: &Mesh) -> (Vec<DVec2>, Vec<u32>) {
+    let uv = |n: u32| mesh.uv(NodeId(n));
+    let by_place = |a: &u32, b: &u32| uv(*a).x.total_cmp(&uv(*b).x).then(uv(*a).y.total_cmp(&uv(*b).y));
+    let mut sorted: Vec<u32> = (0..mesh.node_slots() as u32).collect();
+    sorted.sort_by(by_place);
+    let mut first: Vec<u32> = vec![0; sorted.len()];
+    for here in sorted.chunk_by(|a, b| by_place(a, b).is_eq()) {
+        here.iter().for_each(|&n| first[n as usize] = here[0]);
+    }
+    let (mut points, mut place) = (Vec::new(), vec![0; first.len()]);
+    for n in 0..first.len() {
+        if first[n] as usize == n {
+            place[n] = points.len() as u32;
+            points.push(uv(n as u32));
+        } else {
+            place[n] = place[first[n] as usize];
+        }
+    }
+    (points, place)
 }
 
 /// Refuses a background with a triangle so flat that rounding could invert what the last resort makes of it.
@@ -271,4 +296,52 @@ fn refuse_needles(mesh: &Mesh) -> Result<(), Fault> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::core::progress::Nobody;
+
+    /// Two squares side by side; the left one asks for small elements far from the line between them.
+    const TWO_SQUARES: &str = r#"
+        version = 1
+        gradation = 1.2
+        [[metric]]
+        kind = "formula"
+        h1 = "0.01 + 0.5 * abs(x + 0.8)"
+        [[curve]]
+        name = "left"
+        kind = "polyline"
+        points = [[0, 1], [-1, 1], [-1, 0], [0, 0]]
+        [[curve]]
+        name = "between"
+        kind = "segment"
+        from = [0, 0]
+        to = [0, 1]
+        [[curve]]
+        name = "right"
+        kind = "polyline"
+        points = [[0, 0], [1, 0], [1, 1], [0, 1]]
+        [[face]]
+        name = "one"
+        outer = ["left", "between"]
+        [[face]]
+        name = "other"
+        outer = ["right", "between"]
+    "#;
+
+    #[test]
+    fn bounded_sizes_are_the_same_on_both_sides_of_a_curve_between_faces() {
+        let case = Case::parse(TWO_SQUARES, "two", "two.toml", Path::new("")).unwrap();
+        let made = background(&case, &mut Nobody).unwrap();
+        let size = |x: f64, y: f64| made.sizing.metric(DVec2::new(x, y)).unwrap().min_size();
+        for k in 1..40 {
+            let y = f64::from(k) / 40.0;
+            let (one, other) = (size(-1e-9, y), size(1e-9, y));
+            assert!((one / other - 1.0).abs() < 1e-6, "at y = {y}: {one} and {other}");
+        }
+    }
 }

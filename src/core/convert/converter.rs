@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use super::component::{Component, live_components};
 use super::event::{Event, Why};
-use super::finish::{Finished, finish};
-use super::last_resort::{Outcome, last_resort};
+use super::finish::{Finished, Finishing, PartMarks};
+use super::last_resort::{Outcome, Plan};
 use super::parameters::Parameters;
-use super::phase::{Attempt, Base, Phase};
+use super::phase::{Attempt, Base, Part, Phase};
 use super::top::{MOST_SWAPS, Recovery};
 use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
@@ -20,7 +20,7 @@ use crate::core::front::selection::{Choice, Queue};
 use crate::core::io::fingerprint::Fingerprint;
 use crate::core::journal::Mark;
 use crate::core::mesh::half_edge::{Mesh, Undone};
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::touched::Touched;
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::{Stage, Watch};
@@ -63,11 +63,14 @@ pub struct Counts {
 
 /// What a step needs to be taken back.
 #[derive(Clone, Debug)]
-struct Record {
+pub(super) struct Record {
     phase: Phase,
     second_pass: bool,
     picked: Option<[NodeId; 2]>,
     counts: Counts,
+    last_resort: Outcome,
+    finished: Finished,
+    parts: PartMarks,
     undo: Undo,
 }
 
@@ -95,7 +98,7 @@ pub struct Converter<'a> {
     queue: Option<Queue>,
     phase: Phase,
     /// Records of the steps, where a history is kept.
-    history: Option<Vec<Record>>,
+    pub(super) history: Option<Vec<Record>>,
     /// Whether steps leave the journal to whoever drives them, who forgets it where nothing is under way.
     journal_kept: bool,
     /// What the step at hand took back, where a history is kept.
@@ -112,6 +115,8 @@ pub struct Converter<'a> {
     pub last_resort: Outcome,
     /// What the post-processing did.
     pub finished: Finished,
+    /// What it has under way.
+    pub(super) finishing: Finishing<'a>,
 }
 
 impl<'a> Converter<'a> {
@@ -134,6 +139,7 @@ impl<'a> Converter<'a> {
             counts: Counts::default(),
             last_resort: Outcome::default(),
             finished: Finished::default(),
+            finishing: Finishing::default(),
         }
     }
 
@@ -193,6 +199,7 @@ impl<'a> Converter<'a> {
     /// Keeps from now on what [`step_back`](Converter::step_back) needs.
     pub fn keep_history(&mut self) {
         self.mesh.commit();
+        self.finishing.record();
         self.history = Some(Vec::new());
     }
 
@@ -207,6 +214,9 @@ impl<'a> Converter<'a> {
         self.second_pass = record.second_pass;
         self.picked = record.picked;
         self.counts = record.counts;
+        self.last_resort = record.last_resort;
+        self.finished = record.finished;
+        self.finishing.take_back(record.parts, record.finished.cleaned_up);
         self.queue = None;
         true
     }
@@ -218,7 +228,7 @@ impl<'a> Converter<'a> {
         self.journal_kept = true;
     }
 
-    fn keeps_journal(&self) -> bool {
+    pub(super) fn keeps_journal(&self) -> bool {
         self.journal_kept || self.history.is_some()
     }
 
@@ -236,7 +246,19 @@ impl<'a> Converter<'a> {
             };
             records.capacity() * size_of::<Record>() + records.iter().map(redo).sum::<usize>()
         });
-        records + self.mesh.journal().bytes()
+        records + self.mesh.journal().bytes() + self.finishing.bytes()
+    }
+
+    /// Bytes that everything but mesh, queue and history takes, beside its own size.
+    pub(in crate::core) fn bytes_of_rest(&self) -> usize {
+        let of = |component: &Component| size_of::<Component>() + component.triangles.len() * size_of::<ElementId>();
+        let phase = match &self.phase {
+            Phase::Close { waiting, left } => waiting.iter().chain(left).map(of).sum(),
+            // The plan is shared by all states that carry it out.
+            Phase::Match { left, .. } | Phase::Patch { left, .. } => left.iter().map(of).sum(),
+            _ => 0,
+        };
+        phase + self.finishing.bytes()
     }
 
     /// Forgets the older steps of the history, so that about `keep` can still be taken back: a few more where an attempt
@@ -281,6 +303,7 @@ impl<'a> Converter<'a> {
     /// bytes are equal states; caches and counts are left out.
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         self.mesh.write_state(bytes);
+        self.finishing.write_state(bytes);
         bytes.extend_from_slice(
             format!("{:?} {:?} {:?} {:?}", self.phase.plain(), self.second_pass, self.picked, self.parameters)
                 .as_bytes(),
@@ -315,7 +338,7 @@ impl<'a> Converter<'a> {
             if self.counts.steps.is_multiple_of(8192) {
                 watch.tell(Stage::Convert, 2 * self.counts.formed, total);
             }
-            if self.phase == Phase::PostProcess {
+            if self.phase == (Phase::PostProcess { part: Part::FirstSmoothing }) {
                 watch.tell(Stage::Finish, 0, 0);
             }
             self.step()?;
@@ -333,6 +356,9 @@ impl<'a> Converter<'a> {
             second_pass: self.second_pass,
             picked: self.picked,
             counts: self.counts,
+            last_resort: self.last_resort,
+            finished: self.finished,
+            parts: self.finishing.mark(),
             undo: Undo::Journal(self.mesh.mark()),
         });
         self.step_mark = self.mesh.mark();
@@ -363,11 +389,9 @@ impl<'a> Converter<'a> {
             Phase::Seam { element, nodes } => self.step_seam(element, nodes),
             Phase::Split { element } => self.step_split(element),
             Phase::Close { waiting, left } => self.step_close(waiting, left),
-            Phase::PostProcess => {
-                let keep = self.keeps_journal();
-                self.finished = finish(&mut self.mesh, &*self.source, keep);
-                Ok((Phase::Done, Event::PostProcessed))
-            }
+            Phase::Match { left, at } => self.step_match(left, at),
+            Phase::Patch { left, at, plan, patch } => Ok(self.step_patch(left, at, plan, patch)),
+            Phase::PostProcess { part } => Ok(self.step_post_process(part)),
             Phase::Done => Ok((Phase::Done, Event::Finished)),
         }
     }
@@ -546,14 +570,38 @@ impl<'a> Converter<'a> {
             }
             left.push(component);
         }
-        let mut total = Outcome::default();
-        for component in left {
-            let outcome = last_resort(&mut self.mesh, &component.triangles, &*self.source)
-                .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
-            total = total.plus(&outcome);
+        self.step_match(left.into(), 0)
+    }
+
+    /// Matches the triangles of the next component that is left over (spec 2.10); past the last one all are converted.
+    fn step_match(&mut self, left: Arc<[Component]>, at: usize) -> Result<(Phase, Event), Fault> {
+        let Some(component) = left.get(at) else {
+            let next = if self.parameters.post_processing {
+                Phase::PostProcess { part: Part::FirstSmoothing }
+            } else {
+                Phase::Done
+            };
+            return Ok((next, Event::LastResort(self.last_resort)));
+        };
+        let plan = Plan::new(&self.mesh, &component.triangles, &*self.source)
+            .map_err(|stuck| Fault::new(format!("A part of the mesh cannot be converted: {stuck}")))?;
+        let Outcome { triangles, unmatched, unmatched_at_all, .. } = plan.outcome();
+        let event = Event::Matched { triangles, unmatched, unmatched_at_all, patches: plan.patches() };
+        Ok((Phase::Patch { left, at, plan: Arc::new(plan), patch: 0 }, event))
+    }
+
+    /// Makes quadrilaterals of the next patch of the component at hand.
+    fn step_patch(&mut self, left: Arc<[Component]>, at: usize, plan: Arc<Plan>, patch: usize) -> (Phase, Event) {
+        let made = plan.carry_out(&mut self.mesh, patch);
+        let (means, triangles) = (plan.means(patch), plan.triangles(patch).len());
+        let event = Event::Patched { means, triangles, quads: made.len(), element: made[0] };
+        if !self.keeps_journal() {
+            self.mesh.commit();
         }
-        self.last_resort = total;
-        let next = if self.parameters.post_processing { Phase::PostProcess } else { Phase::Done };
-        Ok((next, Event::LastResort(total)))
+        if patch + 1 < plan.patches() {
+            return (Phase::Patch { left, at, plan, patch: patch + 1 }, event);
+        }
+        self.last_resort = self.last_resort.plus(&plan.outcome());
+        (Phase::Match { left, at: at + 1 }, event)
     }
 }

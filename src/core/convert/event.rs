@@ -5,7 +5,7 @@
 
 use serde::{Serialize, Serializer};
 
-use super::last_resort::Outcome;
+use super::last_resort::{Means, Outcome};
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::{ElementId, NodeId};
 
@@ -80,6 +80,40 @@ pub struct SideEdge {
     /// How far that is from the direction aimed at.
     #[serde(serialize_with = "degrees")]
     pub deviation: f64,
+}
+
+/// A change of the structure that clean-up kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "what", rename_all = "snake_case")]
+pub enum Cleaning {
+    /// Two opposite corners of a quadrilateral became one.
+    DiamondCollapsed {
+        /// The one that is no more.
+        gone: NodeId,
+        /// The other.
+        kept: NodeId,
+    },
+    /// The edge between two quadrilaterals was rotated.
+    EdgeRotated {
+        /// Its ends before.
+        old: [NodeId; 2],
+        /// Its ends after.
+        new: [NodeId; 2],
+    },
+    /// A node was opened along two of its edges into a quadrilateral.
+    VertexOpened {
+        /// The node.
+        node: NodeId,
+        /// The new node opposite to it.
+        new: NodeId,
+        /// The other ends of the edges.
+        along: [NodeId; 2],
+    },
+    /// A node between two quadrilaterals was removed.
+    DoubletRemoved {
+        /// The node.
+        node: NodeId,
+    },
 }
 
 /// What a step of the converter did or decided. Angles in radians.
@@ -270,9 +304,46 @@ pub enum Event {
     },
     /// Every segment is put off: all are taken up again with wider gates.
     SecondPass,
-    /// The last resort converted what was left over.
+    /// The triangles of a component that was left over were matched (spec 2.10, steps 1 to 4).
+    Matched {
+        /// Its triangles.
+        triangles: usize,
+        /// Those without a partner after the matching of convex pairs.
+        unmatched: usize,
+        /// Those without a partner after that over all inner edges.
+        unmatched_at_all: usize,
+        /// Steps in which the component becomes quadrilaterals.
+        patches: usize,
+    },
+    /// The last resort made quadrilaterals of a few triangles (spec 2.10, steps 4 and 5).
+    Patched {
+        /// How.
+        means: Means,
+        /// Triangles before.
+        triangles: usize,
+        /// Quadrilaterals after.
+        quads: usize,
+        /// The first of them.
+        element: ElementId,
+    },
+    /// The last resort has converted all that was left over.
     LastResort(Outcome),
-    /// The whole mesh was cleaned up and smoothed (4.3.7).
+    /// The structure was cleaned up at one place (4.3.7).
+    Cleaned {
+        /// How.
+        #[serde(flatten)]
+        what: Cleaning,
+        /// Energy of everything around, before and after.
+        energy: [f64; 2],
+    },
+    /// Free nodes were smoothed by the energy (4.3.7).
+    Swept {
+        /// Nodes that were looked at.
+        looked: u32,
+        /// Nodes that moved.
+        moved: u32,
+    },
+    /// The whole mesh is cleaned up and smoothed (4.3.7).
     PostProcessed,
     /// All is done.
     Finished,
@@ -301,7 +372,11 @@ impl Event {
         "split",
         "closed",
         "second_pass",
+        "matched",
+        "patched",
         "last_resort",
+        "cleaned",
+        "swept",
         "post_processed",
         "finished",
     ];
@@ -342,7 +417,11 @@ impl Event {
             Event::Split { .. } => "split",
             Event::Closed { .. } => "closed",
             Event::SecondPass => "second_pass",
+            Event::Matched { .. } => "matched",
+            Event::Patched { .. } => "patched",
             Event::LastResort(_) => "last_resort",
+            Event::Cleaned { .. } => "cleaned",
+            Event::Swept { .. } => "swept",
             Event::PostProcessed => "post_processed",
             Event::Finished => "finished",
         }
@@ -378,6 +457,9 @@ mod tests {
         assert_eq!(json(Why::NotDisc), r#"{"kind":"rolled_back","attempt":1,"why":{"kind":"not_disc"}}"#);
         let blocked = r#"{"kind":"rolled_back","attempt":1,"why":{"kind":"top_blocked","value":[7,8]}}"#;
         assert_eq!(json(Why::TopBlocked([node, NodeId(8)])), blocked);
+        let what = Cleaning::DiamondCollapsed { gone: node, kept: NodeId(8) };
+        let cleaned = serde_json::to_string(&Event::Cleaned { what, energy: [2.0, 1.5] }).unwrap();
+        assert_eq!(cleaned, r#"{"kind":"cleaned","what":"diamond_collapsed","gone":7,"kept":8,"energy":[2.0,1.5]}"#);
     }
 
     #[test]
@@ -417,7 +499,11 @@ mod tests {
             Event::Split { node, gone: node, area: 0.1, ratio: 6.0, segments: [4, 6] },
             Event::Closed { segments: 4, quads: 1, quality: 0.5 },
             Event::SecondPass,
+            Event::Matched { triangles: 8, unmatched: 2, unmatched_at_all: 0, patches: 4 },
+            Event::Patched { means: Means::Merge, triangles: 2, quads: 1, element: ElementId(1) },
             Event::LastResort(Outcome::default()),
+            Event::Cleaned { what: Cleaning::DoubletRemoved { node }, energy: [2.0, 1.0] },
+            Event::Swept { looked: 9, moved: 3 },
             Event::PostProcessed,
             Event::Finished,
         ];

@@ -1,12 +1,15 @@
-//! Global post-processing (paper 4.3.7): clean-up of the structure, then smoothing by the energy, both by worklists.
+//! Global post-processing (paper 4.3.7): smoothing by the energy, clean-up of the structure, smoothing again, all by
+//! worklists. A step is one sweep of the smoothing, or one change of the structure.
 
-use std::collections::VecDeque;
+use std::sync::Arc;
 
-use super::clean_up::{CleanedUp, clean_up};
+use super::clean_up::{CleanUp, CleanedUp};
+use super::converter::Converter;
 use super::energy;
+use super::event::Event;
+use super::phase::{Part, Phase};
+use super::worklist::{ListMark, Worklist};
 use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::NodeId;
-use crate::core::metric::field::MetricSource;
 
 /// A node that moved farther than this (in its metric) sends its neighbours to be looked at again.
 const STIRRED: f64 = 0.02;
@@ -22,41 +25,126 @@ pub struct Finished {
     pub moves: usize,
 }
 
-/// Smooths, cleans up and smooths again. Every step keeps all elements strictly convex. The journal is kept where
-/// `keep_journal` says so, else forgotten on the way.
-pub fn finish(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> Finished {
-    let mut moves = smooth(mesh, source, keep_journal);
-    let cleaned_up = clean_up(mesh, source, keep_journal);
-    moves += smooth(mesh, source, keep_journal);
-    Finished { cleaned_up, moves }
+/// What the post-processing has under way: the parts that have begun. Those that are done are only there for whoever
+/// steps back.
+#[derive(Clone, Default)]
+pub(super) struct Finishing<'a> {
+    first_smoothing: Option<Worklist>,
+    clean_up: Option<CleanUp<'a>>,
+    last_smoothing: Option<Worklist>,
 }
 
-/// Relaxes all free nodes until none moves any more that matters. Returns the number of moves.
-fn smooth(mesh: &mut Mesh, source: &dyn MetricSource, keep_journal: bool) -> usize {
-    let mut queue: VecDeque<NodeId> = mesh.nodes().filter(|&n| !mesh.is_fixed(n)).collect();
-    let mut queued = vec![false; mesh.node_slots()];
-    queue.iter().for_each(|n| queued[n.index()] = true);
-    let mut looks = MOST_LOOKS * queue.len();
-    let mut moves = 0;
-    while let Some(node) = queue.pop_front() {
-        queued[node.index()] = false;
-        if looks == 0 {
-            break;
-        }
-        looks -= 1;
-        let moved = energy::relax(mesh, node, source);
-        moves += usize::from(moved > 0.0);
-        if moved > STIRRED {
-            for n in mesh.neighbours(node).chain([node]) {
-                if !queued[n.index()] && !mesh.is_fixed(n) {
-                    queued[n.index()] = true;
-                    queue.push_back(n);
-                }
-            }
-        }
-        if !keep_journal {
-            mesh.commit();
+/// Where the lists of the parts stood; none where a part had not begun.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PartMarks([Option<ListMark>; 3]);
+
+impl Finishing<'_> {
+    fn lists(&self) -> [Option<&Worklist>; 3] {
+        [self.first_smoothing.as_ref(), self.clean_up.as_ref().map(CleanUp::list), self.last_smoothing.as_ref()]
+    }
+
+    /// Bytes that the parts take.
+    pub fn bytes(&self) -> usize {
+        let lists = [&self.first_smoothing, &self.last_smoothing].into_iter().flatten();
+        lists.map(Worklist::bytes).sum::<usize>() + self.clean_up.as_ref().map_or(0, CleanUp::bytes)
+    }
+
+    /// Lets every part write down from now on what it needs to be taken back.
+    pub fn record(&mut self) {
+        let clean_up = self.clean_up.as_mut().map(CleanUp::list_mut);
+        for list in [self.first_smoothing.as_mut(), clean_up, self.last_smoothing.as_mut()].into_iter().flatten() {
+            list.record();
         }
     }
-    moves
+
+    /// The present place.
+    pub fn mark(&self) -> PartMarks {
+        PartMarks(self.lists().map(|list| list.map(Worklist::mark)))
+    }
+
+    /// Takes back everything that was done after the mark; `cleaned_up` is what the clean-up had done then.
+    pub fn take_back(&mut self, PartMarks([first, clean_up, last]): PartMarks, cleaned_up: CleanedUp) {
+        let list = |list: &mut Option<Worklist>, mark: Option<ListMark>| match (list.as_mut(), mark) {
+            (Some(list), Some(mark)) => list.take_back(mark),
+            _ => *list = None,
+        };
+        list(&mut self.first_smoothing, first);
+        list(&mut self.last_smoothing, last);
+        match (self.clean_up.as_mut(), clean_up) {
+            (Some(part), Some(mark)) => part.take_back(mark, cleaned_up),
+            _ => self.clean_up = None,
+        }
+    }
+
+    /// Appends what the next steps depend on.
+    pub fn write_state(&self, bytes: &mut Vec<u8>) {
+        self.lists().into_iter().flatten().for_each(|list| list.write_state(bytes));
+    }
+}
+
+impl Converter<'_> {
+    /// The next sweep or change of structure. Every one keeps all elements strictly convex. Where no history is kept, the
+    /// journal is forgotten on the way.
+    pub(super) fn step_post_process(&mut self, mut part: Part) -> (Phase, Event) {
+        let (recording, keep_journal) = (self.history.is_some(), self.keeps_journal());
+        loop {
+            let event = match part {
+                Part::FirstSmoothing | Part::LastSmoothing => self.sweep(part),
+                Part::CleanUp => {
+                    let (mesh, source) = (&mut self.mesh, Arc::clone(&self.source));
+                    let clean_up =
+                        self.finishing.clean_up.get_or_insert_with(|| CleanUp::begin(mesh, source, recording));
+                    let event = clean_up.step(mesh, keep_journal);
+                    self.finished.cleaned_up = clean_up.done();
+                    event
+                }
+            };
+            if let Some(event) = event {
+                return (Phase::PostProcess { part }, event);
+            }
+            match part {
+                Part::FirstSmoothing => part = Part::CleanUp,
+                Part::CleanUp => part = Part::LastSmoothing,
+                Part::LastSmoothing => return (Phase::Done, Event::PostProcessed),
+            }
+        }
+    }
+
+    /// Looks at every free node that waits: all in the first sweep of a part, then those around nodes that moved. None
+    /// where no node waits any more.
+    fn sweep(&mut self, part: Part) -> Option<Event> {
+        let (recording, keep_journal) = (self.history.is_some(), self.keeps_journal());
+        let mesh = &mut self.mesh;
+        let list = match part {
+            Part::FirstSmoothing => &mut self.finishing.first_smoothing,
+            _ => &mut self.finishing.last_smoothing,
+        };
+        let list = list.get_or_insert_with(|| every_free_node(mesh, recording));
+        let (mut looked, mut moved) = (0, 0);
+        for _ in 0..list.len() {
+            let Some(node) = list.take() else { break };
+            looked += 1;
+            let distance = energy::relax(mesh, node, &*self.source);
+            moved += u32::from(distance > 0.0);
+            if distance > STIRRED {
+                for n in mesh.neighbours(node).chain([node]) {
+                    if !mesh.is_fixed(n) {
+                        list.add(n);
+                    }
+                }
+            }
+            if !keep_journal {
+                mesh.commit();
+            }
+        }
+        self.finished.moves += moved as usize;
+        (looked > 0).then_some(Event::Swept { looked, moved })
+    }
+}
+
+fn every_free_node(mesh: &Mesh, recording: bool) -> Worklist {
+    let free = || mesh.nodes().filter(|&n| !mesh.is_fixed(n));
+    let mut list = Worklist::new(MOST_LOOKS * free().count(), recording);
+    free().for_each(|node| list.add(node));
+    list
 }

@@ -106,7 +106,8 @@ impl fmt::Display for Stuck {
 impl std::error::Error for Stuck {}
 
 /// How a patch of triangles becomes quadrilaterals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Means {
     /// Two triangles merge.
     Merge,
@@ -116,25 +117,8 @@ pub enum Means {
     Templates,
 }
 
-/// Turns the given triangles of a mesh, one or several whole components of even size, into quadrilaterals.
-///
-/// Sides that the triangles do not share among themselves stay as they are. New nodes get their metric from `source`.
-///
-/// # Errors
-/// [`Stuck`]; then the mesh is unchanged.
-///
-/// # Panics
-/// Where an element is no triangle, or is given twice.
-pub fn last_resort(mesh: &mut Mesh, component: &[ElementId], source: &dyn MetricSource) -> Result<Outcome, Stuck> {
-    let plan = Plan::new(mesh, component, source)?;
-    for patch in 0..plan.patches() {
-        plan.carry_out(mesh, patch);
-    }
-    Ok(plan.outcome())
-}
-
 /// What is to be done, patch by patch: first the merges and recuts, then the templates.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     outcome: Outcome,
     /// Nodes with an id from here on are new ones: the rest is their place in `nodes`.
@@ -146,7 +130,7 @@ pub struct Plan {
 }
 
 /// Ends of a patch's stretches in the lists of its plan; it begins where the one before ends.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Patch {
     means: Means,
     nodes: u32,
@@ -155,10 +139,15 @@ struct Patch {
 }
 
 impl Plan {
-    /// Plans the last resort for the given triangles; see [`last_resort`].
+    /// Plans how the given triangles of a mesh, one or several whole components of even size, become quadrilaterals.
+    ///
+    /// Sides that the triangles do not share among themselves stay as they are. New nodes get their metric from `source`.
     ///
     /// # Errors
     /// [`Stuck`].
+    ///
+    /// # Panics
+    /// Where an element is no triangle, or is given twice.
     pub fn new(mesh: &Mesh, component: &[ElementId], source: &dyn MetricSource) -> Result<Plan, Stuck> {
         let operation = |means| match means {
             Means::Merge => Operation::Merge,
@@ -186,6 +175,11 @@ impl Plan {
     /// The triangles of a patch.
     pub fn triangles(&self, patch: usize) -> &[ElementId] {
         &self.triangles[self.begin(patch).triangles as usize..self.patches[patch].triangles as usize]
+    }
+
+    /// Number of quadrilaterals that the patches before this one make.
+    pub fn quads_before(&self, patch: usize) -> usize {
+        self.begin(patch).quads as usize
     }
 
     fn begin(&self, patch: usize) -> Patch {

@@ -21,6 +21,7 @@ pub mod matching;
 mod t_join;
 pub mod last_resort;
 pub mod energy;
+mod worklist;
 pub mod clean_up;
 pub mod finish;
 pub mod conversion;

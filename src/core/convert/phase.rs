@@ -1,8 +1,11 @@
 //! Where the converter stands between two steps: exactly what the next step needs.
 
+use std::sync::Arc;
+
 use smallvec::SmallVec;
 
 use super::component::Component;
+use super::last_resort::Plan;
 use crate::core::front::sector::Side;
 use crate::core::journal::Mark;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
@@ -33,6 +36,17 @@ pub struct Attempt {
     pub tops: [Option<NodeId>; 2],
     /// What to take back to when it fails.
     pub mark: Mark,
+}
+
+/// A part of the post-processing (4.3.7).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    /// Smoothing of all that the front has left.
+    FirstSmoothing,
+    /// Clean-up of the structure.
+    CleanUp,
+    /// Smoothing of the final structure.
+    LastSmoothing,
 }
 
 /// Where the converter stands.
@@ -124,8 +138,29 @@ pub enum Phase {
         /// Those that could not be closed: they go to the last resort.
         left: Vec<Component>,
     },
+    /// The triangles of the next component that is left over are to be matched: the last resort (spec 2.10).
+    Match {
+        /// What is left over.
+        left: Arc<[Component]>,
+        /// The next one of them.
+        at: usize,
+    },
+    /// The component at hand is to be made quadrilaterals, patch by patch.
+    Patch {
+        /// What is left over.
+        left: Arc<[Component]>,
+        /// Which one of them is at hand.
+        at: usize,
+        /// What is to be done with it.
+        plan: Arc<Plan>,
+        /// The next patch.
+        patch: usize,
+    },
     /// Clean-up and smoothing of the whole mesh.
-    PostProcess,
+    PostProcess {
+        /// Which part of it is under way.
+        part: Part,
+    },
     /// Nothing is left to do.
     Done,
 }
@@ -172,7 +207,9 @@ impl Phase {
             | Phase::Seam { .. }
             | Phase::Split { .. }
             | Phase::Close { .. }
-            | Phase::PostProcess
+            | Phase::Match { .. }
+            | Phase::Patch { .. }
+            | Phase::PostProcess { .. }
             | Phase::Done => None,
         }
     }
@@ -192,7 +229,9 @@ impl Phase {
             | Phase::Seam { .. }
             | Phase::Split { .. }
             | Phase::Close { .. }
-            | Phase::PostProcess
+            | Phase::Match { .. }
+            | Phase::Patch { .. }
+            | Phase::PostProcess { .. }
             | Phase::Done => {}
         }
         plain

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::candidates::Candidates;
 use super::converter::Converter;
 use super::event::Event;
-use super::phase::Phase;
+use super::phase::{Part, Phase};
 use crate::core::fault::Fault;
 use crate::core::progress::{Stage, Watch};
 
@@ -52,9 +52,15 @@ pub type Tell<'t> = &'t mut dyn FnMut(&Told<'_>);
 /// The number of quadrilaterals that stand.
 pub fn standing(converter: &Converter<'_>) -> u64 {
     match converter.phase() {
-        // Everything is a quadrilateral, also what the last resort made and what clean-up has put in its place.
-        Phase::PostProcess | Phase::Done => converter.mesh.element_count() as u64,
-        _ => converter.given + converter.counts.formed + converter.counts.closed,
+        // Everything is a quadrilateral, also what clean-up has put in the place of others.
+        Phase::PostProcess { .. } | Phase::Done => converter.mesh.element_count() as u64,
+        phase => {
+            let last = if let Phase::Patch { plan, patch, .. } = phase { plan.quads_before(*patch) } else { 0 };
+            converter.given
+                + converter.counts.formed
+                + converter.counts.closed
+                + (converter.last_resort.quads() + last) as u64
+        }
     }
 }
 
@@ -90,8 +96,7 @@ pub fn walk_editing(
     while !stop.is_some_and(|stop| stop.is_reached(converter)) {
         match converter.phase() {
             Phase::Done => return stop.map_or(Ok(()), |_| Err(past_the_end(converter))),
-            Phase::Select => converter.mesh.commit(),
-            Phase::PostProcess => watch.tell(Stage::Finish, 0, 0),
+            Phase::PostProcess { part: Part::FirstSmoothing } => watch.tell(Stage::Finish, 0, 0),
             _ => {}
         }
         let (candidates, element, before) = match &tell {
@@ -114,7 +119,7 @@ pub fn walk_editing(
             tell(&Told { step, nq, event: &event, candidates: candidates.as_ref(), quality });
         }
         edit(converter)?;
-        if shown + 1024 <= nq && *converter.phase() != Phase::Done {
+        if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::Done) {
             shown = nq;
             watch.tell(Stage::Convert, 2 * nq, total);
         }

@@ -186,12 +186,15 @@ impl Queue {
         // A node of the front that moves turns the segments beside it, and so the angles at their other ends.
         for &node in moved.iter().filter(|&&n| mesh.has_node(n)) {
             for h in mesh.fan(node) {
-                if mesh.is_front(h) {
-                    segments.push(mesh.front_after(h));
-                }
                 let p = mesh.previous(h);
-                if mesh.is_front(p) {
-                    segments.push(mesh.front_before(p));
+                // One that is put off stays so: its own ends are where they were.
+                for (segment, beyond) in [(h, Mesh::front_after as fn(&Mesh, _) -> _), (p, Mesh::front_before)] {
+                    if mesh.is_front(segment) {
+                        let turned = beyond(mesh, segment);
+                        if !mesh.is_deferred(turned) {
+                            segments.push(turned);
+                        }
+                    }
                 }
             }
         }

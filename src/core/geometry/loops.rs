@@ -47,7 +47,11 @@ pub fn chain(curves: &[DomainCurve], list: &[CurveId], what: &str) -> Result<Vec
                 names.join(", ")
             ))
             .at(format!("at {}", told(spot(&group[0]))))
-            .remedy("Make separate loops of it, or keep its parts apart"));
+            .remedy(if what.starts_with("outer") {
+                "Make a face of each part that closes by itself, or keep the parts apart"
+            } else {
+                "Give each part that closes by itself a list of its own among the holes, or keep the parts apart"
+            }));
         }
     }
     if let Some(a) = loose.first() {

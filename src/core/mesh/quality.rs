@@ -57,3 +57,20 @@ impl Mesh {
         quality_over(n.map(|n| self.uv(n)), n.map(|n| self.metric_ref(n)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_over_is_the_integral_for_geometric_sizes_but_for_0_2_percent() {
+        // h = h0 exp(a x) from 0 to 1: the integral of 1/h is (1 - exp(-a)) / (a h0).
+        for a in [-1.38, -0.5, 0.1, 1.38] {
+            let ends = [Metric2::isotropic(0.3), Metric2::isotropic(0.3 * libm::exp(a))];
+            let expected = (1.0 - libm::exp(-a)) / (a * 0.3);
+            let length = length_over(&ends[0], &ends[1], DVec2::X);
+            assert!((length / expected - 1.0).abs() < 2e-3, "{a}: {length} and {expected}");
+        }
+        assert_eq!(length_over(&Metric2::isotropic(0.3), &Metric2::isotropic(0.5), DVec2::ZERO), 0.0);
+    }
+}

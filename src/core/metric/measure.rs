@@ -13,19 +13,6 @@ pub fn length(m: &Metric2, d: DVec2) -> f64 {
     m.norm2(d).max(0.0).sqrt()
 }
 
-/// The length of `d` between two metrics (spec 2.1.2): the logarithmic mean of the lengths at both ends, which is exact where
-/// the size along the edge changes geometrically.
-#[inline]
-pub fn length_between(ma: &Metric2, mb: &Metric2, d: DVec2) -> f64 {
-    let (l_a, l_b) = (length(ma, d), length(mb, d));
-    if (l_a - l_b).abs() < 1e-3 {
-        // The quotient would lose its digits; the two means differ by less than 1e-7 of a unit edge here.
-        0.5 * (l_a + l_b)
-    } else {
-        (l_a - l_b) / libm::log(l_a / l_b)
-    }
-}
-
 /// Eq. (5): the anticlockwise angle from `du` to `dv` in the metric `m`, in [0, 2 pi).
 ///
 /// The paper takes the arc cosine of the normed inner product and the sign of the cross product. The arc tangent of the same
@@ -114,19 +101,6 @@ mod tests {
         assert!((length(&m, 0.02 * across) - 1.0).abs() < 1e-12);
         assert!((length(&m, 0.5 * across.perp()) - 1.0).abs() < 1e-12);
         assert_eq!(length(&m, DVec2::ZERO), 0.0);
-    }
-
-    #[test]
-    fn length_between_is_exact_for_geometric_sizes() {
-        // h = h0 exp(a x) from 0 to 1: the integral of 1/h is (1 - exp(-a)) / (a h0).
-        let (h0, a) = (0.3, 1.7);
-        let ends = [Metric2::isotropic(h0), Metric2::isotropic(h0 * libm::exp(a))];
-        let expected = (1.0 - libm::exp(-a)) / (a * h0);
-        assert!((length_between(&ends[0], &ends[1], DVec2::X) - expected).abs() < 1e-12);
-        assert!((length_between(&ends[1], &ends[0], DVec2::X) - expected).abs() < 1e-12);
-        let close = Metric2::isotropic(h0 * (1.0 + 1e-12));
-        assert!((length_between(&ends[0], &close, DVec2::X) - 1.0 / h0).abs() < 1e-9);
-        assert_eq!(length_between(&ends[0], &ends[1], DVec2::ZERO), 0.0);
     }
 
     struct Linear;

@@ -165,6 +165,10 @@ pub(super) fn changes_front(event: &Event) -> bool {
             | Event::Smoothed { .. }
             | Event::SeamRefused { .. }
             | Event::SecondPass
+            | Event::Matched { .. }
+            | Event::Cleaned { .. }
+            | Event::Swept { .. }
+            | Event::PostProcessed
             | Event::Finished
     )
 }

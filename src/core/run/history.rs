@@ -345,11 +345,18 @@ impl History {
             self.spare = behind.converter.mesh;
         }
         let spare = std::mem::take(&mut self.now.converter.mesh);
-        self.now = self.cursor_before(step.saturating_sub(BEHIND), spare)?;
+        self.now = self.cursor_before(self.before(step), spare)?;
         self.now.converter.keep_history();
         self.all_changed = true;
         // A leap has time for what a step back has not.
         if self.now.step > 0 { self.prepare(0) } else { Ok(()) }
+    }
+
+    /// The step from which a leap to a step starts: some steps earlier, so that they can be taken back at once. In the global
+    /// post-processing a step may be a sweep over the whole mesh, and one is enough.
+    fn before(&self, step: u64) -> u64 {
+        let sweeps = self.log.kind(step).is_some_and(|kind| matches!(kind, "swept" | "post_processed"));
+        step.saturating_sub(if sweeps { 1 } else { BEHIND })
     }
 
     fn forward_one(&mut self) -> Result<(), Fault> {
@@ -388,7 +395,7 @@ impl History {
             Some(behind) => behind,
             None => {
                 let spare = std::mem::take(&mut self.spare);
-                let mut behind = self.cursor_before(begin.saturating_sub(BEHIND), spare)?;
+                let mut behind = self.cursor_before(self.before(begin), spare)?;
                 behind.converter.keep_history();
                 behind
             }

@@ -2,9 +2,7 @@
 //! before. From the nearest one, any state is a few steps away.
 
 use crate::core::convert::converter::Converter;
-use crate::core::convert::phase::Phase;
 use crate::core::mesh::half_edge::{Difference, Mesh};
-use crate::core::mesh::ids::ElementId;
 
 /// A state that is kept: raw, before the edits of its step are made.
 #[derive(Clone)]
@@ -36,12 +34,8 @@ impl Keyframe {
     }
 
     fn bytes_of_difference(&self) -> usize {
-        let components = match self.rest.phase() {
-            Phase::Close { waiting, left } => waiting.iter().chain(left).map(|c| c.triangles.len() + 8).sum(),
-            _ => 0,
-        };
         let difference = self.difference.as_ref().map_or(0, Difference::bytes);
-        size_of::<Self>() + difference + components * size_of::<ElementId>()
+        size_of::<Self>() + difference + self.rest.bytes_of_rest()
     }
 
     fn bytes_of_mesh(&self) -> usize {

@@ -7,7 +7,7 @@ use super::recorder::SPACING;
 
 /// What makes quadrilaterals stand, apart from clean-up.
 fn makes_quads(kind: &str) -> bool {
-    matches!(kind, "formed" | "closed" | "last_resort")
+    matches!(kind, "formed" | "closed" | "patched")
 }
 
 impl History {

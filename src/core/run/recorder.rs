@@ -22,6 +22,9 @@ use crate::core::metric::measure::angle;
 /// A keyframe is set at the first chance after so many steps: replaying them takes about a millisecond.
 pub(super) const SPACING: u64 = 1024;
 
+/// It is set sooner where so many nodes, and half of all, were touched: a sweep over the whole mesh is one step.
+const SWEPT: usize = 1024;
+
 /// A converter that runs ahead.
 pub struct Recorder {
     run: Arc<Run>,
@@ -156,7 +159,9 @@ impl Recorder {
         }
         let phase = self.converter.phase();
         let at_rest = !phase.is_local_post_processing();
-        let is_due = self.step >= self.keyframe + SPACING || *phase == Phase::Done;
+        let is_due = self.step >= self.keyframe + SPACING
+            || *phase == Phase::Done
+            || self.touched.nodes().len() > SWEPT + self.converter.mesh.node_slots() / 2;
         let can_be_kept = phase.mark().is_none();
         stretch.log.push(event, standing(&self.converter), at_rest);
         if can_be_kept {

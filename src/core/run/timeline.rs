@@ -63,7 +63,7 @@ impl Lane {
             "enhanced" | "smoothed" | "node_removed" => Lane::Local,
             "seamed" | "transition_seamed" | "seam_refused" => Lane::Seams,
             "split" => Lane::Splits,
-            "closed" | "last_resort" => Lane::Closing,
+            "closed" | "matched" | "patched" | "last_resort" => Lane::Closing,
             _ => Lane::Finishing,
         }
     }

@@ -324,7 +324,7 @@ fn element(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands: 
     let nodes: Vec<(&str, NodeId)> = mesh.corners(e).map(|n| ("", n)).collect();
     ends(ui, moment, &nodes, palette);
     let until = state.track.iter().take(moment.step as usize);
-    let made = until.enumerate().filter(|(_, t)| t.formed.is_some_and(|f| f.0 == e)).last();
+    let made = until.enumerate().rfind(|(_, t)| t.formed.is_some_and(|f| f.0 == e));
     if let Some((k, _)) = made.filter(|_| quad) {
         ui.add_space(6.0);
         let step = k as u64 + 1;

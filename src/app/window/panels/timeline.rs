@@ -22,7 +22,7 @@ const LANES: [(&str, &[&str]); 5] = [
     ("quad formed", &["formed"]),
     ("swap", &["side_swapped", "top_swapped", "enhanced"]),
     ("divide, delete", &["side_divided", "node_removed"]),
-    ("seam, close", &["seamed", "transition_seamed", "split", "closed", "last_resort"]),
+    ("seam, close, finish", &["seamed", "transition_seamed", "split", "closed", "patched", "cleaned", "swept"]),
     ("rolled back", &["rolled_back", "deferred"]),
 ];
 

@@ -8,6 +8,15 @@ use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::Place;
 
+/// Plans the last resort and carries all of it out.
+fn last_resort(mesh: &mut Mesh, component: &[ElementId], source: &dyn MetricSource) -> Result<Outcome, Stuck> {
+    let plan = Plan::new(mesh, component, source)?;
+    for patch in 0..plan.patches() {
+        plan.carry_out(mesh, patch);
+    }
+    Ok(plan.outcome())
+}
+
 /// Seeded random numbers.
 struct Random(TestRng);
 

@@ -229,6 +229,11 @@ fn touching_is_refused_with_its_remedy() {
         circle("c", (-1.0, 0.0), 1.0),
     ];
     assert!(refusal((knot, vec![face("f", "a b c", &[], "", "")])).contains("touches itself: 4 ends"));
+    let bow = vec![
+        polyline("a", &[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.0)], true),
+        polyline("b", &[(0.0, 0.0), (-1.0, 0.0), (-1.0, -1.0), (0.0, 0.0)], true),
+    ];
+    assert!(refusal((bow, vec![face("f", "a b", &[], "", "")])).contains("Make a face of each part"));
 }
 
 #[test]

@@ -247,13 +247,10 @@ pub const FIELDS: &[Field] = &[
     Field {
         name: "fallback",
         holds: Holds::Flag,
-        doc: "the front was left: a second pass, or the last resort with something to do",
+        doc: "the front was left: a second pass, or the last resort at work",
         of: |m| {
-            Some(Value::Flag(match m.event {
-                Event::SecondPass => true,
-                Event::LastResort(outcome) => outcome.quads() > 0,
-                _ => false,
-            }))
+            let left = matches!(m.event, Event::SecondPass | Event::Matched { .. } | Event::Patched { .. });
+            Some(Value::Flag(left))
         },
     },
 ];

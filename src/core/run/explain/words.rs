@@ -38,7 +38,8 @@ fn five(x: f64) -> String {
 impl fmt::Display for MetricTold {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [first, second] = [0, 1].map(|k| {
-            let [x, y] = self.directions[k];
+            // A direction is as good as its opposite: none has a negative zero.
+            let [x, y] = self.directions[k].map(|x| if x.abs() < 5e-4 { 0.0 } else { x });
             format!("h = {} along ({x:.3}, {y:.3}), lambda = {}", five(self.sizes[k]), five(self.lambda[k]))
         });
         write!(f, "{first}; {second}")
@@ -103,6 +104,9 @@ impl SegmentTold {
             (_, SelectionWindow::MetricLengthTimesH) => "metric length times H",
         };
         let reason = match self.verdict {
+            Verdict::First if self.parameters.selection != Selection::Table1 => {
+                format!("chosen: the smallest {what} of all")
+            }
             Verdict::First if self.row.class < 4 && self.row.window < self.parameters.c * self.h_min => {
                 format!("chosen: the smallest {what} of the best class within c Hmin (4.3.3, ii)")
             }
@@ -117,6 +121,12 @@ impl SegmentTold {
             }
             Verdict::BetterClass { class } => {
                 format!("not chosen: a segment of priority {class} is within reach (table 1)")
+            }
+            Verdict::Larger if self.parameters.selection != Selection::Table1 => {
+                format!("not chosen: another has a smaller {what}")
+            }
+            Verdict::Larger if self.row.class == 4 => {
+                "not chosen: another has a smaller H-value (4.3.3, iii)".to_owned()
             }
             Verdict::Larger => format!("not chosen: another of its priority has a smaller {what}"),
         };
