@@ -2,7 +2,7 @@
 .PHONY: help run test check bench soak licenses
 
 help:
-	@echo "make run       convert example 1; says where mesh, report and picture lie"
+	@echo "make run       the window on example 1; without a display example 1 converted, with its pictures"
 	@echo "make test      all tests"
 	@echo "make check     formatting, clippy and rustdoc; warnings are errors"
 	@echo "make bench     timings"
@@ -10,17 +10,14 @@ help:
 	@echo "make licenses  licences and duplicates of the dependencies"
 
 run:
-	@tools/setup build
-	@mkdir -p out
-	cargo run --locked --release --no-default-features -- convert example1 \
-		--out out/example1.msh --report out/example1.json --picture out/example1.svg
-	@echo "mesh:    out/example1.msh"
-	@echo "report:  out/example1.json"
-	@echo "picture: out/example1.svg"
+	@tools/setup build run
+	cargo build --locked --release
+	@tools/run
 
 test:
-	@tools/setup build
-	cargo test --locked
+	@tools/setup build run test
+	QUADFRONT_NEEDS_ADAPTER=1 XDG_RUNTIME_DIR=$$(tools/runtime-dir) cargo test --locked --features uitest
+	tools/end-to-end
 	cargo test --locked --no-default-features --lib
 
 check:

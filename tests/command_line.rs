@@ -286,7 +286,7 @@ fn whatever_is_wrong_is_one_line_with_exit_2() {
         (&["convert", "uniform", "-o", "-"], "--format"),
         (&["convert", "uniform", "-o", "a.obj", "--msh2"], "--msh2"),
         (&["convert", "uniform", "-o", "a.msh", "--report", "a.msh"], "same place"),
-        (&["convert", "uniform", "--picture", "a.png"], ".svg"),
+        (&["convert", "uniform", "--picture", "a.jpg"], ".svg"),
         (&["convert", "uniform", "--sol", "a.sol"], "--sol"),
         (&["convert", "uniform", "--set", "theta_rect=135deg"], "Write degrees without a unit: theta_rect = 135"),
         (&["convert", "uniform", "--set", "size=1"], "size_scale"),

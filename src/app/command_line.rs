@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::input::{InputFormat, Stops, input_format, mesh_format, setting, stop, stops};
+use super::input::{InputFormat, Stops, input_format, mesh_format, pixels, setting, stop, stops};
 use super::output::Target;
 use crate::core::convert::walk::Stop;
 use crate::core::io::format::Format;
@@ -16,19 +16,22 @@ use crate::core::io::format::Format;
     after_help = "Exit codes: 0 done; 1 a checked mesh falls short; 2 bad input or usage; 130 stopped by Ctrl-C."
 )]
 pub(super) struct Cli {
+    /// Without a command the window opens on example 1
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Option<Command>,
 }
 
 #[derive(Subcommand)]
 pub(super) enum Command {
+    /// Open the window: step through a conversion, forward and back
+    Open(OpenArguments),
     /// Make an all-quadrilateral mesh of a case or of a triangle mesh
     Convert(ConvertArguments),
     /// Make the triangles that a conversion starts from, with their metric
     Background(BackgroundArguments),
     /// Examine a quadrilateral mesh in a file: exit 1 when it falls short
     Check(CheckArguments),
-    /// Draw a mesh, or the mesh of a case, as SVG
+    /// Draw a mesh, or the mesh of a case, as SVG or PNG
     Render(RenderArguments),
     /// List the built-in cases
     Cases(CasesArguments),
@@ -72,9 +75,16 @@ pub(super) struct Destination {
     /// Write Gmsh's version 2.2 instead of 4.1
     #[arg(long)]
     pub msh2: bool,
-    /// A picture (.svg), or - for standard output
-    #[arg(long, value_name = "FILE.svg")]
+    /// A picture (.svg .png), or - for standard output (SVG)
+    #[arg(long, value_name = "FILE")]
     pub picture: Option<Target>,
+}
+
+#[derive(Args)]
+pub(super) struct OpenArguments {
+    /// A built-in case, a case file (.toml) or a mesh
+    #[arg(value_name = "CASE|MESH", default_value = "example1")]
+    pub input: String,
 }
 
 #[derive(Args)]
@@ -131,11 +141,14 @@ pub(super) struct RenderArguments {
     #[command(flatten)]
     pub source: Source,
     /// Draw the conversion where so many quadrilaterals stand (nq=100) or after so many steps (step=812); several, in their
-    /// order, side by side (nq=50,100,150)
-    #[arg(long, value_name = "STOPS", value_parser = stops)]
+    /// order, side by side (nq=50,100,150,end)
+    #[arg(long, visible_alias = "strip", value_name = "STOPS", value_parser = stops)]
     pub at: Option<Stops>,
-    /// The picture (.svg), or - for standard output
-    #[arg(short, long, value_name = "FILE.svg")]
+    /// The size of a single picture in pixels (96 an inch), in place of the width of a column
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = pixels)]
+    pub size: Option<[u32; 2]>,
+    /// The picture (.svg .png), or - for standard output (SVG)
+    #[arg(short, long, value_name = "FILE")]
     pub out: Target,
 }
 
@@ -171,7 +184,12 @@ mod tests {
             "quadfront background example1 --out triangles.mesh",
             "quadfront check quads.msh --seams --branching",
             "quadfront render example1 -o example1.svg",
+            "quadfront render example1 --at step=812 --size 1920x1080 -o front.png",
+            "quadfront render example1 --strip nq=50,100,end -o strip.png",
             "quadfront cases --json",
+            "quadfront",
+            "quadfront open",
+            "quadfront open plate.toml",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }

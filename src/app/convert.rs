@@ -30,7 +30,7 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &quads.file)?;
     if let Some(target) = &destination.picture {
-        draw(target, &input.run.case, quads.picture(&input.run.case))?;
+        draw(target, &input.run.case, quads.picture(&input.run.case), None)?;
     }
     quads.report.timing = progress.finish();
     if let Some(target) = &arguments.report {
@@ -58,7 +58,7 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &triangles.file)?;
     if let Some(target) = &destination.picture {
-        draw(target, &input.run.case, Picture::of_mesh(&triangles.file))?;
+        draw(target, &input.run.case, Picture::of_mesh(&triangles.file), None)?;
     }
     let timing = progress.finish();
     if !source.quiet {
@@ -75,14 +75,24 @@ fn write(target: Option<&MeshTarget>, mesh: &MeshFile) -> Result<(), Fault> {
     target.map_or(Ok(()), |target| target.write(mesh))
 }
 
-/// Writes a picture of a case; its own title says at which stop it was made, if at one.
-pub(super) fn draw(target: &Target, case: &Case, picture: Picture) -> Result<(), Fault> {
+/// Pixels for a point of a figure that is drawn for print: 300 an inch.
+pub(super) const PRINT: f64 = 300.0 / 72.0;
+/// Points of a pixel where a size in pixels is asked for: 96 pixels are an inch.
+const POINTS: f64 = 0.75;
+
+/// Writes a picture of a case, in the width of a column or `size` pixels large; its own title says at which stop it was made,
+/// if at one.
+pub(super) fn draw(target: &Target, case: &Case, picture: Picture, size: Option<[u32; 2]>) -> Result<(), Fault> {
     let mut description = describe(case);
     if !picture.title.is_empty() {
         description = format!("{description}, at {}", picture.title);
     }
     let picture = Picture { title: case.title.clone(), description, ..picture };
-    target.write(|out| out.write_all(svg::write(&picture, svg::COLUMN).as_bytes()))
+    let (svg, scale) = match size {
+        Some(size) => (svg::write_sized(&picture, size.map(|n| f64::from(n) * POINTS)), 1.0 / POINTS),
+        None => (svg::write(&picture, svg::COLUMN), PRINT),
+    };
+    output::write_picture(target, &svg, scale, &picture.description)
 }
 
 /// What made a picture: program, case, and the parameters that differ from the default.

@@ -49,19 +49,19 @@ pub(super) fn setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// Places to stop at, one after the other.
+/// Places to stop at, one after the other; the end is `None`.
 #[derive(Clone, Debug)]
-pub(super) struct Stops(pub Vec<Stop>);
+pub(super) struct Stops(pub Vec<Option<Stop>>);
 
 /// Reads nq=N or step=N.
 pub(super) fn stop(text: &str) -> Result<Stop, String> {
     match stops(text)?.0[..] {
-        [stop] => Ok(stop),
+        [Some(stop)] => Ok(stop),
         _ => Err("write one number, for example nq=100".to_owned()),
     }
 }
 
-/// Reads nq=N,N,... or step=N,N,..., ascending.
+/// Reads nq=N,N,... or step=N,N,..., ascending; the last may be `end`.
 pub(super) fn stops(text: &str) -> Result<Stops, String> {
     let usage = || "write nq=100 (quadrilaterals) or step=812".to_owned();
     let (kind, numbers) = text.split_once('=').ok_or_else(usage)?;
@@ -70,11 +70,25 @@ pub(super) fn stops(text: &str) -> Result<Stops, String> {
         "step" => Stop::Step,
         _ => return Err(usage()),
     };
+    let (numbers, to_the_end) = match numbers.strip_suffix(",end") {
+        Some(numbers) => (numbers, true),
+        None => (numbers, false),
+    };
     let numbers: Vec<u64> = numbers.split(',').map(|n| n.parse().map_err(|_| usage())).collect::<Result<_, _>>()?;
     if !numbers.is_sorted() {
         return Err("write the numbers in ascending order".to_owned());
     }
-    Ok(Stops(numbers.into_iter().map(kind).collect()))
+    Ok(Stops(numbers.into_iter().map(|n| Some(kind(n))).chain(to_the_end.then_some(None)).collect()))
+}
+
+/// Reads WIDTHxHEIGHT in pixels.
+pub(super) fn pixels(text: &str) -> Result<[u32; 2], String> {
+    let read = || {
+        let (width, height) = text.split_once('x')?;
+        let side = |text: &str| text.parse::<u32>().ok().filter(|n| (16..=20_000).contains(n));
+        Some([side(width)?, side(height)?])
+    };
+    read().ok_or_else(|| "write WIDTHxHEIGHT in pixels, for example 1920x1080".to_owned())
 }
 
 /// How a stop is written.
@@ -105,6 +119,17 @@ pub(super) fn read(source: &Source) -> Result<Input, Fault> {
     run.case.parameters = parameters.clone();
     run.case.split_odd |= source.split_odd;
     Ok(Input { run, _folder })
+}
+
+/// The run of a file: a case or a mesh from its beginning, or a run file.
+#[cfg(feature = "window")]
+pub(super) fn run_of(path: &Path) -> Result<Run, Fault> {
+    let input = path.display().to_string();
+    if input == "-" {
+        return Err(Fault::new("The window opens files").at(input).remedy("Name a case, a mesh or a run file"));
+    }
+    let source = Source { input, from: None, sol: None, set: Vec::new(), paper: false, split_odd: false, quiet: true };
+    read(&source).map(|input| input.run)
 }
 
 fn read_plain(source: &Source) -> Result<Input, Fault> {

@@ -9,6 +9,8 @@ mod convert;
 mod check;
 mod cases;
 mod render;
+#[cfg(feature = "window")]
+pub mod window;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -42,7 +44,12 @@ pub fn run() -> ExitCode {
         save::abandon();
         std::process::exit(INTERRUPTED);
     });
-    let done = match &cli.command {
+    let done = match cli
+        .command
+        .as_ref()
+        .unwrap_or(&Command::Open(command_line::OpenArguments { input: "example1".to_owned() }))
+    {
+        Command::Open(arguments) => open(&arguments.input),
         Command::Convert(arguments) => convert::convert(arguments),
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
         Command::Check(arguments) => check::check(arguments),
@@ -53,6 +60,23 @@ pub fn run() -> ExitCode {
         complain(&fault);
         ExitCode::from(BAD_INPUT)
     })
+}
+
+/// Opens the window.
+#[cfg(feature = "window")]
+fn open(input: &str) -> Result<ExitCode, Fault> {
+    // What does not exist is said where the command was given.
+    let source = window::Source::named(input);
+    if let window::Source::File(path) = &source {
+        input::run_of(path)?;
+    }
+    window::open(source)
+}
+
+#[cfg(not(feature = "window"))]
+fn open(_: &str) -> Result<ExitCode, Fault> {
+    Err(Fault::new("This quadfront was built without its window")
+        .remedy("Build it with the feature \"window\", or use quadfront convert and quadfront render"))
 }
 
 /// Tells a fault as one line on standard error.

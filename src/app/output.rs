@@ -140,18 +140,47 @@ pub(super) fn check(targets: &[Option<&Target>], picture: Option<&Target>) -> Re
             });
         }
     }
-    if let Some(Target::File(path)) = picture
-        && !is_svg(path)
-    {
-        return Err(Fault::new("Pictures are written as .svg")
-            .at(path.display().to_string())
-            .remedy("Give the name this extension"));
+    if let Some(Target::File(path)) = picture {
+        image_format(path)?;
     }
     Ok(all.contains(&&Target::StandardOutput))
 }
 
-fn is_svg(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg"))
+/// What a picture is written as.
+enum Image {
+    Svg,
+    #[cfg(feature = "window")]
+    Png,
+}
+
+fn image_format(path: &Path) -> Result<Image, Fault> {
+    let is = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    match () {
+        () if is("svg") => Ok(Image::Svg),
+        #[cfg(feature = "window")]
+        () if is("png") => Ok(Image::Png),
+        () => {
+            let known = if cfg!(feature = "window") { ".svg or .png" } else { ".svg" };
+            Err(Fault::new(format!("Pictures are written as {known}"))
+                .at(path.display().to_string())
+                .remedy("Give the name such an extension"))
+        }
+    }
+}
+
+/// Writes vectors as they are or, by the name's extension, as pixels: `scale` of them for a point.
+pub(super) fn write_picture(target: &Target, svg: &str, scale: f64, description: &str) -> Result<(), Fault> {
+    let bytes = match target {
+        Target::StandardOutput => svg.as_bytes().to_vec(),
+        Target::File(path) => match image_format(path)? {
+            Image::Svg => svg.as_bytes().to_vec(),
+            #[cfg(feature = "window")]
+            Image::Png => crate::render::vector::png::write(svg, scale, description)?,
+        },
+    };
+    #[cfg(not(feature = "window"))]
+    let _ = (scale, description);
+    target.write(|out| out.write_all(&bytes))
 }
 
 /// Tells people: on standard output, or on standard error where something else is written to standard output.

@@ -16,7 +16,8 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
         && let Some(mesh) = input::read_mesh(&source.input, source.from)?
     {
         let picture = Picture { title: source.input.clone(), ..Picture::of_mesh(&mesh) };
-        return arguments.out.write(|out| out.write_all(svg::write(&picture, svg::COLUMN).as_bytes()));
+        let svg = svg::write(&picture, svg::COLUMN);
+        return output::write_picture(&arguments.out, &svg, convert::PRINT, &picture.title);
     }
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
@@ -26,16 +27,17 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
         None => {
             let quads = work::convert(&input.run, None, None, &mut progress)?;
             progress.finish();
-            convert::draw(&arguments.out, case, quads.picture(case))
+            convert::draw(&arguments.out, case, quads.picture(case), arguments.size)
         }
         Some(stops) => {
             let mut frames = work::frames(&input.run, stops, &mut progress)?;
             progress.finish();
             if frames.len() == 1 {
-                return convert::draw(&arguments.out, case, frames.remove(0));
+                return convert::draw(&arguments.out, case, frames.remove(0), arguments.size);
             }
-            let strip = svg::strip(&frames, &case.title, &convert::describe(case), svg::PAGE);
-            arguments.out.write(|out| out.write_all(strip.as_bytes()))
+            let description = convert::describe(case);
+            let strip = svg::strip(&frames, &case.title, &description, svg::PAGE);
+            output::write_picture(&arguments.out, &strip, convert::PRINT, &description)
         }
     }
 }

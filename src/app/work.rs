@@ -141,8 +141,8 @@ pub(super) fn frames(run: &Run, stops: &Stops, watch: &mut dyn Watch) -> Result<
     conversion::convert_by(&run.case, watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
         for &stop in &stops.0 {
-            walk_editing(converter, Some(stop), watch, None, &mut |c| run.make_edits(c, c.counts.steps))?;
-            frames.push(Picture { title: stop_text(stop), ..picture(converter) });
+            walk_editing(converter, stop, watch, None, &mut |c| run.make_edits(c, c.counts.steps))?;
+            frames.push(Picture { title: stop.map_or_else(|| "end".to_owned(), stop_text), ..picture(converter) });
         }
         Ok(())
     })?;

@@ -1,5 +1,11 @@
-//! Turns a state of `core` into a picture, and a picture into vectors (pixels with the window). Never changes a state.
+//! Turns a state of `core` into a picture, and a picture into vectors or pixels. Never changes a state.
 
 pub mod palette;
+pub mod colour_map;
+pub mod camera;
 pub mod picture;
+pub mod scene;
+pub mod pick;
 pub mod vector;
+#[cfg(feature = "window")]
+pub mod gpu;

@@ -1,6 +1,172 @@
-//! The colours and strokes of figures: made for print, independent of any window's.
+//! Colours and strokes: the window's palette, dark and light, and that of figures, which are made for print and independent
+//! of any window.
 
 use super::picture::Role;
+
+/// A colour in sRGB with its opacity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Rgba(pub [u8; 4]);
+
+impl Rgba {
+    /// An opaque colour, written `0xRRGGBB`.
+    const fn hex(rgb: u32) -> Rgba {
+        Rgba::hexa(rgb << 8 | 0xFF)
+    }
+
+    /// A colour written `0xRRGGBBAA`.
+    const fn hexa(rgba: u32) -> Rgba {
+        Rgba(rgba.to_be_bytes())
+    }
+
+    /// The same colour, its opacity multiplied by `factor` (0 to 1).
+    #[must_use]
+    pub fn faded(self, factor: f32) -> Rgba {
+        let [r, g, b, a] = self.0;
+        Rgba([r, g, b, (f32::from(a) * factor.clamp(0.0, 1.0)).round() as u8])
+    }
+
+    /// The colour as one number for the graphics card, red in the lowest byte.
+    pub fn packed(self) -> u32 {
+        u32::from_le_bytes(self.0)
+    }
+}
+
+/// Every colour of the window. Amber means now, neutral means you, cool means the front, quiet means the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Palette {
+    /// Whether it is for dark rooms.
+    pub dark: bool,
+    /// Ground of the views.
+    pub ground: Rgba,
+    /// Fill of live triangles.
+    pub live: Rgba,
+    /// Edges of live triangles.
+    pub live_edge: Rgba,
+    /// Fill of dead quadrilaterals.
+    pub dead: Rgba,
+    /// Edges of dead quadrilaterals.
+    pub dead_edge: Rgba,
+    /// Fill of what the last operation changed.
+    pub changed: Rgba,
+    /// Edges of it.
+    pub changed_edge: Rgba,
+    /// Boundary of the domain.
+    pub boundary: Rgba,
+    /// What a person has selected.
+    pub selection: Rgba,
+    /// What the pointer is over.
+    pub hover: Rgba,
+    /// Labels in the views.
+    pub label: Rgba,
+    /// What labels stand on.
+    pub label_plate: Rgba,
+    /// Front segments by their class of table 1, 1 to 4.
+    pub front: [Rgba; 4],
+    /// The base segment: the accent.
+    pub base: Rgba,
+    /// Side edges, and the top edge (dashed).
+    pub side: Rgba,
+    /// Candidates that were refused.
+    pub refused: Rgba,
+    /// Invariants hold.
+    pub holds: Rgba,
+    /// An invariant is broken; errors.
+    pub broken: Rgba,
+    /// Ground of panels.
+    pub panel: Rgba,
+    /// Buttons, chips, hovered rows.
+    pub button: Rgba,
+    /// Text fields.
+    pub field: Rgba,
+    /// Lines and rails.
+    pub line: Rgba,
+    /// Text.
+    pub text: Rgba,
+    /// Titles, active tabs, results.
+    pub strong: Rgba,
+    /// Units, headings.
+    pub weak: Rgba,
+    /// Hints, what is disabled.
+    pub hint: Rgba,
+    /// Text in the accent.
+    pub accent: Rgba,
+    /// The row that the algorithm is at.
+    pub accent_row: Rgba,
+    /// Every other row.
+    pub stripe: Rgba,
+    /// Metric ellipses.
+    pub ellipse: Rgba,
+}
+
+/// For dark rooms.
+pub const DARK: Palette = Palette {
+    dark: true,
+    ground: Rgba::hex(0x0C0F12),
+    live: Rgba::hex(0x161B20),
+    live_edge: Rgba::hex(0x465059),
+    dead: Rgba::hex(0x22303D),
+    dead_edge: Rgba::hex(0x566C80),
+    changed: Rgba::hex(0x17453F),
+    changed_edge: Rgba::hex(0x45D6B5),
+    boundary: Rgba::hex(0xF0EADB),
+    selection: Rgba::hex(0xFFFFFF),
+    hover: Rgba::hexa(0xAEB6BF8C),
+    label: Rgba::hex(0xE6EAEE),
+    label_plate: Rgba::hexa(0x0C0F12E0),
+    front: [Rgba::hex(0xCFF5FF), Rgba::hex(0x74CDF7), Rgba::hex(0x7E96F5), Rgba::hex(0x8798A9)],
+    base: Rgba::hex(0xFFB01F),
+    side: Rgba::hex(0xFFD690),
+    refused: Rgba::hex(0x8A939E),
+    holds: Rgba::hex(0x45D6B5),
+    broken: Rgba::hex(0xFF6B8B),
+    panel: Rgba::hex(0x191D22),
+    button: Rgba::hex(0x23282F),
+    field: Rgba::hex(0x101317),
+    line: Rgba::hex(0x2B3138),
+    text: Rgba::hex(0xCDD3DA),
+    strong: Rgba::hex(0xF3F5F7),
+    weak: Rgba::hex(0x8A939E),
+    hint: Rgba::hex(0x6C7681),
+    accent: Rgba::hex(0xFFC65C),
+    accent_row: Rgba::hexa(0xFFB01F1F),
+    stripe: Rgba::hex(0x1D2127),
+    ellipse: Rgba::hexa(0x8A939E8C),
+};
+
+/// For light rooms.
+pub const LIGHT: Palette = Palette {
+    dark: false,
+    ground: Rgba::hex(0xF4F4F2),
+    live: Rgba::hex(0xFFFFFF),
+    live_edge: Rgba::hex(0xB9C0C7),
+    dead: Rgba::hex(0xDBE4EC),
+    dead_edge: Rgba::hex(0x8DA2B5),
+    changed: Rgba::hex(0xA6DCCB),
+    changed_edge: Rgba::hex(0x00806A),
+    boundary: Rgba::hex(0x20262C),
+    selection: Rgba::hex(0x0E1216),
+    hover: Rgba::hexa(0x616A748C),
+    label: Rgba::hex(0x14191E),
+    label_plate: Rgba::hexa(0xFFFFFFE6),
+    front: [Rgba::hex(0x002B45), Rgba::hex(0x00659C), Rgba::hex(0x7C70DA), Rgba::hex(0x6E7A87)],
+    base: Rgba::hex(0xAD4E00),
+    side: Rgba::hex(0xC77812),
+    refused: Rgba::hex(0x616A74),
+    holds: Rgba::hex(0x00806A),
+    broken: Rgba::hex(0xC2123F),
+    panel: Rgba::hex(0xF1F2F3),
+    button: Rgba::hex(0xFFFFFF),
+    field: Rgba::hex(0xFFFFFF),
+    line: Rgba::hex(0xD9DCDF),
+    text: Rgba::hex(0x2B3138),
+    strong: Rgba::hex(0x0E1216),
+    weak: Rgba::hex(0x616A74),
+    hint: Rgba::hex(0x858D96),
+    accent: Rgba::hex(0x9A4700),
+    accent_row: Rgba::hexa(0xAD4E0018),
+    stripe: Rgba::hex(0xECEEF0),
+    ellipse: Rgba::hexa(0x616A748C),
+};
 
 /// How a role looks in a figure: colours as `#RRGGBB`, widths in points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,5 +200,50 @@ pub fn figure(role: Role) -> Style {
         Role::Front(2) => line("#00659C", 1.1),
         Role::Front(_) => line("#002B45", 1.2),
         Role::Base => line("#AD4E00", 1.8),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contrast after WCAG 2: 1 (none) to 21.
+    fn contrast(a: Rgba, b: Rgba) -> f64 {
+        let luminance = |Rgba([r, g, b, _]): Rgba| {
+            let linear = |c: u8| {
+                let c = f64::from(c) / 255.0;
+                if c <= 0.03928 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
+            };
+            0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn front_and_decision_lines_stand_out_from_live_and_dead_elements() {
+        for (palette, live, dead) in [(DARK, 5.8, 4.5), (LIGHT, 3.4, 2.7)] {
+            for colour in palette.front.into_iter().chain([palette.base, palette.side]) {
+                let (on_live, on_dead) = (contrast(colour, palette.live), contrast(colour, palette.dead));
+                assert!(on_live >= live - 0.05 && on_dead >= dead - 0.05, "{colour:?}: {on_live:.2}, {on_dead:.2}");
+            }
+        }
+    }
+
+    #[test]
+    fn text_can_be_read_on_panels() {
+        for (palette, text, weak) in [(DARK, 11.2, 5.4), (LIGHT, 11.7, 4.9)] {
+            let (on_panel, weak_on_panel) =
+                (contrast(palette.text, palette.panel), contrast(palette.weak, palette.panel));
+            assert!(on_panel >= text - 0.05 && weak_on_panel >= weak - 0.05, "{on_panel:.2}, {weak_on_panel:.2}");
+            assert!(contrast(palette.accent, palette.panel) >= 4.5);
+            assert!(contrast(palette.strong, palette.button) >= 4.5);
+        }
+    }
+
+    #[test]
+    fn fading_changes_the_opacity_alone() {
+        assert_eq!(Rgba::hex(0x102030).faded(0.5), Rgba::hexa(0x10203080));
+        assert_eq!(Rgba([1, 2, 3, 4]).packed(), 0x0403_0201);
     }
 }

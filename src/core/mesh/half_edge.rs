@@ -454,6 +454,28 @@ impl Mesh {
         nodes.iter().map(|&n| self.first_level(NodeId(n))).collect()
     }
 
+    /// A copy for looking at: without the journal, which may be many times as large.
+    #[must_use]
+    pub fn without_journal(&self) -> Mesh {
+        Mesh {
+            uv: self.uv.clone(),
+            metric: self.metric.clone(),
+            anchor: self.anchor.clone(),
+            point: self.point.clone(),
+            origin: self.origin.clone(),
+            twin: self.twin.clone(),
+            sides: self.sides.clone(),
+            region: self.region.clone(),
+            level: self.level.clone(),
+            deferred: self.deferred.clone(),
+            first_level: self.first_level.clone(),
+            free_nodes: self.free_nodes.clone(),
+            free_elements: self.free_elements.clone(),
+            refusals: self.refusals,
+            journal: Journal::default(),
+        }
+    }
+
     /// Appends the canonical serialisation of the state: every array and both free lists, little-endian. Two meshes are
     /// the same state exactly where these bytes are equal. (The journal is history, not state.)
     pub fn write_state(&self, bytes: &mut Vec<u8>) {

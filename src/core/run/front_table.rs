@@ -127,6 +127,13 @@ impl FrontTable {
         Some(self.waiting().filter(|other| self.order(other) < order).count())
     }
 
+    /// The places of the rows in the order in which a selection would take them; those that are put off come last.
+    pub fn in_order(&self) -> Vec<usize> {
+        let mut places: Vec<usize> = (0..self.rows.len()).collect();
+        places.sort_by_cached_key(|&place| (self.rows[place].is_put_off, self.order(&self.rows[place])));
+        places
+    }
+
     /// Number of segments that wait to be chosen.
     pub fn waiting_count(&self) -> usize {
         self.waiting().count()

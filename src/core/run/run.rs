@@ -59,7 +59,7 @@ impl EditKind {
     }
 
     /// Whether both change the same thing, so that the later one of a step replaces the earlier one.
-    fn replaces(&self, other: &EditKind) -> bool {
+    pub fn replaces(&self, other: &EditKind) -> bool {
         match (self, other) {
             (EditKind::Parameter { key, .. }, EditKind::Parameter { key: other, .. }) => key == other,
             (EditKind::Base { .. }, EditKind::Base { .. }) => true,

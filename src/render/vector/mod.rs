@@ -1,3 +1,5 @@
-//! Pictures as vectors.
+//! Pictures as vectors, and as pixels drawn from those.
 
 pub mod svg;
+#[cfg(feature = "window")]
+pub mod png;

@@ -31,6 +31,22 @@ pub fn write(picture: &Picture, width: f64) -> String {
     svg
 }
 
+/// The picture as an SVG file of exactly `size` points, in the middle of it.
+pub fn write_sized(picture: &Picture, size: [f64; 2]) -> String {
+    let mut frame = Frame::fit(picture.bounds(), size[0]);
+    let inner = size[1] - 2.0 * MARGIN;
+    let extent = picture.bounds().map_or(DVec2::ONE, |b| b[1] - b[0]);
+    if extent.y * frame.scale > inner && extent.y > 0.0 {
+        frame.scale = inner / extent.y;
+        frame.aside = 0.5 * (size[0] - 2.0 * MARGIN - extent.x * frame.scale);
+    }
+    frame.above = 0.5 * (inner - extent.y * frame.scale).max(0.0);
+    let mut svg = head(picture, size[0], size[1]);
+    draw(&mut svg, picture, &frame);
+    svg.push_str("</svg>\n");
+    svg
+}
+
 /// Pictures of one thing side by side, `width` points over all, in equal frames of the same scale with a letter and the title of
 /// each below it. Title and description are the file's.
 pub fn strip(pictures: &[Picture], title: &str, description: &str, width: f64) -> String {
@@ -65,6 +81,8 @@ struct Frame {
     scale: f64,
     /// Ground left free beside a tall mesh.
     aside: f64,
+    /// Ground left free above a wide one.
+    above: f64,
     /// The left edge of the frame.
     left: f64,
     height: f64,
@@ -81,6 +99,7 @@ impl Frame {
             corner: DVec2::new(low.x, high.y),
             scale,
             aside: 0.5 * (width - 2.0 * MARGIN - size.x * scale),
+            above: 0.0,
             left: 0.0,
             height: size.y * scale + 2.0 * MARGIN,
         }
@@ -88,7 +107,7 @@ impl Frame {
 
     fn place(&self, p: DVec2) -> (f64, f64) {
         let right = MARGIN + self.aside + (p.x - self.corner.x) * self.scale;
-        (self.left + right, MARGIN + (self.corner.y - p.y) * self.scale)
+        (self.left + right, MARGIN + self.above + (self.corner.y - p.y) * self.scale)
     }
 }
 
@@ -212,6 +231,20 @@ mod tests {
             svg.split("<path fill=\"#FFFFFF\" d=\"").skip(1).map(|p| &p[..p.find('L').unwrap()]).collect();
         assert_eq!(starts, ["M1 49", "M59.5 49"]);
         assert!(svg.contains(">(a) nq=1</text>") && svg.contains(">(b) nq=2</text>"), "{svg}");
+    }
+
+    #[test]
+    fn a_picture_of_a_given_size_lies_in_the_middle_and_within() {
+        let mesh = MeshFile {
+            points: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: vec![[0, 1, 2]],
+            ..MeshFile::default()
+        };
+        let picture = Picture::of_mesh(&mesh);
+        let wide = write_sized(&picture, [200.0, 102.0]);
+        assert!(wide.contains("viewBox=\"0 0 200 102\"") && wide.contains("M50 101"), "{wide}");
+        let tall = write_sized(&picture, [102.0, 200.0]);
+        assert!(tall.contains("M1 150"), "{tall}");
     }
 
     #[test]

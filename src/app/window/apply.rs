@@ -1,0 +1,282 @@
+//! The only place where a command changes anything.
+
+use std::time::Instant;
+
+use super::command::Command;
+use super::files;
+use super::session::{Goal, Source};
+use super::state::{Kept, Look, Over, State};
+use super::words;
+use crate::core::convert::event::Event;
+use crate::core::convert::parameters::Parameters;
+use crate::core::fault::Fault;
+use crate::core::io::run_file;
+use crate::core::mesh::ids::NodeId;
+use crate::core::run::breakpoint::Condition;
+use crate::core::run::run::{Edit, EditKind};
+use crate::core::run::watch::Watched;
+use crate::render::scene::{Layers, Outlined};
+
+/// How many changes can be taken back.
+const UNDO: usize = 200;
+
+impl State {
+    /// Does what a person asks for.
+    pub fn apply(&mut self, command: Command) {
+        match command {
+            Command::Go(goal) => self.go(goal),
+            Command::ToBreakpoint(forward) => self.seek_breakpoint(forward),
+            Command::Play => self.playing = if self.playing.is_some() { None } else { Some(Instant::now()) },
+            Command::Speed(speed) => self.speed = speed,
+            Command::Stop => {
+                self.playing = None;
+                if let Some(session) = &self.session {
+                    session.stop();
+                }
+            }
+            Command::Pick(picked) => self.keep(|kept| kept.picked = picked),
+            Command::Show(what) => self.look = Some(Look::At(what)),
+            Command::LastTouch(what) => {
+                let Some(session) = &self.session else { return };
+                session.go_to_touch(match what {
+                    Outlined::Node(node) => Watched::Node(node),
+                    Outlined::Edge([a, b]) => Watched::Edge(a, b),
+                    Outlined::Element(element) => Watched::Element(element),
+                });
+                self.wait();
+            }
+            Command::Fit => self.look = Some(Look::Fit),
+            Command::ShowDecision => self.look = Some(Look::Decision),
+            Command::Set(key, value) => self.set(key, value),
+            Command::ChooseBase(ends) => self.choose_base(ends),
+            Command::ResetParameters => {
+                self.keep(|kept| kept.edits.retain(|edit| !matches!(edit.kind, EditKind::Parameter { .. })));
+            }
+            Command::Layer(k) => self.keep(|kept| *layer(&mut kept.layers, k) = !*layer(&mut kept.layers, k)),
+            Command::ColourBy(by) => self.keep(|kept| kept.colour_by = by),
+            Command::AddBreakpoint(text) => self.add_breakpoint(text),
+            Command::SwitchBreakpoint(k) => self.keep(|kept| {
+                if let Some(breakpoint) = kept.breakpoints.get_mut(k) {
+                    breakpoint.1 = !breakpoint.1;
+                }
+            }),
+            Command::RemoveBreakpoint(k) => self.keep(|kept| {
+                if k < kept.breakpoints.len() {
+                    kept.breakpoints.remove(k);
+                }
+            }),
+            Command::Bookmark => self.bookmark(),
+            Command::Open(source) => self.open(source),
+            Command::OpenDialog => self.ask_for_file(),
+            Command::OpenPath => self.show(Over::Path),
+            Command::GoTo => self.show(Over::GoTo),
+            Command::Palette => self.show(Over::Palette),
+            Command::Help => self.show(Over::Help),
+            Command::Screenshot => self.screenshot = true,
+            Command::Export => self.export(),
+            Command::SaveRun => self.save_run(),
+            Command::Undo => self.take_back(true),
+            Command::Redo => self.take_back(false),
+            Command::ResetLayout => self.reset_layout = true,
+            Command::ToggleTheme => self.toggle_theme = true,
+            Command::Escape => self.escape(),
+        }
+    }
+
+    fn go(&mut self, goal: Goal) {
+        let Some(session) = &self.session else { return };
+        session.go(goal);
+        self.wait();
+    }
+
+    /// Changes what a person has set, so that it can be taken back.
+    fn keep(&mut self, change: impl FnOnce(&mut Kept)) {
+        let before = self.kept.clone();
+        change(&mut self.kept);
+        if self.kept != before {
+            self.follow(&before);
+            self.undo.push(before);
+            if self.undo.len() > UNDO {
+                self.undo.remove(0);
+            }
+            self.redo.clear();
+        }
+    }
+
+    /// Lets the window follow what a person has set.
+    fn follow(&mut self, before: &Kept) {
+        if self.kept.edits != before.edits {
+            self.run_changed();
+        }
+        if self.kept.layers != before.layers || self.kept.colour_by != before.colour_by {
+            self.mesh_epoch += 1;
+        }
+        if self.kept.breakpoints != before.breakpoints
+            && let Some(session) = &self.session
+        {
+            // Switched off, a breakpoint keeps its count.
+            let all = self.kept.breakpoints.iter().filter_map(|b| Condition::parse(&b.0).ok());
+            session.count(all.collect());
+        }
+        if self.kept.picked != before.picked {
+            self.scroll_to = self.kept.picked;
+        }
+        self.over_epoch += 1;
+    }
+
+    fn take_back(&mut self, back: bool) {
+        let (from, to) = if back { (&mut self.undo, &mut self.redo) } else { (&mut self.redo, &mut self.undo) };
+        let Some(kept) = from.pop() else { return };
+        let before = std::mem::replace(&mut self.kept, kept);
+        to.push(before.clone());
+        self.follow(&before);
+    }
+
+    fn set(&mut self, key: &'static str, value: String) {
+        let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return };
+        if self.parameter(key).as_ref() == Some(&value) {
+            return;
+        }
+        match EditKind::parameter(key, &value) {
+            Ok(kind) => self.edit(Edit { step, kind }),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    fn edit(&mut self, edit: Edit) {
+        self.keep(|kept| {
+            kept.edits.retain(|old| old.step != edit.step || !edit.kind.replaces(&old.kind));
+            let place = kept.edits.partition_point(|old| old.step <= edit.step);
+            kept.edits.insert(place, edit);
+        });
+    }
+
+    /// Where a base has just been selected, another takes its place; else the next selection takes it.
+    fn choose_base(&mut self, [a, b]: [NodeId; 2]) {
+        let Some(moment) = &self.moment else { return };
+        let selected = matches!(moment.event, Some(Event::BaseSelected { .. }));
+        let step = moment.step - u64::from(selected);
+        self.edit(Edit { step, kind: EditKind::Base { a, b } });
+        let which = if selected { "The base is now" } else { "The next base will be" };
+        self.notice(format!("{which} {}.", words::segment(a, b)));
+    }
+
+    fn add_breakpoint(&mut self, text: String) {
+        let text = text.trim().to_owned();
+        if text.is_empty() || self.kept.breakpoints.iter().any(|b| b.0 == text) {
+            return;
+        }
+        match Condition::parse(&text) {
+            Ok(_) => self.keep(|kept| kept.breakpoints.push((text, true))),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    fn seek_breakpoint(&mut self, forward: bool) {
+        let conditions = self.conditions();
+        if conditions.is_empty() {
+            return self.notice("No breakpoint is on: write a condition in the panel Breakpoints.".to_owned());
+        }
+        let Some(session) = &self.session else { return };
+        session.go_to_break(conditions, forward);
+        self.wait();
+    }
+
+    /// One more answer is owed.
+    fn wait(&mut self) {
+        self.waiting += 1;
+        self.since.get_or_insert_with(Instant::now);
+    }
+
+    fn bookmark(&mut self) {
+        let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return };
+        self.keep(|kept| match kept.bookmarks.binary_search(&step) {
+            Ok(k) => drop(kept.bookmarks.remove(k)),
+            Err(k) => kept.bookmarks.insert(k, step),
+        });
+    }
+
+    fn show(&mut self, over: Over) {
+        self.overlay = if self.overlay == over { Over::Nothing } else { over };
+        self.field.clear();
+    }
+
+    fn escape(&mut self) {
+        if self.overlay != Over::Nothing {
+            self.overlay = Over::Nothing;
+        } else if self.playing.is_some() {
+            self.playing = None;
+        } else {
+            self.keep(|kept| kept.picked = None);
+        }
+    }
+
+    /// Goes where the field of that name says: a step, or nq=N.
+    pub fn go_to_field(&mut self) {
+        let text = self.field.trim().replace(['\u{2009}', ' '], "");
+        let goal = match text.to_lowercase().strip_prefix("nq=") {
+            Some(quads) => quads.parse().map(Goal::ToQuads),
+            None => text.trim_start_matches("step=").parse().map(Goal::Step),
+        };
+        match goal {
+            Ok(goal) => {
+                self.overlay = Over::Nothing;
+                self.go(goal);
+            }
+            Err(_) => self.complain(
+                &Fault::new(format!("\"{}\" is no step", self.field)).remedy("Write a step such as 812, or nq=100"),
+            ),
+        }
+    }
+
+    /// Opens what the path field says.
+    pub fn open_field(&mut self) {
+        let text = self.field.trim().to_owned();
+        self.overlay = Over::Nothing;
+        self.open(Source::named(&text));
+    }
+
+    /// Writes the state at hand as vectors and, drawn from those, as pixels.
+    fn export(&mut self) {
+        let Some((moment, opened)) = self.moment.clone().zip(self.opened.clone()) else { return };
+        let stem = format!("{}-step-{}", opened.case.name, moment.step);
+        match files::export(&moment, &opened, &stem) {
+            Ok(names) => self.notice(format!("The figure was saved as {names}.")),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    /// Saves the run in the working folder, under a name that is free.
+    fn save_run(&mut self) {
+        let Some(run) = self.run() else { return };
+        let path = files::free_path(&format!("{}-run", run.case.name), "toml");
+        match run_file::write(&path, &run) {
+            Ok(()) => self.notice(format!("The run was saved as {}.", path.display())),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    fn ask_for_file(&mut self) {
+        self.dialog.get_or_insert_with(|| files::Dialog::open(self.wake.clone()));
+    }
+
+    /// Parameters of the case, before any edit.
+    pub fn parameters_of_case(&self) -> Option<&Parameters> {
+        self.opened.as_ref().map(|opened| &opened.case.parameters)
+    }
+}
+
+/// A layer by its number, counted from 0.
+pub fn layer(layers: &mut Layers, k: usize) -> &mut bool {
+    match k {
+        0 => &mut layers.live,
+        1 => &mut layers.dead,
+        2 => &mut layers.front,
+        3 => &mut layers.boundary,
+        4 => &mut layers.nodes,
+        5 => &mut layers.labels,
+        6 => &mut layers.arcs,
+        7 => &mut layers.ellipses,
+        _ => &mut layers.background,
+    }
+}

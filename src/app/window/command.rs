@@ -1,0 +1,283 @@
+//! Everything that a person can do, as a value: menus, keys, the palette and tests all speak it.
+
+use eframe::egui::{Key, Modifiers};
+
+use super::session::{Goal, Source};
+use crate::core::io::built_in;
+use crate::core::mesh::ids::NodeId;
+use crate::render::scene::{ColourBy, Outlined};
+
+/// What a person asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Go to another step.
+    Go(Goal),
+    /// Go to a breakpoint, forward or backward.
+    ToBreakpoint(bool),
+    /// Play, or stop playing.
+    Play,
+    /// Quadrilaterals a second while playing.
+    Speed(f32),
+    /// Stop what is under way.
+    Stop,
+    /// Keep something in the inspector.
+    Pick(Option<Outlined>),
+    /// Show something in the middle of the view.
+    Show(Outlined),
+    /// Go back to the step that touched something last.
+    LastTouch(Outlined),
+    /// Fit the whole mesh to the view.
+    Fit,
+    /// Show the base segment in the middle, from near.
+    ShowDecision,
+    /// Change a parameter from this step on.
+    Set(&'static str, String),
+    /// Let the selection choose this front segment, from A to B: a change of the run.
+    ChooseBase([NodeId; 2]),
+    /// Put all parameters back to those of the case.
+    ResetParameters,
+    /// Switch a layer, counted from 0.
+    Layer(usize),
+    /// Colour elements by something.
+    ColourBy(ColourBy),
+    /// Dark or light.
+    ToggleTheme,
+    /// Add a breakpoint.
+    AddBreakpoint(String),
+    /// Switch a breakpoint on or off.
+    SwitchBreakpoint(usize),
+    /// Remove a breakpoint.
+    RemoveBreakpoint(usize),
+    /// Set or remove a bookmark at this step.
+    Bookmark,
+    /// Open a case or a mesh.
+    Open(Source),
+    /// Ask for a file by the system's dialog.
+    OpenDialog,
+    /// Show the field for a path.
+    OpenPath,
+    /// Show the field for a step or a number of quadrilaterals.
+    GoTo,
+    /// Save the window as a picture.
+    Screenshot,
+    /// Save the state as a figure.
+    Export,
+    /// Save the run: the case with everything that was changed.
+    SaveRun,
+    /// Take back what a person did last.
+    Undo,
+    /// Do it again.
+    Redo,
+    /// Every command by name.
+    Palette,
+    /// All keys.
+    Help,
+    /// Panels to their first places.
+    ResetLayout,
+    /// Close whatever is open over the window, or give up the selection.
+    Escape,
+}
+
+/// Names of the layers, in the order of their digits.
+pub const LAYERS: [&str; 9] = [
+    "live triangles",
+    "dead quads",
+    "front",
+    "boundary",
+    "nodes",
+    "labels",
+    "angle arcs",
+    "metric ellipses",
+    "background mesh",
+];
+
+/// Kinds of events that one can go to.
+pub const KINDS: [&str; 13] = [
+    "base_selected",
+    "side_swapped",
+    "side_divided",
+    "top_swapped",
+    "node_removed",
+    "formed",
+    "rolled_back",
+    "deferred",
+    "enhanced",
+    "seamed",
+    "split",
+    "closed",
+    "last_resort",
+];
+
+const NONE: Modifiers = Modifiers::NONE;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const CTRL: Modifiers = Modifiers::COMMAND;
+const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+
+/// Keys with what they do; those with more modifiers come first, since egui takes Ctrl+Shift+S for Ctrl+S.
+pub fn keys() -> Vec<(Modifiers, Key, Command)> {
+    let mut keys = vec![
+        (CTRL_SHIFT, Key::Z, Command::Redo),
+        (CTRL_SHIFT, Key::S, Command::Screenshot),
+        (CTRL_SHIFT, Key::L, Command::ToggleTheme),
+        (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
+        (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
+        (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
+        (SHIFT, Key::ArrowLeft, Command::Go(Goal::Quads(-10))),
+        (Modifiers::ALT, Key::F5, Command::ToBreakpoint(false)),
+        (CTRL, Key::G, Command::GoTo),
+        (CTRL, Key::P, Command::Palette),
+        (CTRL, Key::Z, Command::Undo),
+        (CTRL, Key::Y, Command::Redo),
+        (CTRL, Key::O, Command::OpenPath),
+        (CTRL, Key::S, Command::SaveRun),
+        (CTRL, Key::E, Command::Export),
+        (CTRL, Key::B, Command::Bookmark),
+        (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
+        (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
+        (NONE, Key::F5, Command::ToBreakpoint(true)),
+        (NONE, Key::Home, Command::Go(Goal::Step(0))),
+        (NONE, Key::End, Command::Go(Goal::End)),
+        (NONE, Key::Space, Command::Play),
+        (NONE, Key::F, Command::Fit),
+        (NONE, Key::D, Command::ShowDecision),
+        (NONE, Key::Escape, Command::Escape),
+    ];
+    let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+    keys.extend(digits.into_iter().enumerate().map(|(k, key)| (NONE, key, Command::Layer(k))));
+    keys
+}
+
+impl Command {
+    /// Its name, as the palette and tooltips have it.
+    pub fn name(&self) -> String {
+        match self {
+            Command::Go(goal) => go_name(*goal),
+            Command::ToBreakpoint(true) => "To the next breakpoint".into(),
+            Command::ToBreakpoint(false) => "Back to a breakpoint".into(),
+            Command::Play => "Play or pause".into(),
+            Command::Speed(speed) => format!("Play {speed} quads a second"),
+            Command::Stop => "Stop".into(),
+            Command::Pick(_) => "Select".into(),
+            Command::Show(_) => "Show in the middle".into(),
+            Command::LastTouch(_) => "Who touched this last".into(),
+            Command::Fit => "Fit the mesh to the view".into(),
+            Command::ShowDecision => "Zoom to the decision".into(),
+            Command::Set(key, value) => format!("Set {key} = {value}"),
+            Command::ChooseBase([a, b]) => format!("Choose {} as base", super::words::segment(*a, *b)),
+            Command::ResetParameters => "All parameters as the case has them".into(),
+            Command::Layer(k) => format!("Layer: {}", LAYERS[*k]),
+            Command::ColourBy(by) => format!("Colour by {}", by.name()),
+            Command::ToggleTheme => "Dark or light".into(),
+            Command::AddBreakpoint(text) => format!("Break where {text}"),
+            Command::SwitchBreakpoint(_) => "Switch a breakpoint".into(),
+            Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
+            Command::Bookmark => "Bookmark this step".into(),
+            Command::Open(Source::BuiltIn(name)) => format!("Open {name}"),
+            Command::Open(Source::File(path)) => format!("Open {}", path.display()),
+            Command::OpenDialog => "Open by dialog…".into(),
+            Command::OpenPath => "Open by path…".into(),
+            Command::GoTo => "Go to a step or NQ…".into(),
+            Command::Screenshot => "Save a picture of the window".into(),
+            Command::Export => "Save a figure of this state".into(),
+            Command::SaveRun => "Save the run".into(),
+            Command::Undo => "Undo".into(),
+            Command::Redo => "Redo".into(),
+            Command::Palette => "Every command by name".into(),
+            Command::Help => "Keys".into(),
+            Command::ResetLayout => "Panels to their first places".into(),
+            Command::Escape => "Close, or select nothing".into(),
+        }
+    }
+
+    /// Its key as text, if it has one.
+    pub fn key(&self) -> Option<String> {
+        if *self == Command::Help {
+            return Some("?".into());
+        }
+        let (modifiers, key, _) = keys().into_iter().find(|k| k.2 == *self)?;
+        let mut text = String::new();
+        for (held, name) in [(modifiers.command, "Ctrl+"), (modifiers.alt, "Alt+"), (modifiers.shift, "Shift+")] {
+            if held {
+                text += name;
+            }
+        }
+        Some(text + key_name(key))
+    }
+
+    /// Its name with its key, for tooltips.
+    pub fn tip(&self) -> String {
+        match self.key() {
+            Some(key) => format!("{}  ({key})", self.name()),
+            None => self.name(),
+        }
+    }
+
+    /// All that need nothing else to be said.
+    pub fn all() -> Vec<Command> {
+        let mut all: Vec<Command> = keys().into_iter().map(|k| k.2).collect();
+        all.extend([Command::Help, Command::OpenDialog, Command::ResetParameters, Command::ResetLayout]);
+        all.extend(ColourBy::ALL.map(Command::ColourBy));
+        all.extend(KINDS.iter().flat_map(|k| [true, false].map(|f| Command::Go(Goal::Kind(k, f)))));
+        all.extend(built_in::CASES.iter().map(|case| Command::Open(Source::BuiltIn(case.0.to_owned()))));
+        let mut seen: Vec<String> = Vec::new();
+        all.retain(|command| {
+            let name = command.name();
+            let new = !seen.contains(&name);
+            seen.push(name);
+            new
+        });
+        all
+    }
+}
+
+fn go_name(goal: Goal) -> String {
+    let kind = super::words::kind;
+    match goal {
+        Goal::Step(0) => "To the beginning".into(),
+        Goal::Step(step) => format!("To step {step}"),
+        Goal::Steps(1) => "One operation on".into(),
+        Goal::Steps(-1) => "One operation back".into(),
+        Goal::Steps(by) => format!("{by} operations"),
+        Goal::Quads(1) => "One quadrilateral on".into(),
+        Goal::Quads(-1) => "One quadrilateral back".into(),
+        Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals on"),
+        Goal::Quads(by) => format!("{} quadrilaterals back", -by),
+        Goal::ToQuads(quads) => format!("To NQ = {quads}"),
+        Goal::Kind(name, true) => format!("Next event: {}", kind(name)),
+        Goal::Kind(name, false) => format!("Event before: {}", kind(name)),
+        Goal::End => "To the end".into(),
+    }
+}
+
+fn key_name(key: Key) -> &'static str {
+    match key {
+        Key::ArrowRight => "Right",
+        Key::ArrowLeft => "Left",
+        Key::Escape => "Esc",
+        other => other.name(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_with_more_modifiers_come_first_and_none_is_used_twice() {
+        let keys = keys();
+        let held = |m: &Modifiers| [m.command, m.alt, m.shift].iter().filter(|held| **held).count();
+        assert!(keys.is_sorted_by(|a, b| held(&a.0) >= held(&b.0)));
+        for (i, a) in keys.iter().enumerate() {
+            assert!(keys[..i].iter().all(|b| (b.0, b.1) != (a.0, a.1)), "{:?}", a.2);
+        }
+    }
+
+    #[test]
+    fn every_command_has_a_name_of_its_own_and_tells_its_key() {
+        let all = Command::all();
+        assert!(all.len() > 60);
+        assert_eq!(Command::Go(Goal::Steps(1)).tip(), "One operation on  (Ctrl+Right)");
+        assert_eq!(Command::ToBreakpoint(false).tip(), "Back to a breakpoint  (Alt+F5)");
+        assert_eq!(Command::Layer(2).tip(), "Layer: front  (3)");
+    }
+}

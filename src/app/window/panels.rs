@@ -1,0 +1,53 @@
+//! The panels. Each shows a part of the state and pushes commands; none changes the run itself.
+
+pub mod top;
+pub mod legend;
+pub mod time;
+pub mod timeline;
+pub mod front;
+pub mod breakpoints;
+pub mod inspector;
+pub mod history;
+pub mod parameters;
+pub mod layers;
+pub mod plots;
+pub mod messages;
+pub mod over;
+
+use eframe::egui::{self, Align, Button, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo};
+
+use super::command::Command;
+use super::theme::{self, ink};
+use crate::render::palette::Palette;
+
+/// A button with an icon, its name for screen readers, and a tooltip with its key.
+pub fn icon_button(ui: &mut Ui, icon: &str, size: f32, command: &Command, enabled: bool) -> Response {
+    let button = Button::new(RichText::new(icon).font(theme::regular(size))).frame_when_inactive(false);
+    let response = ui.add_enabled(enabled, button);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, command.name()));
+    response.on_hover_text(command.tip())
+}
+
+/// The head of a section, with its source at the right.
+pub fn heading(ui: &mut Ui, title: &str, source: &str, palette: &Palette) {
+    ui.add_space(8.0);
+    let width = ui.max_rect().width();
+    ui.horizontal(|ui| {
+        // What stands below may be wider than the panel: heads keep to it.
+        ui.set_max_width(width);
+        ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
+        ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
+            ui.label(RichText::new(source).font(theme::regular(theme::HEAD)).color(ink(palette.weak)));
+        });
+    });
+}
+
+/// The inside of a panel.
+pub fn inset() -> Frame {
+    Frame::NONE.inner_margin(Margin::symmetric(14, 8))
+}
+
+/// Weak text, for units and notes.
+pub fn note(text: impl Into<String>, palette: &Palette) -> RichText {
+    RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.weak))
+}

@@ -1,0 +1,238 @@
+//! The table of the front: every segment that waits, sortable, with virtual rows; linked with the view.
+
+use std::cmp::Ordering;
+
+use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
+use egui_extras::{Column, TableBuilder};
+
+use crate::app::window::command::Command;
+use crate::app::window::icons;
+use crate::app::window::session::Moment;
+use crate::app::window::state::{FrontColumn, State};
+use crate::app::window::theme::{self, ink};
+use crate::app::window::words;
+use crate::core::front::segment::Segment;
+use crate::render::palette::Palette;
+use crate::render::scene::{Decision, Outlined};
+
+const ROW: f32 = 20.0;
+
+/// Heads with their widths and what is said about them.
+const COLUMNS: [(FrontColumn, &str, f32, &str); 9] = [
+    (FrontColumn::Rank, "#", 28.0, "Rank: the order in which segments come by table 1"),
+    (FrontColumn::Nodes, "A → B", 71.0, "Nodes of the segment, the live triangles to its left"),
+    (FrontColumn::Class, "cl", 26.0, "Class of table 1"),
+    (FrontColumn::HValue, "H", 53.0, "H-value, eq. 6, in units of the case"),
+    (FrontColumn::Length, "len", 31.0, "Length in the metric"),
+    (FrontColumn::ThetaA, "θA °", 39.0, "Frontal angle at A, degrees, in the metric of A"),
+    (FrontColumn::ThetaB, "θB °", 39.0, "Frontal angle at B, degrees, in the metric of B"),
+    (FrontColumn::Level, "lv", 19.0, "Level: rows from the boundary"),
+    (FrontColumn::Loop, "lp", 17.0, "Loop of the front"),
+];
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = state.moment.clone() else { return };
+    chips(ui, state, &moment, palette);
+    if moment.front.is_empty() {
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            ui.add_space(14.0);
+            let quads = words::grouped(moment.mesh.element_count() as u64);
+            ui.label(super::note(format!("The front is gone: {quads} quads stand."), palette));
+        });
+        return;
+    }
+    let rows = rows(state, &moment);
+    table(ui, state, &moment, &rows, commands, palette);
+}
+
+fn chips(ui: &mut Ui, state: &mut State, moment: &Moment, palette: &Palette) {
+    ui.add_space(7.0);
+    ui.horizontal(|ui| {
+        ui.add_space(8.0);
+        ui.spacing_mut().item_spacing.x = 6.0;
+        for class in 1..=4_u8 {
+            let k = usize::from(class) - 1;
+            let count = moment.front.iter().filter(|s| s.class == class).count() as u64;
+            let shown = state.classes[k];
+            let text = format!("{class}  {}", words::grouped(count));
+            let colour = ink(if shown { palette.strong } else { palette.hint });
+            let galley = ui.painter().layout_no_wrap(text, theme::medium(theme::TABLE), colour);
+            let (rect, response) = ui.allocate_exact_size(galley.size() + Vec2::new(32.0, 6.0), Sense::click());
+            response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, shown, format!("Class {class}")));
+            let line = ink(if response.hovered() { palette.hint } else { palette.line });
+            let fill = ink(if shown { palette.button } else { palette.panel });
+            ui.painter().rect(rect, 3.0, fill, (1.0, line), egui::StrokeKind::Inside);
+            let swatch = Rect::from_center_size(rect.left_center() + Vec2::new(15.0, 0.0), Vec2::new(12.0, 3.0));
+            let fade = if shown { 1.0 } else { 0.35 };
+            ui.painter().rect_filled(swatch, 1.5, ink(palette.front[k].faded(fade)));
+            let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + Vec2::new(25.0, 0.0), galley.size()).min;
+            ui.painter().galley(at, galley, colour);
+            if response.on_hover_text("Show or hide segments of this class in the table").clicked() {
+                state.classes[k] = !shown;
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add_space(8.0);
+            ui.label(super::note(words::grouped(moment.front.len() as u64), palette))
+                .on_hover_text("Segments on the front");
+        });
+    });
+    ui.add_space(5.0);
+}
+
+/// Places in the front of the segments that are shown, in their order; each with its rank, from 1.
+fn rows(state: &State, moment: &Moment) -> Vec<(usize, usize)> {
+    let mut rows: Vec<(usize, usize)> = (0..moment.front.len()).map(|i| (i, i + 1)).collect();
+    rows.retain(|row| state.classes[usize::from(moment.front[row.0].class) - 1]);
+    let (column, ascending) = state.sort;
+    let by = |a: &Segment, b: &Segment| match column {
+        FrontColumn::Rank => Ordering::Equal,
+        FrontColumn::Nodes => (a.a, a.b).cmp(&(b.a, b.b)),
+        FrontColumn::Class => a.class.cmp(&b.class),
+        FrontColumn::HValue => a.h_value.total_cmp(&b.h_value),
+        FrontColumn::Length => a.length_metric.total_cmp(&b.length_metric),
+        FrontColumn::ThetaA => a.theta[0].total_cmp(&b.theta[0]),
+        FrontColumn::ThetaB => a.theta[1].total_cmp(&b.theta[1]),
+        FrontColumn::Level | FrontColumn::Loop => a.level.cmp(&b.level),
+    };
+    if column == FrontColumn::Loop {
+        rows.sort_by_key(|row| (moment.rows[row.0].front_loop, row.1));
+    } else if column != FrontColumn::Rank {
+        rows.sort_by(|a, b| by(&moment.front[a.0], &moment.front[b.0]).then(a.1.cmp(&b.1)));
+    }
+    if !ascending {
+        rows.reverse();
+    }
+    rows
+}
+
+fn table(
+    ui: &mut Ui,
+    state: &mut State,
+    moment: &Moment,
+    rows: &[(usize, usize)],
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    let base = Decision::of(&moment.phase).base;
+    let is = |s: &Segment, ends: [_; 2]| [s.a, s.b] == ends || [s.b, s.a] == ends;
+    let edge = |what: Option<Outlined>| match what {
+        Some(Outlined::Edge(ends)) => Some(ends),
+        _ => None,
+    };
+    let (picked, hovered) = (edge(state.kept.picked), edge(state.hovered));
+    let decimals = words::decimals(moment.front.iter().map(|s| s.h_value));
+    ui.spacing_mut().item_spacing = Vec2::new(1.0, 0.0);
+    let mut builder = TableBuilder::new(ui)
+        .id_salt("front")
+        .striped(true)
+        .sense(Sense::click())
+        .auto_shrink(false)
+        .animate_scrolling(false)
+        .cell_layout(Layout::right_to_left(Align::Center));
+    for (_, _, width, _) in COLUMNS {
+        builder = builder.column(Column::exact(width));
+    }
+    builder = builder.column(Column::remainder().at_least(2.0));
+    let wanted = edge(state.scroll_to.take());
+    if let Some(row) = wanted.and_then(|ends| rows.iter().position(|r| is(&moment.front[r.0], ends))) {
+        builder = builder.scroll_to_row(row, None);
+    }
+    let mut pointed = None;
+    let table = builder.header(22.0, |mut header| {
+        for (column, name, _, tip) in COLUMNS {
+            header.col(|ui| head(ui, state, column, name, tip, palette));
+        }
+        header.col(|_| {});
+    });
+    table.body(|body| {
+        body.rows(ROW, rows.len(), |mut row| {
+            let (place, rank) = rows[row.index()];
+            let segment = &moment.front[place];
+            let (is_base, is_picked) = (base.is_some_and(|e| is(segment, e)), picked.is_some_and(|e| is(segment, e)));
+            row.set_selected(is_picked);
+            row.set_hovered(hovered.is_some_and(|e| is(segment, e)));
+            let texts = [
+                if moment.rows[place].is_put_off { words::UNDEFINED.to_owned() } else { rank.to_string() },
+                words::segment(segment.a, segment.b),
+                String::new(),
+                words::fixed(segment.h_value, decimals),
+                words::fixed(segment.length_metric, 2),
+                words::degrees(segment.theta[0]),
+                words::degrees(segment.theta[1]),
+                segment.level.to_string(),
+                (moment.rows[place].front_loop + 1).to_string(),
+            ];
+            for (k, text) in texts.into_iter().enumerate() {
+                row.col(|ui| {
+                    if is_base {
+                        accent_row(ui, k == 0, palette);
+                    }
+                    if k == 2 {
+                        return class(ui, segment.class, palette);
+                    }
+                    let colour = match (k, is_base) {
+                        (0, _) => palette.weak,
+                        (_, true) => palette.strong,
+                        _ => palette.text,
+                    };
+                    let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
+                    ui.add(egui::Label::new(text).selectable(false));
+                });
+            }
+            row.col(|ui| {
+                if is_base {
+                    accent_row(ui, false, palette);
+                }
+            });
+            let response = row.response();
+            let name = format!("Segment {}", words::segment(segment.a, segment.b));
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_picked, name.clone()));
+            let ends = [segment.a, segment.b];
+            if response.hovered() {
+                pointed = Some(Outlined::Edge(ends));
+            }
+            if response.double_clicked() {
+                commands.push(Command::Show(Outlined::Edge(ends)));
+            } else if response.clicked() {
+                commands.push(Command::Pick(Some(Outlined::Edge(ends))));
+            }
+        });
+    });
+    if pointed.is_some() && pointed != state.hovered {
+        state.hovered = pointed;
+        state.hover_from_view = true;
+        state.over_epoch += 1;
+    }
+}
+
+fn head(ui: &mut Ui, state: &mut State, column: FrontColumn, name: &str, tip: &str, palette: &Palette) {
+    let sorted = state.sort.0 == column;
+    let arrow = if state.sort.1 { icons::CARET_UP } else { icons::CARET_DOWN };
+    let text = if sorted { format!("{arrow}{name}") } else { name.to_owned() };
+    let colour = ink(if sorted { palette.strong } else { palette.weak });
+    let text = RichText::new(text).font(theme::regular(theme::HEAD)).color(colour);
+    let response = ui.add(egui::Label::new(text).selectable(false).sense(Sense::click()));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Sort by {name}")));
+    if response.on_hover_text(tip).clicked() {
+        state.sort = (column, if sorted { !state.sort.1 } else { true });
+    }
+}
+
+fn accent_row(ui: &Ui, first: bool, palette: &Palette) {
+    let rect = ui.max_rect().expand2(Vec2::new(1.0, 0.0));
+    ui.painter().rect_filled(rect, 0.0, ink(palette.accent_row));
+    if first {
+        let bar = Rect::from_min_size(ui.max_rect().left_top(), Vec2::new(3.0, rect.height()));
+        ui.painter().rect_filled(bar, 0.0, ink(palette.base));
+    }
+}
+
+fn class(ui: &mut Ui, class: u8, palette: &Palette) {
+    let text = RichText::new(class.to_string()).font(theme::regular(theme::TABLE)).color(ink(palette.text));
+    ui.add(egui::Label::new(text).selectable(false));
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(12.0, 3.0), Sense::hover());
+    ui.painter().rect_filled(rect, 1.5, ink(palette.front[usize::from(class) - 1]));
+}

@@ -1,0 +1,51 @@
+//! The last steps before the state at hand, and what a person has changed.
+
+use eframe::egui::{RichText, ScrollArea, Ui};
+
+use super::{heading, inset, note};
+use crate::app::window::command::Command;
+use crate::app::window::session::Goal;
+use crate::app::window::state::State;
+use crate::app::window::theme::{self, ink};
+use crate::app::window::words;
+use crate::core::run::run::EditKind;
+use crate::render::palette::Palette;
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = &state.moment else { return };
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        inset().show(ui, |ui| {
+            heading(ui, "Changes of this run", "", palette);
+            if state.kept.edits.is_empty() {
+                ui.label(note("None: it is the case's own.", palette));
+            }
+            for edit in &state.kept.edits {
+                let what = match &edit.kind {
+                    EditKind::Parameter { key, value } => format!("{key} = {value}"),
+                    EditKind::Base { a, b } => format!("base {}", words::segment(*a, *b)),
+                };
+                if ui.button(format!("from step {}: {what}", words::grouped(edit.step))).clicked() {
+                    commands.push(Command::Go(Goal::Step(edit.step)));
+                }
+            }
+            heading(ui, "Steps around this one", "", palette);
+            let now = moment.step as usize;
+            for k in (now.saturating_sub(20)..(now + 8).min(state.track.len())).rev() {
+                let tracked = &state.track[k];
+                let text = format!("{}   {}", words::grouped(k as u64 + 1), words::kind(tracked.kind));
+                let colour = if k + 1 == now {
+                    palette.accent
+                } else if k + 1 < now {
+                    palette.text
+                } else {
+                    palette.hint
+                };
+                let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
+                if ui.selectable_label(false, text).clicked() {
+                    commands.push(Command::Go(Goal::Step(k as u64 + 1)));
+                }
+            }
+        });
+    });
+}

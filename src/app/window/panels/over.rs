@@ -1,0 +1,120 @@
+//! What opens over the window: every command by name, keys, and fields for a step or a path.
+
+use eframe::egui::{
+    self, Align2, Area, Button, Context, Frame, Key, Margin, Order, RichText, ScrollArea, TextEdit, Ui, Vec2,
+};
+
+use crate::app::window::command::{Command, keys};
+use crate::app::window::state::{Over, State};
+use crate::app::window::theme::{self, ink};
+use crate::render::palette::Palette;
+
+const WIDTH: f32 = 460.0;
+
+/// Shows what is open.
+pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+    let over = state.overlay;
+    if over == Over::Nothing {
+        return;
+    }
+    let frame = Frame::NONE
+        .fill(ink(palette.panel))
+        .stroke((1.0, ink(palette.hint)))
+        .corner_radius(4.0)
+        .inner_margin(Margin::same(12))
+        .shadow(egui::Shadow { offset: [0, 6], blur: 18, spread: 0, color: egui::Color32::from_black_alpha(80) });
+    let area =
+        Area::new(egui::Id::unique("over")).order(Order::Foreground).anchor(Align2::CENTER_TOP, Vec2::new(0.0, 60.0));
+    let shown = area.show(context, |ui| {
+        frame.show(ui, |ui| {
+            ui.set_width(WIDTH);
+            match over {
+                Over::Palette => palette_list(ui, state, commands, palette),
+                Over::Help => help(ui, palette),
+                Over::GoTo => {
+                    if field(ui, state, "A step such as 812, or nq=100", "Step or NQ") {
+                        state.go_to_field();
+                    }
+                }
+                Over::Path => {
+                    if field(ui, state, "The path of a case (.toml) or a mesh, or the name of a built-in case", "Path")
+                    {
+                        state.open_field();
+                    }
+                }
+                Over::Nothing => {}
+            }
+        });
+    });
+    let elsewhere = context.input(|input| {
+        input.pointer.any_pressed() && input.pointer.interact_pos().is_some_and(|at| !shown.response.rect.contains(at))
+    });
+    if elsewhere {
+        state.overlay = Over::Nothing;
+    }
+}
+
+/// A field with the focus; true where it was ended by Enter.
+fn field(ui: &mut Ui, state: &mut State, hint: &str, name: &str) -> bool {
+    let field = TextEdit::singleline(&mut state.field).hint_text(hint).desired_width(WIDTH);
+    let response = ui.add(field);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, name));
+    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    if !entered && !response.has_focus() {
+        response.request_focus();
+    }
+    entered
+}
+
+fn palette_list(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+    let entered = field(ui, state, "Every command by name", "Name of a command");
+    let wanted: Vec<String> = state.field.to_lowercase().split_whitespace().map(str::to_owned).collect();
+    let fits = |name: &str| wanted.iter().all(|word| name.to_lowercase().contains(word));
+    let found: Vec<Command> = Command::all().into_iter().filter(|c| *c != Command::Escape && fits(&c.name())).collect();
+    let mut chosen = found.first().filter(|_| entered).cloned();
+    ui.add_space(4.0);
+    ScrollArea::vertical().max_height(380.0).min_scrolled_height(380.0).show(ui, |ui| {
+        for (k, command) in found.iter().enumerate() {
+            let colour = if k == 0 { palette.strong } else { palette.text };
+            let text = RichText::new(command.name()).color(ink(colour));
+            let button = Button::new(text)
+                .shortcut_text(command.key().unwrap_or_default())
+                .frame_when_inactive(k == 0)
+                .min_size(Vec2::new(WIDTH - 12.0, 22.0));
+            if ui.add(button).clicked() {
+                chosen = Some(command.clone());
+            }
+        }
+        if found.is_empty() {
+            ui.label(super::note("No command has these words.", palette));
+        }
+    });
+    if let Some(command) = chosen {
+        state.overlay = Over::Nothing;
+        commands.push(command);
+    }
+}
+
+fn help(ui: &mut Ui, palette: &Palette) {
+    ui.label(RichText::new("Keys").font(theme::semibold(theme::TITLE)).color(ink(palette.strong)));
+    ui.add_space(6.0);
+    ScrollArea::vertical().max_height(460.0).min_scrolled_height(460.0).show(ui, |ui| {
+        egui::Grid::new("keys").num_columns(2).spacing(Vec2::new(26.0, 3.0)).show(ui, |ui| {
+            for (_, _, command) in keys() {
+                ui.label(RichText::new(command.key().unwrap_or_default()).color(ink(palette.strong)));
+                ui.label(command.name());
+                ui.end_row();
+            }
+            for (keys, what) in [
+                ("drag, middle drag", "Move the mesh"),
+                ("wheel, pinch", "Zoom at the pointer"),
+                ("second button, drag", "Turn the mesh; F looks straight down again"),
+                ("click, double click", "Select; show in the middle"),
+            ] {
+                ui.label(RichText::new(keys).color(ink(palette.strong)));
+                ui.label(what);
+                ui.end_row();
+            }
+        });
+    });
+}

@@ -1,0 +1,219 @@
+//! The parameters at the step at hand, live: a change holds from this step on.
+
+use eframe::egui::{self, Align, ComboBox, Layout, RichText, Role, ScrollArea, Slider, Ui, Vec2, WidgetInfo};
+
+use super::{icon_button, inset};
+use crate::app::window::command::Command;
+use crate::app::window::icons;
+use crate::app::window::state::State;
+use crate::app::window::theme::{self, ink};
+use crate::core::convert::parameters::Parameters;
+use crate::render::palette::Palette;
+
+/// A number: key, name, range, decimals, unit, what the paper says, and what it does.
+struct Number {
+    key: &'static str,
+    name: &'static str,
+    range: [f64; 2],
+    decimals: usize,
+    unit: &'static str,
+    paper: &'static str,
+    tip: &'static str,
+}
+
+const NUMBERS: [Number; 7] = [
+    Number {
+        key: "theta_rect",
+        name: "θ rect",
+        range: [90.0, 180.0],
+        decimals: 1,
+        unit: "°",
+        paper: "paper 135",
+        tip: "Below this frontal angle the neighbouring front segment is the side edge (table 1).",
+    },
+    Number {
+        key: "c",
+        name: "c",
+        range: [0.5, 4.0],
+        decimals: 2,
+        unit: "",
+        paper: "1.5–2.0",
+        tip: "A segment is within reach below c times the smallest H-value (section 4.3.3).",
+    },
+    Number {
+        key: "theta_seam",
+        name: "θ seam",
+        range: [0.0, 90.0],
+        decimals: 1,
+        unit: "°",
+        paper: "30, fig. 12: 45",
+        tip: "At or below this frontal angle a front corner is closed by a seam (section 4.3.6).",
+    },
+    Number {
+        key: "side_deviation",
+        name: "side off",
+        range: [0.0, 90.0],
+        decimals: 1,
+        unit: "°",
+        paper: "paper 30",
+        tip: "A side edge may be off the direction aimed at by this (eq. 8).",
+    },
+    Number {
+        key: "side_split",
+        name: "side split",
+        range: [1.0, 4.0],
+        decimals: 2,
+        unit: "×",
+        paper: "paper 1.5",
+        tip: "A live side edge longer than this times the base is divided (section 4.3.4).",
+    },
+    Number {
+        key: "layers",
+        name: "layers",
+        range: [0.0, 20.0],
+        decimals: 0,
+        unit: "",
+        paper: "none",
+        tip: "Rows that are offset from the boundary before anything else.",
+    },
+    Number {
+        key: "theta_revr",
+        name: "θ revr",
+        range: [180.0, 360.0],
+        decimals: 1,
+        unit: "°",
+        paper: "225; classifies only",
+        tip: "Above this a corner is a reversal (fig. 12). It classifies only: changing it changes nothing in the mesh.",
+    },
+];
+
+const SWITCHES: [(&str, &str, &str); 6] = [
+    ("bisector", "aim sides at the bisector", "Off: always at the right angle, as the paper says."),
+    ("placement", "place new top nodes", "Off: the paper's eq. 9 on front nodes."),
+    ("smoothing", "smooth around each quad", "Eqs. 9 and 10, section 4.3.6."),
+    ("enhancement", "enhance around each quad", "Local swaps and node deletion, section 4.3.6."),
+    ("seaming", "seam small corners", "Section 4.3.6, fig. 18."),
+    ("post_processing", "clean up at the end", "Clean-up and smoothing of the whole mesh, section 4.3.7."),
+];
+
+const SELECTION: [(&str, &str); 4] = [
+    ("table1", "smallest H, table 1"),
+    ("shortest", "shortest segment"),
+    ("smallest_angle", "smallest frontal angle"),
+    ("level", "rows, as Q-Morph"),
+];
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = state.moment.clone() else { return };
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        inset().show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 5.0;
+            for number in &NUMBERS {
+                row(ui, state, &moment.parameters, number, commands, palette);
+            }
+            selection(ui, &moment.parameters, commands, palette);
+            for (key, name, tip) in SWITCHES {
+                let mut on = moment.parameters.text_of(key).as_deref() == Some("true");
+                if ui.checkbox(&mut on, name).on_hover_text(tip).changed() {
+                    commands.push(Command::Set(key, on.to_string()));
+                }
+            }
+        });
+    });
+}
+
+/// The button in the panel's bar.
+pub fn reset(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let command = Command::ResetParameters;
+    let changed = !state.kept.edits.is_empty();
+    if icon_button(ui, icons::RESET, theme::ICON, &command, changed).clicked() {
+        commands.push(command);
+    }
+}
+
+fn row(
+    ui: &mut Ui,
+    state: &mut State,
+    parameters: &Parameters,
+    number: &Number,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    let in_force: f64 = parameters.text_of(number.key).and_then(|text| text.parse().ok()).unwrap_or(f64::NAN);
+    // What is being dragged is not in force until it is let go.
+    let mut value = state.tentative.filter(|t| t.0 == number.key).map_or(in_force, |t| t.1);
+    let before = value;
+    ui.horizontal(|ui| {
+        ui.set_height(24.0);
+        let label = RichText::new(number.name).color(ink(palette.text));
+        ui.allocate_ui_with_layout(Vec2::new(58.0, 24.0), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_width(58.0);
+            ui.label(label).on_hover_text(number.tip);
+        });
+        ui.spacing_mut().slider_width = 84.0;
+        let [low, high] = number.range;
+        let slider = Slider::new(&mut value, low..=high).show_value(false);
+        let dragged = ui.add(slider);
+        dragged.widget_info(|| WidgetInfo::slider(true, value, format!("{} slider", number.key)));
+        let text = egui::DragValue::new(&mut value)
+            .range(low..=high)
+            .speed((high - low) / 400.0)
+            .fixed_decimals(number.decimals)
+            .suffix(number.unit)
+            .update_while_editing(false);
+        let typed = ui.add_sized(Vec2::new(60.0, 22.0), text);
+        typed.widget_info(|| WidgetInfo::drag_value(true, value));
+        typed.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, number.key));
+        let changed_here = state.parameters_of_case().and_then(|case| case.text_of(number.key));
+        let changed = changed_here.is_some_and(|case| parameters.text_of(number.key).as_ref() != Some(&case));
+        let busy = dragged.dragged() || typed.dragged();
+        if value != before || (state.tentative.is_some_and(|t| t.0 == number.key) && !busy) {
+            let value = rounded(value, number.decimals);
+            if busy {
+                state.tentative = Some((number.key, value));
+            } else {
+                state.tentative = None;
+                commands.push(Command::Set(number.key, value.to_string()));
+            }
+        }
+        if changed {
+            back(ui, state, number.key, commands);
+        } else {
+            let paper = RichText::new(number.paper).font(theme::regular(theme::HEAD)).color(ink(palette.weak));
+            ui.add(egui::Label::new(paper).truncate());
+        }
+    });
+}
+
+/// A button that gives a parameter the value of the case again.
+fn back(ui: &mut Ui, state: &State, key: &'static str, commands: &mut Vec<Command>) {
+    let Some(value) = state.parameters_of_case().and_then(|case| case.text_of(key)) else { return };
+    let response = ui.add(egui::Button::new(format!("{} {value}", icons::RESET)).small());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {key}")));
+    if response.on_hover_text("Back to the value of the case, from this step on").clicked() {
+        commands.push(Command::Set(key, value));
+    }
+}
+
+fn rounded(value: f64, decimals: usize) -> f64 {
+    let scale = libm::pow(10.0, decimals as f64);
+    (value * scale).round() / scale
+}
+
+fn selection(ui: &mut Ui, parameters: &Parameters, commands: &mut Vec<Command>, palette: &Palette) {
+    let now = parameters.text_of("selection").unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("select by").color(ink(palette.text)));
+        let text = SELECTION.iter().find(|s| s.0 == now).map_or(now.as_str(), |s| s.1).to_owned();
+        let combo = ComboBox::from_id_salt("selection").selected_text(text).width(170.0);
+        let shown = combo.show_ui(ui, |ui| {
+            for (word, name) in SELECTION {
+                if ui.selectable_label(word == now, name).clicked() {
+                    commands.push(Command::Set("selection", word.to_owned()));
+                }
+            }
+        });
+        shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "selection"));
+    });
+}

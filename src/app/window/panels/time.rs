@@ -1,0 +1,179 @@
+//! Going through time: the row of buttons with the status line, and the timeline below it.
+
+use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
+
+use super::{icon_button, timeline};
+use crate::app::window::command::{Command, KINDS};
+use crate::app::window::icons;
+use crate::app::window::session::Goal;
+use crate::app::window::state::State;
+use crate::app::window::theme::{self, ink};
+use crate::app::window::words;
+use crate::render::palette::Palette;
+
+/// Quadrilaterals a second that can be chosen.
+const SPEEDS: [f32; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 30.0, 60.0];
+
+/// Shows both.
+pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+    let rect = ui.max_rect();
+    let row = Rect::from_min_size(rect.min, Vec2::new(rect.width(), 40.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(row.shrink2(Vec2::new(8.0, 0.0))), |ui| {
+        ui.horizontal_centered(|ui| transport(ui, state, commands, palette));
+    });
+    ui.painter().hline(rect.x_range(), row.bottom(), (1.0, ink(palette.line)));
+    progress(ui, row, state, palette);
+    let below = Rect::from_min_max(row.left_bottom(), rect.max);
+    ui.scope_builder(egui::UiBuilder::new().max_rect(below), |ui| timeline::show(ui, state, commands, palette));
+    ui.advance_cursor_after_rect(rect);
+}
+
+fn transport(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let open = state.moment.is_some();
+    ui.spacing_mut().item_spacing.x = 3.0;
+    let step = state.moment.as_ref().map_or(0, |moment| moment.step);
+    let at_end = state.recorded && step == state.track.len() as u64;
+    let (back, on) = (open && step > 0, open && !at_end);
+    let play = if state.playing.is_some() { icons::PAUSE } else { icons::PLAY };
+    for (icon, command, enabled) in [
+        (icons::SKIP_BACK, Command::Go(Goal::Step(0)), back),
+        (icons::CARET_DOUBLE_LEFT, Command::Go(Goal::Quads(-1)), back),
+        (icons::CARET_LEFT, Command::Go(Goal::Steps(-1)), back),
+        (play, Command::Play, on),
+        (icons::CARET_RIGHT, Command::Go(Goal::Steps(1)), on),
+        (icons::CARET_DOUBLE_RIGHT, Command::Go(Goal::Quads(1)), on),
+        (icons::SKIP_FORWARD, Command::Go(Goal::End), on),
+    ] {
+        if icon_button(ui, icon, theme::TRANSPORT_ICON, &command, enabled).clicked() {
+            commands.push(command);
+        }
+    }
+    rule(ui, palette);
+    for (icon, forward) in [(icons::ARROW_LINE_LEFT, false), (icons::ARROW_LINE_RIGHT, true)] {
+        let command = Command::ToBreakpoint(forward);
+        if icon_button(ui, icon, theme::TRANSPORT_ICON, &command, if forward { on } else { back }).clicked() {
+            commands.push(command);
+        }
+    }
+    let roomy = ui.available_width() > 900.0;
+    if roomy {
+        ui.label(RichText::new("breakpoint").font(theme::regular(theme::TABLE)).color(ink(palette.weak)));
+    }
+    rule(ui, palette);
+    speed(ui, state, commands);
+    if ui.available_width() > 620.0 {
+        kinds(ui, commands, open);
+    }
+    ui.add_space(10.0);
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let command = Command::Bookmark;
+        if icon_button(ui, icons::BOOKMARK, theme::TRANSPORT_ICON, &command, open).clicked() {
+            commands.push(command);
+        }
+        if state.is_busy() && state.since.is_some_and(|since| since.elapsed().as_millis() > 150) {
+            if ui.button("Stop").clicked() {
+                commands.push(Command::Stop);
+            }
+        } else {
+            verdict(ui, state, palette);
+        }
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| status(ui, state, palette));
+    });
+}
+
+fn rule(ui: &mut Ui, palette: &Palette) {
+    ui.add_space(5.0);
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(1.0, 20.0), egui::Sense::hover());
+    ui.painter().rect_filled(rect, 0.0, ink(palette.line));
+    ui.add_space(5.0);
+}
+
+fn speed(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let text = |speed: f32| format!("{speed} quads/s");
+    let combo = ComboBox::from_id_salt("speed").selected_text(text(state.speed)).width(92.0);
+    let shown = combo.show_ui(ui, |ui| {
+        for speed in SPEEDS {
+            if ui.selectable_label(state.speed == speed, text(speed)).clicked() {
+                commands.push(Command::Speed(speed));
+            }
+        }
+    });
+    shown.response.on_hover_text("How fast it plays");
+}
+
+fn kinds(ui: &mut Ui, commands: &mut Vec<Command>, open: bool) {
+    ui.add_enabled_ui(open, |ui| {
+        let shown = ui.menu_button("go to…", |ui| {
+            if ui.button(Command::GoTo.name()).clicked() {
+                commands.push(Command::GoTo);
+                ui.close();
+            }
+            ui.separator();
+            for kind in KINDS {
+                ui.horizontal(|ui| {
+                    for (icon, forward) in [(icons::CARET_LEFT, false), (icons::CARET_RIGHT, true)] {
+                        let command = Command::Go(Goal::Kind(kind, forward));
+                        if icon_button(ui, icon, theme::ICON, &command, true).clicked() {
+                            commands.push(command);
+                        }
+                    }
+                    ui.label(words::kind(kind));
+                });
+            }
+        });
+        shown.response.on_hover_text("A step, a number of quadrilaterals, or the next event of a kind");
+    });
+}
+
+fn verdict(ui: &mut Ui, state: &State, palette: &Palette) {
+    let Some(moment) = &state.moment else { return };
+    let (icon, text, colour) = match &moment.broken {
+        None => (icons::CHECK_CIRCLE, "invariants hold".to_owned(), palette.holds),
+        Some(what) => (icons::X_CIRCLE, what.clone(), palette.broken),
+    };
+    let text = RichText::new(format!("{icon} {text}")).font(theme::regular(theme::TABLE)).color(ink(colour));
+    ui.label(text).on_hover_text(
+        "The mesh is sound: twins agree, every element is positive, and every loop of the front is even",
+    );
+}
+
+fn status(ui: &mut Ui, state: &State, palette: &Palette) {
+    if state.is_busy() && state.since.is_some_and(|since| since.elapsed().as_millis() > 150) {
+        let text = match &state.progress {
+            Some(progress) if progress.total > 0 => format!(
+                "{} {} of about {}",
+                progress.words,
+                words::grouped(progress.done),
+                words::grouped(progress.total.max(progress.done))
+            ),
+            Some(progress) => progress.words.to_owned(),
+            None => "Working".to_owned(),
+        };
+        ui.label(text);
+        return;
+    }
+    let Some(moment) = &state.moment else { return };
+    let (quads, all) = (words::grouped(moment.standing), state.track.last().map(|t| u64::from(t.standing)));
+    let more = if state.recorded { "" } else { "…" };
+    let strong = |text: String| RichText::new(text).font(theme::semibold(theme::BODY)).color(ink(palette.strong));
+    let weak = |text: String| RichText::new(text).color(ink(palette.weak));
+    ui.spacing_mut().item_spacing.x = 5.0;
+    ui.label(strong(format!("step {}", words::grouped(moment.step))));
+    ui.label(weak(format!("/ {}{more}", words::grouped(state.track.len() as u64))));
+    ui.label(strong(format!("  quad {quads}")));
+    ui.label(weak(format!("/ {}{more}", words::grouped(all.unwrap_or(0)))));
+    let text = match &moment.event {
+        None => "the front is the boundary; the first step chooses a base".to_owned(),
+        Some(event) => words::event(event),
+    };
+    let text = RichText::new(format!("·  {text}")).color(ink(palette.text));
+    ui.add(egui::Label::new(text).truncate());
+}
+
+/// A thin bar over the row while work is under way.
+fn progress(ui: &Ui, row: Rect, state: &State, palette: &Palette) {
+    let Some(progress) = &state.progress else { return };
+    let share = if progress.total > 0 { progress.done as f32 / progress.total as f32 } else { 0.0 };
+    let bar = Rect::from_min_size(row.min, Vec2::new(row.width() * share.clamp(0.0, 1.0), 3.0));
+    ui.painter().rect_filled(bar, 0.0, ink(palette.base));
+}

@@ -1,0 +1,124 @@
+//! The bar of menus, what is open, and the field for commands.
+
+use eframe::egui::{self, Align, Align2, Button, Layout, MenuBar, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
+
+use crate::app::window::command::{Command, LAYERS};
+use crate::app::window::icons;
+use crate::app::window::session::{Goal, Source};
+use crate::app::window::state::State;
+use crate::app::window::theme::{self, ink};
+use crate::core::io::built_in;
+use crate::render::palette::Palette;
+use crate::render::scene::ColourBy;
+
+/// Shows the bar.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let bar = ui.max_rect();
+    ui.painter().hline(bar.x_range(), bar.bottom() - 0.5, (1.0, ink(palette.line)));
+    ui.horizontal_centered(|ui| {
+        ui.add_space(8.0);
+        ui.label(RichText::new("quadfront").font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
+        ui.add_space(6.0);
+        MenuBar::new().ui(ui, |ui| menus(ui, state, commands));
+    });
+    let right = egui::UiBuilder::new().max_rect(bar).layout(Layout::right_to_left(Align::Center));
+    ui.scope_builder(right, |ui| {
+        ui.add_space(8.0);
+        field(ui, bar.width(), commands, palette);
+    });
+    if let Some(opened) = &state.opened {
+        let painter = ui.painter_at(bar);
+        let name = painter.layout_no_wrap(opened.case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
+        let room = (bar.width() - 720.0).max(0.0);
+        let title = title(&opened.case.title, &opened.case.name);
+        let mut job = egui::text::LayoutJob::simple_singleline(title, theme::regular(theme::BODY), ink(palette.weak));
+        job.wrap = egui::text::TextWrapping::truncate_at_width((room - name.size().x - 8.0).max(0.0));
+        let title = painter.layout_job(job);
+        let width = name.size().x + 8.0 + title.size().x;
+        let start = bar.center() - Vec2::new(0.5 * width, 0.0);
+        let below = |size: Vec2, x: f32| Align2::LEFT_CENTER.anchor_size(start + Vec2::new(x, 0.0), size).min;
+        let (name_size, title_size) = (name.size(), title.size());
+        if room > name_size.x {
+            painter.galley(below(name_size, 0.0), name, ink(palette.strong));
+            painter.galley(below(title_size, name_size.x + 8.0), title, ink(palette.weak));
+        }
+    }
+}
+
+/// The title without the name in front of it.
+fn title(title: &str, name: &str) -> String {
+    let rest = title.split_once(": ").map_or(title, |parts| parts.1);
+    if rest == name { String::new() } else { rest.to_owned() }
+}
+
+fn item(ui: &mut Ui, command: Command, commands: &mut Vec<Command>) {
+    let key = command.key().unwrap_or_default();
+    if ui.add(Button::new(command.name()).shortcut_text(key)).clicked() {
+        commands.push(command);
+        ui.close();
+    }
+}
+
+fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    ui.menu_button("Case", |ui| {
+        item(ui, Command::OpenDialog, commands);
+        item(ui, Command::OpenPath, commands);
+        item(ui, Command::SaveRun, commands);
+        ui.separator();
+        for (name, _) in built_in::CASES.iter().take(40) {
+            item(ui, Command::Open(Source::BuiltIn((*name).to_owned())), commands);
+        }
+    });
+    ui.menu_button("Parameters", |ui| {
+        item(ui, Command::ResetParameters, commands);
+        item(ui, Command::Undo, commands);
+        item(ui, Command::Redo, commands);
+    });
+    ui.menu_button("View", |ui| {
+        item(ui, Command::Fit, commands);
+        item(ui, Command::ShowDecision, commands);
+        item(ui, Command::ToggleTheme, commands);
+        item(ui, Command::ResetLayout, commands);
+        ui.separator();
+        for k in 0..LAYERS.len() {
+            item(ui, Command::Layer(k), commands);
+        }
+        ui.separator();
+        for by in ColourBy::ALL {
+            item(ui, Command::ColourBy(by), commands);
+        }
+    });
+    ui.menu_button("Figure", |ui| {
+        ui.add_enabled_ui(state.moment.is_some(), |ui| {
+            item(ui, Command::Export, commands);
+            item(ui, Command::Screenshot, commands);
+        });
+    });
+    ui.menu_button("Help", |ui| {
+        item(ui, Command::Help, commands);
+        item(ui, Command::Palette, commands);
+        item(ui, Command::Go(Goal::Step(0)), commands);
+    });
+}
+
+/// Looks like a field and opens the palette.
+fn field(ui: &mut Ui, room: f32, commands: &mut Vec<Command>, palette: &Palette) {
+    let width = if room > 800.0 { 250.0 } else { 60.0 };
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(width, 22.0), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, Command::Palette.name()));
+    let line = if response.hovered() { palette.hint } else { palette.line };
+    let painter = ui.painter_at(rect);
+    painter.rect(rect, 4.0, ink(palette.field), (1.0, ink(line)), egui::StrokeKind::Inside);
+    let font = theme::regular(theme::TABLE);
+    let left = rect.left_center() + Vec2::new(9.0, 0.0);
+    painter.text(left, Align2::LEFT_CENTER, icons::MAGNIFYING_GLASS, font.clone(), ink(palette.weak));
+    if width > 100.0 {
+        let text = left + Vec2::new(20.0, 0.0);
+        painter.text(text, Align2::LEFT_CENTER, Command::Palette.name(), font.clone(), ink(palette.weak));
+        let right = rect.right_center() - Vec2::new(9.0, 0.0);
+        painter.text(right, Align2::RIGHT_CENTER, "Ctrl+P", theme::regular(theme::HEAD), ink(palette.hint));
+    }
+    if response.on_hover_text(Command::Palette.tip()).clicked() {
+        commands.push(Command::Palette);
+    }
+}

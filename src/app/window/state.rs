@@ -1,0 +1,361 @@
+//! What the window knows: the run as far as it has been told, what a person has set, and what is open over the window.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::files::Dialog;
+use super::session::{Moment, Opened, Session, Source, Told, Tracked, Wake};
+use glam::DVec2;
+
+use crate::app::input;
+use crate::core::convert::phase::Phase;
+use crate::core::fault::Fault;
+use crate::core::io::built_in;
+use crate::core::mesh::ids::NodeId;
+use crate::core::run::breakpoint::Condition;
+use crate::core::run::explain::SegmentTold;
+use crate::core::run::run::{Bookmark, Edit, Run};
+use crate::render::camera::Camera;
+use crate::render::scene::{ColourBy, Layers, Outlined};
+
+/// What undo takes back: all that a person sets.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Kept {
+    /// Changed parameters.
+    pub edits: Vec<Edit>,
+    /// What is kept in the inspector.
+    pub picked: Option<Outlined>,
+    /// What is drawn.
+    pub layers: Layers,
+    /// What elements are coloured by.
+    pub colour_by: ColourBy,
+    /// Conditions to stop at, and whether they are on.
+    pub breakpoints: Vec<(String, bool)>,
+    /// Steps that a person has marked.
+    pub bookmarks: Vec<u64>,
+}
+
+/// Work that is under way.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    pub words: &'static str,
+    pub done: u64,
+    pub total: u64,
+}
+
+/// What the table of the front is sorted by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrontColumn {
+    Rank,
+    Nodes,
+    Class,
+    HValue,
+    Length,
+    ThetaA,
+    ThetaB,
+    Level,
+    Loop,
+}
+
+/// Everything that the window knows.
+pub struct State {
+    pub wake: Wake,
+    pub session: Option<Session>,
+    /// What was opened, for messages.
+    pub source: Option<Source>,
+    pub opened: Option<Arc<Opened>>,
+    pub moment: Option<Arc<Moment>>,
+    /// Steps of the run, as far as they have been recorded.
+    pub track: Vec<Tracked>,
+    /// Whether that is all of them.
+    pub recorded: bool,
+    /// The dialog for files, while it is open.
+    pub dialog: Option<Dialog>,
+    /// The title of the window.
+    pub title: String,
+    pub toggle_theme: bool,
+    /// Asked of the session and not yet answered.
+    pub waiting: usize,
+    pub since: Option<Instant>,
+    pub progress: Option<Progress>,
+    pub faults: Vec<String>,
+    /// What was done, for a while.
+    pub notice: Option<(String, Instant)>,
+    pub kept: Kept,
+    pub undo: Vec<Kept>,
+    pub redo: Vec<Kept>,
+    pub hovered: Option<Outlined>,
+    /// The camera of the main view; none until a mesh is fitted to it.
+    pub camera: Option<Camera>,
+    /// Whether the main view shows the whole mesh, and its size in points.
+    pub fitted: bool,
+    pub view_size: DVec2,
+    /// Whether what is hovered was met in the view, and not in a table.
+    pub hover_from_view: bool,
+    /// Show the decision from near as soon as the view's size is known.
+    pub look: Option<Look>,
+    pub playing: Option<Instant>,
+    /// Quadrilaterals a second.
+    pub speed: f32,
+    pub sort: (FrontColumn, bool),
+    /// The classes shown in the table of the front.
+    pub classes: [bool; 4],
+    /// The row that the table is to show.
+    pub scroll_to: Option<Outlined>,
+    pub overlay: Over,
+    pub field: String,
+    pub breakpoint_field: String,
+    /// Changes when the mesh to be drawn changes.
+    pub mesh_epoch: u64,
+    /// Changes when what lies over it changes.
+    pub over_epoch: u64,
+    pub reset_layout: bool,
+    pub screenshot: bool,
+    /// The steps that the timeline shows, where that is not all.
+    pub timeline: Option<[f64; 2]>,
+    /// Where a drag of the timeline has asked to go.
+    pub seeking: Option<u64>,
+    /// A parameter that is being dragged.
+    pub tentative: Option<(&'static str, f64)>,
+    /// How often each breakpoint is met.
+    pub hits: Vec<usize>,
+    /// Why the picked segment was or was not chosen, at a step.
+    pub explained: Option<(u64, Arc<SegmentTold>)>,
+    /// What was asked to be explained last.
+    asked: Option<(u64, [NodeId; 2])>,
+}
+
+/// Where the main view is to look next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    Fit,
+    Decision,
+    At(Outlined),
+}
+
+/// What is open over the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    Nothing,
+    Palette,
+    Help,
+    GoTo,
+    Path,
+}
+
+impl State {
+    /// A window in which nothing is open; `wake` is called from other threads when something is to be told.
+    pub fn new(wake: Wake) -> State {
+        State {
+            wake,
+            session: None,
+            source: None,
+            opened: None,
+            moment: None,
+            track: Vec::new(),
+            recorded: false,
+            dialog: None,
+            title: String::new(),
+            toggle_theme: false,
+            waiting: 0,
+            since: None,
+            progress: None,
+            faults: Vec::new(),
+            notice: None,
+            kept: Kept::default(),
+            undo: Vec::new(),
+            redo: Vec::new(),
+            hovered: None,
+            camera: None,
+            fitted: true,
+            view_size: DVec2::ZERO,
+            hover_from_view: false,
+            look: None,
+            playing: None,
+            speed: 8.0,
+            sort: (FrontColumn::Rank, true),
+            classes: [true; 4],
+            scroll_to: None,
+            overlay: Over::Nothing,
+            field: String::new(),
+            breakpoint_field: String::new(),
+            mesh_epoch: 0,
+            over_epoch: 0,
+            reset_layout: false,
+            screenshot: false,
+            timeline: None,
+            seeking: None,
+            tentative: None,
+            hits: Vec::new(),
+            explained: None,
+            asked: None,
+        }
+    }
+
+    /// Opens a case or a mesh in place of what is open.
+    pub fn open(&mut self, source: Source) {
+        let named = source.clone();
+        self.session = Some(Session::open(move || read(&named), self.wake.clone()));
+        self.source = Some(source);
+        (self.opened, self.moment) = (None, None);
+        self.track.clear();
+        (self.recorded, self.waiting) = (false, 1);
+        self.since = Some(Instant::now());
+        let kept = Kept { layers: self.kept.layers, colour_by: self.kept.colour_by, ..Kept::default() };
+        self.kept = kept;
+        self.undo.clear();
+        self.redo.clear();
+        self.hits.clear();
+        (self.explained, self.asked, self.timeline) = (None, None, None);
+        (self.camera, self.playing, self.hovered) = (None, None, None);
+        self.look = Some(Look::Fit);
+    }
+
+    /// Whether the session still owes an answer.
+    pub fn is_busy(&self) -> bool {
+        self.waiting > 0
+    }
+
+    /// Tells a fault; it stays until it is closed.
+    pub fn complain(&mut self, fault: &Fault) {
+        let text = fault.to_string();
+        if !self.faults.contains(&text) {
+            self.faults.push(text);
+        }
+    }
+
+    /// Tells that something was done.
+    pub fn notice(&mut self, text: String) {
+        self.notice = Some((text, Instant::now()));
+    }
+
+    /// Hears what the session has to tell.
+    pub fn hear(&mut self) {
+        let Some(session) = &self.session else { return };
+        let told: Vec<Told> = session.hear().collect();
+        for told in told {
+            match told {
+                Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
+                Told::Opened(opened) => {
+                    self.kept.edits = opened.run.edits().to_vec();
+                    self.kept.bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
+                    self.opened = Some(opened);
+                }
+                Told::Moment(moment, asks) => self.arrive(moment, asks),
+                Told::Track { from, steps, end } => {
+                    self.track.truncate(from as usize);
+                    self.track.extend(steps);
+                    self.recorded = end;
+                }
+                Told::Hits(hits) => self.hits = hits,
+                Told::Explained(step, told) => self.explained = Some((step, told)),
+                Told::Nothing(words, asks) => {
+                    self.notice(words.to_owned());
+                    self.answered(asks);
+                }
+                Told::Fault(fault, asks) => {
+                    self.complain(&fault);
+                    self.answered(asks);
+                    self.playing = None;
+                }
+            }
+        }
+    }
+
+    fn answered(&mut self, asks: usize) {
+        self.waiting = self.waiting.saturating_sub(asks);
+        if self.waiting == 0 {
+            (self.progress, self.since) = (None, None);
+        }
+    }
+
+    fn arrive(&mut self, moment: Arc<Moment>, asks: usize) {
+        if self.playing.is_some() && moment.phase == Phase::Done {
+            self.playing = None;
+        }
+        self.moment = Some(moment);
+        self.answered(asks);
+        self.mesh_epoch += 1;
+        self.over_epoch += 1;
+    }
+
+    /// The run is another from now on.
+    pub fn run_changed(&mut self) {
+        self.recorded = false;
+        if let Some(session) = &self.session {
+            session.set_edits(self.kept.edits.clone());
+            self.waiting += 1;
+            self.since.get_or_insert_with(Instant::now);
+        }
+    }
+
+    /// Why a segment of the front was or was not chosen; asked for where it is not known yet.
+    pub fn explanation(&mut self, ends: [NodeId; 2]) -> Option<Arc<SegmentTold>> {
+        let step = self.moment.as_ref()?.step;
+        if let Some((at, told)) = &self.explained
+            && (*at, [told.row.a, told.row.b]) == (step, ends)
+        {
+            return Some(told.clone());
+        }
+        if self.asked != Some((step, ends)) {
+            self.asked = Some((step, ends));
+            self.session.as_ref()?.explain(ends);
+        }
+        None
+    }
+
+    /// The conditions of the breakpoints that are on.
+    pub fn conditions(&self) -> Vec<Condition> {
+        let on = self.kept.breakpoints.iter().filter(|b| b.1);
+        on.filter_map(|b| Condition::parse(&b.0).ok()).collect()
+    }
+
+    /// The front segment or edge that is picked, from A to B.
+    pub fn picked_segment(&self) -> Option<[NodeId; 2]> {
+        match self.kept.picked {
+            Some(Outlined::Edge(ends)) => Some(ends),
+            _ => None,
+        }
+    }
+
+    /// The step at which each element was last made, where that is what elements are coloured by.
+    pub fn births(&self, by: ColourBy, moment: &Moment) -> Vec<u64> {
+        let mut births = vec![0; moment.mesh.element_slots()];
+        if by == ColourBy::Birth {
+            let steps = self.track.iter().take(moment.step as usize).zip(1..);
+            for (&(element, _), step) in steps.filter_map(|(step, k)| Some((step.formed.as_ref()?, k))) {
+                if let Some(birth) = births.get_mut(element.index()) {
+                    *birth = step;
+                }
+            }
+        }
+        births
+    }
+
+    /// The run with everything that a person has changed.
+    pub fn run(&self) -> Option<Run> {
+        let mut run = self.opened.as_ref()?.run.clone();
+        run.set_edits(self.kept.edits.clone());
+        let name = |step: u64| run.bookmarks.iter().find(|mark| mark.step == step).map(|mark| mark.name.clone());
+        let marks = self.kept.bookmarks.iter();
+        let marks = marks.map(|step| Bookmark { step: *step, name: name(*step).unwrap_or_default() });
+        run.bookmarks = marks.collect();
+        Some(run)
+    }
+
+    /// The value of a parameter at the step at hand.
+    pub fn parameter(&self, key: &str) -> Option<String> {
+        self.moment.as_ref()?.parameters.text_of(key)
+    }
+}
+
+/// Reads what is to be opened.
+fn read(source: &Source) -> Result<Run, Fault> {
+    match source {
+        Source::BuiltIn(name) => match built_in::named(name) {
+            Some(case) => case.map(Run::of),
+            None => Err(Fault::new("There is no built-in case of this name").at(name.clone())),
+        },
+        Source::File(path) => input::run_of(path),
+    }
+}

@@ -1,0 +1,222 @@
+//! Numbers and events in words, as everywhere in the window: integers grouped by thin spaces, a true minus, an en dash for what
+//! is not defined.
+
+use crate::core::convert::candidates::Passed;
+use crate::core::convert::event::{Event, Purpose, Why};
+use crate::core::front::sector::Side;
+use crate::core::mesh::ids::NodeId;
+
+/// What stands for a number that is not defined.
+pub const UNDEFINED: &str = "–";
+const THIN_SPACE: char = '\u{2009}';
+const MINUS: char = '\u{2212}';
+
+/// An integer, grouped by thin spaces.
+pub fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3 * 3);
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push(THIN_SPACE);
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number with so many decimals.
+pub fn fixed(x: f64, decimals: usize) -> String {
+    if !x.is_finite() {
+        return UNDEFINED.to_owned();
+    }
+    let text = format!("{x:.decimals$}");
+    let zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
+    if zero { text.replace('-', "") } else { text.replace('-', &MINUS.to_string()) }
+}
+
+/// An angle in radians, told in degrees without its sign.
+pub fn degrees(radians: f64) -> String {
+    fixed(radians.to_degrees(), 1)
+}
+
+/// A size or coordinate: three significant digits at least, four decimals where that is enough; powers only where they must be.
+pub fn size(x: f64) -> String {
+    if !x.is_finite() || x == 0.0 {
+        return if x == 0.0 { "0".to_owned() } else { UNDEFINED.to_owned() };
+    }
+    let magnitude = x.abs();
+    if !(1e-4..1e5).contains(&magnitude) {
+        return format!("{x:.2e}").replace('-', &MINUS.to_string());
+    }
+    let decimals = if magnitude >= 100.0 {
+        1
+    } else if magnitude >= 10.0 {
+        2
+    } else if magnitude >= 1.0 {
+        3
+    } else if magnitude >= 0.01 {
+        4
+    } else {
+        5
+    };
+    fixed(x, decimals)
+}
+
+/// Decimals with which the smallest of some sizes has three digits: the same down a column.
+pub fn decimals(values: impl Iterator<Item = f64>) -> usize {
+    let least = values.map(f64::abs).filter(|v| *v > 0.0 && v.is_finite()).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { (2 - libm::floor(libm::log10(least)) as i32).clamp(0, 6) as usize } else { 4 }
+}
+
+/// A front segment by its nodes.
+pub fn segment(a: NodeId, b: NodeId) -> String {
+    format!("{} → {}", a.0, b.0)
+}
+
+/// An edge by its nodes.
+pub fn edge([a, b]: [NodeId; 2]) -> String {
+    format!("{}–{}", a.0, b.0)
+}
+
+/// A side.
+pub fn side(side: Side) -> &'static str {
+    match side {
+        Side::Left => "left",
+        Side::Right => "right",
+    }
+}
+
+/// How a kind of event is called.
+pub fn kind(kind: &str) -> String {
+    kind.replace('_', " ")
+}
+
+/// What a step did, in one line.
+pub fn event(event: &Event) -> String {
+    match *event {
+        Event::BaseSelected { a, b, class, h_value, .. } => {
+            format!("base chosen: {}, class {class}, H {}", segment(a, b), size(h_value))
+        }
+        Event::PickLost { a, b } => format!("{} was picked as base and is not on the front any more", segment(a, b)),
+        Event::SideIsFront { side: s, node } => format!("{} side is the front, to node {}", side(s), node.0),
+        Event::SideChosen { edge } => {
+            let off = degrees(edge.deviation);
+            format!("{} side chosen: node {}, {off}° off the direction aimed at", side(edge.side), edge.node.0)
+        }
+        Event::SideSwapped { edge, .. } => {
+            let off = degrees(edge.deviation);
+            format!("{} side swapped in: node {}, {off}° off the direction aimed at", side(edge.side), edge.node.0)
+        }
+        Event::SideDivided { side: s, node, length } => {
+            format!("{} side divided at new node {}; it was {} long", side(s), node.0, fixed(length, 2))
+        }
+        Event::TopSwapped { across, new } => format!("top: {} swapped for {}", edge(across), edge(new)),
+        Event::TopFound { ends, swaps } => match swaps {
+            0 => format!("top edge is there: {}", edge(ends)),
+            1 => format!("top edge is there: {}, after 1 swap", edge(ends)),
+            _ => format!("top edge is there: {}, after {swaps} swaps", edge(ends)),
+        },
+        Event::NodeRemoved { node, purpose: Purpose::Recovery } => {
+            format!("node {} removed from the top's way", node.0)
+        }
+        Event::NodeRemoved { node, purpose: Purpose::Enhancement } => format!("node {} of low valence removed", node.0),
+        Event::Formed { element, quality, eaten, .. } => {
+            format!("quadrilateral {} stands: quality {}, {eaten} triangles eaten", element.0, fixed(quality, 2))
+        }
+        Event::RolledBack { attempt, why: reason } => {
+            format!("attempt {} taken back: {}", u32::from(attempt) + 1, why(reason))
+        }
+        Event::Deferred { a, b } => format!("segment {} put off", segment(a, b)),
+        Event::Enhanced { new } => format!("edge {} swapped in beside the new quadrilateral", edge(new)),
+        Event::Smoothed { nodes } => format!("{nodes} nodes smoothed"),
+        Event::Seamed { at, node, angle } => {
+            format!("seam at node {}: {}° closed, ends joined in node {}", at.0, degrees(angle), node.0)
+        }
+        Event::TransitionSeamed { at, node, angle, ratio } => format!(
+            "transition seam at node {}: {}° closed, one side {} times the other, joined in node {}",
+            at.0,
+            degrees(angle),
+            fixed(ratio, 1),
+            node.0
+        ),
+        Event::SeamRefused { at, angle, .. } => {
+            format!("no seam at node {}, of {}°: it cannot be joined", at.0, degrees(angle))
+        }
+        Event::Split { node, .. } => format!("front split at node {}", node.0),
+        Event::Closed { segments, quads, quality } => {
+            format!("loop of {segments} segments closed by {quads} quadrilaterals, worst quality {}", fixed(quality, 2))
+        }
+        Event::SecondPass => "every segment is put off: all are taken up again with wider gates".to_owned(),
+        Event::Matched { triangles, unmatched, .. } => format!(
+            "last resort: {} triangles paired, {} without a partner",
+            grouped(triangles as u64),
+            grouped(unmatched as u64)
+        ),
+        Event::Patched { triangles, quads, element, .. } => {
+            format!("last resort: {quads} quadrilaterals of {triangles} triangles, from element {}", element.0)
+        }
+        Event::Cleaned { energy: [before, after], .. } => {
+            format!("structure cleaned up at one place: energy {} to {}", size(before), size(after))
+        }
+        Event::Swept { looked, moved } => format!("{moved} of {looked} nodes smoothed by the energy"),
+        Event::LastResort(outcome) => format!("last resort: {} triangles left over", grouped(outcome.triangles as u64)),
+        Event::PostProcessed => "whole mesh cleaned up and smoothed".to_owned(),
+        Event::Finished => "done".to_owned(),
+    }
+}
+
+/// Why an edge is not the side.
+pub fn passed(passed: Passed) -> &'static str {
+    match passed {
+        Passed::Taken => "ends at a corner that is taken",
+        Passed::WideAngle => "front, but not below θrect",
+        Passed::SmallAngle => "the front is the side",
+        Passed::LaidDown => "this attempt has its own",
+        Passed::Farther => "another is nearer",
+        Passed::NotNeeded => "no swap is needed",
+        Passed::NotPositive => "the swap would fold over",
+    }
+}
+
+/// Why an attempt was taken back.
+pub fn why(why: Why) -> String {
+    match why {
+        Why::NoSide(s) => format!("no edge can be the {} side", side(s)),
+        Why::NoDivision(s) => format!("the {} side cannot be divided where it must be", side(s)),
+        Why::TopBlocked(ends) => format!("dead edge {} lies across the top", edge(ends)),
+        Why::TopThroughNode(node) => format!("node {} lies on the top edge", node.0),
+        Why::TopTooLong => "the swaps for the top come to no end".to_owned(),
+        Why::TooLong(length) => format!("a new side or the top is {} long", fixed(length, 2)),
+        Why::NotDisc => "the four sides do not enclose a disc of live triangles".to_owned(),
+        Why::NotConvex => "it would not be strictly convex".to_owned(),
+        Why::Poor(quality) => format!("its quality would be {}", fixed(quality, 2)),
+        Why::OddLoop(segments) => format!("a loop would become odd, with {segments} segments"),
+        Why::NoMetric => "the field gives no metric at a new node".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_grouped_and_have_true_minus_signs() {
+        assert_eq!(grouped(7), "7");
+        assert_eq!(grouped(1267), "1\u{2009}267");
+        assert_eq!(grouped(1_234_567), "1\u{2009}234\u{2009}567");
+        assert_eq!(fixed(-45.04, 1), "−45.0");
+        assert_eq!(fixed(-0.01, 1), "0.0");
+        assert_eq!(fixed(f64::NAN, 2), "–");
+    }
+
+    #[test]
+    fn sizes_have_three_digits_and_powers_only_where_they_must() {
+        assert_eq!(size(0.022_43), "0.0224");
+        assert_eq!(size(0.3978), "0.3978");
+        assert_eq!(size(12.345), "12.35");
+        assert_eq!(size(-1.5e-6), "−1.50e−6");
+        assert_eq!(decimals([0.0224, 0.1, 3.0].into_iter()), 4);
+        assert_eq!(decimals([12.0, 150.0].into_iter()), 1);
+        assert_eq!(decimals(std::iter::empty()), 4);
+    }
+}

@@ -1,0 +1,174 @@
+//! From the mesh to the screen and back: an orthographic camera in f64, so that a mesh of sizes 1 and 1e-4 can be looked at
+//! from near without jitter. Screens are measured in points, x to the right and y down, from the upper left corner of a view.
+
+use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat4};
+
+/// The least and greatest number of points for one unit of the mesh, in terms of the whole mesh fitted to the view.
+const ZOOM: [f64; 2] = [0.1, 1e7];
+
+/// Where a view looks, and how large.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// The point of the mesh in the middle of the view.
+    pub centre: DVec3,
+    /// Points for one unit of the mesh.
+    pub scale: f64,
+    /// The turn of the mesh; none for a look straight down at a plane.
+    pub turn: DQuat,
+    /// A map of the plane before everything else: the metric lens.
+    pub lens: DMat2,
+    /// Points for one unit at which the whole mesh fits.
+    fitted: f64,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Camera { centre: DVec3::ZERO, scale: 1.0, turn: DQuat::IDENTITY, lens: DMat2::IDENTITY, fitted: 1.0 }
+    }
+}
+
+impl Camera {
+    /// A camera that sees a box of the plane in a view of `size` points with `margin` points left free on all sides.
+    pub fn fit(bounds: [DVec2; 2], size: DVec2, margin: f64) -> Camera {
+        let extent = (bounds[1] - bounds[0]).max(DVec2::splat(f64::MIN_POSITIVE));
+        let room = (size - 2.0 * margin).max(DVec2::ONE);
+        let scale = (room / extent).min_element();
+        let scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
+        Camera { centre: (0.5 * (bounds[0] + bounds[1])).extend(0.0), scale, fitted: scale, ..Camera::default() }
+    }
+
+    /// A camera on `centre` in which lengths of the symmetric root `lens` are `scale` points a unit.
+    pub fn through_lens(centre: DVec2, lens: DMat2, scale: f64) -> Camera {
+        Camera { centre: centre.extend(0.0), scale, lens, fitted: scale, turn: DQuat::IDENTITY }
+    }
+
+    /// From differences in the mesh to points on the screen: x to the right, y up, z towards the eye.
+    fn linear(&self) -> DMat3 {
+        DMat3::from_quat(self.turn) * DMat3::from_mat2(self.lens) * self.scale
+    }
+
+    /// Where a point of the mesh lies in a view of `size` points.
+    pub fn project(&self, p: DVec3, size: DVec2) -> DVec2 {
+        let q = self.linear() * (p - self.centre);
+        DVec2::new(0.5 * size.x + q.x, 0.5 * size.y - q.y)
+    }
+
+    /// The point of the plane z = 0 under a point of the screen; `None` where the plane is seen from its edge.
+    pub fn unproject(&self, at: DVec2, size: DVec2) -> Option<DVec2> {
+        let linear = self.linear();
+        let plane = DMat2::from_cols(linear.x_axis.truncate(), linear.y_axis.truncate());
+        // The plane may lie off the centre of a turned camera.
+        let lift = linear * DVec3::new(0.0, 0.0, -self.centre.z);
+        let q = DVec2::new(at.x - 0.5 * size.x, 0.5 * size.y - at.y) - lift.truncate();
+        let area = plane.determinant();
+        (area.abs() > 1e-12 * self.scale * self.scale).then(|| plane.inverse() * q + self.centre.truncate())
+    }
+
+    /// Points for one unit, in the middle of what directions see.
+    pub fn points_per_unit(&self) -> f64 {
+        self.scale * self.lens.determinant().abs().sqrt()
+    }
+
+    /// Moves what is seen by `by` points.
+    pub fn pan(&mut self, by: DVec2) {
+        let q = DVec3::new(by.x, -by.y, 0.0);
+        self.centre -= self.linear().inverse() * q;
+    }
+
+    /// Makes everything larger by `factor`, around the point `at` of a view of `size` points.
+    pub fn zoom(&mut self, factor: f64, at: DVec2, size: DVec2) {
+        let scale = (self.scale * factor).clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
+        let factor = scale / self.scale;
+        // `at` stays where it is: the centre moves towards it.
+        let away = at - 0.5 * size;
+        self.pan(away * (1.0 / factor - 1.0));
+        self.scale = scale;
+    }
+
+    /// Turns the mesh: by `by.x` points about the vertical of the screen and by `by.y` about its horizontal.
+    pub fn orbit(&mut self, by: DVec2) {
+        const RADIANS_PER_POINT: f64 = 0.006;
+        let turn = DQuat::from_rotation_y(by.x * RADIANS_PER_POINT) * DQuat::from_rotation_x(by.y * RADIANS_PER_POINT);
+        self.turn = (turn * self.turn).normalize();
+    }
+
+    /// Shows `p` in the middle, at `scale` points a unit.
+    pub fn look_at(&mut self, p: DVec2, scale: f64) {
+        self.centre = p.extend(0.0);
+        self.scale = scale.clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
+    }
+
+    /// The map from positions relative to `anchor` to clip space, for a view of `size` points. Differences of large numbers
+    /// are taken here, in f64.
+    pub fn clip(&self, anchor: DVec3, size: DVec2) -> Mat4 {
+        let to_clip = DVec3::new(2.0 / size.x, 2.0 / size.y, 0.0);
+        // Depth by a soft bound: everything between the ends of the world is in front of the far plane.
+        let depth = 0.25 / (self.scale / self.fitted * size.max_element());
+        let linear = DMat3::from_diagonal(to_clip.with_z(-depth)) * self.linear();
+        let offset = linear * (anchor - self.centre) + DVec3::new(0.0, 0.0, 0.5);
+        let mut clip = glam::DMat4::from_mat3(linear);
+        clip.w_axis = offset.extend(1.0);
+        clip.as_mat4()
+    }
+
+    /// Whether positions relative to `anchor` are good enough for a view of `size` points: a step of f32 must stay well
+    /// under a point.
+    pub fn is_served_by(&self, anchor: DVec3, size: DVec2) -> bool {
+        let away = (self.linear() * (anchor - self.centre)).length();
+        away <= 50.0 * size.max_element()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: DVec2 = DVec2::new(800.0, 600.0);
+
+    fn fitted() -> Camera {
+        Camera::fit([DVec2::new(-1.0, 0.0), DVec2::new(3.0, 1.0)], SIZE, 20.0)
+    }
+
+    #[test]
+    fn a_fitted_box_lies_within_the_margin_and_touches_it() {
+        let camera = fitted();
+        let low = camera.project(DVec3::new(-1.0, 0.0, 0.0), SIZE);
+        let high = camera.project(DVec3::new(3.0, 1.0, 0.0), SIZE);
+        assert!((low.x - 20.0).abs() < 1e-9 && (high.x - 780.0).abs() < 1e-9);
+        assert!(low.y > high.y && high.y > 20.0);
+    }
+
+    #[test]
+    fn unprojecting_is_the_inverse_of_projecting_for_every_camera_that_sees_the_plane() {
+        let mut camera = fitted();
+        camera.orbit(DVec2::new(40.0, 25.0));
+        camera.pan(DVec2::new(13.0, -7.0));
+        camera.zoom(3.0, DVec2::new(100.0, 50.0), SIZE);
+        let p = DVec2::new(0.3, 0.7);
+        let at = camera.project(p.extend(0.0), SIZE);
+        assert!((camera.unproject(at, SIZE).unwrap() - p).length() < 1e-9);
+    }
+
+    #[test]
+    fn zooming_leaves_the_point_under_the_pointer_where_it_is() {
+        let mut camera = fitted();
+        let at = DVec2::new(123.0, 456.0);
+        let before = camera.unproject(at, SIZE).unwrap();
+        camera.zoom(7.0, at, SIZE);
+        assert!((camera.unproject(at, SIZE).unwrap() - before).length() < 1e-12);
+    }
+
+    #[test]
+    fn clip_space_agrees_with_the_projection_also_from_very_near() {
+        let mut camera = fitted();
+        camera.look_at(DVec2::new(1.234_567_89, 0.456_789), camera.scale * 1e6);
+        let anchor = camera.centre;
+        let p = camera.centre + DVec3::new(1e-7, -2e-7, 0.0);
+        let clip = camera.clip(anchor, SIZE) * (p - anchor).as_vec3().extend(1.0);
+        let at = camera.project(p, SIZE);
+        let seen = DVec2::new(f64::from(clip.x) + 1.0, 1.0 - f64::from(clip.y)) * 0.5 * SIZE;
+        assert!((seen - at).length() < 1e-3, "{seen} {at}");
+        assert!((0.0..=1.0).contains(&clip.z));
+        assert!(camera.is_served_by(anchor, SIZE) && !camera.is_served_by(DVec3::ZERO, SIZE));
+    }
+}

@@ -1,0 +1,183 @@
+// Faces, lines and dots. Colours are written as they are (sRGB numbers, premultiplied): the target has no conversion.
+
+struct View {
+    // From positions relative to the anchor to clip space.
+    clip: mat4x4<f32>,
+    // Size of the view in points.
+    size: vec2<f32>,
+    // Pixels in a point.
+    pixels: f32,
+    // Points in a unit of the mesh.
+    scale: f32,
+};
+
+@group(0) @binding(0) var<uniform> view: View;
+
+fn premultiplied(colour: vec4<f32>, coverage: f32) -> vec4<f32> {
+    let alpha = colour.a * coverage;
+    return vec4<f32>(colour.rgb * alpha, alpha);
+}
+
+// A place that is never seen.
+fn nowhere() -> vec4<f32> {
+    return vec4<f32>(2.0, 2.0, 2.0, 1.0);
+}
+
+// ---- faces ----
+
+struct FaceIn {
+    @location(0) p0: vec3<f32>,
+    @location(1) p1: vec3<f32>,
+    @location(2) p2: vec3<f32>,
+    @location(3) p3: vec3<f32>,
+    @location(4) colour: vec4<f32>,
+};
+
+struct FaceOut {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) colour: vec4<f32>,
+};
+
+@vertex
+fn face_vertex(@builtin(vertex_index) k: u32, in: FaceIn) -> FaceOut {
+    var out: FaceOut;
+    out.colour = in.colour;
+    var p = in.p0;
+    if k == 1u { p = in.p1; }
+    if k == 2u || k == 4u { p = in.p2; }
+    if k == 5u { p = in.p3; }
+    out.position = view.clip * vec4<f32>(p, 1.0);
+    // Faces lie behind the lines on them.
+    out.position.z += 0.0001;
+    if in.colour.a == 0.0 { out.position = nowhere(); }
+    return out;
+}
+
+@fragment
+fn face_fragment(in: FaceOut) -> @location(0) vec4<f32> {
+    return premultiplied(in.colour, 1.0);
+}
+
+// ---- lines ----
+
+struct LineIn {
+    @location(0) a: vec3<f32>,
+    @location(1) b: vec3<f32>,
+    @location(2) colour: vec4<f32>,
+    @location(3) width: f32,
+    @location(4) dash: vec2<f32>,
+    @location(5) room: f32,
+};
+
+struct LineOut {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) colour: vec4<f32>,
+    // Along and across the line in points, from its first end.
+    @location(1) @interpolate(linear) place: vec2<f32>,
+    // Length, half width, and the dash.
+    @location(2) @interpolate(flat) shape: vec4<f32>,
+};
+
+@vertex
+fn line_vertex(@builtin(vertex_index) k: u32, in: LineIn) -> LineOut {
+    var out: LineOut;
+    let a = view.clip * vec4<f32>(in.a, 1.0);
+    let b = view.clip * vec4<f32>(in.b, 1.0);
+    let half_size = 0.5 * view.size;
+    let along = (b.xy - a.xy) * half_size;
+    let length = length(along);
+    var direction = vec2<f32>(1.0, 0.0);
+    if length > 1e-6 { direction = along / length; }
+    let across = vec2<f32>(-direction.y, direction.x);
+    // A pixel more on all sides for the soft edge. Lines of the mesh end flat: round ends would show where they overlap.
+    let soft = 1.0 / view.pixels;
+    let half_width = 0.5 * in.width;
+    let cap = select(0.0, half_width + soft, in.room < 0.0);
+    let far = k == 1u || k == 2u || k == 4u;
+    let left = k == 2u || k == 4u || k == 5u;
+    let x = select(-cap, length + cap, far);
+    let y = select(-half_width - soft, half_width + soft, left);
+    let end = select(a, b, far);
+    let offset = direction * select(-cap, cap, far) + across * y;
+    out.position = vec4<f32>(end.xy + offset / half_size, end.z, 1.0);
+    out.place = vec2<f32>(x, y);
+    out.shape = vec4<f32>(length, half_width, in.dash.x, in.dash.y);
+    // Edges fade as their elements become small on the screen: 22 % at a height of 2 points, all of it at 9.
+    var shown = 1.0;
+    if in.room >= 0.0 {
+        let height = in.room * view.scale;
+        shown = mix(0.22, 1.0, clamp((height - 2.0) / 7.0, 0.0, 1.0)) * clamp(2.0 * height - 1.0, 0.0, 1.0);
+    }
+    out.colour = vec4<f32>(in.colour.rgb, in.colour.a * shown);
+    if out.colour.a == 0.0 { out.position = nowhere(); }
+    return out;
+}
+
+@fragment
+fn line_fragment(in: LineOut) -> @location(0) vec4<f32> {
+    let length = in.shape.x;
+    let beyond = max(max(-in.place.x, in.place.x - length), 0.0);
+    let away = length2(vec2<f32>(beyond, in.place.y));
+    var coverage = clamp((in.shape.y - away) * view.pixels + 0.5, 0.0, 1.0);
+    if in.shape.z > 0.0 {
+        let period = in.shape.z + in.shape.w;
+        let phase = in.place.x - period * floor(in.place.x / period);
+        let off = abs(phase - 0.5 * in.shape.z) - 0.5 * in.shape.z;
+        coverage *= clamp(0.5 - off * view.pixels, 0.0, 1.0);
+    }
+    return premultiplied(in.colour, coverage);
+}
+
+fn length2(v: vec2<f32>) -> f32 {
+    return sqrt(dot(v, v));
+}
+
+// ---- dots ----
+
+struct DotIn {
+    @location(0) at: vec3<f32>,
+    @location(1) radius: f32,
+    @location(2) fill: vec4<f32>,
+    @location(3) ring: vec4<f32>,
+    @location(4) ring_width: f32,
+    @location(5) room: f32,
+    @location(6) least: f32,
+};
+
+struct DotOut {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) fill: vec4<f32>,
+    @location(1) @interpolate(flat) ring: vec4<f32>,
+    @location(2) @interpolate(linear) place: vec2<f32>,
+    // Radius and width of the ring.
+    @location(3) @interpolate(flat) shape: vec2<f32>,
+};
+
+@vertex
+fn dot_vertex(@builtin(vertex_index) k: u32, in: DotIn) -> DotOut {
+    var out: DotOut;
+    let x = select(-1.0, 1.0, k == 1u || k == 2u || k == 4u);
+    let y = select(-1.0, 1.0, k == 2u || k == 4u || k == 5u);
+    let room = in.room * view.scale;
+    // From far off dots are smaller.
+    let radius = in.radius * select(mix(0.6, 1.0, clamp((room - 6.0) / 8.0, 0.0, 1.0)), 1.0, in.least == 0.0);
+    let reach = radius + 1.0 / view.pixels;
+    let centre = view.clip * vec4<f32>(in.at, 1.0);
+    out.place = vec2<f32>(x, y) * reach;
+    out.position = vec4<f32>(centre.xy + out.place / (0.5 * view.size), centre.z, 1.0);
+    out.fill = in.fill;
+    out.ring = in.ring;
+    out.shape = vec2<f32>(radius, in.ring_width);
+    if room < in.least { out.position = nowhere(); }
+    return out;
+}
+
+@fragment
+fn dot_fragment(in: DotOut) -> @location(0) vec4<f32> {
+    let away = length2(in.place);
+    let outer = clamp((in.shape.x - away) * view.pixels + 0.5, 0.0, 1.0);
+    let inner = clamp((in.shape.x - in.shape.y - away) * view.pixels + 0.5, 0.0, 1.0);
+    let ring = premultiplied(in.ring, outer * (1.0 - inner));
+    let fill = premultiplied(in.fill, inner);
+    return ring + fill;
+}

@@ -1,0 +1,154 @@
+//! A scene drawn by the graphics card: into a picture of its own with depth and four samples a pixel, which is then laid
+//! into the window. A view whose scene and camera stay as they were is not drawn again.
+
+mod buffer;
+mod pipelines;
+mod target;
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec2;
+
+use self::buffer::Patched;
+use self::pipelines::Pipelines;
+use self::target::Target;
+use super::camera::Camera;
+use super::palette::Rgba;
+use super::scene::{Dot, Face, Line, Scene};
+
+pub use self::target::read_back;
+
+/// How a view is to be drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Where it looks.
+    pub camera: Camera,
+    /// Its size in points.
+    pub size: DVec2,
+    /// Pixels in a point.
+    pub pixels: f32,
+    /// Colour where nothing is.
+    pub ground: Rgba,
+}
+
+impl View {
+    /// Its size in pixels, at least one and at most what the card can hold.
+    pub fn size_in_pixels(&self, most: u32) -> [u32; 2] {
+        let pixels = |points: f64| ((points * f64::from(self.pixels)).round() as u32).clamp(1, most);
+        [pixels(self.size.x), pixels(self.size.y)]
+    }
+}
+
+/// What shaders know of a view.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct Uniform {
+    clip: [[f32; 4]; 4],
+    size: [f32; 2],
+    pixels: f32,
+    scale: f32,
+}
+
+/// Draws one scene into any number of views.
+pub struct Painter {
+    pipelines: Pipelines,
+    faces: Patched<Face>,
+    edges: Patched<Line>,
+    dots: Patched<Dot>,
+    over: Patched<Line>,
+    over_dots: Patched<Dot>,
+    generation: Option<u64>,
+    targets: Vec<Option<Target>>,
+    most: u32,
+}
+
+impl Painter {
+    /// A painter whose pictures are laid into targets of the format `window`.
+    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat) -> Painter {
+        Painter {
+            pipelines: Pipelines::new(device, window),
+            faces: Patched::new("faces"),
+            edges: Patched::new("edges"),
+            dots: Patched::new("dots"),
+            over: Patched::new("lines over the mesh"),
+            over_dots: Patched::new("dots over the mesh"),
+            generation: None,
+            targets: Vec::new(),
+            most: device.limits().max_texture_dimension_2d,
+        }
+    }
+
+    /// Sends what has changed of the scene, and draws view number `index` where its picture is not up to date.
+    pub fn draw(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        index: usize,
+        view: &View,
+        scene: &Scene,
+    ) {
+        if self.generation != Some(scene.generation) {
+            self.generation = Some(scene.generation);
+            self.faces.set(device, queue, &scene.faces);
+            self.edges.set(device, queue, &scene.edges);
+            self.dots.set(device, queue, &scene.dots);
+            self.over.set(device, queue, &scene.over);
+            self.over_dots.set(device, queue, &scene.over_dots);
+        }
+        if self.targets.len() <= index {
+            self.targets.resize_with(index + 1, || None);
+        }
+        let size = view.size_in_pixels(self.most);
+        let slot = &mut self.targets[index];
+        let target = match slot {
+            Some(target) if target.size == size => target,
+            _ => slot.insert(Target::new(device, &self.pipelines, size)),
+        };
+        let uniform = Uniform {
+            clip: view.camera.clip(scene.anchor, view.size).to_cols_array_2d(),
+            size: view.size.as_vec2().to_array(),
+            pixels: view.pixels,
+            scale: view.camera.points_per_unit() as f32,
+        };
+        let drawn = (scene.generation, uniform, view.ground);
+        if target.drawn == Some(drawn) {
+            return;
+        }
+        target.drawn = Some(drawn);
+        queue.write_buffer(&target.uniform, 0, bytemuck::bytes_of(&uniform));
+        let [r, g, b, _] = view.ground.0.map(|c| f64::from(c) / 255.0);
+        let mut pass = target.begin(encoder, wgpu::Color { r, g, b, a: 1.0 });
+        pass.set_bind_group(0, &target.view_group, &[]);
+        pass.set_pipeline(&self.pipelines.faces);
+        self.faces.draw(&mut pass);
+        for (lines, dots) in [(&self.edges, None), (&self.over, Some([&self.dots, &self.over_dots]))] {
+            pass.set_pipeline(&self.pipelines.lines);
+            lines.draw(&mut pass);
+            for dots in dots.into_iter().flatten() {
+                pass.set_pipeline(&self.pipelines.dots);
+                dots.draw(&mut pass);
+            }
+        }
+    }
+
+    /// Lays the picture of a view into the window's own pass, which must be set to the view's place.
+    pub fn lay(&self, index: usize, pass: &mut wgpu::RenderPass<'_>) {
+        let Some(Some(target)) = self.targets.get(index) else { return };
+        pass.set_pipeline(&self.pipelines.blit);
+        pass.set_bind_group(0, &target.blit_group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// The finished picture of a view, if it was drawn.
+    pub fn picture(&self, index: usize) -> Option<&wgpu::Texture> {
+        self.targets.get(index)?.as_ref().map(|target| &target.picture)
+    }
+
+    /// Bytes sent to the card for the scene's lists since the painter was made.
+    pub fn bytes_sent(&self) -> u64 {
+        self.faces.sent + self.edges.sent + self.dots.sent + self.over.sent + self.over_dots.sent
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,302 @@
+//! What lies over the mesh: what the last operation changed, boundary, front, decision, selection.
+
+use super::{Dot, Layers, Line, Scene, ink, relative};
+use crate::core::convert::parameters::Parameters;
+use crate::core::convert::phase::Phase;
+use crate::core::front::segment::Segment;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::render::palette::{Palette, Rgba};
+
+/// Widths of front segments by class, in points.
+pub const FRONT: [f32; 4] = [3.2, 3.0, 3.0, 2.4];
+const BASE: f32 = 5.0;
+const SIDE: f32 = 3.2;
+const TOP: f32 = 2.6;
+
+/// The quadrilateral in the making: its base AB and, as far as they are known, its tops C (at A) and D (at B).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Decision {
+    /// A and B.
+    pub base: Option<[NodeId; 2]>,
+    /// C and D.
+    pub tops: [Option<NodeId>; 2],
+}
+
+impl Decision {
+    /// What is decided in a phase.
+    pub fn of(phase: &Phase) -> Decision {
+        let tops = match phase {
+            Phase::PrepareSide { left, .. } => [*left, None],
+            Phase::DivideSide { tops, .. } => *tops,
+            Phase::RecoverTop { tops, .. } | Phase::Form { tops, .. } => tops.map(Some),
+            _ => [None; 2],
+        };
+        Decision { base: phase.base().map(|base| [base.a, base.b]), tops }
+    }
+
+    /// Its nodes with their letters.
+    pub fn letters(&self) -> impl Iterator<Item = (NodeId, char)> + '_ {
+        let base = self.base.into_iter().flat_map(|[a, b]| [(a, 'A'), (b, 'B')]);
+        base.chain(self.tops[0].map(|c| (c, 'C'))).chain(self.tops[1].map(|d| (d, 'D')))
+    }
+}
+
+/// Something that is picked or hovered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Outlined {
+    /// A node.
+    Node(NodeId),
+    /// An edge or front segment, by its nodes.
+    Edge([NodeId; 2]),
+    /// An element.
+    Element(ElementId),
+}
+
+/// What is laid over a mesh.
+pub struct Overlay<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// Its front.
+    pub front: &'a [Segment],
+    /// Elements that the last operation changed.
+    pub changed: &'a [ElementId],
+    /// The quadrilateral in the making.
+    pub decision: Decision,
+    /// Edges that were tried and refused.
+    pub refused: &'a [[NodeId; 2]],
+    /// What is picked.
+    pub picked: Option<Outlined>,
+    /// What the pointer is over.
+    pub hovered: Option<Outlined>,
+    /// The mesh at step 0, where that layer is on.
+    pub background: Option<&'a Mesh>,
+}
+
+/// The front of a mesh, measured.
+pub fn front(mesh: &Mesh, parameters: &Parameters) -> Vec<Segment> {
+    mesh.front().map(|h| Segment::measure(mesh, h, parameters)).collect()
+}
+
+impl Scene {
+    /// Makes what lies over the mesh that of `overlay`.
+    pub fn set_overlay(&mut self, overlay: &Overlay<'_>, layers: Layers, palette: &Palette) {
+        self.generation += 1;
+        self.over.clear();
+        self.over_dots.clear();
+        self.add_background(overlay, palette);
+        self.add_changed(overlay, palette);
+        self.add_boundary(overlay, layers, palette);
+        self.add_hover(overlay, palette);
+        self.add_front(overlay, layers, palette);
+        self.add_picked(overlay, palette);
+        self.add_decision(overlay, palette);
+    }
+
+    fn line(&self, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32, dash: [f32; 2]) -> Option<Line> {
+        let here = ends.iter().all(|n| mesh.has_node(*n));
+        here.then(|| Line {
+            ends: ends.map(|n| relative(mesh.uv(n), self.anchor)),
+            colour: ink(colour),
+            width,
+            dash,
+            room: -1.0,
+        })
+    }
+
+    fn add(&mut self, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32) {
+        self.over.extend(self.line(mesh, ends, colour, width, [0.0; 2]));
+    }
+
+    fn add_background(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+        let Some(background) = overlay.background else { return };
+        for h in background.edges() {
+            let ends = [background.origin(h), background.target(h)];
+            self.add(background, ends, palette.hint.faded(0.5), 0.6);
+        }
+    }
+
+    fn add_changed(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+        let mesh = overlay.mesh;
+        for &e in overlay.changed.iter().filter(|e| mesh.has_element(**e)) {
+            for h in mesh.half_edges(e) {
+                self.add(mesh, [mesh.origin(h), mesh.target(h)], palette.changed_edge, 1.5);
+            }
+        }
+    }
+
+    fn add_boundary(&mut self, overlay: &Overlay<'_>, layers: Layers, palette: &Palette) {
+        if !layers.boundary {
+            return;
+        }
+        let mesh = overlay.mesh;
+        for e in mesh.elements() {
+            for h in mesh.half_edges(e).filter(|h| mesh.twin(*h).is_none()) {
+                self.add(mesh, [mesh.origin(h), mesh.target(h)], palette.boundary, 1.75);
+            }
+        }
+    }
+
+    fn add_front(&mut self, overlay: &Overlay<'_>, layers: Layers, palette: &Palette) {
+        if !layers.front {
+            return;
+        }
+        for segment in overlay.front {
+            let width = FRONT[usize::from(segment.class) - 1] + 2.0;
+            self.add(overlay.mesh, [segment.a, segment.b], palette.ground.faded(0.8), width);
+        }
+        for class in (1..=4).rev() {
+            for segment in overlay.front.iter().filter(|s| s.class == class) {
+                let k = usize::from(class) - 1;
+                self.add(overlay.mesh, [segment.a, segment.b], palette.front[k], FRONT[k]);
+            }
+        }
+    }
+
+    fn add_hover(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+        let mesh = overlay.mesh;
+        match overlay.hovered {
+            Some(Outlined::Edge(ends)) => self.add(mesh, ends, palette.hover, 8.0),
+            Some(Outlined::Element(e)) if mesh.has_element(e) => {
+                for h in mesh.half_edges(e) {
+                    self.add(mesh, [mesh.origin(h), mesh.target(h)], palette.hover, 4.0);
+                }
+            }
+            Some(Outlined::Node(node)) if mesh.has_node(node) => {
+                self.add_dot(mesh, node, 7.0, Rgba::default(), palette.hover, 2.0)
+            }
+            _ => {}
+        }
+    }
+
+    /// The same double line around whatever is picked.
+    fn add_picked(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+        let mesh = overlay.mesh;
+        match overlay.picked {
+            Some(Outlined::Edge(ends)) => {
+                let base = overlay.decision.base;
+                let segment = overlay.front.iter().find(|s| [s.a, s.b] == ends || [s.b, s.a] == ends);
+                let is_base = base == Some(ends) || base == Some([ends[1], ends[0]]);
+                let (colour, width) = match segment {
+                    _ if is_base => (palette.base, BASE),
+                    Some(segment) => {
+                        let k = usize::from(segment.class) - 1;
+                        (palette.front[k], FRONT[k])
+                    }
+                    None => (palette.dead_edge, 1.5),
+                };
+                self.add(mesh, ends, palette.selection, width + 5.5);
+                self.add(mesh, ends, palette.ground, width + 3.0);
+                self.add(mesh, ends, colour, width);
+            }
+            Some(Outlined::Element(e)) if mesh.has_element(e) => {
+                for (colour, width) in [(palette.selection, 4.5), (palette.ground, 2.0)] {
+                    for h in mesh.half_edges(e) {
+                        self.add(mesh, [mesh.origin(h), mesh.target(h)], colour, width);
+                    }
+                }
+            }
+            Some(Outlined::Node(node)) if mesh.has_node(node) => {
+                self.add_dot(mesh, node, 7.5, Rgba::default(), palette.selection, 1.5);
+            }
+            _ => {}
+        }
+    }
+
+    fn add_decision(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+        let mesh = overlay.mesh;
+        let Decision { base, tops } = overlay.decision;
+        for &ends in overlay.refused {
+            self.over.extend(self.line(mesh, ends, palette.refused, 1.25, [2.0, 4.0]));
+        }
+        let Some([a, b]) = base else { return };
+        let sides = [tops[0].map(|c| [a, c]), tops[1].map(|d| [b, d])];
+        for ends in sides.into_iter().flatten() {
+            self.add(mesh, ends, palette.ground.faded(0.9), SIDE + 2.8);
+        }
+        for ends in sides.into_iter().flatten() {
+            self.add(mesh, ends, palette.side, SIDE);
+        }
+        if let [Some(c), Some(d)] = tops {
+            self.add(mesh, [c, d], palette.ground.faded(0.9), TOP + 2.8);
+            self.over.extend(self.line(mesh, [c, d], palette.side, TOP, [7.0, 5.0]));
+        }
+        self.add(mesh, [a, b], palette.ground.faded(0.9), BASE + 2.8);
+        self.add(mesh, [a, b], palette.base, BASE);
+        for (node, _) in overlay.decision.letters().filter(|(n, _)| mesh.has_node(*n)).collect::<Vec<_>>() {
+            self.add_dot(mesh, node, 4.9, palette.ground, palette.base, 2.0);
+        }
+    }
+
+    fn add_dot(&mut self, mesh: &Mesh, node: NodeId, radius: f32, fill: Rgba, ring: Rgba, ring_width: f32) {
+        self.over_dots.push(Dot {
+            at: relative(mesh.uv(node), self.anchor),
+            radius,
+            fill: ink(fill),
+            ring: ink(ring),
+            ring_width,
+            room: 0.0,
+            least: 0.0,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::mesh::ids::PointId;
+    use crate::core::mesh::triangle_set::TriangleSet;
+    use crate::core::metric::tensor::Metric2;
+    use crate::render::palette::DARK;
+    use glam::DVec2;
+
+    fn square() -> Mesh {
+        let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
+        let point = (0..4).map(PointId).collect();
+        let set = TriangleSet { uv, point, triangles: vec![[0, 1, 2], [0, 2, 3]], region: vec![0; 2] };
+        Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4])
+    }
+
+    #[test]
+    fn the_decision_lies_over_the_front_and_the_front_over_the_boundary() {
+        let mesh = square();
+        let front = front(&mesh, &Parameters::default());
+        let decision = Decision { base: Some([NodeId(0), NodeId(1)]), tops: [Some(NodeId(3)), Some(NodeId(2))] };
+        let overlay = Overlay {
+            mesh: &mesh,
+            front: &front,
+            changed: &[],
+            decision,
+            refused: &[[NodeId(0), NodeId(2)]],
+            picked: None,
+            hovered: None,
+            background: None,
+        };
+        let mut scene = Scene::default();
+        scene.set_overlay(&overlay, Layers::default(), &DARK);
+        let last = |colour: Rgba| scene.over.iter().rposition(|l| l.colour == colour.packed()).unwrap();
+        let order = [DARK.boundary, DARK.front[0], DARK.refused, DARK.side, DARK.base].map(last);
+        assert!(order.is_sorted(), "{order:?}");
+        assert_eq!(scene.over_dots.len(), 4);
+        let letters: String = decision.letters().map(|l| l.1).collect();
+        assert_eq!(letters, "ABCD");
+    }
+
+    #[test]
+    fn what_is_no_longer_there_is_not_drawn() {
+        let mesh = square();
+        let overlay = Overlay {
+            mesh: &mesh,
+            front: &[],
+            changed: &[ElementId(7)],
+            decision: Decision::default(),
+            refused: &[],
+            picked: Some(Outlined::Edge([NodeId(0), NodeId(9)])),
+            hovered: Some(Outlined::Element(ElementId(9))),
+            background: None,
+        };
+        let mut scene = Scene::default();
+        scene.set_overlay(&overlay, Layers { boundary: false, ..Layers::default() }, &DARK);
+        assert!(scene.over.is_empty() && scene.over_dots.is_empty());
+    }
+}
