@@ -1,6 +1,6 @@
 //! The window: a stepping debugger for the merging front.
 //!
-//! What a person does becomes a [`command::Command`]; [`state::State::apply`] is the only place where one changes anything.
+//! What a person does becomes a [`command::Command`]; `State::apply` is the only place where one changes anything.
 //! The run itself works on threads of its own (`session`), so that the window never waits.
 
 mod words;
