@@ -1,11 +1,12 @@
 # Every target sets up what it needs: on a fresh machine a Rust toolchain and make are enough.
-.PHONY: help run test check bench soak licenses
+.PHONY: help run test check bench experiments soak licenses
 
 help:
 	@echo "make run       convert example 1; says where mesh, report and picture lie"
 	@echo "make test      all tests"
 	@echo "make check     formatting, clippy and rustdoc; warnings are errors"
 	@echo "make bench     timings"
+	@echo "make experiments  the tables of docs/experiments.md (some minutes)"
 	@echo "make soak      the long property runs"
 	@echo "make licenses  licences and duplicates of the dependencies"
 
@@ -32,7 +33,13 @@ check:
 
 bench:
 	@tools/setup build
-	cargo bench --locked --no-default-features
+	cargo bench --locked --no-default-features --bench background --bench conversion
+
+experiments:
+	@tools/setup build
+	@mkdir -p out
+	cargo bench --locked --no-default-features --bench experiments > out/experiments.md
+	@echo "tables: out/experiments.md"
 
 # Properties run this many rounds here, and a few hundred in `make test`.
 soak: export QUADFRONT_SOAK_ROUNDS = 10000
