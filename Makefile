@@ -2,13 +2,13 @@
 .PHONY: help run test check bench experiments soak licenses
 
 help:
-	@echo "make run       convert example 1; says where mesh, report and picture lie"
-	@echo "make test      all tests"
-	@echo "make check     formatting, clippy and rustdoc; warnings are errors"
-	@echo "make bench     timings"
+	@echo "make run          convert example 1; says where mesh, report and picture lie"
+	@echo "make test         all tests"
+	@echo "make check        formatting, clippy and rustdoc; warnings are errors"
+	@echo "make bench        timings"
 	@echo "make experiments  the tables of docs/experiments.md (some minutes)"
-	@echo "make soak      the long property runs"
-	@echo "make licenses  licences and duplicates of the dependencies"
+	@echo "make soak         the long property runs"
+	@echo "make licenses     licences and duplicates of the dependencies"
 
 run:
 	@tools/setup build
