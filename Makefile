@@ -1,13 +1,14 @@
 # Every target sets up what it needs: on a fresh machine a Rust toolchain and make are enough.
-.PHONY: help run test check bench soak licenses
+.PHONY: help run test check bench experiments soak licenses
 
 help:
-	@echo "make run       the window on example 1; without a display example 1 converted, with its pictures"
-	@echo "make test      all tests"
-	@echo "make check     formatting, clippy and rustdoc; warnings are errors"
-	@echo "make bench     timings"
-	@echo "make soak      the long property runs"
-	@echo "make licenses  licences and duplicates of the dependencies"
+	@echo "make run          the window on example 1; without a display example 1 converted, with its pictures"
+	@echo "make test         all tests"
+	@echo "make check        formatting, clippy and rustdoc; warnings are errors"
+	@echo "make bench        timings"
+	@echo "make experiments  the tables of docs/experiments.md (some minutes)"
+	@echo "make soak         the long property runs"
+	@echo "make licenses     licences and duplicates of the dependencies"
 
 run:
 	@tools/setup build run
@@ -29,7 +30,13 @@ check:
 
 bench:
 	@tools/setup build
-	cargo bench --locked --no-default-features
+	cargo bench --locked --no-default-features --bench background --bench conversion --bench history
+
+experiments:
+	@tools/setup build
+	@mkdir -p out
+	cargo bench --locked --no-default-features --bench experiments > out/experiments.md
+	@echo "tables: out/experiments.md"
 
 # Properties run this many rounds here, and a few hundred in `make test`.
 soak: export QUADFRONT_SOAK_ROUNDS = 10000
