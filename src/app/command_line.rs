@@ -194,7 +194,7 @@ mod tests {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }
         for line in [
-            "quadfront",
+            "quadfront wobble",
             "quadfront convert",
             "quadfront convert a --set size_scale",
             "quadfront check",
