@@ -4,15 +4,19 @@
 //! changes go through the mesh's operators and so through the journal: an attempt that fails is taken back, and a person
 //! who steps back uses the same mechanism.
 
+mod formation;
+mod taking_back;
+
 use std::sync::Arc;
 
+use taking_back::Record;
+
 use super::component::{Component, live_components};
-use super::event::{Event, Why};
-use super::finish::{Finished, Finishing, PartMarks};
+use super::event::Event;
+use super::finish::{Finished, Finishing};
 use super::last_resort::{Outcome, Plan};
 use super::parameters::Parameters;
 use super::phase::{Attempt, Base, Part, Phase};
-use super::top::{MOST_SWAPS, Recovery};
 use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
@@ -20,8 +24,7 @@ use crate::core::front::selection::{Choice, Queue};
 use crate::core::io::fingerprint::Fingerprint;
 use crate::core::journal::Mark;
 use crate::core::mesh::half_edge::{Mesh, Undone};
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::mesh::touched::Touched;
+use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::{Stage, Watch};
 
@@ -61,28 +64,6 @@ pub struct Counts {
     pub removed: u64,
 }
 
-/// What a step needs to be taken back.
-#[derive(Clone, Debug)]
-pub(super) struct Record {
-    phase: Phase,
-    second_pass: bool,
-    picked: Option<[NodeId; 2]>,
-    counts: Counts,
-    last_resort: Outcome,
-    finished: Finished,
-    parts: PartMarks,
-    undo: Undo,
-}
-
-/// How a step is taken back.
-#[derive(Clone, Debug)]
-enum Undo {
-    /// By the journal, from here.
-    Journal(Mark),
-    /// It was a rollback itself: by doing again what it took back.
-    Redo(Vec<Undone>),
-}
-
 /// A conversion at some step.
 #[derive(Clone)]
 pub struct Converter<'a> {
@@ -98,7 +79,7 @@ pub struct Converter<'a> {
     queue: Option<Queue>,
     phase: Phase,
     /// Records of the steps, where a history is kept.
-    pub(super) history: Option<Vec<Record>>,
+    history: Option<Vec<Record>>,
     /// Whether steps leave the journal to whoever drives them, who forgets it where nothing is under way.
     journal_kept: bool,
     /// What the step at hand took back, where a history is kept.
@@ -196,109 +177,6 @@ impl<'a> Converter<'a> {
         if self.mesh.has_node(a) && self.mesh.has_node(b) { self.mesh.front_between(a, b) } else { None }
     }
 
-    /// Keeps from now on what [`step_back`](Converter::step_back) needs.
-    pub fn keep_history(&mut self) {
-        self.mesh.commit();
-        self.finishing.record();
-        self.history = Some(Vec::new());
-    }
-
-    /// Takes the last step back, exactly. False at the beginning of the history, or where none is kept.
-    pub fn step_back(&mut self) -> bool {
-        let Some(record) = self.history.as_mut().and_then(Vec::pop) else { return false };
-        match record.undo {
-            Undo::Journal(mark) => self.mesh.take_back(mark),
-            Undo::Redo(undone) => self.mesh.redo(undone),
-        }
-        self.phase = record.phase;
-        self.second_pass = record.second_pass;
-        self.picked = record.picked;
-        self.counts = record.counts;
-        self.last_resort = record.last_resort;
-        self.finished = record.finished;
-        self.finishing.take_back(record.parts, record.finished.cleaned_up);
-        self.queue = None;
-        true
-    }
-
-    /// Lets the journal stand from step to step without keeping a history: it tells what the steps touched. Whoever drives
-    /// forgets it ([`Mesh::commit`]) where [`Phase::mark`] says that nothing is under way.
-    pub(in crate::core) fn keep_journal(&mut self) {
-        self.mesh.commit();
-        self.journal_kept = true;
-    }
-
-    pub(super) fn keeps_journal(&self) -> bool {
-        self.journal_kept || self.history.is_some()
-    }
-
-    /// Number of steps that can be taken back.
-    pub fn history_len(&self) -> usize {
-        self.history.as_ref().map_or(0, Vec::len)
-    }
-
-    /// Bytes that the history takes: records, journal, and what rollbacks need to be taken back. Linear in its length.
-    pub fn history_bytes(&self) -> usize {
-        let records = self.history.as_ref().map_or(0, |records| {
-            let redo = |record: &Record| match &record.undo {
-                Undo::Redo(undone) => undone.capacity() * size_of::<Undone>(),
-                Undo::Journal(_) => 0,
-            };
-            records.capacity() * size_of::<Record>() + records.iter().map(redo).sum::<usize>()
-        });
-        records + self.mesh.journal().bytes() + self.finishing.log_bytes()
-    }
-
-    /// Bytes that everything but mesh, queue and history takes, beside its own size.
-    pub(in crate::core) fn bytes_of_rest(&self) -> usize {
-        let of = |component: &Component| size_of::<Component>() + component.triangles.len() * size_of::<ElementId>();
-        let phase = match &self.phase {
-            Phase::Close { waiting, left } => waiting.iter().chain(left).map(of).sum(),
-            // The plan is shared by all states that carry it out.
-            Phase::Match { left, .. } | Phase::Patch { left, .. } => left.iter().map(of).sum(),
-            _ => 0,
-        };
-        phase + self.finishing.bytes()
-    }
-
-    /// Forgets the older steps of the history, so that about `keep` can still be taken back: a few more where an attempt
-    /// was under way.
-    pub fn shorten_history(&mut self, keep: usize) {
-        let Some(records) = &mut self.history else { return };
-        // Later steps take back no further than to the selection at which nothing was under way.
-        let last = records.len().saturating_sub(keep);
-        let at_rest = |record: &Record| record.phase.mark().is_none();
-        let Some(first) = (0..=last).rev().find(|&i| records.get(i).is_some_and(at_rest)) else { return };
-        let Undo::Journal(mark) = records[first].undo else { return };
-        records.drain(..first);
-        records.shrink_to(2 * records.len());
-        self.mesh.forget_before(mark);
-    }
-
-    /// The ids of what the last step changed, from the history; false where there is none.
-    pub(in crate::core) fn note_last_step(&self, touched: &mut Touched) -> bool {
-        let Some(record) = self.history.as_ref().and_then(|records| records.last()) else { return false };
-        match &record.undo {
-            Undo::Journal(mark) => touched.note_since(&self.mesh, *mark),
-            Undo::Redo(undone) => touched.note_undone(&self.mesh, undone),
-        }
-        true
-    }
-
-    /// Everything but the mesh and caches, history left out: with the mesh, a state to go on from.
-    pub(in crate::core) fn without_mesh(&mut self) -> Converter<'a> {
-        let (mesh, queue) = (std::mem::take(&mut self.mesh), self.queue.take());
-        let (history, journal_kept) = (self.history.take(), std::mem::take(&mut self.journal_kept));
-        let rest = self.clone();
-        (self.mesh, self.queue, self.history, self.journal_kept) = (mesh, queue, history, journal_kept);
-        rest
-    }
-
-    /// The state that [`without_mesh`](Converter::without_mesh) was made of, on its mesh.
-    pub(in crate::core) fn with_mesh(&self, mesh: Mesh) -> Converter<'a> {
-        Converter { mesh, ..self.clone() }
-    }
-
     /// Appends the canonical serialisation of the state: mesh, front, phase and what the next steps depend on. Equal
     /// bytes are equal states; caches and counts are left out.
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
@@ -351,27 +229,13 @@ impl<'a> Converter<'a> {
     /// # Errors
     /// Where what is left over cannot be converted even by the last resort: a bug, or a mesh that broke its promises.
     pub fn step(&mut self) -> Result<Event, Fault> {
-        let before = self.history.is_some().then(|| Record {
-            phase: self.phase.clone(),
-            second_pass: self.second_pass,
-            picked: self.picked,
-            counts: self.counts,
-            last_resort: self.last_resort,
-            finished: self.finished,
-            parts: self.finishing.mark(),
-            undo: Undo::Journal(self.mesh.mark()),
-        });
+        let before = self.record();
         self.step_mark = self.mesh.mark();
         self.counts.steps += 1;
         let phase = std::mem::replace(&mut self.phase, Phase::Done);
         let (next, event) = self.act(phase)?;
         self.phase = next;
-        if let (Some(history), Some(mut record)) = (&mut self.history, before) {
-            if let Some(undone) = self.undone.take() {
-                record.undo = Undo::Redo(undone);
-            }
-            history.push(record);
-        }
+        self.remember(before);
         Ok(event)
     }
 
@@ -459,106 +323,6 @@ impl<'a> Converter<'a> {
                 picked: picked.is_some(),
             },
         ))
-    }
-
-    /// Takes an attempt back; the next one follows, or where there is none the segment is put off (spec 2.4 d).
-    fn fail(&mut self, base: Base, attempt: Attempt, why: Why) -> (Phase, Event) {
-        if self.history.is_some() {
-            // What this very step did is not part of the state before it.
-            self.mesh.take_back(self.step_mark);
-            self.undone = Some(self.mesh.take_back_to_redo(attempt.mark));
-        } else {
-            self.mesh.take_back(attempt.mark);
-        }
-        self.counts.rolled_back += 1;
-        let next = match self.next_attempt(&base, &attempt) {
-            Some(attempt) => Phase::PrepareSide { base, attempt, side: Side::Left, left: None },
-            None => Phase::Defer { base },
-        };
-        (next, Event::RolledBack { attempt: attempt.number, why })
-    }
-
-    fn step_side(&mut self, base: Base, attempt: Attempt, side: Side, left: Option<NodeId>) -> (Phase, Event) {
-        match self.prepare_side(&base, &attempt, side, left) {
-            Ok((top, event)) => {
-                let tops = match side {
-                    Side::Left => [Some(top), None],
-                    Side::Right => [left, Some(top)],
-                };
-                // A dead edge is never divided; what cannot be divided and must be fails in its own step.
-                let next = match event {
-                    Event::SideIsFront { .. } => self.after_side(base, attempt, side, tops),
-                    _ => match self.division(&base, &attempt, side, top) {
-                        Ok(None) => self.after_side(base, attempt, side, tops),
-                        _ => Phase::DivideSide { base, attempt, side, tops },
-                    },
-                };
-                (next, event)
-            }
-            Err(why) => self.fail(base, attempt, why),
-        }
-    }
-
-    fn after_side(&self, base: Base, attempt: Attempt, side: Side, tops: [Option<NodeId>; 2]) -> Phase {
-        match (side, tops) {
-            (Side::Right, [Some(c), Some(d)]) => Phase::RecoverTop { base, attempt, tops: [c, d], swaps: 0 },
-            _ => Phase::PrepareSide { base, attempt, side: Side::Right, left: tops[0] },
-        }
-    }
-
-    fn step_divide(
-        &mut self,
-        base: Base,
-        attempt: Attempt,
-        side: Side,
-        mut tops: [Option<NodeId>; 2],
-    ) -> Result<(Phase, Event), Fault> {
-        let Some(top) = tops[side.index()] else { return Ok(self.fail(base, attempt, Why::NoSide(side))) };
-        match self.division(&base, &attempt, side, top) {
-            Ok(Some(division)) => {
-                let (node, event) = self.divide_side(side, division);
-                tops[side.index()] = Some(node);
-                Ok((self.after_side(base, attempt, side, tops), event))
-            }
-            // Somebody has changed the parameters since it was judged.
-            Ok(None) => self.act(self.after_side(base, attempt, side, tops)),
-            Err(why) => Ok(self.fail(base, attempt, why)),
-        }
-    }
-
-    fn step_top(&mut self, base: Base, attempt: Attempt, tops: [NodeId; 2], swaps: u8) -> (Phase, Event) {
-        let [c, d] = tops;
-        match self.recover_step(c, d, &[base.a, base.b, c, d]) {
-            Ok(Recovery::Found) => (Phase::Form { base, attempt, tops }, Event::TopFound { ends: tops, swaps }),
-            Ok(Recovery::Changed(_)) if swaps == MOST_SWAPS => self.fail(base, attempt, Why::TopTooLong),
-            Ok(Recovery::Changed(event)) => (Phase::RecoverTop { base, attempt, tops, swaps: swaps + 1 }, event),
-            Err(why) => self.fail(base, attempt, why),
-        }
-    }
-
-    fn step_form(&mut self, base: Base, attempt: Attempt, tops: [NodeId; 2]) -> (Phase, Event) {
-        match self.form(&base, &attempt, tops) {
-            Ok(event) => {
-                let Event::Formed { element, .. } = event else { unreachable!("form forms") };
-                self.counts.formed += 1;
-                let right_replaced = attempt.tops[1].is_some() && attempt.tops[0].is_none();
-                self.counts.right_replaced += u64::from(right_replaced);
-                self.counts.rescued += u64::from(attempt.tops[0].is_some());
-                (self.begin_local(element, attempt.mark), event)
-            }
-            Err(why) => self.fail(base, attempt, why),
-        }
-    }
-
-    /// Puts a segment off until something near it changes.
-    fn step_defer(&mut self, base: Base) -> (Phase, Event) {
-        self.counts.deferred += 1;
-        if let Some(h) = self.base_half_edge(&base) {
-            let mut queue = self.take_queue();
-            queue.defer(&mut self.mesh, h);
-            self.queue = Some(queue);
-        }
-        (Phase::Select, Event::Deferred { a: base.a, b: base.b })
     }
 
     /// Closes the next small loop that is left over (spec 2.7); what cannot be closed goes to the last resort together.

@@ -116,7 +116,7 @@ impl Converter<'_> {
 
     /// The next change of structure within reach.
     fn clean_up(&mut self, reach: Reach) -> Option<Event> {
-        let (recording, keep_journal) = (self.history.is_some(), self.keeps_journal());
+        let (recording, keep_journal) = (self.keeps_history(), self.keeps_journal());
         let (mesh, source, done) = (&mut self.mesh, Arc::clone(&self.source), self.finished.cleaned_up);
         let part = &mut self.finishing.clean_up[reach as usize];
         let part = part.get_or_insert_with(|| CleanUp::begin(mesh, source, reach, done, recording));
@@ -128,7 +128,7 @@ impl Converter<'_> {
     /// Looks at every free node that waits: all in the first sweep of a part, then those around nodes that moved. None
     /// where no node waits any more.
     fn sweep(&mut self, part: Part) -> Option<Event> {
-        let (recording, keep_journal) = (self.history.is_some(), self.keeps_journal());
+        let (recording, keep_journal) = (self.keeps_history(), self.keeps_journal());
         let mesh = &mut self.mesh;
         let list = match part {
             Part::FirstSmoothing => &mut self.finishing.first_smoothing,
