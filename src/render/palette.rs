@@ -25,6 +25,14 @@ impl Rgba {
         Rgba([r, g, b, (f32::from(a) * factor.clamp(0.0, 1.0)).round() as u8])
     }
 
+    /// This colour with so much (0 to 1) of another one laid over it.
+    #[must_use]
+    pub fn mixed(self, other: Rgba, share: f32) -> Rgba {
+        let share = share.clamp(0.0, 1.0);
+        let mix = |a: u8, b: u8| (f32::from(a) * (1.0 - share) + f32::from(b) * share).round() as u8;
+        Rgba(std::array::from_fn(|k| mix(self.0[k], other.0[k])))
+    }
+
     /// The colour as one number for the graphics card, red in the lowest byte.
     pub fn packed(self) -> u32 {
         u32::from_le_bytes(self.0)

@@ -4,17 +4,22 @@
 //! and only those are sent to the card. Deliberately absent: wgpu (`gpu`), and text, arcs and ellipses, which the window
 //! lays over the picture.
 
+mod placed;
+mod shading;
 mod mesh;
 mod overlay;
 
 use glam::{DVec2, DVec3};
 
-pub use mesh::{angles, metric_area};
+pub use mesh::Drawn;
 pub use overlay::{Decision, Outlined, Overlay, front};
+pub use placed::{Placed, STRETCH};
+pub use shading::{ColourBy, Shading, angles, metric_area};
 
-use super::colour_map::ColourMap;
 use super::palette::Rgba;
 use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::ElementId;
+use placed::Places;
 
 /// A filled triangle or quadrilateral.
 #[repr(C)]
@@ -66,62 +71,6 @@ pub struct Dot {
     pub least: f32,
 }
 
-/// What elements are coloured by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColourBy {
-    /// Live and dead.
-    #[default]
-    State,
-    /// The mean smallest target size at the nodes (eq. 6), by its logarithm.
-    HValue,
-    /// The smallest angle, in degrees of the plane.
-    Angle,
-    /// Rows from the boundary.
-    Level,
-    /// Quality in the metric.
-    Quality,
-    /// The step that made the element.
-    Birth,
-    /// Area in the metric.
-    Area,
-}
-
-impl ColourBy {
-    /// All of them, in the order of menus.
-    pub const ALL: [ColourBy; 7] = [
-        ColourBy::State,
-        ColourBy::HValue,
-        ColourBy::Angle,
-        ColourBy::Level,
-        ColourBy::Quality,
-        ColourBy::Birth,
-        ColourBy::Area,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            ColourBy::State => "live and dead",
-            ColourBy::HValue => "H",
-            ColourBy::Angle => "smallest angle",
-            ColourBy::Level => "level",
-            ColourBy::Quality => "quality",
-            ColourBy::Birth => "step of birth",
-            ColourBy::Area => "metric area",
-        }
-    }
-
-    /// Its colour map; none where the state is shown.
-    pub fn map(self) -> Option<ColourMap> {
-        match self {
-            ColourBy::State => None,
-            ColourBy::HValue | ColourBy::Birth | ColourBy::Area => Some(ColourMap::Viridis),
-            ColourBy::Angle | ColourBy::Quality => Some(ColourMap::Cividis),
-            ColourBy::Level => Some(ColourMap::Batlow),
-        }
-    }
-}
-
 /// What is drawn of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layers {
@@ -161,40 +110,32 @@ impl Default for Layers {
     }
 }
 
-/// The values that elements are coloured by, and their range.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Shading {
-    /// What is shown.
-    pub by: ColourBy,
-    /// A value for each element slot; not a number where there is none.
-    pub values: Vec<f64>,
-    /// The least and greatest value.
-    pub range: [f64; 2],
-    /// Whether colours go by the logarithm.
-    pub logarithmic: bool,
-}
-
-/// Everything of one state that the card draws, from back to front: `faces`, `edges`, `over`, `dots`.
+/// Everything of one state that the card draws, from back to front: `faces`, `edges`, `under`, `boundary`, `over`, `dots`,
+/// `over_dots`.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// What all positions are relative to.
     pub anchor: DVec3,
     /// One for each element slot.
-    pub faces: Vec<Face>,
+    pub faces: Placed<Face>,
     /// Edges of the mesh, each in its place for as long as it lives.
-    pub edges: Vec<Line>,
-    /// Front, boundary, decision, selection: in the order in which they are drawn.
-    pub over: Vec<Line>,
+    pub edges: Placed<Line>,
+    /// The background mesh, and what the last operations changed.
+    pub under: Placed<Line>,
+    /// Edges on the boundary, in places as those of the mesh.
+    pub boundary: Placed<Line>,
+    /// Front, decision, selection: in the order in which they are drawn.
+    pub over: Placed<Line>,
     /// One for each node slot.
-    pub dots: Vec<Dot>,
+    pub dots: Placed<Dot>,
     /// Dots over everything: the ends of the decision.
-    pub over_dots: Vec<Dot>,
+    pub over_dots: Placed<Dot>,
     /// Changes with everything above.
     pub generation: u64,
-    /// The place of each half-edge slot in `edges`; `u32::MAX` where it has none.
-    place: Vec<u32>,
-    /// Places that nobody uses.
-    free: Vec<u32>,
+    places: Places,
+    boundary_places: Places,
+    /// What stands out as just changed.
+    standing_out: Vec<ElementId>,
 }
 
 /// A place of the plane relative to the anchor.

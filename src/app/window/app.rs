@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Frame, Key, Modifiers, Panel, Ui, ViewportCommand};
-use eframe::{CreationContext, egui_wgpu};
+use eframe::{CreationContext, egui_wgpu, wgpu};
 
 use super::command::{Command, keys};
 use super::files::{Answer, free_path, write_png};
@@ -28,6 +28,8 @@ pub struct App {
     /// What the last frame asked for.
     commands: Vec<Command>,
     taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
+    /// Whether the last frame asked for this one at once.
+    moving: bool,
 }
 
 impl App {
@@ -43,7 +45,14 @@ impl App {
         if let Some(source) = source {
             state.open(source);
         }
-        App { state, views: Views::default(), layout: Layout::default(), commands: Vec::new(), taken: Arc::default() }
+        App {
+            state,
+            views: Views::default(),
+            layout: Layout::default(),
+            commands: Vec::new(),
+            taken: Arc::default(),
+            moving: false,
+        }
     }
 
     /// Does what a person asks for.
@@ -79,6 +88,25 @@ impl App {
             self.state.apply(Command::Go(Goal::Quads(1)));
         } else {
             context.request_repaint_after(period - waited);
+        }
+    }
+
+    /// Steps on and back where that is being measured.
+    fn measure(&mut self, context: &Context, frame: &eframe::Frame) {
+        let busy = self.state.is_busy();
+        let took = self.state.moment.as_ref().map_or(Duration::ZERO, |moment| moment.took);
+        let Some(measuring) = &mut self.state.measuring else { return };
+        context.request_repaint();
+        if let Some(render) = frame.wgpu_render_state() {
+            // A frame is done when the card is.
+            let _ = render.device.poll(wgpu::PollType::wait_indefinitely());
+        }
+        if let Some(goal) = measuring.next(!busy, took) {
+            self.state.apply(Command::Go(goal));
+        } else if let Some(told) = measuring.told() {
+            println!("{told}");
+            self.state.measuring = None;
+            self.state.notice(told);
         }
     }
 
@@ -133,9 +161,11 @@ fn install_painter(render: &egui_wgpu::RenderState) {
 }
 
 impl eframe::App for App {
-    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
+        self.state.times.frame(std::mem::take(&mut self.moving));
         self.state.hear();
+        self.measure(&context, frame);
         self.keys(&context);
         self.dialogs(&context);
         for command in std::mem::take(&mut self.commands) {
@@ -175,6 +205,7 @@ impl eframe::App for App {
         if !self.commands.is_empty() {
             context.request_repaint();
         }
+        self.moving = context.has_requested_repaint();
         let title = match &self.state.opened {
             Some(opened) => format!("{} – quadfront", opened.case.name),
             None => "quadfront".to_owned(),

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::command::Command;
 use super::files;
+use super::measure::Measuring;
 use super::session::{Goal, Source};
 use super::state::{Kept, Look, Over, State};
 use super::words;
@@ -38,13 +39,28 @@ impl State {
             Command::Show(what) => self.look = Some(Look::At(what)),
             Command::LastTouch(what) => {
                 let Some(session) = &self.session else { return };
-                session.go_to_touch(match what {
-                    Outlined::Node(node) => Watched::Node(node),
-                    Outlined::Edge([a, b]) => Watched::Edge(a, b),
-                    Outlined::Element(element) => Watched::Element(element),
-                });
+                session.go_to_touch(watched(what));
                 self.wait();
             }
+            Command::Made(element) => {
+                let Some(session) = &self.session else { return };
+                session.go_to_making(element);
+                self.wait();
+            }
+            Command::Watch(what) => {
+                let watched = watched(what);
+                self.keep(|kept| match kept.watches.iter().position(|w| w.0 == watched) {
+                    Some(k) => drop(kept.watches.remove(k)),
+                    None => kept.watches.push((watched, true)),
+                });
+            }
+            Command::SwitchWatch(k) => self.keep(|kept| {
+                if let Some(watch) = kept.watches.get_mut(k) {
+                    watch.1 = !watch.1;
+                }
+            }),
+            Command::Measure => self.measuring = Some(Measuring::default()),
+            Command::ShowTimes => self.show_times = !self.show_times,
             Command::Fit => self.look = Some(Look::Fit),
             Command::ShowDecision => self.look = Some(Look::Decision),
             Command::Set(key, value) => self.set(key, value),
@@ -109,7 +125,7 @@ impl State {
             self.run_changed();
         }
         if self.kept.layers != before.layers || self.kept.colour_by != before.colour_by {
-            self.mesh_epoch += 1;
+            self.style_epoch += 1;
         }
         if self.kept.breakpoints != before.breakpoints
             && let Some(session) = &self.session
@@ -173,12 +189,12 @@ impl State {
     }
 
     fn seek_breakpoint(&mut self, forward: bool) {
-        let conditions = self.conditions();
-        if conditions.is_empty() {
+        let stops = self.stops();
+        if stops.conditions.is_empty() && stops.watched.is_empty() {
             return self.notice("No breakpoint is on: write a condition in the panel Breakpoints.".to_owned());
         }
         let Some(session) = &self.session else { return };
-        session.go_to_break(conditions, forward);
+        session.go_to_break(stops, forward);
         self.wait();
     }
 
@@ -263,6 +279,15 @@ impl State {
     /// Parameters of the case, before any edit.
     pub fn parameters_of_case(&self) -> Option<&Parameters> {
         self.opened.as_ref().map(|opened| &opened.case.parameters)
+    }
+}
+
+/// The same for the run.
+pub fn watched(what: Outlined) -> Watched {
+    match what {
+        Outlined::Node(node) => Watched::Node(node),
+        Outlined::Edge([a, b]) => Watched::Edge(a.min(b), a.max(b)),
+        Outlined::Element(element) => Watched::Element(element),
     }
 }
 

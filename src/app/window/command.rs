@@ -4,7 +4,7 @@ use eframe::egui::{Key, Modifiers};
 
 use super::session::{Goal, Source};
 use crate::core::io::built_in;
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::render::scene::{ColourBy, Outlined};
 
 /// What a person asks for.
@@ -26,6 +26,12 @@ pub enum Command {
     Show(Outlined),
     /// Go back to the step that touched something last.
     LastTouch(Outlined),
+    /// Go to the step that made the quadrilateral of an element.
+    Made(ElementId),
+    /// Stop where something is touched, or no longer.
+    Watch(Outlined),
+    /// Switch a watchpoint on or off.
+    SwitchWatch(usize),
     /// Fit the whole mesh to the view.
     Fit,
     /// Show the base segment in the middle, from near.
@@ -74,6 +80,10 @@ pub enum Command {
     Help,
     /// Panels to their first places.
     ResetLayout,
+    /// Step on and back, and tell how long states and frames take.
+    Measure,
+    /// Show in the status line how long states and frames take.
+    ShowTimes,
     /// Close whatever is open over the window, or give up the selection.
     Escape,
 }
@@ -160,6 +170,11 @@ impl Command {
             Command::Pick(_) => "Select".into(),
             Command::Show(_) => "Show in the middle".into(),
             Command::LastTouch(_) => "Who touched this last".into(),
+            Command::Made(_) => "When was this made".into(),
+            Command::Watch(what) => format!("Watch {}", super::words::thing(*what)),
+            Command::SwitchWatch(_) => "Switch a watchpoint".into(),
+            Command::Measure => "Measure how long steps take here".into(),
+            Command::ShowTimes => "Show how long states and frames take".into(),
             Command::Fit => "Fit the mesh to the view".into(),
             Command::ShowDecision => "Zoom to the decision".into(),
             Command::Set(key, value) => format!("Set {key} = {value}"),
@@ -216,6 +231,7 @@ impl Command {
     pub fn all() -> Vec<Command> {
         let mut all: Vec<Command> = keys().into_iter().map(|k| k.2).collect();
         all.extend([Command::Help, Command::OpenDialog, Command::ResetParameters, Command::ResetLayout]);
+        all.extend([Command::ShowTimes, Command::Measure]);
         all.extend(ColourBy::ALL.map(Command::ColourBy));
         all.extend(KINDS.iter().flat_map(|k| [true, false].map(|f| Command::Go(Goal::Kind(k, f)))));
         all.extend(built_in::CASES.iter().map(|case| Command::Open(Source::BuiltIn(case.0.to_owned()))));

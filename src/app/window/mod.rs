@@ -7,6 +7,7 @@ mod words;
 mod icons;
 mod theme;
 mod session;
+mod measure;
 mod command;
 mod files;
 mod state;

@@ -4,6 +4,8 @@
 //! what it found. A goal that lies beyond what is known waits until that thread has come so far, or until it is stopped.
 
 mod goal;
+mod moment;
+mod worker;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,39 +14,38 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 pub use goal::Goal;
+pub use moment::{Moment, Verdict};
+pub use worker::Stops;
 
-use crate::core::convert::candidates::Candidates;
 use crate::core::convert::conversion::Background;
 use crate::core::convert::event::Event;
-use crate::core::convert::parameters::Parameters;
-use crate::core::convert::phase::Phase;
-use crate::core::convert::walk::standing;
 use crate::core::fault::Fault;
-use crate::core::front::segment::Segment;
 use crate::core::io::case::Case;
-use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::progress::{Stage, Watch};
-use crate::core::run::breakpoint::{self, Condition};
+use crate::core::run::breakpoint::Condition;
 use crate::core::run::explain::SegmentTold;
-use crate::core::run::front_table::{FrontTable, Loop, Row};
-use crate::core::run::history::{BUDGET, Changes, History};
 use crate::core::run::recorder::{Recorder, Stretch};
 use crate::core::run::run::{Edit, Run};
+use crate::core::run::timeline::Sample;
 use crate::core::run::watch::Watched;
+use worker::Worker;
 
 /// How often progress is told.
 const EVERY: Duration = Duration::from_millis(50);
-/// Steps that the recorder does before it hands them over: few at first, since somebody may be waiting.
-const STRETCH: [u64; 2] = [64, 8192];
 
 /// What is asked of a session, by the window or by its own recorder.
 enum Ask {
-    Go(Goal),
-    /// To the next step at which a condition holds, or the last one before.
-    Break(Vec<Condition>, bool),
+    /// To a goal; asked then.
+    Go(Goal, Instant),
+    /// To the next step at which a condition holds or something that is watched is touched, or the last one before.
+    Break(Stops, bool),
     /// To the step that touched something last.
     Touch(Watched),
+    /// To the step that made the quadrilateral of an element.
+    Made(ElementId),
+    /// What became of something up to the state at hand.
+    Past(Watched),
     /// How often conditions hold.
     Count(Vec<Condition>),
     Explain([NodeId; 2]),
@@ -62,7 +63,11 @@ pub enum Told {
     /// A state is there; so many asks are answered by it.
     Moment(Arc<Moment>, usize),
     /// More of the run: steps after `from`, in place of what was known after it; whether the end is among them.
-    Track { from: u64, steps: Vec<Tracked>, end: bool },
+    Track { from: u64, steps: Vec<Tracked>, samples: Vec<Sample>, end: bool },
+    /// What the checks of the whole mesh found at a step.
+    Checked(u64, Verdict),
+    /// What became of something up to a step.
+    Past(Arc<Past>),
     /// How often each of the conditions holds in what is known of the run.
     Hits(Vec<usize>),
     /// Why a segment of the front was or was not chosen, at a step.
@@ -90,32 +95,27 @@ pub struct Tracked {
     pub standing: u32,
     /// Segments of the front after it.
     pub front: u32,
+    /// Loops of the front, and how many of them are odd.
+    pub loops: [u16; 2],
+    /// Live triangles after it.
+    pub live: u32,
     /// The quadrilateral that it formed, with its quality.
     pub formed: Option<(ElementId, f32)>,
 }
 
-/// A state of the run, for looking at.
-pub struct Moment {
+/// What became of something up to a step.
+#[derive(Clone, Debug)]
+pub struct Past {
     pub step: u64,
-    pub standing: u64,
-    pub phase: Phase,
-    pub event: Option<Event>,
-    pub mesh: Mesh,
-    pub parameters: Parameters,
-    /// What the last step changed.
-    pub changed: Vec<ElementId>,
-    /// The front in the order in which a selection would take it.
-    pub front: Vec<Segment>,
-    /// The same segments with their loops, and whether they are put off.
-    pub rows: Vec<Row>,
-    /// The loops of the front.
-    pub loops: Vec<Loop>,
-    /// What the step that led here chose a side edge from.
-    pub candidates: Option<Candidates>,
-    /// Why the base is the base.
-    pub base: Option<SegmentTold>,
-    /// What is wrong with the mesh, where its invariants do not hold.
-    pub broken: Option<String>,
+    pub watched: Watched,
+    /// The last steps that touched it, the newest last, with what they did.
+    pub touches: Vec<(u64, Event)>,
+    /// Whether there are more.
+    pub more: bool,
+    /// The step that made the quadrilateral, and the triangles that it ate.
+    pub made: Option<(u64, Vec<ElementId>)>,
+    /// The step that killed the edge.
+    pub killed: Option<u64>,
 }
 
 /// A run at work.
@@ -145,17 +145,27 @@ impl Session {
 
     /// Asks to go somewhere.
     pub fn go(&self, goal: Goal) {
-        self.ask(Ask::Go(goal));
+        self.ask(Ask::Go(goal, Instant::now()));
     }
 
     /// Asks to go to where a breakpoint is met, forward or backward.
-    pub fn go_to_break(&self, conditions: Vec<Condition>, forward: bool) {
-        self.ask(Ask::Break(conditions, forward));
+    pub fn go_to_break(&self, stops: Stops, forward: bool) {
+        self.ask(Ask::Break(stops, forward));
     }
 
     /// Asks to go to the step that touched something last.
     pub fn go_to_touch(&self, watched: Watched) {
         self.ask(Ask::Touch(watched));
+    }
+
+    /// Asks to go to the step that made the quadrilateral of an element.
+    pub fn go_to_making(&self, element: ElementId) {
+        self.ask(Ask::Made(element));
+    }
+
+    /// Asks what became of something up to the state at hand.
+    pub fn past(&self, watched: Watched) {
+        self.ask(Ask::Past(watched));
     }
 
     /// Asks how often conditions hold.
@@ -228,266 +238,6 @@ impl Watch for Voice {
         };
         self.progress(words, done, total);
     }
-}
-
-/// Where to go.
-#[derive(Clone)]
-enum Aim {
-    Goal(Goal),
-    Break(Vec<Condition>, bool),
-}
-
-/// The thread that has the history.
-struct Worker {
-    history: History,
-    own: Sender<Ask>,
-    voice: Voice,
-    stop: Arc<AtomicBool>,
-    /// Where to go as soon as that is known, and how many asks that answers.
-    pending: Option<(Aim, usize)>,
-    conditions: Vec<Condition>,
-    /// Tells the recorder's thread that what it does is of no use any more.
-    cancel: Arc<AtomicBool>,
-    /// Steps that the window has been told of.
-    tracked: u64,
-    triangles: u64,
-}
-
-impl Worker {
-    fn open(
-        read: impl FnOnce() -> Result<Run, Fault>,
-        own: Sender<Ask>,
-        mut voice: Voice,
-        stop: Arc<AtomicBool>,
-    ) -> Result<Worker, (Voice, Fault)> {
-        let made = read().and_then(|run| {
-            let background = run.background(&mut voice)?;
-            let history = History::of(run, &background, BUDGET)?;
-            Ok((background, history))
-        });
-        let (background, history) = match made {
-            Ok(made) => made,
-            Err(fault) => return Err((voice, fault)),
-        };
-        let triangles = background.mesh.element_count() as u64;
-        voice.say(Told::Opened(Arc::new(Opened {
-            case: history.run().case.clone(),
-            run: history.run().clone(),
-            background,
-        })));
-        let cancel = Arc::new(AtomicBool::new(false));
-        Ok(Worker {
-            history,
-            own,
-            voice,
-            stop,
-            pending: Some((Aim::Goal(Goal::Step(0)), 1)),
-            conditions: Vec::new(),
-            cancel,
-            tracked: 0,
-            triangles,
-        })
-    }
-
-    fn serve(&mut self, asked: &Receiver<Ask>) {
-        self.lend(STRETCH[0]);
-        self.arrive();
-        while let Ok(ask) = asked.recv() {
-            match ask {
-                Ask::Gone => break,
-                Ask::Go(goal) => self.go(Aim::Goal(goal)),
-                Ask::Break(conditions, forward) => self.go(Aim::Break(conditions, forward)),
-                Ask::Touch(watched) => self.touch(watched),
-                Ask::Count(conditions) => {
-                    self.conditions = conditions;
-                    self.count();
-                }
-                Ask::Explain([a, b]) => self.explain(a, b),
-                Ask::Edits(edits) => self.edit(edits),
-                Ask::Found(found) => self.found(found.0, found.1),
-            }
-            if self.stop.swap(false, Ordering::Relaxed)
-                && let Some((_, asks)) = self.pending.take()
-            {
-                // Everything up to here can be looked at.
-                self.pending = Some((Aim::Goal(Goal::Step(self.history.log().known())), asks));
-            }
-            self.arrive();
-        }
-        self.cancel.store(true, Ordering::Relaxed);
-    }
-
-    /// A goal replaces one that still waits; its asker is answered with the new one's.
-    fn go(&mut self, aim: Aim) {
-        let before = self.pending.take().map_or(0, |pending| pending.1);
-        self.pending = Some((aim, before + 1));
-    }
-
-    /// Goes to the step that touched something last before the state at hand.
-    fn touch(&mut self, watched: Watched) {
-        match self.history.last_touch(watched, false) {
-            Ok(Some(step)) => self.go(Aim::Goal(Goal::Step(step))),
-            Ok(None) => self.voice.say(Told::Nothing("Nothing has touched it before this step.", 1)),
-            Err(fault) => self.voice.say(Told::Fault(fault, 1)),
-        }
-    }
-
-    fn explain(&self, a: NodeId, b: NodeId) {
-        let told = SegmentTold::of(self.history.state(), a, b);
-        if let Some(told) = told {
-            self.voice.say(Told::Explained(self.history.step(), Arc::new(told)));
-        }
-    }
-
-    /// Counts how often the conditions hold, in what is known and still kept of the run.
-    fn count(&self) {
-        let log = self.history.log();
-        let mut hits = vec![0; self.conditions.len()];
-        for step in (1..=log.known()).filter(|_| !self.conditions.is_empty()) {
-            let Some(event) = log.event(step) else { continue };
-            let moment =
-                breakpoint::Moment { step, nq: log.nq(step), event, front: log.front(step), angles: log.angles(step) };
-            for (hit, condition) in hits.iter_mut().zip(&self.conditions) {
-                *hit += usize::from(condition.holds(&moment));
-            }
-        }
-        self.voice.say(Told::Hits(hits));
-    }
-
-    fn edit(&mut self, edits: Vec<Edit>) {
-        self.cancel.store(true, Ordering::Relaxed);
-        self.cancel = Arc::new(AtomicBool::new(false));
-        let step = self.history.step();
-        let before = self.history.run().edits();
-        let same = before.iter().zip(&edits).take_while(|(a, b)| a == b).count();
-        let first = [before.get(same), edits.get(same)].into_iter().flatten().map(|edit| edit.step).min();
-        if let Err(fault) = self.history.set_edits(edits) {
-            return self.voice.say(Told::Fault(fault, 1));
-        }
-        self.tracked = self.tracked.min(first.unwrap_or(u64::MAX)).min(self.history.log().known());
-        self.tell_track();
-        self.lend(STRETCH[0]);
-        self.go(Aim::Goal(Goal::Step(step)));
-        self.count();
-    }
-
-    /// Lets another thread run ahead for a stretch.
-    fn lend(&mut self, steps: u64) {
-        let Some(mut recorder) = self.history.lend() else { return };
-        let (own, cancel) = (self.own.clone(), self.cancel.clone());
-        std::thread::spawn(move || {
-            let stretch = recorder.run(steps, &cancel);
-            // The session may have ended meanwhile.
-            let _ = own.send(Ask::Found(Box::new((stretch, recorder))));
-        });
-    }
-
-    fn found(&mut self, stretch: Stretch, recorder: Recorder) {
-        self.history.accept(stretch);
-        if let Err(fault) = self.history.take_back(recorder) {
-            return self.voice.say(Told::Fault(fault, 0));
-        }
-        self.tell_track();
-        if self.history.end().is_some() && !self.conditions.is_empty() {
-            self.count();
-        }
-        self.lend(self.history.log().known().clamp(STRETCH[0], STRETCH[1]));
-    }
-
-    fn tell_track(&mut self) {
-        let log = self.history.log();
-        let end = self.history.end().is_some();
-        let steps = (self.tracked + 1..=log.known()).filter_map(|step| {
-            let formed = match log.event(step) {
-                Some(Event::Formed { element, quality, .. }) => Some((*element, *quality as f32)),
-                _ => None,
-            };
-            Some(Tracked {
-                kind: log.kind(step)?,
-                standing: log.nq(step) as u32,
-                front: log.front(step).segments,
-                formed,
-            })
-        });
-        let told = Told::Track { from: self.tracked, steps: steps.collect(), end };
-        self.tracked = log.known();
-        self.voice.say(told);
-    }
-
-    /// Goes where it was asked to go, where that is known by now.
-    fn arrive(&mut self) {
-        let Some((aim, asks)) = self.pending.clone() else { return };
-        let end = self.history.end();
-        let found = match &aim {
-            Aim::Goal(goal) => goal.resolve(self.history.log(), self.history.step(), end),
-            Aim::Break(conditions, forward) => {
-                let met = match forward {
-                    true => self.history.next_break(conditions),
-                    false => self.history.previous_break(conditions),
-                };
-                match met {
-                    Ok(Some((step, _))) => Some(step),
-                    Ok(None) if end.is_some() || !forward => {
-                        self.pending = None;
-                        return self.voice.say(Told::Nothing("No breakpoint is met there.", asks));
-                    }
-                    Ok(None) => None,
-                    Err(fault) => {
-                        self.pending = None;
-                        return self.voice.say(Told::Fault(fault, asks));
-                    }
-                }
-            }
-        };
-        let Some(step) = found else {
-            let words = "Converting: quad";
-            return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
-        };
-        self.pending = None;
-        match self.moment(step) {
-            Ok(moment) => self.voice.say(Told::Moment(Arc::new(moment), asks)),
-            Err(fault) => self.voice.say(Told::Fault(fault, asks)),
-        }
-    }
-
-    fn moment(&mut self, step: u64) -> Result<Moment, Fault> {
-        let step = step.min(self.history.log().known());
-        // What the very last step changed is seen by doing it again.
-        self.history.seek(step.saturating_sub(1))?;
-        let candidates = if step > 0 { self.history.state().candidates() } else { None };
-        self.history.take_changes();
-        self.history.seek(step)?;
-        let changed = match self.history.take_changes() {
-            Changes::Some { elements, .. } => elements,
-            Changes::Everything => Vec::new(),
-        };
-        let event = self.history.event(step)?;
-        let state = self.history.state();
-        let table = FrontTable::of(state);
-        let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
-        let base = state.phase().base().and_then(|base| SegmentTold::in_table(state, &table, base.a, base.b));
-        Ok(Moment {
-            step,
-            standing: standing(state),
-            phase: state.phase().plain(),
-            event,
-            mesh: state.mesh.without_journal(),
-            parameters: state.parameters().clone(),
-            changed,
-            front: rows.iter().map(segment).collect(),
-            rows,
-            loops: table.loops,
-            candidates,
-            base,
-            broken: state.mesh.check().err(),
-        })
-    }
-}
-
-/// A row of the table as the renderer wants it.
-fn segment(row: &Row) -> Segment {
-    let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, .. } = *row;
-    Segment { h, a, b, h_value, length_metric, length_physical, theta, class, level }
 }
 
 /// What a session is opened with.

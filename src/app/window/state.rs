@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::files::Dialog;
-use super::session::{Moment, Opened, Session, Source, Told, Tracked, Wake};
+use super::measure::{Measuring, Times};
+use super::panels::timeline::Columns;
+use super::session::{Moment, Opened, Past, Session, Source, Stops, Told, Tracked, Verdict, Wake};
 use glam::DVec2;
 
 use crate::app::input;
@@ -13,8 +15,11 @@ use crate::core::fault::Fault;
 use crate::core::io::built_in;
 use crate::core::mesh::ids::NodeId;
 use crate::core::run::breakpoint::Condition;
+use crate::core::run::copies::Since;
 use crate::core::run::explain::SegmentTold;
 use crate::core::run::run::{Bookmark, Edit, Run};
+use crate::core::run::timeline::Sample;
+use crate::core::run::watch::Watched;
 use crate::render::camera::Camera;
 use crate::render::scene::{ColourBy, Layers, Outlined};
 
@@ -31,8 +36,12 @@ pub struct Kept {
     pub colour_by: ColourBy,
     /// Conditions to stop at, and whether they are on.
     pub breakpoints: Vec<(String, bool)>,
+    /// What to stop at when it is touched, and whether that is on.
+    pub watches: Vec<(Watched, bool)>,
     /// Steps that a person has marked.
     pub bookmarks: Vec<u64>,
+    /// Where the panels are, where a person has moved them.
+    pub layout: Option<String>,
 }
 
 /// Work that is under way.
@@ -65,8 +74,16 @@ pub struct State {
     pub source: Option<Source>,
     pub opened: Option<Arc<Opened>>,
     pub moment: Option<Arc<Moment>>,
+    /// Whether the invariants hold in it.
+    pub verdict: Verdict,
+    /// What is other in it than in the one that was drawn.
+    pub changes: Since,
     /// Steps of the run, as far as they have been recorded.
     pub track: Vec<Tracked>,
+    /// Invariants and figures along it.
+    pub samples: Vec<Sample>,
+    /// Changes with both.
+    pub track_epoch: u64,
     /// Whether that is all of them.
     pub recorded: bool,
     /// The dialog for files, while it is open.
@@ -105,12 +122,15 @@ pub struct State {
     pub overlay: Over,
     pub field: String,
     pub breakpoint_field: String,
-    /// Changes when the mesh to be drawn changes.
-    pub mesh_epoch: u64,
+    /// Changes when the mesh is to be drawn in another way.
+    pub style_epoch: u64,
     /// Changes when what lies over it changes.
     pub over_epoch: u64,
     pub reset_layout: bool,
     pub screenshot: bool,
+    /// What the timeline has counted, and the row whose kinds stand apart.
+    pub columns: Columns,
+    pub open_lanes: Option<usize>,
     /// The steps that the timeline shows, where that is not all.
     pub timeline: Option<[f64; 2]>,
     /// Where a drag of the timeline has asked to go.
@@ -123,6 +143,14 @@ pub struct State {
     pub explained: Option<(u64, Arc<SegmentTold>)>,
     /// What was asked to be explained last.
     asked: Option<(u64, [NodeId; 2])>,
+    /// What became of what is picked.
+    past: Option<Arc<Past>>,
+    asked_past: Option<(u64, Watched)>,
+    /// How long states and frames take.
+    pub times: Times,
+    /// Whether that is shown.
+    pub show_times: bool,
+    pub measuring: Option<Measuring>,
 }
 
 /// Where the main view is to look next.
@@ -152,7 +180,11 @@ impl State {
             source: None,
             opened: None,
             moment: None,
+            verdict: Verdict::Looking,
+            changes: Since::everything(),
             track: Vec::new(),
+            samples: Vec::new(),
+            track_epoch: 0,
             recorded: false,
             dialog: None,
             title: String::new(),
@@ -179,16 +211,23 @@ impl State {
             overlay: Over::Nothing,
             field: String::new(),
             breakpoint_field: String::new(),
-            mesh_epoch: 0,
+            style_epoch: 0,
             over_epoch: 0,
             reset_layout: false,
             screenshot: false,
+            columns: Columns::default(),
+            open_lanes: None,
             timeline: None,
             seeking: None,
             tentative: None,
             hits: Vec::new(),
             explained: None,
             asked: None,
+            past: None,
+            asked_past: None,
+            times: Times::default(),
+            show_times: false,
+            measuring: None,
         }
     }
 
@@ -199,10 +238,13 @@ impl State {
         self.source = Some(source);
         (self.opened, self.moment) = (None, None);
         self.track.clear();
+        self.samples.clear();
+        self.track_epoch += 1;
+        (self.past, self.asked_past, self.measuring) = (None, None, None);
         (self.recorded, self.waiting) = (false, 1);
         self.since = Some(Instant::now());
-        let kept = Kept { layers: self.kept.layers, colour_by: self.kept.colour_by, ..Kept::default() };
-        self.kept = kept;
+        let Kept { layers, colour_by, ref layout, .. } = self.kept;
+        self.kept = Kept { layers, colour_by, layout: layout.clone(), ..Kept::default() };
         self.undo.clear();
         self.redo.clear();
         self.hits.clear();
@@ -242,11 +284,20 @@ impl State {
                     self.opened = Some(opened);
                 }
                 Told::Moment(moment, asks) => self.arrive(moment, asks),
-                Told::Track { from, steps, end } => {
+                Told::Track { from, steps, samples, end } => {
                     self.track.truncate(from as usize);
                     self.track.extend(steps);
+                    self.samples.retain(|sample| sample.step <= from && from > 0);
+                    self.samples.extend(samples);
+                    self.track_epoch += 1;
                     self.recorded = end;
                 }
+                Told::Checked(step, verdict) => {
+                    if self.moment.as_ref().is_some_and(|moment| moment.step == step) {
+                        self.verdict = verdict;
+                    }
+                }
+                Told::Past(past) => self.past = Some(past),
                 Told::Hits(hits) => self.hits = hits,
                 Told::Explained(step, told) => self.explained = Some((step, told)),
                 Told::Nothing(words, asks) => {
@@ -273,9 +324,11 @@ impl State {
         if self.playing.is_some() && moment.phase == Phase::Done {
             self.playing = None;
         }
+        self.changes.note(&moment.changes, moment.mesh.element_slots());
+        self.verdict = moment.verdict.clone();
+        self.times.state(moment.took);
         self.moment = Some(moment);
         self.answered(asks);
-        self.mesh_epoch += 1;
         self.over_epoch += 1;
     }
 
@@ -304,10 +357,28 @@ impl State {
         None
     }
 
-    /// The conditions of the breakpoints that are on.
-    pub fn conditions(&self) -> Vec<Condition> {
+    /// What became of something up to the step at hand; asked for where it is not known yet and nothing else is under way.
+    pub fn past(&mut self, watched: Watched) -> Option<Arc<Past>> {
+        let step = self.moment.as_ref()?.step;
+        if let Some(past) = &self.past
+            && (past.step, past.watched) == (step, watched)
+        {
+            return Some(past.clone());
+        }
+        if self.asked_past != Some((step, watched)) && !self.is_busy() && self.playing.is_none() {
+            self.asked_past = Some((step, watched));
+            self.session.as_ref()?.past(watched);
+        }
+        None
+    }
+
+    /// The breakpoints and watchpoints that are on.
+    pub fn stops(&self) -> Stops {
         let on = self.kept.breakpoints.iter().filter(|b| b.1);
-        on.filter_map(|b| Condition::parse(&b.0).ok()).collect()
+        Stops {
+            conditions: on.filter_map(|b| Condition::parse(&b.0).ok()).collect(),
+            watched: self.kept.watches.iter().filter(|w| w.1).map(|w| w.0).collect(),
+        }
     }
 
     /// The front segment or edge that is picked, from A to B.

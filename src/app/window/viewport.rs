@@ -15,11 +15,12 @@ use super::theme::ink;
 use crate::core::convert::candidates::Passed;
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::run::history::Changes;
 use crate::render::camera::Camera;
 use crate::render::gpu::{Painter, View};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::pick;
-use crate::render::scene::{self, Decision, Outlined, Overlay, Scene, Shading};
+use crate::render::scene::{self, ColourBy, Decision, Drawn, Outlined, Overlay, Scene, Shading};
 
 /// Points left free around a fitted mesh.
 const MARGIN: f64 = 34.0;
@@ -42,7 +43,7 @@ pub enum Lens {
 pub struct Views {
     scene: Arc<Scene>,
     pub shading: Shading,
-    seen_mesh: Option<(u64, bool)>,
+    seen_style: Option<(u64, bool)>,
     seen_over: Option<u64>,
     hint: Option<ElementId>,
 }
@@ -155,19 +156,36 @@ impl Views {
         }
     }
 
-    /// Brings the scene up to date with the state.
-    fn update(&mut self, state: &State, moment: &Moment, palette: &Palette, frame: &Frame) {
+    /// Brings the scene up to date with the state: by what changed, where it is only that.
+    fn update(&mut self, state: &mut State, moment: &Moment, palette: &Palette, frame: &Frame) {
         let served = frame.camera.is_served_by(self.scene.anchor, frame.size());
-        let wanted = Some((state.mesh_epoch, palette.dark));
+        let style = Some((state.style_epoch, palette.dark));
         let main = state.camera == Some(frame.camera);
-        if self.seen_mesh != wanted || (main && !served) {
-            let anchor =
-                if served && self.seen_mesh.is_some() || !main { self.scene.anchor } else { frame.camera.centre };
+        let again = self.seen_style != style || (main && !served);
+        if again || !state.changes.is_nothing() {
             let by = state.kept.colour_by;
-            self.shading = Shading::of(&moment.mesh, by, &state.births(by, moment));
+            let range = self.shading.range;
+            if by != ColourBy::State || self.shading.by != by {
+                self.shading = Shading::of(&moment.mesh, by, &state.births(by, moment));
+            }
+            let drawn = Drawn {
+                mesh: &moment.mesh,
+                changed: &moment.changed,
+                shading: &self.shading,
+                layers: state.kept.layers,
+                palette,
+            };
             let scene = Arc::make_mut(&mut self.scene);
-            scene.set_mesh(&moment.mesh, anchor, &moment.changed, &self.shading, state.kept.layers, palette);
-            self.seen_mesh = wanted;
+            match state.changes.take() {
+                Changes::Some { nodes, elements } if !again && self.shading.range == range => {
+                    scene.patch_mesh(&drawn, &nodes, &elements);
+                }
+                _ => {
+                    let keep = (served && self.seen_style.is_some()) || !main;
+                    scene.set_mesh(&drawn, if keep { scene.anchor } else { frame.camera.centre });
+                    self.seen_style = style;
+                }
+            }
             self.seen_over = None;
         }
         if self.seen_over != Some(state.over_epoch) {

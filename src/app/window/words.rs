@@ -5,6 +5,7 @@ use crate::core::convert::candidates::Passed;
 use crate::core::convert::event::{Event, Purpose, Why};
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
+use crate::render::scene::Outlined;
 
 /// What stands for a number that is not defined.
 pub const UNDEFINED: &str = "–";
@@ -76,6 +77,15 @@ pub fn segment(a: NodeId, b: NodeId) -> String {
 /// An edge by its nodes.
 pub fn edge([a, b]: [NodeId; 2]) -> String {
     format!("{}–{}", a.0, b.0)
+}
+
+/// Something that can be picked, named.
+pub fn thing(what: Outlined) -> String {
+    match what {
+        Outlined::Node(node) => format!("node {}", node.0),
+        Outlined::Edge(ends) => format!("edge {}", edge(ends)),
+        Outlined::Element(element) => format!("element {}", element.0),
+    }
 }
 
 /// A side.

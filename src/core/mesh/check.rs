@@ -1,7 +1,7 @@
 //! Structural and exact geometric checks of the half-edge mesh (spec 5): what must hold after every operation.
 
 use super::half_edge::Mesh;
-use super::ids::{ElementId, NodeId};
+use super::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::geometry::predicates::{convex, positive};
 
 impl Mesh {
@@ -16,7 +16,7 @@ impl Mesh {
             self.corners(e).for_each(|n| sides_at[n.index()] += 1);
         }
         for node in self.nodes() {
-            self.check_node(node, sides_at[node.index()])?;
+            self.check_node(node, Some(sides_at[node.index()]))?;
         }
         let (nodes, elements) = (self.nodes().count(), self.elements().count());
         if nodes != self.node_count() || elements != self.element_count() {
@@ -25,6 +25,37 @@ impl Mesh {
                 self.node_count(),
                 self.element_count()
             ));
+        }
+        Ok(())
+    }
+
+    /// Checks what may be wrong after a change of these nodes and elements, by the rules of [`check`](Mesh::check): the elements,
+    /// those around the nodes, and the nodes of all of them. Where the mesh was sound before, it is sound now.
+    ///
+    /// # Errors
+    /// As [`check`](Mesh::check).
+    pub fn check_around(&self, nodes: &[NodeId], elements: &[ElementId]) -> Result<(), String> {
+        let mut at = nodes.iter().copied().filter(|n| self.has_node(*n)).collect::<Vec<_>>();
+        let mut around: Vec<ElementId> = elements.iter().copied().filter(|e| self.has_element(*e)).collect();
+        for &node in &at {
+            self.check_node(node, None)?;
+            around.extend(self.fan(node).map(HalfEdgeId::element));
+        }
+        around.sort_unstable();
+        around.dedup();
+        for &e in &around {
+            self.check_element(e)?;
+            at.extend(self.corners(e));
+        }
+        at.sort_unstable();
+        at.dedup();
+        at.into_iter().try_for_each(|node| self.check_node(node, None))?;
+        // The walk around a node meets every element that has it.
+        let meets = |n: NodeId, e: ElementId| self.fan(n).any(|h| h.element() == e);
+        for &e in &around {
+            if let Some(n) = self.corners(e).find(|n| !meets(*n, e)) {
+                return Err(format!("the fan of {n:?} does not see {e:?}"));
+            }
         }
         Ok(())
     }
@@ -69,19 +100,21 @@ impl Mesh {
         Ok(())
     }
 
-    fn check_node(&self, node: NodeId, sides_at: u32) -> Result<(), String> {
+    /// `sides_at`: the elements that have the node, where that is known.
+    fn check_node(&self, node: NodeId, sides_at: Option<u32>) -> Result<(), String> {
+        let most = sides_at.unwrap_or(self.element_slots() as u32);
         let mut seen = 0;
         for h in self.fan(node) {
             if self.origin(h) != node {
                 return Err(format!("the fan of {node:?} meets {h:?}, which starts elsewhere"));
             }
             seen += 1;
-            if seen > sides_at {
+            if seen > most {
                 break;
             }
         }
-        if seen != sides_at {
-            return Err(format!("the fan of {node:?} sees {seen} of {sides_at} elements"));
+        if seen > most || sides_at.is_some_and(|sides_at| seen != sides_at) {
+            return Err(format!("the fan of {node:?} sees {seen} of {most} elements"));
         }
         let start = self.fan(node).next().and_then(|h| self.twin(h));
         if self.is_fixed(node) != start.is_none() {

@@ -40,6 +40,12 @@ impl Touched {
         }
     }
 
+    /// Notes nodes and elements.
+    pub fn note_ids(&mut self, nodes: &[NodeId], elements: &[ElementId]) {
+        nodes.iter().for_each(|node| self.node(*node));
+        elements.iter().for_each(|element| self.element(*element));
+    }
+
     /// Notes what the mesh's journal holds since a mark.
     pub fn note_since(&mut self, mesh: &Mesh, mark: Mark) {
         for entry in mesh.journal().since(mark) {

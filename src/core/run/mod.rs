@@ -5,6 +5,7 @@
 //! |---|---|
 //! | the run: case, parameters, edits at steps, bookmarks, camera | [`run::Run`] |
 //! | any state of it, bit-identical to running there afresh; stepping forward and back; editing | [`history::History`] |
+//! | states for other threads to look at, brought up to date by what changed | [`copies::Copies`] |
 //! | running ahead on another thread | [`history::History::lend`], [`recorder::Recorder`], [`history::History::accept`] |
 //! | one event a step, the number of quadrilaterals, where to go next | [`log::Log`], `playback` |
 //! | invariants and figures along the run | [`timeline`] |
@@ -22,6 +23,7 @@ pub mod timeline;
 pub mod keyframes;
 pub mod recorder;
 pub mod history;
+pub mod copies;
 mod playback;
 pub mod breakpoint;
 pub mod watch;

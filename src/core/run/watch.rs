@@ -139,13 +139,39 @@ impl History {
     pub fn touches(&self, watched: Watched, most: usize) -> Result<Vec<u64>, Fault> {
         let mut found = Vec::new();
         let mut until = self.step();
-        while found.len() < most {
-            let Some(step) = self.last_turn(watched, until, &|a, b| a != b)? else { break };
-            found.push(step);
-            until = step - 1;
+        let mut look = Some(Look::at(&self.state().mesh, watched));
+        while until > 0 && found.len() < most {
+            let from = self.keyframes().frames()[self.keyframes().at_or_before(until - 1)].step;
+            let (_, difference) = self.stretch_from(from);
+            let unchanged = |difference| look.as_ref().is_some_and(|look| !look.may_change(watched, difference));
+            if !difference.is_some_and(unchanged) {
+                let seen = self.seen(watched, from, until, &|a, b| a != b)?;
+                found.extend(seen.turns.into_iter().rev());
+                look = Some(seen.first);
+            }
+            until = from;
         }
+        found.truncate(most);
         found.reverse();
         Ok(found)
+    }
+
+    /// The triangles that the step which made a quadrilateral ate: they were live before it and are not after it.
+    ///
+    /// # Errors
+    /// None that the way there has not met.
+    pub fn eaten(&self, made: u64) -> Result<Vec<ElementId>, Fault> {
+        let Some(before) = made.checked_sub(1) else { return Ok(Vec::new()) };
+        let (mut live, mut eaten) = (Vec::new(), Vec::new());
+        self.replay(before, made, &mut |step, converter, _| {
+            let mesh = &converter.mesh;
+            if step == before {
+                live = mesh.elements().filter(|e| mesh.is_triangle(*e)).collect();
+            } else {
+                eaten = live.iter().copied().filter(|e| !(mesh.has_element(*e) && mesh.is_triangle(*e))).collect();
+            }
+        })?;
+        Ok(eaten)
     }
 
     /// The step up to the state at hand that made the quadrilateral of an element, however often it was changed since.

@@ -1,30 +1,34 @@
 //! Instances on the card, in pages: a list that grows takes another page and is never copied, and only the stretches that
-//! differ from what is there are sent.
+//! were changed since are sent.
 
 use bytemuck::Pod;
 
-/// Instances in a page, and in a stretch that is compared at once.
-const PAGE: usize = 1 << 15;
-const STRETCH: usize = 64;
+use crate::render::scene::{Placed, STRETCH};
+
+/// Instances in a page: whole stretches.
+const PAGE: usize = 512 * STRETCH;
 
 /// A list of instances on the card.
 pub(super) struct Patched<T> {
     label: &'static str,
-    here: Vec<T>,
     pages: Vec<wgpu::Buffer>,
+    count: usize,
+    /// The generation of the list that is there.
+    generation: u64,
     /// Bytes sent so far.
     pub sent: u64,
+    kind: std::marker::PhantomData<T>,
 }
 
 impl<T: Pod + PartialEq> Patched<T> {
     pub fn new(label: &'static str) -> Self {
-        Patched { label, here: Vec::new(), pages: Vec::new(), sent: 0 }
+        Patched { label, pages: Vec::new(), count: 0, generation: 0, sent: 0, kind: std::marker::PhantomData }
     }
 
-    /// Makes the list on the card that of `new`.
-    pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, new: &[T]) {
-        let pages = new.len().div_ceil(PAGE);
-        while self.pages.len() < pages {
+    /// Makes the list on the card that of `list`, which is of a generation.
+    pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, list: &Placed<T>, generation: u64) {
+        let items = list.items();
+        while self.pages.len() < items.len().div_ceil(PAGE) {
             self.pages.push(device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(self.label),
                 size: (PAGE * size_of::<T>()) as u64,
@@ -32,61 +36,25 @@ impl<T: Pod + PartialEq> Patched<T> {
                 mapped_at_creation: false,
             }));
         }
-        for (page, fresh) in new.chunks(PAGE).enumerate() {
-            let first = page * PAGE;
-            let old = self.here.get(first..(first + fresh.len()).min(self.here.len())).unwrap_or_default();
-            for [start, end] in differing(old, fresh) {
-                let bytes = bytemuck::cast_slice(&fresh[start..end]);
-                queue.write_buffer(&self.pages[page], (start * size_of::<T>()) as u64, bytes);
+        for [start, end] in list.newer_than(self.generation) {
+            let mut from = start;
+            while from < end {
+                let page = from / PAGE;
+                let until = end.min((page + 1) * PAGE);
+                let bytes = bytemuck::cast_slice(&items[from..until]);
+                queue.write_buffer(&self.pages[page], ((from - page * PAGE) * size_of::<T>()) as u64, bytes);
                 self.sent += bytes.len() as u64;
+                from = until;
             }
         }
-        self.here.clear();
-        self.here.extend_from_slice(new);
+        (self.count, self.generation) = (items.len(), generation);
     }
 
     /// Draws all of them, six corners each.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        for (page, instances) in self.pages.iter().zip(self.here.chunks(PAGE)) {
+        for (k, page) in self.pages.iter().enumerate().take(self.count.div_ceil(PAGE)) {
             pass.set_vertex_buffer(0, page.slice(..));
-            pass.draw(0..6, 0..instances.len() as u32);
+            pass.draw(0..6, 0..(self.count - k * PAGE).min(PAGE) as u32);
         }
-    }
-}
-
-/// The stretches of `new` that differ from `old`, as starts and ends; what `old` does not have differs.
-fn differing<T: PartialEq>(old: &[T], new: &[T]) -> Vec<[usize; 2]> {
-    let mut found: Vec<[usize; 2]> = Vec::new();
-    let mut start = 0;
-    while start < new.len() {
-        let end = (start + STRETCH).min(new.len());
-        if old.get(start..end) != Some(&new[start..end]) {
-            match found.last_mut() {
-                Some(last) if last[1] == start => last[1] = end,
-                _ => found.push([start, end]),
-            }
-        }
-        start = end;
-    }
-    found
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_stretches_that_differ_are_sent_and_neighbours_go_together() {
-        let old: Vec<u32> = (0..1000).collect();
-        let mut new = old.clone();
-        assert!(differing(&old, &new).is_empty());
-        new[3] = 7;
-        new[64] = 7;
-        new[900] = 7;
-        assert_eq!(differing(&old, &new), [[0, 128], [896, 960]]);
-        new.push(1);
-        assert_eq!(differing(&old, &new).last(), Some(&[896, 1001]));
-        new.truncate(10);
-        assert_eq!(differing(&old, &new), [[0, 10]]);
     }
 }

@@ -54,6 +54,8 @@ pub struct Painter {
     faces: Patched<Face>,
     edges: Patched<Line>,
     dots: Patched<Dot>,
+    under: Patched<Line>,
+    boundary: Patched<Line>,
     over: Patched<Line>,
     over_dots: Patched<Dot>,
     generation: Option<u64>,
@@ -69,6 +71,8 @@ impl Painter {
             faces: Patched::new("faces"),
             edges: Patched::new("edges"),
             dots: Patched::new("dots"),
+            under: Patched::new("lines under the boundary"),
+            boundary: Patched::new("boundary"),
             over: Patched::new("lines over the mesh"),
             over_dots: Patched::new("dots over the mesh"),
             generation: None,
@@ -89,11 +93,14 @@ impl Painter {
     ) {
         if self.generation != Some(scene.generation) {
             self.generation = Some(scene.generation);
-            self.faces.set(device, queue, &scene.faces);
-            self.edges.set(device, queue, &scene.edges);
-            self.dots.set(device, queue, &scene.dots);
-            self.over.set(device, queue, &scene.over);
-            self.over_dots.set(device, queue, &scene.over_dots);
+            let generation = scene.generation;
+            self.faces.set(device, queue, &scene.faces, generation);
+            self.edges.set(device, queue, &scene.edges, generation);
+            self.dots.set(device, queue, &scene.dots, generation);
+            self.under.set(device, queue, &scene.under, generation);
+            self.boundary.set(device, queue, &scene.boundary, generation);
+            self.over.set(device, queue, &scene.over, generation);
+            self.over_dots.set(device, queue, &scene.over_dots, generation);
         }
         if self.targets.len() <= index {
             self.targets.resize_with(index + 1, || None);
@@ -121,13 +128,13 @@ impl Painter {
         pass.set_bind_group(0, &target.view_group, &[]);
         pass.set_pipeline(&self.pipelines.faces);
         self.faces.draw(&mut pass);
-        for (lines, dots) in [(&self.edges, None), (&self.over, Some([&self.dots, &self.over_dots]))] {
-            pass.set_pipeline(&self.pipelines.lines);
+        pass.set_pipeline(&self.pipelines.lines);
+        for lines in [&self.edges, &self.under, &self.boundary, &self.over] {
             lines.draw(&mut pass);
-            for dots in dots.into_iter().flatten() {
-                pass.set_pipeline(&self.pipelines.dots);
-                dots.draw(&mut pass);
-            }
+        }
+        pass.set_pipeline(&self.pipelines.dots);
+        for dots in [&self.dots, &self.over_dots] {
+            dots.draw(&mut pass);
         }
     }
 
@@ -146,7 +153,8 @@ impl Painter {
 
     /// Bytes sent to the card for the scene's lists since the painter was made.
     pub fn bytes_sent(&self) -> u64 {
-        self.faces.sent + self.edges.sent + self.dots.sent + self.over.sent + self.over_dots.sent
+        let lines = [&self.edges, &self.under, &self.boundary, &self.over].map(|lines| lines.sent);
+        self.faces.sent + lines.iter().sum::<u64>() + self.dots.sent + self.over_dots.sent
     }
 }
 

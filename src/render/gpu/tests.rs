@@ -41,10 +41,10 @@ fn scene() -> Scene {
         room,
     };
     let mut scene = Scene::default();
-    scene.faces = vec![face(-1.0, DARK.dead), face(0.0, DARK.live)];
-    scene.over = vec![line(0.0, [0.0; 2], -1.0), line(0.5, [7.0, 5.0], -1.0), line(-0.5, [0.0; 2], 0.001)];
+    scene.faces.replace(&[face(-1.0, DARK.dead), face(0.0, DARK.live)], 1);
+    scene.over.replace(&[line(0.0, [0.0; 2], -1.0), line(0.5, [7.0, 5.0], -1.0), line(-0.5, [0.0; 2], 0.001)], 1);
     let fill = DARK.selection.packed();
-    scene.over_dots = vec![Dot { at: [-0.8, 0.8, 0.0], radius: 5.0, fill, ..Dot::default() }];
+    scene.over_dots.replace(&[Dot { at: [-0.8, 0.8, 0.0], radius: 5.0, fill, ..Dot::default() }], 1);
     scene.generation = 1;
     scene
 }
@@ -96,8 +96,9 @@ fn a_view_that_has_not_changed_sends_and_draws_nothing() {
     let sent = painter.bytes_sent();
     assert_eq!(pixels(&mut painter, &device, &queue, &view(), &scene), before);
     assert_eq!(painter.bytes_sent(), sent);
-    scene.over[0].colour = DARK.selection.packed();
+    let white = Line { colour: DARK.selection.packed(), ..scene.over.items()[0] };
+    scene.over.set(0, white, 2);
     scene.generation += 1;
     assert_ne!(pixels(&mut painter, &device, &queue, &view(), &scene), before);
-    assert_eq!(painter.bytes_sent() - sent, (scene.over.len() * size_of::<Line>()) as u64);
+    assert_eq!(painter.bytes_sent() - sent, (scene.over.items().len() * size_of::<Line>()) as u64);
 }

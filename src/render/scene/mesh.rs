@@ -1,158 +1,142 @@
-//! Faces, edges and nodes of a mesh, with what they are coloured by.
+//! Faces, edges, boundary and nodes of a mesh, all of them or those that a step changed.
+
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
 use super::{ColourBy, Dot, Face, Layers, Line, Scene, Shading, ink, relative};
 use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId};
-use crate::core::metric::measure::triangle_area;
-use crate::render::palette::{Palette, Rgba};
-
-const NOWHERE: u32 = u32::MAX;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::render::palette::Palette;
 
 /// Widths of mesh edges in points: live, dead.
 const EDGES: [f32; 2] = [0.75, 0.95];
 
-impl Shading {
-    /// The values of `by` over a mesh; `births` has the step at which each element slot was last made.
-    pub fn of(mesh: &Mesh, by: ColourBy, births: &[u64]) -> Shading {
-        let logarithmic = matches!(by, ColourBy::HValue | ColourBy::Area);
-        if by == ColourBy::State {
-            return Shading::default();
-        }
-        let value = |e: ElementId| match by {
-            ColourBy::State => f64::NAN,
-            ColourBy::HValue => {
-                let nodes: Vec<_> = mesh.corners(e).collect();
-                nodes.iter().map(|n| mesh.metric_ref(*n).min_size()).sum::<f64>() / nodes.len() as f64
-            }
-            ColourBy::Angle => angles(mesh, e)[0].to_degrees(),
-            ColourBy::Level if mesh.is_quad(e) => f64::from(mesh.level(e)),
-            ColourBy::Birth if mesh.is_quad(e) => births.get(e.index()).map_or(f64::NAN, |b| *b as f64),
-            ColourBy::Level | ColourBy::Birth => f64::NAN,
-            ColourBy::Quality => mesh.quality(e),
-            ColourBy::Area => metric_area(mesh, e),
-        };
-        let slots = (0..mesh.element_slots() as u32).map(ElementId);
-        let values: Vec<f64> = slots.map(|e| if mesh.has_element(e) { value(e) } else { f64::NAN }).collect();
-        let finite = || values.iter().copied().filter(|v| v.is_finite());
-        let range = match by {
-            ColourBy::Quality => [0.0, 1.0],
-            ColourBy::Angle => [0.0, 90.0],
-            _ => [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)],
-        };
-        let range = if range[0] <= range[1] { range } else { [0.0, 1.0] };
-        Shading { by, values, range, logarithmic }
-    }
+/// How much of what changed is seen: by the last step, by the one before, by the one before that.
+pub(super) const FADES: [f32; 3] = [1.0, 0.4, 0.15];
 
-    /// The place of a value between the ends of the range, 0 to 1.
-    pub fn share(&self, value: f64) -> f32 {
-        let scale = |v: f64| if self.logarithmic { libm::log(v) } else { v };
-        let [low, high] = self.range.map(scale);
-        if high > low { ((scale(value) - low) / (high - low)) as f32 } else { 0.5 }
-    }
+/// A dot that is not drawn.
+const NO_DOT: Dot =
+    Dot { at: [0.0; 3], radius: 0.0, fill: 0, ring: 0, ring_width: 0.0, room: 0.0, least: f32::INFINITY };
 
-    fn colour(&self, e: ElementId) -> Option<Rgba> {
-        let value = self.values.get(e.index()).copied().filter(|v| v.is_finite())?;
-        Some(self.by.map()?.at(self.share(value)))
-    }
-}
-
-/// The least and the greatest inner angle of an element in the plane, radians.
-pub fn angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
-    let angle = |h: HalfEdgeId| {
-        let p = mesh.uv(mesh.origin(h));
-        let (out, back) = (mesh.uv(mesh.target(h)) - p, mesh.uv(mesh.origin(mesh.previous(h))) - p);
-        libm::atan2(out.perp_dot(back), out.dot(back)).rem_euclid(std::f64::consts::TAU)
-    };
-    mesh.half_edges(e).map(angle).fold([f64::INFINITY, 0.0], |[low, high], a| [low.min(a), high.max(a)])
-}
-
-/// The area of an element in the metric of its nodes.
-pub fn metric_area(mesh: &Mesh, e: ElementId) -> f64 {
-    let nodes: Vec<_> = mesh.corners(e).collect();
-    let at = |k: usize| mesh.uv(nodes[k]);
-    let part = |a: usize, b: usize, c: usize| {
-        [a, b, c].iter().map(|k| triangle_area(mesh.metric_ref(nodes[*k]), at(a), at(b), at(c))).sum::<f64>() / 3.0
-    };
-    if nodes.len() == 4 { part(0, 1, 2) + part(0, 2, 3) } else { part(0, 1, 2) }
+/// What is drawn of a mesh, and how.
+#[derive(Clone, Copy)]
+pub struct Drawn<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// What the last steps changed, the newest first.
+    pub changed: &'a [Arc<[ElementId]>],
+    /// What elements are coloured by.
+    pub shading: &'a Shading,
+    /// What is drawn.
+    pub layers: Layers,
+    /// In which colours.
+    pub palette: &'a Palette,
 }
 
 impl Scene {
-    /// Makes faces, edges and nodes those of `mesh`, relative to `anchor`; `changed` are what the last operation changed.
-    pub fn set_mesh(
-        &mut self,
-        mesh: &Mesh,
-        anchor: DVec3,
-        changed: &[ElementId],
-        shading: &Shading,
-        layers: Layers,
-        palette: &Palette,
-    ) {
+    /// Makes faces, edges, boundary and nodes those of a mesh, relative to `anchor`.
+    pub fn set_mesh(&mut self, drawn: &Drawn<'_>, anchor: DVec3) {
         self.anchor = anchor;
         self.generation += 1;
-        self.set_faces(mesh, changed, shading, layers, palette);
-        self.set_edges(mesh, layers, palette);
-        self.set_nodes(mesh, layers, palette);
+        self.resize(drawn.mesh);
+        for e in (0..drawn.mesh.element_slots() as u32).map(ElementId) {
+            self.set_element(drawn, e);
+        }
+        for node in (0..drawn.mesh.node_slots() as u32).map(NodeId) {
+            self.set_node(drawn, node);
+        }
+        self.standing_out.clear();
+        self.set_standing_out(drawn);
     }
 
-    fn set_faces(&mut self, mesh: &Mesh, changed: &[ElementId], shading: &Shading, layers: Layers, palette: &Palette) {
-        let anchor = self.anchor;
-        self.faces.clear();
-        self.faces.resize(mesh.element_slots(), Face::default());
-        for e in mesh.elements() {
-            let (shown, plain) = match mesh.is_quad(e) {
-                true => (layers.dead, palette.dead),
-                false => (layers.live, palette.live),
-            };
-            if shown {
-                let colour = shading.colour(e).unwrap_or(plain);
-                self.faces[e.index()] = Face { corners: corners(mesh, e, anchor), colour: ink(colour) };
+    /// Makes them those of a mesh of which another state is drawn: `nodes` and `elements` differ from that one.
+    pub fn patch_mesh(&mut self, drawn: &Drawn<'_>, nodes: &[NodeId], elements: &[ElementId]) {
+        let mesh = drawn.mesh;
+        self.generation += 1;
+        self.resize(mesh);
+        let moved = nodes.iter().copied().filter(|n| mesh.has_node(*n));
+        let mut around: Vec<ElementId> = moved.flat_map(|n| mesh.fan(n)).map(HalfEdgeId::element).collect();
+        around.extend(elements.iter().copied().filter(|e| e.index() < mesh.element_slots()));
+        around.sort_unstable();
+        around.dedup();
+        for &e in &around {
+            self.set_element(drawn, e);
+        }
+        let here = around.iter().filter(|e| mesh.has_element(**e));
+        let mut near: Vec<NodeId> = here.flat_map(|e| mesh.corners(*e)).collect();
+        near.extend(nodes.iter().copied().filter(|n| n.index() < mesh.node_slots()));
+        near.sort_unstable();
+        near.dedup();
+        for node in near {
+            self.set_node(drawn, node);
+        }
+        self.set_standing_out(drawn);
+    }
+
+    fn resize(&mut self, mesh: &Mesh) {
+        let generation = self.generation;
+        self.faces.resize(mesh.element_slots(), Face::default(), generation);
+        self.dots.resize(mesh.node_slots(), NO_DOT, generation);
+        self.places.resize(4 * mesh.element_slots(), &mut self.edges, generation);
+        self.boundary_places.resize(4 * mesh.element_slots(), &mut self.boundary, generation);
+    }
+
+    /// The face of an element slot and the edges around it, or nothing where it is a tombstone.
+    fn set_element(&mut self, drawn: &Drawn<'_>, e: ElementId) {
+        let mesh = drawn.mesh;
+        self.faces.set(e.index(), self.face(drawn, e, 0.0), self.generation);
+        for corner in 0..4 {
+            let h = e.half_edge(corner);
+            let is_side = (corner as usize) < mesh.sides(e);
+            let twin = if is_side { mesh.twin(h) } else { None };
+            // Of the two half-edges of an edge the one with the smaller id has its place.
+            let first = twin.map_or(h, |t| t.min(h));
+            let line = if is_side { self.edge(drawn, first) } else { None };
+            if first != h {
+                self.places.put(h.index(), None, &mut self.edges, self.generation);
+            }
+            self.places.put(first.index(), line, &mut self.edges, self.generation);
+            let boundary = if is_side && twin.is_none() { self.boundary_line(drawn, h) } else { None };
+            self.boundary_places.put(h.index(), boundary, &mut self.boundary, self.generation);
+        }
+    }
+
+    /// The face of an element, with so much of the colour of what has just changed.
+    fn face(&self, drawn: &Drawn<'_>, e: ElementId, change: f32) -> Face {
+        let Drawn { mesh, shading, layers, palette, .. } = *drawn;
+        if !mesh.has_element(e) {
+            return Face::default();
+        }
+        let (shown, plain) = if mesh.is_quad(e) { (layers.dead, palette.dead) } else { (layers.live, palette.live) };
+        if !shown && change == 0.0 {
+            return Face::default();
+        }
+        let colour = match shading.by {
+            ColourBy::State => plain.mixed(palette.changed, change),
+            _ => shading.colour(e).unwrap_or(plain),
+        };
+        Face { corners: corners(mesh, e, self.anchor), colour: ink(colour) }
+    }
+
+    /// Faces that stand out as just changed get their colour, those that did before lose it.
+    fn set_standing_out(&mut self, drawn: &Drawn<'_>) {
+        let mesh = drawn.mesh;
+        for e in std::mem::take(&mut self.standing_out) {
+            if e.index() < mesh.element_slots() {
+                self.faces.set(e.index(), self.face(drawn, e, 0.0), self.generation);
             }
         }
-        if shading.by != ColourBy::State {
-            return;
-        }
-        for &e in changed.iter().filter(|e| mesh.has_element(**e)) {
-            self.faces[e.index()] = Face { corners: corners(mesh, e, anchor), colour: ink(palette.changed) };
-        }
-    }
-
-    fn set_edges(&mut self, mesh: &Mesh, layers: Layers, palette: &Palette) {
-        let slots = 4 * mesh.element_slots();
-        self.place.truncate(slots);
-        if self.place.len() < slots {
-            self.place.resize(slots, NOWHERE);
-        }
-        let mut used = vec![false; self.edges.len()];
-        let mut homeless: Vec<(HalfEdgeId, Line)> = Vec::new();
-        for h in mesh.edges() {
-            let Some(line) = self.edge(mesh, h, layers, palette) else { continue };
-            match self.place[h.index()] {
-                NOWHERE => homeless.push((h, line)),
-                place if used[place as usize] => homeless.push((h, line)),
-                place => {
-                    used[place as usize] = true;
-                    self.edges[place as usize] = line;
-                }
+        for (changed, fade) in drawn.changed.iter().zip(FADES).rev() {
+            for &e in changed.iter().filter(|e| mesh.has_element(**e)) {
+                self.faces.set(e.index(), self.face(drawn, e, fade), self.generation);
+                self.standing_out.push(e);
             }
         }
-        self.free.clear();
-        for (place, _) in used.iter().enumerate().filter(|(_, used)| !**used).rev() {
-            self.edges[place] = Line::default();
-            self.free.push(place as u32);
-        }
-        for (h, line) in homeless {
-            let place = self.free.pop().unwrap_or_else(|| {
-                self.edges.push(Line::default());
-                (self.edges.len() - 1) as u32
-            });
-            self.edges[place as usize] = line;
-            self.place[h.index()] = place;
-        }
     }
 
-    fn edge(&self, mesh: &Mesh, h: HalfEdgeId, layers: Layers, palette: &Palette) -> Option<Line> {
+    fn edge(&self, drawn: &Drawn<'_>, h: HalfEdgeId) -> Option<Line> {
+        let Drawn { mesh, layers, palette, .. } = *drawn;
         let sides = [Some(h), mesh.twin(h)];
         let dead = sides.iter().flatten().any(|h| mesh.is_quad(h.element()));
         let shown = sides.iter().flatten().any(|h| if mesh.is_quad(h.element()) { layers.dead } else { layers.live });
@@ -170,30 +154,35 @@ impl Scene {
         })
     }
 
-    fn set_nodes(&mut self, mesh: &Mesh, layers: Layers, palette: &Palette) {
-        self.dots.clear();
-        self.dots.resize(mesh.node_slots(), Dot { least: f32::INFINITY, ..Dot::default() });
-        if !layers.nodes {
-            return;
+    fn boundary_line(&self, drawn: &Drawn<'_>, h: HalfEdgeId) -> Option<Line> {
+        let mesh = drawn.mesh;
+        drawn.layers.boundary.then(|| Line {
+            ends: [mesh.origin(h), mesh.target(h)].map(|n| relative(mesh.uv(n), self.anchor)),
+            colour: ink(drawn.palette.boundary),
+            width: 1.75,
+            dash: [0.0; 2],
+            room: -1.0,
+        })
+    }
+
+    fn set_node(&mut self, drawn: &Drawn<'_>, node: NodeId) {
+        let Drawn { mesh, layers, palette, .. } = *drawn;
+        if !layers.nodes || !mesh.has_node(node) {
+            return self.dots.set(node.index(), NO_DOT, self.generation);
         }
-        let mut on_front = vec![false; mesh.node_slots()];
-        for h in mesh.front() {
-            on_front[mesh.origin(h).index()] = true;
-        }
-        for node in mesh.nodes() {
-            let p = mesh.uv(node);
-            let nearest = mesh.neighbours(node).map(|n| mesh.uv(n).distance_squared(p)).fold(f64::INFINITY, f64::min);
-            let front = on_front[node.index()];
-            self.dots[node.index()] = Dot {
-                at: relative(p, self.anchor),
-                radius: 2.6,
-                fill: ink(if front { palette.label } else { palette.weak }),
-                ring: ink(palette.ground),
-                ring_width: 0.8,
-                room: nearest.sqrt() as f32,
-                least: if front { 6.0 } else { 14.0 },
-            };
-        }
+        let p = mesh.uv(node);
+        let nearest = mesh.neighbours(node).map(|n| mesh.uv(n).distance_squared(p)).fold(f64::INFINITY, f64::min);
+        let front = mesh.fan(node).any(|h| mesh.is_front(h) || mesh.is_front(mesh.previous(h)));
+        let dot = Dot {
+            at: relative(p, self.anchor),
+            radius: 2.8,
+            fill: ink(if front { palette.label } else { palette.weak }),
+            ring: ink(palette.ground),
+            ring_width: 0.8,
+            room: nearest.sqrt() as f32,
+            least: if front { 6.0 } else { 14.0 },
+        };
+        self.dots.set(node.index(), dot, self.generation);
     }
 }
 
@@ -217,9 +206,13 @@ fn room_over(mesh: &Mesh, h: HalfEdgeId, a: DVec2, b: DVec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::io::built_in;
     use crate::core::mesh::ids::PointId;
     use crate::core::mesh::triangle_set::TriangleSet;
     use crate::core::metric::tensor::Metric2;
+    use crate::core::progress::Nobody;
+    use crate::core::run::history::{Changes, History};
+    use crate::core::run::run::Run;
     use crate::render::palette::DARK;
 
     fn strip() -> Mesh {
@@ -235,26 +228,26 @@ mod tests {
         Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6])
     }
 
-    fn drawn(mesh: &Mesh, scene: &mut Scene) {
-        let shading = Shading::default();
-        scene.set_mesh(mesh, DVec3::ZERO, &[], &shading, Layers::default(), &DARK);
+    fn draw(mesh: &Mesh, scene: &mut Scene, layers: Layers) {
+        let drawn = Drawn { mesh, changed: &[], shading: &Shading::default(), layers, palette: &DARK };
+        scene.set_mesh(&drawn, DVec3::ZERO);
     }
 
     #[test]
     fn a_swap_changes_the_places_of_its_own_edge_alone() {
         let mut mesh = strip();
         let mut scene = Scene::default();
-        drawn(&mesh, &mut scene);
-        let before = scene.edges.clone();
+        draw(&mesh, &mut scene, Layers::default());
+        let before = scene.edges.items().to_vec();
         assert_eq!(before.len(), 9);
         let h = mesh.edges().find(|&h| mesh.can_swap(h).is_ok()).unwrap();
         mesh.swap(h);
-        drawn(&mesh, &mut scene);
-        assert_eq!(scene.edges.len(), before.len());
-        let changed = scene.edges.iter().zip(&before).filter(|(a, b)| a.ends != b.ends).count();
+        draw(&mesh, &mut scene, Layers::default());
+        assert_eq!(scene.edges.items().len(), before.len());
+        let changed = scene.edges.items().iter().zip(&before).filter(|(a, b)| a.ends != b.ends).count();
         // The swapped edge itself; of the four around it those whose half-edge changed its slot move with it.
         assert!((1..=5).contains(&changed), "{changed}");
-        let mut ends: Vec<_> = scene.edges.iter().map(|l| format!("{:?}", l.ends)).collect();
+        let mut ends: Vec<_> = scene.edges.items().iter().map(|l| format!("{:?}", l.ends)).collect();
         ends.sort();
         ends.dedup();
         assert_eq!(ends.len(), 9, "every edge once");
@@ -265,18 +258,60 @@ mod tests {
         let mesh = strip();
         let mut scene = Scene::default();
         let layers = Layers { live: false, nodes: false, ..Layers::default() };
-        scene.set_mesh(&mesh, DVec3::ZERO, &[], &Shading::default(), layers, &DARK);
-        assert!(scene.faces.iter().all(|f| f.colour == 0) && scene.edges.is_empty());
-        assert!(scene.dots.iter().all(|d| d.least.is_infinite()));
+        draw(&mesh, &mut scene, layers);
+        assert!(scene.faces.items().iter().all(|f| f.colour == 0) && scene.edges.items().is_empty());
+        assert!(scene.dots.items().iter().all(|d| d.least.is_infinite()));
+    }
+
+    /// What is seen, in no order: faces, edges, boundary, dots.
+    fn seen(scene: &Scene) -> [Vec<String>; 4] {
+        let lines = |lines: &[Line]| {
+            let mut seen: Vec<_> = lines.iter().filter(|l| l.colour != 0).map(|l| format!("{l:?}")).collect();
+            seen.sort();
+            seen
+        };
+        let faces = scene.faces.items().iter().map(|face| format!("{face:?}")).collect();
+        let dots = scene.dots.items().iter().map(|dot| format!("{dot:?}")).collect();
+        [faces, lines(scene.edges.items()), lines(scene.boundary.items()), dots]
     }
 
     #[test]
-    fn unit_squares_have_unit_metric_area_together_and_their_smallest_angle_is_half_a_right_one() {
-        let mesh = strip();
-        let area: f64 = mesh.elements().map(|e| metric_area(&mesh, e)).sum();
-        assert!((area - 2.0).abs() < 1e-12);
-        let shading = Shading::of(&mesh, ColourBy::Angle, &[]);
-        assert!(shading.values.iter().all(|v| (v - 45.0).abs() < 1e-9));
-        assert_eq!(shading.share(45.0), 0.5);
+    fn a_scene_that_follows_what_changes_is_that_of_the_state_and_costs_what_changed() {
+        let mut case = built_in::named("example1").unwrap().unwrap();
+        case.parameters.size_scale = 2.0;
+        let mut history = History::open(Run::of(case), &mut Nobody).unwrap();
+        history.extend(u64::MAX);
+        let end = history.end().unwrap();
+        let mut scene = Scene::default();
+        let (mut most, mut patched) = (0, 0);
+        for step in (0..end).chain((end / 2..end).rev()).chain([end / 2 + 60]) {
+            history.seek(step).unwrap();
+            let changes = history.take_changes();
+            let mesh = &history.state().mesh;
+            let changed = match &changes {
+                Changes::Some { elements, .. } => elements.clone(),
+                Changes::Everything => Vec::new(),
+            };
+            let changed = [Arc::from(changed)];
+            let shading = Shading::default();
+            let drawn = Drawn { mesh, changed: &changed, shading: &shading, layers: Layers::default(), palette: &DARK };
+            match &changes {
+                Changes::Everything => scene.set_mesh(&drawn, DVec3::ZERO),
+                Changes::Some { nodes, elements } => {
+                    let before = scene.edges.items().to_vec();
+                    scene.patch_mesh(&drawn, nodes, elements);
+                    let pairs = scene.edges.items().iter().zip(&before);
+                    most = most.max(pairs.filter(|(a, b)| a != b).count());
+                    patched += 1;
+                }
+            }
+            if step % 23 == 0 || step + 40 > end {
+                let mut afresh = Scene::default();
+                afresh.set_mesh(&drawn, DVec3::ZERO);
+                assert_eq!(seen(&scene), seen(&afresh), "step {step}");
+            }
+        }
+        assert!(patched as u64 > end, "{patched} of {end}");
+        assert!(most < scene.edges.items().len(), "{most}");
     }
 }

@@ -1,5 +1,8 @@
-//! What lies over the mesh: what the last operation changed, boundary, front, decision, selection.
+//! What lies over the mesh: what the last operations changed, front, decision, selection.
 
+use std::sync::Arc;
+
+use super::mesh::FADES;
 use super::{Dot, Layers, Line, Scene, ink, relative};
 use crate::core::convert::parameters::Parameters;
 use crate::core::convert::phase::Phase;
@@ -59,8 +62,8 @@ pub struct Overlay<'a> {
     pub mesh: &'a Mesh,
     /// Its front.
     pub front: &'a [Segment],
-    /// Elements that the last operation changed.
-    pub changed: &'a [ElementId],
+    /// Elements that the last operations changed, the newest first.
+    pub changed: &'a [Arc<[ElementId]>],
     /// The quadrilateral in the making.
     pub decision: Decision,
     /// Edges that were tried and refused.
@@ -82,15 +85,17 @@ impl Scene {
     /// Makes what lies over the mesh that of `overlay`.
     pub fn set_overlay(&mut self, overlay: &Overlay<'_>, layers: Layers, palette: &Palette) {
         self.generation += 1;
-        self.over.clear();
-        self.over_dots.clear();
-        self.add_background(overlay, palette);
-        self.add_changed(overlay, palette);
-        self.add_boundary(overlay, layers, palette);
-        self.add_hover(overlay, palette);
-        self.add_front(overlay, layers, palette);
-        self.add_picked(overlay, palette);
-        self.add_decision(overlay, palette);
+        let (mut over, mut dots) = (Vec::new(), Vec::new());
+        self.add_background(&mut over, overlay, palette);
+        self.add_changed(&mut over, overlay, palette);
+        self.under.replace(&over, self.generation);
+        over.clear();
+        self.add_hover(&mut over, &mut dots, overlay, palette);
+        self.add_front(&mut over, overlay, layers, palette);
+        self.add_picked(&mut over, &mut dots, overlay, palette);
+        self.add_decision(&mut over, &mut dots, overlay, palette);
+        self.over.replace(&over, self.generation);
+        self.over_dots.replace(&dots, self.generation);
     }
 
     fn line(&self, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32, dash: [f32; 2]) -> Option<Line> {
@@ -104,73 +109,63 @@ impl Scene {
         })
     }
 
-    fn add(&mut self, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32) {
-        self.over.extend(self.line(mesh, ends, colour, width, [0.0; 2]));
+    fn add(&self, over: &mut Vec<Line>, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32) {
+        over.extend(self.line(mesh, ends, colour, width, [0.0; 2]));
     }
 
-    fn add_background(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+    fn add_background(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, palette: &Palette) {
         let Some(background) = overlay.background else { return };
         for h in background.edges() {
             let ends = [background.origin(h), background.target(h)];
-            self.add(background, ends, palette.hint.faded(0.5), 0.6);
+            self.add(over, background, ends, palette.hint.faded(0.5), 0.6);
         }
     }
 
-    fn add_changed(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+    fn add_changed(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, palette: &Palette) {
         let mesh = overlay.mesh;
-        for &e in overlay.changed.iter().filter(|e| mesh.has_element(**e)) {
-            for h in mesh.half_edges(e) {
-                self.add(mesh, [mesh.origin(h), mesh.target(h)], palette.changed_edge, 1.5);
+        for (changed, fade) in overlay.changed.iter().zip(FADES).rev() {
+            for &e in changed.iter().filter(|e| mesh.has_element(**e)) {
+                for h in mesh.half_edges(e) {
+                    self.add(over, mesh, [mesh.origin(h), mesh.target(h)], palette.changed_edge.faded(fade), 1.5);
+                }
             }
         }
     }
 
-    fn add_boundary(&mut self, overlay: &Overlay<'_>, layers: Layers, palette: &Palette) {
-        if !layers.boundary {
-            return;
-        }
-        let mesh = overlay.mesh;
-        for e in mesh.elements() {
-            for h in mesh.half_edges(e).filter(|h| mesh.twin(*h).is_none()) {
-                self.add(mesh, [mesh.origin(h), mesh.target(h)], palette.boundary, 1.75);
-            }
-        }
-    }
-
-    fn add_front(&mut self, overlay: &Overlay<'_>, layers: Layers, palette: &Palette) {
+    fn add_front(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, layers: Layers, palette: &Palette) {
         if !layers.front {
             return;
         }
         for segment in overlay.front {
             let width = FRONT[usize::from(segment.class) - 1] + 2.0;
-            self.add(overlay.mesh, [segment.a, segment.b], palette.ground.faded(0.8), width);
+            self.add(over, overlay.mesh, [segment.a, segment.b], palette.ground.faded(0.8), width);
         }
         for class in (1..=4).rev() {
             for segment in overlay.front.iter().filter(|s| s.class == class) {
                 let k = usize::from(class) - 1;
-                self.add(overlay.mesh, [segment.a, segment.b], palette.front[k], FRONT[k]);
+                self.add(over, overlay.mesh, [segment.a, segment.b], palette.front[k], FRONT[k]);
             }
         }
     }
 
-    fn add_hover(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+    fn add_hover(&self, over: &mut Vec<Line>, dots: &mut Vec<Dot>, overlay: &Overlay<'_>, palette: &Palette) {
         let mesh = overlay.mesh;
         match overlay.hovered {
-            Some(Outlined::Edge(ends)) => self.add(mesh, ends, palette.hover, 8.0),
+            Some(Outlined::Edge(ends)) => self.add(over, mesh, ends, palette.hover, 8.0),
             Some(Outlined::Element(e)) if mesh.has_element(e) => {
                 for h in mesh.half_edges(e) {
-                    self.add(mesh, [mesh.origin(h), mesh.target(h)], palette.hover, 4.0);
+                    self.add(over, mesh, [mesh.origin(h), mesh.target(h)], palette.hover, 4.0);
                 }
             }
             Some(Outlined::Node(node)) if mesh.has_node(node) => {
-                self.add_dot(mesh, node, 7.0, Rgba::default(), palette.hover, 2.0)
+                self.add_dot(dots, mesh, node, 7.0, Rgba::default(), palette.hover, 2.0)
             }
             _ => {}
         }
     }
 
     /// The same double line around whatever is picked.
-    fn add_picked(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+    fn add_picked(&self, over: &mut Vec<Line>, dots: &mut Vec<Dot>, overlay: &Overlay<'_>, palette: &Palette) {
         let mesh = overlay.mesh;
         match overlay.picked {
             Some(Outlined::Edge(ends)) => {
@@ -185,51 +180,60 @@ impl Scene {
                     }
                     None => (palette.dead_edge, 1.5),
                 };
-                self.add(mesh, ends, palette.selection, width + 5.5);
-                self.add(mesh, ends, palette.ground, width + 3.0);
-                self.add(mesh, ends, colour, width);
+                self.add(over, mesh, ends, palette.selection, width + 5.5);
+                self.add(over, mesh, ends, palette.ground, width + 3.0);
+                self.add(over, mesh, ends, colour, width);
             }
             Some(Outlined::Element(e)) if mesh.has_element(e) => {
                 for (colour, width) in [(palette.selection, 4.5), (palette.ground, 2.0)] {
                     for h in mesh.half_edges(e) {
-                        self.add(mesh, [mesh.origin(h), mesh.target(h)], colour, width);
+                        self.add(over, mesh, [mesh.origin(h), mesh.target(h)], colour, width);
                     }
                 }
             }
             Some(Outlined::Node(node)) if mesh.has_node(node) => {
-                self.add_dot(mesh, node, 7.5, Rgba::default(), palette.selection, 1.5);
+                self.add_dot(dots, mesh, node, 7.5, Rgba::default(), palette.selection, 1.5);
             }
             _ => {}
         }
     }
 
-    fn add_decision(&mut self, overlay: &Overlay<'_>, palette: &Palette) {
+    fn add_decision(&self, over: &mut Vec<Line>, dots: &mut Vec<Dot>, overlay: &Overlay<'_>, palette: &Palette) {
         let mesh = overlay.mesh;
         let Decision { base, tops } = overlay.decision;
         for &ends in overlay.refused {
-            self.over.extend(self.line(mesh, ends, palette.refused, 1.25, [2.0, 4.0]));
+            over.extend(self.line(mesh, ends, palette.refused, 1.25, [2.0, 4.0]));
         }
         let Some([a, b]) = base else { return };
         let sides = [tops[0].map(|c| [a, c]), tops[1].map(|d| [b, d])];
         for ends in sides.into_iter().flatten() {
-            self.add(mesh, ends, palette.ground.faded(0.9), SIDE + 2.8);
+            self.add(over, mesh, ends, palette.ground.faded(0.9), SIDE + 2.8);
         }
         for ends in sides.into_iter().flatten() {
-            self.add(mesh, ends, palette.side, SIDE);
+            self.add(over, mesh, ends, palette.side, SIDE);
         }
         if let [Some(c), Some(d)] = tops {
-            self.add(mesh, [c, d], palette.ground.faded(0.9), TOP + 2.8);
-            self.over.extend(self.line(mesh, [c, d], palette.side, TOP, [7.0, 5.0]));
+            self.add(over, mesh, [c, d], palette.ground.faded(0.9), TOP + 2.8);
+            over.extend(self.line(mesh, [c, d], palette.side, TOP, [7.0, 5.0]));
         }
-        self.add(mesh, [a, b], palette.ground.faded(0.9), BASE + 2.8);
-        self.add(mesh, [a, b], palette.base, BASE);
+        self.add(over, mesh, [a, b], palette.ground.faded(0.9), BASE + 2.8);
+        self.add(over, mesh, [a, b], palette.base, BASE);
         for (node, _) in overlay.decision.letters().filter(|(n, _)| mesh.has_node(*n)).collect::<Vec<_>>() {
-            self.add_dot(mesh, node, 4.9, palette.ground, palette.base, 2.0);
+            self.add_dot(dots, mesh, node, 4.9, palette.ground, palette.base, 2.0);
         }
     }
 
-    fn add_dot(&mut self, mesh: &Mesh, node: NodeId, radius: f32, fill: Rgba, ring: Rgba, ring_width: f32) {
-        self.over_dots.push(Dot {
+    fn add_dot(
+        &self,
+        dots: &mut Vec<Dot>,
+        mesh: &Mesh,
+        node: NodeId,
+        radius: f32,
+        fill: Rgba,
+        ring: Rgba,
+        ring_width: f32,
+    ) {
+        dots.push(Dot {
             at: relative(mesh.uv(node), self.anchor),
             radius,
             fill: ink(fill),
@@ -258,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn the_decision_lies_over_the_front_and_the_front_over_the_boundary() {
+    fn the_decision_lies_over_the_front() {
         let mesh = square();
         let front = front(&mesh, &Parameters::default());
         let decision = Decision { base: Some([NodeId(0), NodeId(1)]), tops: [Some(NodeId(3)), Some(NodeId(2))] };
@@ -274,10 +278,10 @@ mod tests {
         };
         let mut scene = Scene::default();
         scene.set_overlay(&overlay, Layers::default(), &DARK);
-        let last = |colour: Rgba| scene.over.iter().rposition(|l| l.colour == colour.packed()).unwrap();
-        let order = [DARK.boundary, DARK.front[0], DARK.refused, DARK.side, DARK.base].map(last);
+        let last = |colour: Rgba| scene.over.items().iter().rposition(|l| l.colour == colour.packed()).unwrap();
+        let order = [DARK.front[0], DARK.refused, DARK.side, DARK.base].map(last);
         assert!(order.is_sorted(), "{order:?}");
-        assert_eq!(scene.over_dots.len(), 4);
+        assert_eq!(scene.over_dots.items().len(), 4);
         let letters: String = decision.letters().map(|l| l.1).collect();
         assert_eq!(letters, "ABCD");
     }
@@ -288,7 +292,7 @@ mod tests {
         let overlay = Overlay {
             mesh: &mesh,
             front: &[],
-            changed: &[ElementId(7)],
+            changed: &[[ElementId(7)].into()],
             decision: Decision::default(),
             refused: &[],
             picked: Some(Outlined::Edge([NodeId(0), NodeId(9)])),
@@ -297,6 +301,7 @@ mod tests {
         };
         let mut scene = Scene::default();
         scene.set_overlay(&overlay, Layers { boundary: false, ..Layers::default() }, &DARK);
-        assert!(scene.over.is_empty() && scene.over_dots.is_empty());
+        assert!([&scene.over, &scene.under].iter().all(|list| list.items().is_empty()));
+        assert!(scene.over_dots.items().is_empty());
     }
 }

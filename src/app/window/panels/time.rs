@@ -5,7 +5,7 @@ use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
 use super::{icon_button, timeline};
 use crate::app::window::command::{Command, KINDS};
 use crate::app::window::icons;
-use crate::app::window::session::Goal;
+use crate::app::window::session::{Goal, Verdict};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -126,15 +126,22 @@ fn kinds(ui: &mut Ui, commands: &mut Vec<Command>, open: bool) {
 }
 
 fn verdict(ui: &mut Ui, state: &State, palette: &Palette) {
-    let Some(moment) = &state.moment else { return };
-    let (icon, text, colour) = match &moment.broken {
-        None => (icons::CHECK_CIRCLE, "invariants hold".to_owned(), palette.holds),
-        Some(what) => (icons::X_CIRCLE, what.clone(), palette.broken),
+    if state.moment.is_none() {
+        return;
+    }
+    let (icon, text, colour) = match &state.verdict {
+        Verdict::Holds | Verdict::Looking => (icons::CHECK_CIRCLE, "invariants hold".to_owned(), palette.holds),
+        Verdict::Broken(what) => (icons::X_CIRCLE, what.clone(), palette.broken),
     };
     let text = RichText::new(format!("{icon} {text}")).font(theme::regular(theme::TABLE)).color(ink(colour));
     ui.label(text).on_hover_text(
         "The mesh is sound: twins agree, every element is positive, and every loop of the front is even",
     );
+    if state.show_times {
+        ui.label(super::note(state.times.told(), palette)).on_hover_text(
+            "From asking for the state at hand to having it, and from one frame to the next while something moves",
+        );
+    }
 }
 
 fn status(ui: &mut Ui, state: &State, palette: &Palette) {

@@ -1,30 +1,32 @@
-//! The run along its steps: a lane for each kind of event, curves, bookmarks, and the play head. Click or drag to seek; the wheel
-//! zooms.
+//! The run along its steps: lanes for kinds of events, invariants, curves, bookmarks, and the play head. Click or drag to seek; the
+//! wheel zooms, sideways it moves, a double click shows the whole run.
 
-use eframe::egui::{self, Align2, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
+mod columns;
+
+use eframe::egui::{self, Align2, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
+
+pub use columns::Columns;
 
 use crate::app::window::command::Command;
-use crate::app::window::session::{Goal, Tracked};
+use crate::app::window::icons;
+use crate::app::window::session::{Goal, Moment, Verdict};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::render::palette::{Palette, Rgba};
+use columns::{Curve, Lane};
 
 /// The label column and the counts, in points.
 const LABELS: f32 = 118.0;
 const COUNTS: f32 = 92.0;
 const LANE: f32 = 12.0;
 const GAP: f32 = 2.0;
+/// Heights of a curve: of those that always stand, and of those that stand where there is room.
 const CURVE: f32 = 24.0;
-
-/// The kinds of a lane.
-const LANES: [(&str, &[&str]); 5] = [
-    ("quad formed", &["formed"]),
-    ("swap", &["side_swapped", "top_swapped", "enhanced"]),
-    ("divide, delete", &["side_divided", "node_removed"]),
-    ("seam, close, finish", &["seamed", "transition_seamed", "split", "closed", "patched", "cleaned", "swept"]),
-    ("rolled back", &["rolled_back", "deferred"]),
-];
+/// Opacity of what is past and what is to come.
+const TIMES: [f32; 2] = [0.8, 0.38];
+/// How near to a bookmark a click must be.
+const NEAR: f32 = 6.0;
 
 /// Shows the timeline.
 pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
@@ -35,62 +37,120 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
     );
     let response =
         ui.interact(plot.expand2(Vec2::new(6.0, 4.0)), ui.scope_id().with("timeline"), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, "Timeline"));
     let Some(moment) = state.moment.clone() else { return };
+    let spoken = format!("Timeline: step {} of {}", moment.step, state.track.len());
+    response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, spoken.clone()));
+    let axis = Axis { plot, span: turn(ui, &response, plot, state) };
+    seek(&response, &axis, state, &moment, commands);
+    let mut columns = std::mem::take(&mut state.columns);
+    columns.update(state, axis.span, plot.width());
+    let painter = ui.painter_at(rect);
+    let drawing = Drawing { painter, axis, palette, now: moment.step };
+    let mut y = drawing.ruler(state, plot.top());
+    let fits = |y: f32, height: f32| y + height <= plot.bottom() + 2.0;
+    for lane in columns.lanes() {
+        if !fits(y, LANE) {
+            break;
+        }
+        drawing.lane(lane, y);
+        if let Some(group) = label_button(ui, &drawing.axis, lane, y) {
+            state.open_lanes = if state.open_lanes == Some(group) { None } else { Some(group) };
+        }
+        y += LANE + GAP;
+    }
+    if fits(y, LANE) {
+        drawing.invariants(&columns, y, state);
+        y += LANE + GAP;
+    }
+    for curve in columns.curves() {
+        if !fits(y, CURVE) {
+            break;
+        }
+        drawing.curve(curve, &columns, y);
+        y += CURVE + GAP;
+    }
+    drawing.head(y.min(plot.bottom()));
+    if let Some(at) = response.hover_pos() {
+        response.on_hover_text_at_pointer(hovered(&drawing.axis, state, &columns, at));
+    }
+    state.columns = columns;
+}
+
+/// The steps that are shown, after what was asked by the wheel.
+fn turn(ui: &Ui, response: &Response, plot: Rect, state: &mut State) -> [f64; 2] {
     let all = state.track.len().max(1) as f64;
-    let mut span = state.timeline.filter(|_| state.track.len() > 1).unwrap_or([0.0, all]);
+    let mut span = state.timeline.filter(|span| span[1] <= all).unwrap_or([0.0, all]);
     if let Some(at) = response.hover_pos() {
         let scroll = ui.input(|input| input.smooth_scroll_delta());
         if scroll.y != 0.0 {
-            span = zoomed(
-                span,
-                all,
-                f64::from((at.x - plot.left()) / plot.width()),
-                libm::exp(f64::from(-scroll.y) * 0.004),
-            );
-            state.timeline = (span[1] - span[0] < all).then_some(span);
+            let share = f64::from((at.x - plot.left()) / plot.width());
+            span = zoomed(span, all, share, libm::exp(f64::from(-scroll.y) * 0.004));
+        }
+        if scroll.x != 0.0 {
+            let by = f64::from(-scroll.x / plot.width()) * (span[1] - span[0]);
+            let by = by.clamp(-span[0], all - span[1]);
+            span = [span[0] + by, span[1] + by];
         }
     }
-    let axis = Axis { plot, span };
-    if (response.dragged() || response.clicked())
-        && let Some(at) = response.interact_pointer_pos()
-    {
-        let step = axis.step(at.x).round().clamp(0.0, state.track.len() as f64) as u64;
-        if step != moment.step && state.seeking != Some(step) {
-            state.seeking = Some(step);
-            commands.push(Command::Go(Goal::Step(step)));
-        }
-    } else {
+    if response.double_clicked() {
+        span = [0.0, all];
+    }
+    state.timeline = (span[1] - span[0] < all).then_some(span);
+    span
+}
+
+/// Click and drag go to the step under the pointer; a click beside a bookmark to that.
+fn seek(response: &Response, axis: &Axis, state: &mut State, moment: &Moment, commands: &mut Vec<Command>) {
+    let pointer = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked());
+    let Some(at) = pointer else {
         state.seeking = None;
+        return;
+    };
+    let mut step = axis.step(at.x).round().clamp(0.0, state.track.len() as f64) as u64;
+    if at.y < axis.plot.top() + 24.0 {
+        let away = |mark: &u64| (axis.x(*mark as f64) - at.x).abs();
+        let nearest = state.kept.bookmarks.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)));
+        step = nearest.filter(|mark| away(mark) < NEAR).unwrap_or(step);
     }
-    let painter = ui.painter_at(rect);
-    let mut y = ruler(&painter, &axis, state, palette, plot.top());
-    for (name, kinds) in LANES {
-        if y + LANE > plot.bottom() {
-            break;
-        }
-        lane(&painter, &axis, state, palette, y, name, kinds, moment.step);
-        y += LANE + GAP;
+    if step != moment.step && state.seeking != Some(step) {
+        state.seeking = Some(step);
+        commands.push(Command::Go(Goal::Step(step)));
     }
-    if y + LANE <= plot.bottom() {
-        invariants(&painter, &axis, palette, y, moment.broken.as_deref());
-        y += LANE + GAP;
+}
+
+/// What stands under the pointer.
+fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
+    let step = axis.step(at.x).round().clamp(0.0, state.track.len() as f64) as u64;
+    let Some(tracked) = step.checked_sub(1).and_then(|k| state.track.get(k as usize)) else {
+        return "step 0".to_owned();
+    };
+    let mut text = format!("step {}  \u{b7}  {}", words::grouped(step), words::kind(tracked.kind));
+    let [loops, odd] = tracked.loops;
+    text += &format!("\nfront: {} segments, {loops} loops, {odd} odd", words::grouped(tracked.front.into()));
+    text += &format!("\n{} live triangles", words::grouped(tracked.live.into()));
+    let next = state.samples.partition_point(|sample| sample.step < step);
+    if let Some(sample) = state.samples.get(next.min(state.samples.len().saturating_sub(1))) {
+        let verdict = columns.broken(sample).unwrap_or_else(|| "invariants hold".to_owned());
+        let at = words::grouped(sample.step);
+        text += &format!(
+            "\nchecked at step {at}: {verdict}; area {}, in the metric {}, nodes \u{2212} edges + elements {}",
+            words::size(sample.area),
+            words::size(sample.area_metric),
+            words::fixed(sample.euler as f64, 0)
+        );
     }
-    for (name, of) in [("front length", Curve::Front), ("quality, worst", Curve::Quality)] {
-        if y + CURVE > plot.bottom() + 2.0 {
-            break;
-        }
-        curve(&painter, &axis, state, palette, y, name, of, moment.step);
-        y += CURVE + GAP;
-    }
-    head(&painter, &axis, palette, moment.step, y.min(plot.bottom()));
-    if let Some(at) = response.hover_pos() {
-        let step = axis.step(at.x).round().max(0.0) as usize;
-        if let Some(tracked) = step.checked_sub(1).and_then(|i| state.track.get(i)) {
-            let text = format!("step {}  ·  {}", words::grouped(step as u64), words::kind(tracked.kind));
-            response.on_hover_text_at_pointer(text);
-        }
-    }
+    text
+}
+
+/// The name of a row with several kinds is a button that gives each its own row, and back.
+fn label_button(ui: &Ui, axis: &Axis, lane: &Lane, y: f32) -> Option<usize> {
+    let group = lane.group?;
+    let rect =
+        Rect::from_min_max(Pos2::new(axis.plot.left() - LABELS + 4.0, y), Pos2::new(axis.plot.left() - 8.0, y + LANE));
+    let response = ui.interact(rect, ui.scope_id().with(("lane", lane.name.as_str())), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Lane: {}", lane.name)));
+    let tip = if lane.is_open { "One row for these kinds" } else { "A row for each of these kinds" };
+    response.on_hover_text(tip).clicked().then_some(group)
 }
 
 struct Axis {
@@ -107,12 +167,6 @@ impl Axis {
     fn step(&self, x: f32) -> f64 {
         self.span[0] + f64::from((x - self.plot.left()) / self.plot.width()) * (self.span[1] - self.span[0])
     }
-
-    /// The steps that can be seen, as places in the track.
-    fn seen(&self, count: usize) -> std::ops::Range<usize> {
-        let first = (self.span[0].max(0.0) as usize).min(count);
-        first..(self.span[1].ceil() as usize).clamp(first, count)
-    }
 }
 
 /// The span after zooming by `factor` around a place; at most the whole run, at least 20 steps.
@@ -123,177 +177,125 @@ fn zoomed(span: [f64; 2], all: f64, at: f64, factor: f64) -> [f64; 2] {
     [start, start + new]
 }
 
-fn ruler(painter: &egui::Painter, axis: &Axis, state: &State, palette: &Palette, top: f32) -> f32 {
-    let width = axis.span[1] - axis.span[0];
-    let wanted = width / f64::from(axis.plot.width() / 90.0);
-    let power = libm::pow(10.0, libm::floor(libm::log10(wanted.max(1.0))));
-    let every = [1.0, 2.0, 5.0, 10.0].into_iter().map(|k| k * power).find(|e| *e >= wanted).unwrap_or(10.0 * power);
-    let mut tick = (axis.span[0] / every).ceil() * every;
-    let head = state.moment.as_ref().map_or(-1e9, |moment| axis.x(moment.step as f64));
-    while tick <= axis.span[1] {
-        let x = axis.x(tick);
-        if (x - head).abs() > 34.0 {
-            let text = words::grouped(tick as u64);
-            painter.text(
-                Pos2::new(x, top),
-                Align2::CENTER_TOP,
-                text,
-                theme::regular(theme::TIMELINE),
-                ink(palette.weak),
-            );
-        }
-        tick += every;
-    }
-    for step in &state.kept.bookmarks {
-        let x = axis.x(*step as f64);
-        let font = theme::regular(theme::TIMELINE);
-        painter.text(
-            Pos2::new(x, top + 12.0),
-            Align2::CENTER_TOP,
-            crate::app::window::icons::BOOKMARK,
-            font,
-            ink(palette.text),
-        );
-    }
-    top + 24.0
-}
-
-fn label(painter: &egui::Painter, axis: &Axis, palette: &Palette, y: f32, name: &str, count: &str, colour: Rgba) {
-    let font = theme::regular(theme::TIMELINE);
-    let left = Pos2::new(axis.plot.left() - 9.0, y);
-    painter.text(left, Align2::RIGHT_CENTER, name, font.clone(), ink(palette.weak));
-    let right = Pos2::new(axis.plot.right() + COUNTS - 32.0, y);
-    painter.text(right, Align2::RIGHT_CENTER, count, font, ink(colour));
-}
-
-fn lane(
-    painter: &egui::Painter,
-    axis: &Axis,
-    state: &State,
-    palette: &Palette,
-    y: f32,
-    name: &str,
-    kinds: &[&str],
+struct Drawing<'a> {
+    painter: egui::Painter,
+    axis: Axis,
+    palette: &'a Palette,
     now: u64,
-) {
-    let ground = Rect::from_min_size(Pos2::new(axis.plot.left(), y), Vec2::new(axis.plot.width(), LANE));
-    painter.rect_filled(ground, 0.0, ink(palette.line.faded(0.45)));
-    let is_of = |tracked: &Tracked| kinds.contains(&tracked.kind);
-    let total = state.track.iter().filter(|t| is_of(t)).count();
-    let colour = if kinds.contains(&"rolled_back") { palette.broken } else { palette.dead_edge };
-    let columns = axis.plot.width().max(1.0) as usize;
-    let mut bins = vec![0_u32; columns + 1];
-    let seen = axis.seen(state.track.len());
-    let per_pixel = seen.len() as f32 / columns as f32;
-    for k in seen.filter(|k| is_of(&state.track[*k])) {
-        let column = (axis.x((k + 1) as f64) - axis.plot.left()).round();
-        if let Some(bin) = bins.get_mut(column.max(0.0) as usize) {
-            *bin += 1;
-        }
+}
+
+impl Drawing<'_> {
+    fn text(&self, at: Pos2, anchor: Align2, text: impl ToString, colour: Rgba) {
+        self.painter.text(at, anchor, text, theme::regular(theme::TIMELINE), ink(colour));
     }
-    let head = axis.x(now as f64) - axis.plot.left();
-    let most = (per_pixel * 0.5).max(1.0);
-    for (k, count) in bins.iter().enumerate().filter(|(_, count)| **count > 0) {
-        let past = if k as f32 <= head + 0.5 { 0.8 } else { 0.38 };
-        let density = (0.35 + 0.65 * *count as f32 / most).min(1.0);
-        let x = axis.plot.left() + k as f32;
-        painter.vline(x, y + 2.0..=y + LANE - 2.0, Stroke::new(1.2, ink(colour.faded(past * density))));
+
+    /// The column of the play head.
+    fn head_column(&self) -> f32 {
+        self.axis.x(self.now as f64) - self.axis.plot.left()
     }
-    label(painter, axis, palette, y + 0.5 * LANE, name, &words::grouped(total as u64), palette.text);
-}
 
-fn invariants(painter: &egui::Painter, axis: &Axis, palette: &Palette, y: f32, broken: Option<&str>) {
-    let colour = if broken.is_some() { palette.broken } else { palette.holds };
-    let middle = y + 0.5 * LANE;
-    painter.hline(axis.plot.x_range(), middle, Stroke::new(3.0, ink(colour.faded(0.8))));
-    label(painter, axis, palette, middle, "invariants", if broken.is_some() { "broken" } else { "hold" }, colour);
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Curve {
-    Front,
-    Quality,
-}
-
-fn curve(
-    painter: &egui::Painter,
-    axis: &Axis,
-    state: &State,
-    palette: &Palette,
-    y: f32,
-    name: &str,
-    of: Curve,
-    now: u64,
-) {
-    let seen = axis.seen(state.track.len());
-    let mut points: Vec<(u64, f32)> = Vec::new();
-    let (mut worst, mut most) = (1.0_f32, 1.0_f32);
-    let mut dots = Vec::new();
-    for (k, tracked) in state.track.iter().enumerate().take(seen.end) {
-        let step = (k + 1) as u64;
-        match of {
-            Curve::Quality => {
-                if let Some((_, quality)) = tracked.formed {
-                    worst = worst.min(quality);
-                    if k >= seen.start {
-                        dots.push((step, quality));
-                        points.push((step, worst));
-                    }
-                }
+    fn ruler(&self, state: &State, top: f32) -> f32 {
+        let Drawing { axis, palette, .. } = self;
+        let width = axis.span[1] - axis.span[0];
+        let wanted = width / f64::from(axis.plot.width() / 90.0);
+        let power = libm::pow(10.0, libm::floor(libm::log10(wanted.max(1.0))));
+        let every = [1.0, 2.0, 5.0, 10.0].into_iter().map(|k| k * power).find(|e| *e >= wanted).unwrap_or(10.0 * power);
+        let mut tick = (axis.span[0] / every).ceil() * every;
+        let head = axis.x(self.now as f64);
+        while tick <= axis.span[1] {
+            let x = axis.x(tick);
+            if (x - head).abs() > 34.0 {
+                self.text(Pos2::new(x, top), Align2::CENTER_TOP, words::grouped(tick as u64), palette.weak);
             }
-            Curve::Front => {
-                most = most.max(tracked.front as f32);
-                if k >= seen.start {
-                    points.push((step, tracked.front as f32));
-                }
+            tick += every;
+        }
+        for step in &state.kept.bookmarks {
+            let x = axis.x(*step as f64);
+            if axis.plot.x_range().contains(x) {
+                self.text(Pos2::new(x, top + 12.0), Align2::CENTER_TOP, icons::BOOKMARK, palette.text);
             }
         }
+        top + 24.0
     }
-    let place = |step: u64, value: f32| {
-        let top = if of == Curve::Front { most } else { 1.0 };
-        Pos2::new(axis.x(step as f64), y + CURVE - 2.0 - (CURVE - 4.0) * value / top)
-    };
-    let columns = axis.plot.width() as usize;
-    if dots.len() <= 2 * columns {
-        for (step, quality) in dots {
-            let colour = palette.weak.faded(if step <= now { 0.8 } else { 0.38 });
-            painter.circle_filled(place(step, quality), 0.9, ink(colour));
-        }
-    }
-    let every = (points.len() / (2 * columns).max(1)).max(1);
-    for (past, alpha) in [(true, 0.95), (false, 0.38)] {
-        let part = points.iter().step_by(every).filter(|p| (p.0 <= now) == past);
-        let line: Vec<Pos2> = part.map(|p| place(p.0, p.1)).collect();
-        painter.add(Shape::line(line, Stroke::new(1.3, ink(palette.text.faded(alpha)))));
-    }
-    let value = match of {
-        Curve::Front => state.moment.as_ref().map_or(String::new(), |m| words::grouped(m.front.len() as u64)),
-        Curve::Quality => {
-            let until = &state.track[..(now as usize).min(state.track.len())];
-            let worst = until.iter().filter_map(|t| t.formed).map(|f| f.1).fold(f32::INFINITY, f32::min);
-            words::fixed(f64::from(worst), 2)
-        }
-    };
-    label(painter, axis, palette, y + 0.5 * CURVE, name, &value, palette.text);
-}
 
-fn head(painter: &egui::Painter, axis: &Axis, palette: &Palette, step: u64, bottom: f32) {
-    let x = axis.x(step as f64);
-    if !(axis.plot.left() - 1.0..=axis.plot.right() + 1.0).contains(&x) {
-        return;
+    fn label(&self, y: f32, name: &str, count: &str, colour: Rgba) {
+        let plot = self.axis.plot;
+        self.text(Pos2::new(plot.left() - 9.0, y), Align2::RIGHT_CENTER, name, self.palette.weak);
+        self.text(Pos2::new(plot.right() + COUNTS - 32.0, y), Align2::RIGHT_CENTER, count, colour);
     }
-    let top = axis.plot.top();
-    let accent = ink(palette.base);
-    painter.text(
-        Pos2::new(x, top),
-        Align2::CENTER_TOP,
-        words::grouped(step),
-        theme::semibold(theme::TIMELINE),
-        ink(palette.accent),
-    );
-    painter.vline(x, top + 16.0..=bottom, Stroke::new(2.0, accent));
-    let tip = [Pos2::new(x - 4.5, top + 14.0), Pos2::new(x + 4.5, top + 14.0), Pos2::new(x, top + 21.0)];
-    painter.add(Shape::convex_polygon(tip.to_vec(), accent, Stroke::NONE));
+
+    /// One tick for each event; a density strip where there are more than one a column.
+    fn lane(&self, lane: &Lane, y: f32) {
+        let plot = self.axis.plot;
+        let ground = Rect::from_min_size(Pos2::new(plot.left(), y), Vec2::new(plot.width(), LANE));
+        self.painter.rect_filled(ground, 0.0, ink(self.palette.line.faded(0.45)));
+        let colour = if lane.is_failure { self.palette.broken } else { self.palette.dead_edge };
+        let head = self.head_column();
+        let most = lane.bins.iter().copied().max().unwrap_or(1).max(1) as f32;
+        let is_dense = lane.bins.iter().filter(|count| **count > 1).count() > lane.bins.len() / 8;
+        for (k, count) in lane.bins.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let time = TIMES[usize::from(k as f32 > head + 0.5)];
+            let x = plot.left() + k as f32;
+            if is_dense {
+                let density = 0.2 + 0.8 * *count as f32 / most;
+                let column = Rect::from_min_size(Pos2::new(x, y), Vec2::new(1.0, LANE));
+                self.painter.rect_filled(column, 0.0, ink(colour.faded(time * density)));
+            } else {
+                self.painter.vline(x, y + 2.0..=y + LANE - 2.0, Stroke::new(1.2, ink(colour.faded(time))));
+            }
+        }
+        self.label(y + 0.5 * LANE, &lane.name, &words::grouped(lane.total), self.palette.text);
+    }
+
+    fn invariants(&self, columns: &Columns, y: f32, state: &State) {
+        let Drawing { axis, palette, .. } = self;
+        let middle = y + 0.5 * LANE;
+        let known = axis.x(state.track.len() as f64).min(axis.plot.right());
+        let line = Stroke::new(3.0, ink(palette.holds.faded(0.8)));
+        self.painter.hline(axis.plot.left()..=known.max(axis.plot.left()), middle, line);
+        for [from, until] in columns.broken_spans() {
+            let red = Stroke::new(5.0, ink(palette.broken));
+            let [a, b] = [*from, *until].map(|step| axis.x(step as f64).clamp(axis.plot.left(), axis.plot.right()));
+            self.painter.hline(a..=b.max(a + 2.0), middle, red);
+        }
+        let is_broken = matches!(state.verdict, Verdict::Broken(_)) || !columns.broken_spans().is_empty();
+        let (text, colour) = if is_broken { ("broken", palette.broken) } else { ("hold", palette.holds) };
+        self.label(middle, "invariants", text, colour);
+    }
+
+    fn curve(&self, curve: &Curve, columns: &Columns, y: f32) {
+        let plot = self.axis.plot;
+        let place = |x: f32, value: f32| {
+            Pos2::new(plot.left() + x, y + CURVE - 2.0 - (CURVE - 4.0) * value / curve.top.max(f32::MIN_POSITIVE))
+        };
+        for &(x, value) in &curve.dots {
+            let time = TIMES[usize::from(x > self.head_column())];
+            self.painter.circle_filled(place(x, value), 0.9, ink(self.palette.weak.faded(time)));
+        }
+        let head = self.head_column();
+        let split = curve.line.partition_point(|point| point.0 <= head);
+        for (part, fade) in [(0..split, 0.95), (split.saturating_sub(1)..curve.line.len(), TIMES[1])] {
+            let line: Vec<Pos2> = curve.line[part].iter().map(|&(x, value)| place(x, value)).collect();
+            self.painter.add(Shape::line(line, Stroke::new(1.3, ink(self.palette.text.faded(fade)))));
+        }
+        let value = columns.value(curve.of, self.now);
+        self.label(y + 0.5 * CURVE, curve.of.name(), &value, self.palette.text);
+    }
+
+    fn head(&self, bottom: f32) {
+        let Drawing { axis, palette, now, .. } = self;
+        let x = axis.x(*now as f64);
+        if !(axis.plot.left() - 1.0..=axis.plot.right() + 1.0).contains(&x) {
+            return;
+        }
+        let top = axis.plot.top();
+        let accent = ink(palette.base);
+        let font = theme::semibold(theme::TIMELINE);
+        self.painter.text(Pos2::new(x, top), Align2::CENTER_TOP, words::grouped(*now), font, ink(palette.accent));
+        self.painter.vline(x, top + 16.0..=bottom, Stroke::new(2.0, accent));
+        let tip = [Pos2::new(x - 4.5, top + 14.0), Pos2::new(x + 4.5, top + 14.0), Pos2::new(x, top + 21.0)];
+        self.painter.add(Shape::convex_polygon(tip.to_vec(), accent, Stroke::NONE));
+    }
 }
 
 #[cfg(test)]

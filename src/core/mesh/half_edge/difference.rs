@@ -185,6 +185,39 @@ impl Mesh {
         self.refusals.clone_from(refusals);
     }
 
+    /// Becomes the same state as another mesh, of which this is an older or newer state: `touched` are the slots that differ.
+    /// Costs as much as differs; the journal is left empty.
+    pub(in crate::core) fn follow(&mut self, other: &Mesh, touched: &Touched) {
+        self.uv.resize(other.uv.len(), DVec2::ZERO);
+        self.metric.resize(other.uv.len(), Metric2::isotropic(1.0));
+        self.anchor.resize(other.uv.len(), NONE);
+        self.point.resize(other.uv.len(), NONE);
+        for n in touched.nodes().iter().map(|n| n.index()).filter(|n| *n < other.uv.len()) {
+            self.uv[n] = other.uv[n];
+            self.metric[n] = other.metric[n];
+            self.anchor[n] = other.anchor[n];
+            self.point[n] = other.point[n];
+        }
+        self.origin.resize(other.origin.len(), NONE);
+        self.twin.resize(other.origin.len(), NONE);
+        self.deferred.resize(other.origin.len(), false);
+        self.sides.resize(other.sides.len(), 0);
+        self.region.resize(other.sides.len(), 0);
+        self.level.resize(other.sides.len(), 0);
+        for e in touched.elements().iter().map(|e| e.index()).filter(|e| *e < other.sides.len()) {
+            let slots = 4 * e..4 * e + 4;
+            self.origin[slots.clone()].copy_from_slice(&other.origin[slots.clone()]);
+            self.twin[slots.clone()].copy_from_slice(&other.twin[slots.clone()]);
+            self.deferred[slots.clone()].copy_from_slice(&other.deferred[slots]);
+            self.sides[e] = other.sides[e];
+            self.region[e] = other.region[e];
+            self.level[e] = other.level[e];
+        }
+        self.free_nodes.clone_from(&other.free_nodes);
+        self.free_elements.clone_from(&other.free_elements);
+        self.journal = Journal::default();
+    }
+
     /// Becomes the later state of a difference whose earlier one this is. The journal must be empty, and stays so.
     pub fn apply(&mut self, difference: &Difference) {
         debug_assert!(self.journal.since(Mark::default()).is_empty(), "a state that is copied has no past");

@@ -1,0 +1,101 @@
+//! How long states and frames take on this machine: shown in the status line where that is wanted, and measured by stepping.
+
+use std::time::{Duration, Instant};
+
+use super::session::Goal;
+
+/// Quadrilaterals that are stepped on, and back again.
+const QUADS: usize = 60;
+/// A pause between two frames that is longer is no frame's own.
+const PAUSE: Duration = Duration::from_secs(2);
+
+/// The times of the last states and frames.
+#[derive(Clone, Debug, Default)]
+pub struct Times {
+    state: Option<Duration>,
+    frame: Option<Duration>,
+    begun: Option<Instant>,
+}
+
+impl Times {
+    /// A state took so long, from asking to telling.
+    pub fn state(&mut self, took: Duration) {
+        self.state = Some(took);
+    }
+
+    /// A frame begins. `follows`: it was asked for in the one before, so that the time between them is that of a frame, with all
+    /// that the card does.
+    pub fn frame(&mut self, follows: bool) {
+        let now = Instant::now();
+        if let Some(begun) = self.begun.filter(|_| follows) {
+            self.frame = Some(now - begun).filter(|took| *took < PAUSE).or(self.frame);
+        }
+        self.begun = Some(now);
+    }
+
+    /// Both in words.
+    pub fn told(&self) -> String {
+        let told = |time: Option<Duration>, decimals: usize| match time {
+            Some(time) => super::words::fixed(1e3 * time.as_secs_f64(), decimals),
+            None => super::words::UNDEFINED.to_owned(),
+        };
+        format!("state {} ms  \u{b7}  frame {} ms", told(self.state, 2), told(self.frame, 0))
+    }
+}
+
+/// A walk of some quadrilaterals on and back that is timed.
+#[derive(Clone, Debug)]
+pub struct Measuring {
+    left: usize,
+    /// Times of states and of frames, on and back.
+    states: [Vec<f64>; 2],
+    frames: [Vec<f64>; 2],
+    asked: Option<Instant>,
+    /// Whether the frame that shows the state was begun.
+    shown: bool,
+}
+
+impl Default for Measuring {
+    fn default() -> Self {
+        Measuring { left: 2 * QUADS, states: Default::default(), frames: Default::default(), asked: None, shown: false }
+    }
+}
+
+impl Measuring {
+    /// At the beginning of a frame: where the state that was asked for has been shown by the frame before, asks for the next.
+    /// `took`: how long that state took. None while it is not there.
+    pub fn next(&mut self, is_there: bool, took: Duration) -> Option<Goal> {
+        if !is_there || (self.asked.is_some() && !std::mem::replace(&mut self.shown, true)) {
+            return None;
+        }
+        self.shown = false;
+        if let Some(asked) = self.asked.take() {
+            let back = usize::from(self.left < QUADS);
+            self.states[back].push(1e3 * took.as_secs_f64());
+            self.frames[back].push(1e3 * asked.elapsed().as_secs_f64());
+        }
+        self.left = self.left.checked_sub(1)?;
+        self.asked = Some(Instant::now());
+        Some(Goal::Quads(if self.left >= QUADS { 1 } else { -1 }))
+    }
+
+    /// What was measured, where it is done.
+    pub fn told(&self) -> Option<String> {
+        if self.left > 0 || self.asked.is_some() {
+            return None;
+        }
+        let spread = |times: &[f64], decimals: usize| {
+            let mut times = times.to_vec();
+            times.sort_by(f64::total_cmp);
+            let at = |share: f64| times.get((share * times.len().saturating_sub(1) as f64) as usize).copied();
+            let told = |share| super::words::fixed(at(share).unwrap_or(f64::NAN), decimals);
+            format!("{} ({})", told(0.5), told(1.0))
+        };
+        let [on, back] = [0, 1].map(|k| (spread(&self.states[k], 2), spread(&self.frames[k], 0)));
+        Some(format!(
+            "{QUADS} quads on and back, milliseconds, median (largest): state {} on, {} back; until the picture stands {} on, \
+             {} back.",
+            on.0, back.0, on.1, back.1
+        ))
+    }
+}

@@ -1,0 +1,272 @@
+//! What the timeline shows, by its columns: counted anew only when the run, the span or the width is another.
+
+use crate::app::window::session::Tracked;
+use crate::app::window::state::State;
+use crate::app::window::words;
+use crate::core::run::timeline::Sample;
+
+/// The rows: each with the kinds that share it.
+const ROWS: [(&str, &[&str]); 5] = [
+    ("quad formed", &["formed"]),
+    ("swap", &["side_swapped", "top_swapped", "enhanced"]),
+    ("divide, delete", &["side_divided", "node_removed"]),
+    (
+        "seam, close, finish",
+        &["seamed", "transition_seamed", "split", "closed", "matched", "patched", "last_resort", "cleaned", "swept"],
+    ),
+    ("rolled back", &["rolled_back", "deferred", "second_pass", "seam_refused"]),
+];
+/// The row of what did not come about.
+const FAILURES: usize = 4;
+
+/// One row of ticks.
+pub struct Lane {
+    pub name: String,
+    /// How many in the whole run.
+    pub total: u64,
+    /// How many by column.
+    pub bins: Vec<u32>,
+    pub is_failure: bool,
+    /// The row of kinds that it belongs to, where there are several.
+    pub group: Option<usize>,
+    pub is_open: bool,
+}
+
+/// What a curve shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    Front,
+    Quality,
+    Live,
+    Loops,
+}
+
+impl Figure {
+    /// In the order in which they stand where there is room.
+    const ALL: [Figure; 4] = [Figure::Front, Figure::Quality, Figure::Live, Figure::Loops];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Figure::Front => "front length",
+            Figure::Quality => "quality, worst",
+            Figure::Live => "live triangles",
+            Figure::Loops => "loops",
+        }
+    }
+
+    fn of(self, tracked: &Tracked) -> f32 {
+        match self {
+            Figure::Front => tracked.front as f32,
+            Figure::Quality => tracked.formed.map_or(1.0, |formed| formed.1),
+            Figure::Live => tracked.live as f32,
+            Figure::Loops => f32::from(tracked.loops[0]),
+        }
+    }
+}
+
+/// One curve: places in points from the left, with values.
+pub struct Curve {
+    pub of: Figure,
+    pub line: Vec<(f32, f32)>,
+    pub dots: Vec<(f32, f32)>,
+    /// The value at the top.
+    pub top: f32,
+}
+
+/// Everything that the timeline shows.
+#[derive(Default)]
+pub struct Columns {
+    seen: Option<(u64, [f64; 2], usize, Option<usize>)>,
+    lanes: Vec<Lane>,
+    curves: Vec<Curve>,
+    /// The worst quality up to each step.
+    worst: Vec<f32>,
+    /// Front, live triangles and loops after each step.
+    figures: Vec<[u32; 3]>,
+    first: Option<Sample>,
+    broken: Vec<[u64; 2]>,
+}
+
+impl Columns {
+    /// Counts anew where something is other than before.
+    pub fn update(&mut self, state: &State, span: [f64; 2], width: f32) {
+        let columns = width.max(1.0) as usize;
+        let seen = Some((state.track_epoch, span, columns, state.open_lanes));
+        if self.seen == seen {
+            return;
+        }
+        if self.seen.is_none_or(|before| before.0 != state.track_epoch) {
+            self.follow(state);
+        }
+        self.seen = seen;
+        let place = |step: usize| ((step as f64 - span[0]) / (span[1] - span[0]) * columns as f64) as f32;
+        let first = (span[0].max(0.0) as usize).min(state.track.len());
+        let last = (span[1].ceil() as usize).clamp(first, state.track.len());
+        self.count_lanes(state, first..last, columns, &place);
+        self.curves.clear();
+        for of in Figure::ALL {
+            self.curves.push(self.curve_of(of, state, first..last, columns, &place));
+        }
+    }
+
+    /// What is known along the run.
+    fn follow(&mut self, state: &State) {
+        let mut worst = f32::INFINITY;
+        let qualities = state.track.iter().map(|tracked| {
+            worst = tracked.formed.map_or(worst, |formed| worst.min(formed.1));
+            worst
+        });
+        self.worst = qualities.collect();
+        self.figures = state.track.iter().map(|t| [t.front, t.live, t.loops[0].into()]).collect();
+        self.first = state.samples.first().copied();
+        self.broken.clear();
+        let mut before = 0;
+        for sample in &state.samples {
+            if self.broken(sample).is_some() {
+                self.broken.push([before, sample.step]);
+            }
+            before = sample.step;
+        }
+        // Parity is known after every step.
+        if self.first.is_some_and(|first| first.front.odd == 0) {
+            for (k, _) in state.track.iter().enumerate().filter(|(_, tracked)| tracked.loops[1] > 0) {
+                let step = k as u64 + 1;
+                match self.broken.last_mut() {
+                    Some(last) if last[1] + 1 == step => last[1] = step,
+                    _ => self.broken.push([step, step]),
+                }
+            }
+        }
+    }
+
+    /// What does not hold in a sample: orientation, area, Euler's number, parity of the loops.
+    pub fn broken(&self, sample: &Sample) -> Option<String> {
+        let first = self.first?;
+        if sample.inverted > 0 {
+            return Some(format!("{} elements are not positive", sample.inverted));
+        }
+        if sample.euler != first.euler {
+            return Some(format!("nodes \u{2212} edges + elements was {} at step 0", first.euler));
+        }
+        if (sample.area - first.area).abs() > 1e-9 * first.area.abs() {
+            return Some(format!("the area was {} at step 0", words::size(first.area)));
+        }
+        (first.front.odd == 0 && sample.front.odd > 0).then(|| format!("{} loops are odd", sample.front.odd))
+    }
+
+    fn count_lanes(
+        &mut self,
+        state: &State,
+        seen: std::ops::Range<usize>,
+        columns: usize,
+        place: &dyn Fn(usize) -> f32,
+    ) {
+        self.lanes.clear();
+        for (k, (name, kinds)) in ROWS.iter().enumerate() {
+            let is_open = state.open_lanes == Some(k);
+            let group = (kinds.len() > 1).then_some(k);
+            let lane = |name: String| Lane {
+                name,
+                total: 0,
+                bins: vec![0; columns + 1],
+                is_failure: k == FAILURES,
+                group,
+                is_open,
+            };
+            if is_open {
+                self.lanes.extend(kinds.iter().map(|kind| lane(words::kind(kind))));
+            } else {
+                self.lanes.push(lane((*name).to_owned()));
+            }
+        }
+        // Kinds are static words: most steps are decided by their addresses.
+        let lane_of = |kind: &str| {
+            let mut first = 0;
+            for (k, (_, kinds)) in ROWS.iter().enumerate() {
+                let at = kinds.iter().position(|known| *known == kind);
+                let is_open = state.open_lanes == Some(k);
+                if let Some(at) = at {
+                    return Some(first + if is_open { at } else { 0 });
+                }
+                first += if is_open { kinds.len() } else { 1 };
+            }
+            None
+        };
+        let mut known: Vec<(&'static str, Option<usize>)> = Vec::new();
+        for (k, tracked) in state.track.iter().enumerate() {
+            let found = known.iter().find(|known| std::ptr::eq(known.0, tracked.kind)).map(|known| known.1);
+            let lane = found.unwrap_or_else(|| {
+                let lane = lane_of(tracked.kind);
+                known.push((tracked.kind, lane));
+                lane
+            });
+            let Some(lane) = lane else { continue };
+            self.lanes[lane].total += 1;
+            if seen.contains(&k)
+                && let Some(bin) = self.lanes[lane].bins.get_mut(place(k + 1).round().max(0.0) as usize)
+            {
+                *bin += 1;
+            }
+        }
+    }
+
+    fn curve_of(
+        &self,
+        of: Figure,
+        state: &State,
+        seen: std::ops::Range<usize>,
+        columns: usize,
+        place: &dyn Fn(usize) -> f32,
+    ) -> Curve {
+        let mut curve = Curve { of, line: Vec::new(), dots: Vec::new(), top: 1.0 };
+        let every = (seen.len() / (2 * columns).max(1)).max(1);
+        for k in seen.clone().step_by(every) {
+            let value = if of == Figure::Quality { self.worst[k].min(1.0) } else { of.of(&state.track[k]) };
+            curve.line.push((place(k + 1), value));
+        }
+        match of {
+            Figure::Quality => {
+                let formed = seen.filter_map(|k| Some((k, state.track[k].formed?.1)));
+                let dots: Vec<_> = formed.map(|(k, quality)| (place(k + 1), quality)).collect();
+                let every = (dots.len() / columns.max(1)).max(1);
+                curve.dots = dots.into_iter().step_by(every).collect();
+            }
+            _ => curve.top = curve.line.iter().map(|point| point.1).fold(1.0, f32::max),
+        }
+        curve
+    }
+
+    pub fn lanes(&self) -> &[Lane] {
+        &self.lanes
+    }
+
+    pub fn curves(&self) -> &[Curve] {
+        &self.curves
+    }
+
+    /// Stretches of steps in which something does not hold.
+    pub fn broken_spans(&self) -> &[[u64; 2]] {
+        &self.broken
+    }
+
+    /// The value of a curve at a step.
+    pub fn value(&self, of: Figure, step: u64) -> String {
+        let Some(k) = step.checked_sub(1).map(|k| k as usize) else {
+            let Some(first) = self.first else { return words::UNDEFINED.to_owned() };
+            return match of {
+                Figure::Front => words::grouped(first.front.segments.into()),
+                Figure::Live => words::grouped(first.front.live.into()),
+                Figure::Loops => words::grouped(first.front.loops.into()),
+                Figure::Quality => words::UNDEFINED.to_owned(),
+            };
+        };
+        let figure =
+            |at: usize| self.figures.get(k).map_or(words::UNDEFINED.to_owned(), |f| words::grouped(f[at].into()));
+        match of {
+            Figure::Front => figure(0),
+            Figure::Live => figure(1),
+            Figure::Loops => figure(2),
+            Figure::Quality => words::fixed(f64::from(self.worst.get(k).copied().unwrap_or(f32::NAN)), 2),
+        }
+    }
+}

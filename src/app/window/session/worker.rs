@@ -1,0 +1,451 @@
+//! The thread that has the history of the run: it goes where it is asked to go, answers what is asked of the state at hand, and
+//! lends another thread the recorder that runs ahead.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError};
+use std::time::Instant;
+
+use super::moment::{Moment, Verdict, segment};
+use super::{Ask, Goal, Opened, Past, Told, Tracked, Voice};
+use crate::core::convert::candidates::Candidates;
+use crate::core::convert::event::Event;
+use crate::core::convert::walk::standing;
+use crate::core::fault::Fault;
+use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::run::breakpoint::{self, Condition};
+use crate::core::run::copies::{Copies, Since};
+use crate::core::run::explain::SegmentTold;
+use crate::core::run::front_table::{FrontTable, Row};
+use crate::core::run::history::{BUDGET, Changes, History};
+use crate::core::run::recorder::{Recorder, Stretch};
+use crate::core::run::run::{Edit, Run};
+use crate::core::run::timeline::Sample;
+use crate::core::run::watch::Watched;
+
+/// Steps that the recorder does before it hands them over: few at first, since somebody may be waiting.
+const STRETCH: [u64; 2] = [64, 8192];
+/// Steps back to which what they changed is sought.
+const RECENT: u64 = 12;
+/// Touches that are told.
+const TOUCHES: usize = 40;
+
+/// Where breakpoints stop: where a condition holds, or where something that is watched is touched.
+#[derive(Clone, Debug, Default)]
+pub struct Stops {
+    pub conditions: Vec<Condition>,
+    pub watched: Vec<Watched>,
+}
+
+/// Where to go.
+#[derive(Clone)]
+enum Aim {
+    Goal(Goal),
+    Break(Stops, bool),
+}
+
+/// An aim that is not reached yet.
+#[derive(Clone)]
+struct Pending {
+    aim: Aim,
+    /// How many asks it answers.
+    asks: usize,
+    /// Asked then.
+    since: Instant,
+}
+
+/// The thread that has the history.
+pub(super) struct Worker {
+    history: History,
+    own: Sender<Ask>,
+    voice: Voice,
+    stop: Arc<AtomicBool>,
+    /// Where to go as soon as that is known.
+    pending: Option<Pending>,
+    conditions: Vec<Condition>,
+    /// Tells the recorder's thread that what it does is of no use any more.
+    cancel: Arc<AtomicBool>,
+    /// Steps that the window has been told of.
+    tracked: u64,
+    triangles: u64,
+    copies: Copies,
+    /// What changed since the last moment that was told.
+    since: Since,
+    /// What recent steps changed, by step.
+    recent: VecDeque<(u64, Arc<[ElementId]>)>,
+    /// Whether the whole mesh is still to be checked.
+    unchecked: bool,
+    /// Whether something did not hold in the moment that was told before: then it may not hold elsewhere either.
+    was_broken: bool,
+    /// Whether the loops of the front at step 0 are even.
+    even: bool,
+}
+
+impl Worker {
+    pub(super) fn open(
+        read: impl FnOnce() -> Result<Run, Fault>,
+        own: Sender<Ask>,
+        mut voice: Voice,
+        stop: Arc<AtomicBool>,
+    ) -> Result<Worker, (Voice, Fault)> {
+        let made = read().and_then(|run| {
+            let background = run.background(&mut voice)?;
+            let history = History::of(run, &background, BUDGET)?;
+            Ok((background, history))
+        });
+        let (background, history) = match made {
+            Ok(made) => made,
+            Err(fault) => return Err((voice, fault)),
+        };
+        let triangles = background.mesh.element_count() as u64;
+        voice.say(Told::Opened(Arc::new(Opened {
+            case: history.run().case.clone(),
+            run: history.run().clone(),
+            background,
+        })));
+        let cancel = Arc::new(AtomicBool::new(false));
+        let even = history.log().front(0).odd == 0;
+        Ok(Worker {
+            history,
+            own,
+            voice,
+            stop,
+            pending: Some(Pending { aim: Aim::Goal(Goal::Step(0)), asks: 1, since: Instant::now() }),
+            conditions: Vec::new(),
+            cancel,
+            tracked: 0,
+            triangles,
+            copies: Copies::default(),
+            since: Since::everything(),
+            recent: VecDeque::new(),
+            unchecked: true,
+            was_broken: false,
+            even,
+        })
+    }
+
+    pub(super) fn serve(&mut self, asked: &Receiver<Ask>) {
+        self.lend(STRETCH[0]);
+        self.arrive();
+        loop {
+            // What can wait is done when nobody asks for anything.
+            let ask = match asked.try_recv() {
+                Err(TryRecvError::Empty) if self.unchecked => {
+                    self.check();
+                    continue;
+                }
+                Err(TryRecvError::Empty) => asked.recv().ok(),
+                other => other.ok(),
+            };
+            let Some(ask) = ask else { break };
+            match ask {
+                Ask::Gone => break,
+                Ask::Go(goal, since) => self.go(Aim::Goal(goal), since),
+                Ask::Break(stops, forward) => self.go(Aim::Break(stops, forward), Instant::now()),
+                Ask::Touch(watched) => {
+                    let found = self.history.last_touch(watched, false);
+                    self.go_back(found, "Nothing has touched it before this step.");
+                }
+                Ask::Made(element) => {
+                    let found = self.history.made(element);
+                    self.go_back(found, "It was there from the beginning.");
+                }
+                Ask::Past(watched) => self.past(watched),
+                Ask::Count(conditions) => {
+                    self.conditions = conditions;
+                    self.count();
+                }
+                Ask::Explain([a, b]) => self.explain(a, b),
+                Ask::Edits(edits) => self.edit(edits),
+                Ask::Found(found) => self.found(found.0, found.1),
+            }
+            if self.stop.swap(false, Ordering::Relaxed)
+                && let Some(pending) = self.pending.take()
+            {
+                // Everything up to here can be looked at.
+                let aim = Aim::Goal(Goal::Step(self.history.log().known()));
+                self.pending = Some(Pending { aim, ..pending });
+            }
+            self.arrive();
+        }
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+
+    /// A goal replaces one that still waits; its asker is answered with the new one's.
+    fn go(&mut self, aim: Aim, since: Instant) {
+        let before = self.pending.take().map_or(0, |pending| pending.asks);
+        self.pending = Some(Pending { aim, asks: before + 1, since });
+    }
+
+    fn go_back(&mut self, found: Result<Option<u64>, Fault>, nothing: &'static str) {
+        match found {
+            Ok(Some(step)) => self.go(Aim::Goal(Goal::Step(step)), Instant::now()),
+            Ok(None) => self.voice.say(Told::Nothing(nothing, 1)),
+            Err(fault) => self.voice.say(Told::Fault(fault, 1)),
+        }
+    }
+
+    fn past(&self, watched: Watched) {
+        let told = || -> Result<Past, Fault> {
+            let history = &self.history;
+            let mut steps = history.touches(watched, TOUCHES + 1)?;
+            let more = steps.len() > TOUCHES;
+            steps.drain(..usize::from(more));
+            let mut touches = Vec::new();
+            for step in steps {
+                touches.extend(history.event(step)?.map(|event| (step, event)));
+            }
+            let (mut made, mut killed) = (None, None);
+            match watched {
+                Watched::Element(element) => {
+                    if let Some(step) = history.made(element)? {
+                        made = Some((step, history.eaten(step)?));
+                    }
+                }
+                Watched::Edge(a, b) => killed = history.killed(a, b)?,
+                Watched::Node(_) => {}
+            }
+            Ok(Past { step: history.step(), watched, touches, more, made, killed })
+        };
+        match told() {
+            Ok(past) => self.voice.say(Told::Past(Arc::new(past))),
+            Err(fault) => self.voice.say(Told::Fault(fault, 0)),
+        }
+    }
+
+    fn explain(&self, a: NodeId, b: NodeId) {
+        let told = SegmentTold::of(self.history.state(), a, b);
+        if let Some(told) = told {
+            self.voice.say(Told::Explained(self.history.step(), Arc::new(told)));
+        }
+    }
+
+    /// Counts how often the conditions hold, in what is known and still kept of the run.
+    fn count(&self) {
+        let log = self.history.log();
+        let mut hits = vec![0; self.conditions.len()];
+        for step in (1..=log.known()).filter(|_| !self.conditions.is_empty()) {
+            let Some(event) = log.event(step) else { continue };
+            let moment =
+                breakpoint::Moment { step, nq: log.nq(step), event, front: log.front(step), angles: log.angles(step) };
+            for (hit, condition) in hits.iter_mut().zip(&self.conditions) {
+                *hit += usize::from(condition.holds(&moment));
+            }
+        }
+        self.voice.say(Told::Hits(hits));
+    }
+
+    fn edit(&mut self, edits: Vec<Edit>) {
+        self.cancel.store(true, Ordering::Relaxed);
+        self.cancel = Arc::new(AtomicBool::new(false));
+        let step = self.history.step();
+        let before = self.history.run().edits();
+        let same = before.iter().zip(&edits).take_while(|(a, b)| a == b).count();
+        let first = [before.get(same), edits.get(same)].into_iter().flatten().map(|edit| edit.step).min();
+        if let Err(fault) = self.history.set_edits(edits) {
+            return self.voice.say(Told::Fault(fault, 1));
+        }
+        self.tracked = self.tracked.min(first.unwrap_or(u64::MAX)).min(self.history.log().known());
+        self.recent.clear();
+        self.tell_track();
+        self.lend(STRETCH[0]);
+        self.go(Aim::Goal(Goal::Step(step)), Instant::now());
+        self.count();
+    }
+
+    /// Lets another thread run ahead for a stretch.
+    fn lend(&mut self, steps: u64) {
+        let Some(mut recorder) = self.history.lend() else { return };
+        let (own, cancel) = (self.own.clone(), self.cancel.clone());
+        std::thread::spawn(move || {
+            let stretch = recorder.run(steps, &cancel);
+            // The session may have ended meanwhile.
+            let _ = own.send(Ask::Found(Box::new((stretch, recorder))));
+        });
+    }
+
+    fn found(&mut self, stretch: Stretch, recorder: Recorder) {
+        self.history.accept(stretch);
+        if let Err(fault) = self.history.take_back(recorder) {
+            return self.voice.say(Told::Fault(fault, 0));
+        }
+        self.tell_track();
+        if self.history.end().is_some() && !self.conditions.is_empty() {
+            self.count();
+        }
+        self.lend(self.history.log().known().clamp(STRETCH[0], STRETCH[1]));
+    }
+
+    fn tell_track(&mut self) {
+        let log = self.history.log();
+        let end = self.history.end().is_some();
+        let steps = (self.tracked + 1..=log.known()).filter_map(|step| {
+            let formed = match log.event(step) {
+                Some(Event::Formed { element, quality, .. }) => Some((*element, *quality as f32)),
+                _ => None,
+            };
+            let front = log.front(step);
+            Some(Tracked {
+                kind: log.kind(step)?,
+                standing: log.nq(step) as u32,
+                front: front.segments,
+                loops: [front.loops, front.odd].map(|count| count.min(u16::MAX.into()) as u16),
+                live: front.live,
+                formed,
+            })
+        });
+        // The first sample is that of step 0.
+        let fresh = |sample: &&Sample| sample.step > self.tracked || self.tracked == 0;
+        let samples = log.samples().iter().filter(fresh).copied().collect();
+        let told = Told::Track { from: self.tracked, steps: steps.collect(), samples, end };
+        self.tracked = log.known();
+        self.voice.say(told);
+    }
+
+    /// Goes where it was asked to go, where that is known by now.
+    fn arrive(&mut self) {
+        let Some(Pending { aim, asks, since }) = self.pending.clone() else { return };
+        let end = self.history.end();
+        let found = match &aim {
+            Aim::Goal(goal) => goal.resolve(self.history.log(), self.history.step(), end),
+            Aim::Break(stops, forward) => match self.stop_at(stops, *forward) {
+                Ok(None) if end.is_some() || !forward => {
+                    self.pending = None;
+                    return self.voice.say(Told::Nothing("No breakpoint is met there.", asks));
+                }
+                Ok(found) => found,
+                Err(fault) => {
+                    self.pending = None;
+                    return self.voice.say(Told::Fault(fault, asks));
+                }
+            },
+        };
+        let Some(step) = found else {
+            let words = "Converting: quad";
+            return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
+        };
+        self.pending = None;
+        match self.moment(step, since) {
+            Ok(moment) => self.voice.say(Told::Moment(Arc::new(moment), asks)),
+            Err(fault) => self.voice.say(Told::Fault(fault, asks)),
+        }
+    }
+
+    /// The nearest step, forward or backward, at which a breakpoint is met or something that is watched is touched.
+    fn stop_at(&mut self, stops: &Stops, forward: bool) -> Result<Option<u64>, Fault> {
+        let mut found = Vec::new();
+        if !stops.conditions.is_empty() {
+            let met = match forward {
+                true => self.history.next_break(&stops.conditions)?,
+                false => self.history.previous_break(&stops.conditions)?,
+            };
+            found.extend(met.map(|met| met.0));
+        }
+        for &watched in &stops.watched {
+            found.extend(match forward {
+                true => self.history.next_touch(watched)?,
+                false => self.history.last_touch(watched, false)?,
+            });
+        }
+        Ok(if forward { found.into_iter().min() } else { found.into_iter().max() })
+    }
+
+    /// Goes to a step, and takes note of what that changes.
+    fn walk(&mut self, step: u64) -> Result<Changes, Fault> {
+        self.history.seek(step)?;
+        let changes = self.history.take_changes();
+        self.copies.note(&changes);
+        self.since.note(&changes, self.history.state().mesh.element_slots());
+        Ok(changes)
+    }
+
+    /// Goes to a step in such a way that what the last steps changed is known; tells what the last one had to choose from.
+    fn walk_with_recent(&mut self, step: u64) -> Result<Option<Candidates>, Fault> {
+        let first = (step + 1).saturating_sub(RECENT).max(1);
+        let is_known = |recent: &VecDeque<(u64, _)>, step: u64| recent.iter().any(|known| known.0 == step);
+        let unknown = (first..=step).find(|k| !is_known(&self.recent, *k)).unwrap_or(step);
+        if step == 0 {
+            self.walk(0)?;
+            return Ok(None);
+        }
+        self.walk(unknown - 1)?;
+        let mut candidates = None;
+        for k in unknown..=step {
+            if k == step {
+                candidates = self.history.state().candidates();
+            }
+            let changed: Arc<[ElementId]> = match self.walk(k)? {
+                Changes::Some { elements, .. } => elements.into(),
+                Changes::Everything => Arc::new([]),
+            };
+            if !is_known(&self.recent, k) {
+                self.recent.push_back((k, changed));
+            }
+        }
+        while self.recent.len() > 4 * RECENT as usize {
+            self.recent.pop_front();
+        }
+        Ok(candidates)
+    }
+
+    fn moment(&mut self, step: u64, since: Instant) -> Result<Moment, Fault> {
+        let step = step.min(self.history.log().known());
+        let candidates = self.walk_with_recent(step)?;
+        let mut recent: Vec<_> = self.recent.iter().filter(|r| r.0 <= step && !r.1.is_empty()).collect();
+        recent.sort_unstable_by_key(|r| std::cmp::Reverse(r.0));
+        recent.retain(|r| r.0 + RECENT > step);
+        let changed = std::array::from_fn(|k| recent.get(k).map_or_else(|| Arc::new([]) as _, |r| r.1.clone()));
+        let event = self.history.event(step)?;
+        let state = self.history.state();
+        let table = FrontTable::of(state);
+        let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
+        let base = state.phase().base().and_then(|base| SegmentTold::in_table(state, &table, base.a, base.b));
+        let changes = self.since.take();
+        self.unchecked |= std::mem::take(&mut self.was_broken) || changes == Changes::Everything;
+        let found = match &changes {
+            Changes::Everything => Ok(()),
+            Changes::Some { nodes, elements } => state.mesh.check_around(nodes, elements),
+        };
+        let odd = table.loops.iter().position(|ring| self.even && !ring.segments.is_multiple_of(2));
+        let odd = odd.map(|k| format!("loop {} of the front is odd, with {} segments", k + 1, table.loops[k].segments));
+        let verdict = match found.err().or(odd) {
+            Some(what) => {
+                self.was_broken = true;
+                Verdict::Broken(what)
+            }
+            None if self.unchecked => Verdict::Looking,
+            None => Verdict::Holds,
+        };
+        Ok(Moment {
+            step,
+            standing: standing(state),
+            phase: state.phase().plain(),
+            event,
+            mesh: self.copies.of(&state.mesh),
+            parameters: state.parameters().clone(),
+            changes,
+            changed,
+            front: rows.iter().map(segment).collect(),
+            rows,
+            loops: table.loops,
+            candidates,
+            base,
+            verdict,
+            took: since.elapsed(),
+        })
+    }
+
+    /// Checks the whole mesh at hand.
+    fn check(&mut self) {
+        self.unchecked = false;
+        let verdict = match self.history.state().mesh.check() {
+            Ok(()) => Verdict::Holds,
+            Err(what) => {
+                self.was_broken = true;
+                Verdict::Broken(what)
+            }
+        };
+        self.voice.say(Told::Checked(self.history.step(), verdict));
+    }
+}

@@ -1,0 +1,146 @@
+//! Copies of the mesh at hand for other threads to look at. A copy that nobody looks at any more is brought up to date by what
+//! changed since, so that a step costs as much as it changes and not as much as the mesh is large.
+
+use std::sync::Arc;
+
+use super::history::Changes;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::touched::Touched;
+
+/// Copies that are kept: one that is looked at, one that is on its way there, one to be brought up to date.
+const KEPT: usize = 3;
+
+/// What changed since something was looked at last.
+#[derive(Clone, Debug, Default)]
+pub struct Since {
+    touched: Touched,
+    /// Whether so much changed that it is not told apart any more.
+    all: bool,
+}
+
+impl Since {
+    /// Everything is new.
+    pub fn everything() -> Since {
+        Since { touched: Touched::default(), all: true }
+    }
+
+    /// Takes note of what changed in a mesh of so many element slots.
+    pub fn note(&mut self, changes: &Changes, slots: usize) {
+        match changes {
+            Changes::Everything => self.all = true,
+            Changes::Some { nodes, elements } if !self.all => {
+                self.touched.note_ids(nodes, elements);
+                self.all = self.touched.elements().len() > slots / 4 + 256;
+            }
+            Changes::Some { .. } => {}
+        }
+        if self.all {
+            self.touched.clear();
+        }
+    }
+
+    /// Whether nothing changed.
+    pub fn is_nothing(&self) -> bool {
+        !self.all && self.touched.is_empty()
+    }
+
+    /// What changed; nothing has changed since, from now on.
+    pub fn take(&mut self) -> Changes {
+        if std::mem::take(&mut self.all) {
+            return Changes::Everything;
+        }
+        let changes =
+            Changes::Some { nodes: self.touched.nodes().to_vec(), elements: self.touched.elements().to_vec() };
+        self.touched.clear();
+        changes
+    }
+}
+
+/// A mesh as it was once.
+struct Copy {
+    mesh: Arc<Mesh>,
+    since: Since,
+}
+
+/// Copies of one mesh.
+#[derive(Default)]
+pub struct Copies {
+    copies: Vec<Copy>,
+}
+
+impl Copies {
+    /// Takes note of what changed of the mesh.
+    pub fn note(&mut self, changes: &Changes) {
+        for copy in &mut self.copies {
+            copy.since.note(changes, copy.mesh.element_slots());
+        }
+    }
+
+    /// A copy of the mesh as it is, of which everything that changed has been noted.
+    pub fn of(&mut self, mesh: &Mesh) -> Arc<Mesh> {
+        if let Some(same) = self.copies.iter().find(|copy| copy.since.is_nothing()) {
+            return same.mesh.clone();
+        }
+        for copy in &mut self.copies {
+            let Some(free) = Arc::get_mut(&mut copy.mesh) else { continue };
+            if copy.since.all {
+                free.become_same(mesh);
+            } else {
+                free.follow(mesh, &copy.since.touched);
+            }
+            copy.since.all = false;
+            copy.since.touched.clear();
+            return copy.mesh.clone();
+        }
+        // All are looked at: the one that was made first is left to whoever does.
+        if self.copies.len() == KEPT {
+            self.copies.remove(0);
+        }
+        let fresh = Arc::new(mesh.without_journal());
+        self.copies.push(Copy { mesh: fresh.clone(), since: Since::default() });
+        fresh
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::io::built_in;
+    use crate::core::progress::Nobody;
+    use crate::core::run::history::History;
+    use crate::core::run::run::Run;
+
+    fn bytes(mesh: &Mesh) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        mesh.write_state(&mut bytes);
+        bytes
+    }
+
+    #[test]
+    fn a_copy_is_the_state_at_hand_wherever_one_goes_and_whoever_still_looks() {
+        let mut case = built_in::named("example1").unwrap().unwrap();
+        case.parameters.size_scale = 2.0;
+        let mut history = History::open(Run::of(case), &mut Nobody).unwrap();
+        history.extend(u64::MAX);
+        let end = history.end().unwrap();
+        let mut copies = Copies::default();
+        let mut looked_at = Vec::new();
+        let walk = (0..60).chain((0..60).rev()).chain([end, end - 1, 3, 4, 5, end / 2, end / 2 - 1, end / 2 + 40]);
+        for (k, step) in walk.enumerate() {
+            history.seek(step).unwrap();
+            let changes = history.take_changes();
+            let small = matches!(changes, Changes::Some { .. });
+            copies.note(&changes);
+            let copy = copies.of(&history.state().mesh);
+            assert_eq!(bytes(&copy), bytes(&history.state().mesh), "step {step}");
+            if let (true, Changes::Some { nodes, elements }) = (small, &changes) {
+                copy.check_around(nodes, elements).unwrap();
+            }
+            looked_at.push((step, copy.clone(), bytes(&copy)));
+            looked_at.retain(|_| k % 7 != 0);
+        }
+        // What somebody looks at stays as it was.
+        assert!(looked_at.iter().all(|(_, mesh, seen)| bytes(mesh) == *seen));
+        assert!(copies.copies.len() <= KEPT);
+    }
+}

@@ -1,0 +1,174 @@
+//! What elements are coloured by, and the values.
+
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId};
+use crate::core::metric::measure::triangle_area;
+use crate::render::colour_map::ColourMap;
+use crate::render::palette::Rgba;
+
+/// What elements are coloured by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColourBy {
+    /// Live and dead.
+    #[default]
+    State,
+    /// The mean smallest target size at the nodes (eq. 6), by its logarithm.
+    HValue,
+    /// The smallest angle, in degrees of the plane.
+    Angle,
+    /// Rows from the boundary.
+    Level,
+    /// Quality in the metric.
+    Quality,
+    /// The step that made the element.
+    Birth,
+    /// Area in the metric.
+    Area,
+}
+
+impl ColourBy {
+    /// All of them, in the order of menus.
+    pub const ALL: [ColourBy; 7] = [
+        ColourBy::State,
+        ColourBy::HValue,
+        ColourBy::Angle,
+        ColourBy::Level,
+        ColourBy::Quality,
+        ColourBy::Birth,
+        ColourBy::Area,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            ColourBy::State => "live and dead",
+            ColourBy::HValue => "H",
+            ColourBy::Angle => "smallest angle",
+            ColourBy::Level => "level",
+            ColourBy::Quality => "quality",
+            ColourBy::Birth => "step of birth",
+            ColourBy::Area => "metric area",
+        }
+    }
+
+    /// Its colour map; none where the state is shown.
+    pub fn map(self) -> Option<ColourMap> {
+        match self {
+            ColourBy::State => None,
+            ColourBy::HValue | ColourBy::Birth | ColourBy::Area => Some(ColourMap::Viridis),
+            ColourBy::Angle | ColourBy::Quality => Some(ColourMap::Cividis),
+            ColourBy::Level => Some(ColourMap::Batlow),
+        }
+    }
+}
+
+/// The values that elements are coloured by, and their range.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shading {
+    /// What is shown.
+    pub by: ColourBy,
+    /// A value for each element slot; not a number where there is none.
+    pub values: Vec<f64>,
+    /// The least and greatest value.
+    pub range: [f64; 2],
+    /// Whether colours go by the logarithm.
+    pub logarithmic: bool,
+}
+
+impl Shading {
+    /// The values of `by` over a mesh; `births` has the step at which each element slot was last made.
+    pub fn of(mesh: &Mesh, by: ColourBy, births: &[u64]) -> Shading {
+        let logarithmic = matches!(by, ColourBy::HValue | ColourBy::Area);
+        if by == ColourBy::State {
+            return Shading::default();
+        }
+        let value = |e: ElementId| match by {
+            ColourBy::State => f64::NAN,
+            ColourBy::HValue => {
+                let nodes: Vec<_> = mesh.corners(e).collect();
+                nodes.iter().map(|n| mesh.metric_ref(*n).min_size()).sum::<f64>() / nodes.len() as f64
+            }
+            ColourBy::Angle => angles(mesh, e)[0].to_degrees(),
+            ColourBy::Level if mesh.is_quad(e) => f64::from(mesh.level(e)),
+            ColourBy::Birth if mesh.is_quad(e) => births.get(e.index()).map_or(f64::NAN, |b| *b as f64),
+            ColourBy::Level | ColourBy::Birth => f64::NAN,
+            ColourBy::Quality => mesh.quality(e),
+            ColourBy::Area => metric_area(mesh, e),
+        };
+        let slots = (0..mesh.element_slots() as u32).map(ElementId);
+        let values: Vec<f64> = slots.map(|e| if mesh.has_element(e) { value(e) } else { f64::NAN }).collect();
+        let finite = || values.iter().copied().filter(|v| v.is_finite());
+        let range = match by {
+            ColourBy::Quality => [0.0, 1.0],
+            ColourBy::Angle => [0.0, 90.0],
+            _ => [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)],
+        };
+        let range = if range[0] <= range[1] { range } else { [0.0, 1.0] };
+        Shading { by, values, range, logarithmic }
+    }
+
+    /// The place of a value between the ends of the range, 0 to 1.
+    pub fn share(&self, value: f64) -> f32 {
+        let scale = |v: f64| if self.logarithmic { libm::log(v) } else { v };
+        let [low, high] = self.range.map(scale);
+        if high > low { ((scale(value) - low) / (high - low)) as f32 } else { 0.5 }
+    }
+
+    pub(super) fn colour(&self, e: ElementId) -> Option<Rgba> {
+        let value = self.values.get(e.index()).copied().filter(|v| v.is_finite())?;
+        Some(self.by.map()?.at(self.share(value)))
+    }
+}
+
+/// The least and the greatest inner angle of an element in the plane, radians.
+pub fn angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
+    let angle = |h: HalfEdgeId| {
+        let p = mesh.uv(mesh.origin(h));
+        let (out, back) = (mesh.uv(mesh.target(h)) - p, mesh.uv(mesh.origin(mesh.previous(h))) - p);
+        libm::atan2(out.perp_dot(back), out.dot(back)).rem_euclid(std::f64::consts::TAU)
+    };
+    mesh.half_edges(e).map(angle).fold([f64::INFINITY, 0.0], |[low, high], a| [low.min(a), high.max(a)])
+}
+
+/// The area of an element in the metric of its nodes.
+pub fn metric_area(mesh: &Mesh, e: ElementId) -> f64 {
+    let nodes: Vec<_> = mesh.corners(e).collect();
+    let at = |k: usize| mesh.uv(nodes[k]);
+    let part = |a: usize, b: usize, c: usize| {
+        [a, b, c].iter().map(|k| triangle_area(mesh.metric_ref(nodes[*k]), at(a), at(b), at(c))).sum::<f64>() / 3.0
+    };
+    if nodes.len() == 4 { part(0, 1, 2) + part(0, 2, 3) } else { part(0, 1, 2) }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::core::mesh::ids::PointId;
+    use crate::core::mesh::triangle_set::TriangleSet;
+    use crate::core::metric::tensor::Metric2;
+
+    fn strip() -> Mesh {
+        let uv: Vec<_> = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0)]
+            .map(|(x, y)| DVec2::new(x, y))
+            .to_vec();
+        let set = TriangleSet {
+            point: (0..6).map(PointId).collect(),
+            triangles: vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]],
+            region: vec![0; 4],
+            uv,
+        };
+        Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6])
+    }
+
+    #[test]
+    fn unit_squares_have_unit_metric_area_together_and_their_smallest_angle_is_half_a_right_one() {
+        let mesh = strip();
+        let area: f64 = mesh.elements().map(|e| metric_area(&mesh, e)).sum();
+        assert!((area - 2.0).abs() < 1e-12);
+        let shading = Shading::of(&mesh, ColourBy::Angle, &[]);
+        assert!(shading.values.iter().all(|v| (v - 45.0).abs() < 1e-9));
+        assert_eq!(shading.share(45.0), 0.5);
+    }
+}
