@@ -1,23 +1,27 @@
 //! The window as eframe runs it: hears the session, turns keys into commands, shows the panels.
 
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Frame, Key, Modifiers, Panel, Ui, ViewportCommand};
-use eframe::{CreationContext, egui_wgpu, wgpu};
+use eframe::{CreationContext, wgpu};
 
 use super::command::{Command, keys};
 use super::files::{Answer, free_path, write_png};
+use super::graphics::{self, Lost};
 use super::layout::Layout;
 use super::panels;
 use super::session::{Goal, Source};
+use super::settings::{BOTTOM, Settings};
 use super::state::{Over, State};
 use super::theme;
 use super::viewport::Views;
-use crate::render::gpu::Painter;
 
 /// How long a notice is shown.
 const NOTICE: Duration = Duration::from_secs(6);
+/// How long after a change it is kept how the window is.
+const SETTLED: Duration = Duration::from_millis(1500);
 
 /// The window.
 pub struct App {
@@ -30,28 +34,58 @@ pub struct App {
     taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
     /// Whether the last frame asked for this one at once.
     moving: bool,
+    lost: Lost,
+    /// Where it is kept how the window was left, and what stands there.
+    path: Option<PathBuf>,
+    written: Option<Settings>,
+    /// Since when it is other than what stands there.
+    changed: Option<Instant>,
 }
 
 impl App {
     /// A window on `source`; on nothing where that is none.
     pub fn new(cc: &CreationContext<'_>, source: Option<Source>) -> App {
+        App::kept(cc, source, None, Lost::default())
+    }
+
+    /// The same, as the last one was left: what is kept of it is at `path`. `lost` hears whether the graphics device is lost.
+    pub fn kept(cc: &CreationContext<'_>, source: Option<Source>, path: Option<PathBuf>, lost: Lost) -> App {
         theme::install(&cc.egui_ctx);
-        cc.egui_ctx.set_theme(egui::Theme::Dark);
-        if let Some(render) = &cc.wgpu_render_state {
-            install_painter(render);
-        }
         let context = cc.egui_ctx.clone();
+        if let Some(render) = &cc.wgpu_render_state {
+            graphics::install_painter(render);
+            let context = context.clone();
+            lost.listen(&render.device, move || context.request_repaint());
+        }
         let mut state = State::new(Arc::new(move || context.request_repaint()));
+        let mut layout = Layout::default();
+        let read = path.as_ref().map_or(Ok(None), Settings::read);
+        let settings = read.unwrap_or_else(|fault| {
+            state.complain(&fault);
+            None
+        });
+        cc.egui_ctx.set_theme(match &settings {
+            Some(settings) if !settings.dark => egui::Theme::Light,
+            _ => egui::Theme::Dark,
+        });
+        if let Some(settings) = &settings {
+            settings.give(&mut state);
+            layout.arrange(Some(&settings.docks));
+        }
         if let Some(source) = source {
             state.open(source);
         }
         App {
             state,
             views: Views::default(),
-            layout: Layout::default(),
+            layout,
             commands: Vec::new(),
             taken: Arc::default(),
             moving: false,
+            lost,
+            path,
+            written: settings,
+            changed: None,
         }
     }
 
@@ -88,6 +122,46 @@ impl App {
             self.state.apply(Command::Go(Goal::Quads(1)));
         } else {
             context.request_repaint_after(period - waited);
+        }
+    }
+
+    /// How the window is to be found again.
+    fn settings(&self, context: &Context) -> Settings {
+        let size = context
+            .input(|input| input.viewport().inner_rect)
+            .map(|rect| [rect.width().round(), rect.height().round()]);
+        Settings::of(&self.state, context.theme() == egui::Theme::Dark, size, self.layout.arranged())
+    }
+
+    /// Keeps how the window is, a moment after it was changed.
+    fn keep(&mut self, context: &Context, at_once: bool) {
+        let Some(path) = self.path.clone() else { return };
+        let now = self.settings(context);
+        if self.written.as_ref() == Some(&now) {
+            self.changed = None;
+            return;
+        }
+        let since = *self.changed.get_or_insert_with(Instant::now);
+        match SETTLED.checked_sub(since.elapsed()) {
+            Some(left) if !at_once && !left.is_zero() => context.request_repaint_after(left),
+            _ => {
+                if let Err(fault) = now.write(&path) {
+                    self.state.complain(&fault);
+                }
+                // What cannot be written is not tried again until it changes.
+                (self.written, self.changed) = (Some(now), None);
+            }
+        }
+    }
+
+    /// Where the graphics device is lost, saves the run and closes the window.
+    fn graphics(&mut self, context: &Context) {
+        if let Some(fault) = self.lost.refused() {
+            self.state.complain(&fault);
+        }
+        if self.lost.reason().is_some() && !std::mem::replace(&mut self.state.is_lost, true) {
+            self.lost.save_was(self.state.save_run());
+            context.send_viewport_cmd(ViewportCommand::Close);
         }
     }
 
@@ -154,17 +228,12 @@ impl App {
     }
 }
 
-/// Makes the painter known to egui's renderer.
-fn install_painter(render: &egui_wgpu::RenderState) {
-    let painter = Painter::new(&render.device, render.target_format);
-    render.renderer.write().callback_resources.insert(painter);
-}
-
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         self.state.times.frame(std::mem::take(&mut self.moving));
         self.state.hear();
+        self.graphics(&context);
         self.measure(&context, frame);
         self.keys(&context);
         self.dialogs(&context);
@@ -184,12 +253,13 @@ impl eframe::App for App {
             .frame(plain)
             .exact_size(32.0)
             .show(ui, |ui| panels::top::show(ui, state, commands, palette));
-        Panel::bottom("time")
+        let time = Panel::bottom("time")
             .frame(plain)
-            .default_size(216.0)
-            .size_range(120.0..=420.0)
+            .default_size(state.bottom)
+            .size_range(BOTTOM[0]..=BOTTOM[1])
             .resizable(true)
             .show(ui, |ui| panels::time::show(ui, state, commands, palette));
+        state.bottom = time.response.rect.height();
         panels::messages::show(ui, state, palette);
         let ground = Frame::NONE.fill(theme::ink(palette.line));
         egui::CentralPanel::default().frame(ground).show(ui, |ui| {
@@ -205,6 +275,7 @@ impl eframe::App for App {
         if !self.commands.is_empty() {
             context.request_repaint();
         }
+        self.keep(&context, false);
         self.moving = context.has_requested_repaint();
         let title = match &self.state.opened {
             Some(opened) => format!("{} – quadfront", opened.case.name),
@@ -213,6 +284,16 @@ impl eframe::App for App {
         if self.state.title != title {
             self.state.title.clone_from(&title);
             context.send_viewport_cmd(ViewportCommand::Title(title));
+        }
+    }
+
+    fn on_exit(&mut self) {
+        if let (Some(path), Some(written)) = (&self.path, &self.written)
+            && self.changed.is_some()
+        {
+            let now = Settings::of(&self.state, written.dark, written.window, self.layout.arranged());
+            // The window is gone: there is nobody to tell.
+            let _ = now.write(path);
         }
     }
 }

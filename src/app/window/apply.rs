@@ -1,5 +1,6 @@
 //! The only place where a command changes anything.
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use super::command::Command;
@@ -90,7 +91,7 @@ impl State {
             Command::Help => self.show(Over::Help),
             Command::Screenshot => self.screenshot = true,
             Command::Export => self.export(),
-            Command::SaveRun => self.save_run(),
+            Command::SaveRun => drop(self.save_run()),
             Command::Undo => self.take_back(true),
             Command::Redo => self.take_back(false),
             Command::ResetLayout => self.reset_layout = true,
@@ -119,6 +120,13 @@ impl State {
         }
     }
 
+    /// A person has arranged the docks; can be taken back.
+    pub fn arrange(&mut self, layout: Option<String>) {
+        let relayout = self.relayout;
+        self.keep(|kept| kept.layout = layout);
+        self.relayout = relayout;
+    }
+
     /// Lets the window follow what a person has set.
     fn follow(&mut self, before: &Kept) {
         if self.kept.edits != before.edits {
@@ -134,6 +142,8 @@ impl State {
             let all = self.kept.breakpoints.iter().filter_map(|b| Condition::parse(&b.0).ok());
             session.count(all.collect());
         }
+        // Only undo changes it here: a person's hand has changed the docks already.
+        self.relayout |= self.kept.layout != before.layout;
         if self.kept.picked != before.picked {
             self.scroll_to = self.kept.picked;
         }
@@ -262,13 +272,19 @@ impl State {
         }
     }
 
-    /// Saves the run in the working folder, under a name that is free.
-    fn save_run(&mut self) {
-        let Some(run) = self.run() else { return };
+    /// Saves the run in the working folder, under a name that is free; tells where.
+    pub fn save_run(&mut self) -> Option<PathBuf> {
+        let run = self.run()?;
         let path = files::free_path(&format!("{}-run", run.case.name), "toml");
         match run_file::write(&path, &run) {
-            Ok(()) => self.notice(format!("The run was saved as {}.", path.display())),
-            Err(fault) => self.complain(&fault),
+            Ok(()) => {
+                self.notice(format!("The run was saved as {}.", path.display()));
+                Some(path)
+            }
+            Err(fault) => {
+                self.complain(&fault);
+                None
+            }
         }
     }
 

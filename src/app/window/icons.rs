@@ -21,3 +21,5 @@ pub const RESET: &str = "\u{e038}";
 pub const X: &str = "\u{e4f6}";
 pub const CARET_UP: &str = "\u{e13c}";
 pub const CARET_DOWN: &str = "\u{e136}";
+pub const CHECK: &str = "\u{e182}";
+pub const EYE: &str = "\u{e220}";

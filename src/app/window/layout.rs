@@ -1,17 +1,19 @@
 //! The panels in their docks: sides keep their widths in points, the view takes the rest.
 
-use eframe::egui::{self, Color32, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo};
-use egui_tiles::{
-    Behavior, Container, Linear, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree,
-    UiResponse,
-};
+mod docks;
+mod written;
+
+use std::collections::BTreeMap;
+
+use eframe::egui::{self, Ui, Vec2};
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use serde_json::Value;
 
 use super::command::Command;
-use super::panels;
 use super::state::State;
-use super::theme::{self, ink};
-use super::viewport::{Lens, Views};
+use super::viewport::Views;
 use crate::render::palette::Palette;
+use docks::Docks;
 
 /// Widths in points: front, lens, inspector; and the least that the view keeps.
 const LEFT: f32 = 344.0;
@@ -20,7 +22,7 @@ const RIGHT: f32 = 332.0;
 const VIEW: f32 = 480.0;
 
 /// A panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Pane {
     Front,
     Breakpoints,
@@ -36,6 +38,20 @@ pub enum Pane {
 }
 
 impl Pane {
+    const ALL: [Pane; 11] = [
+        Pane::Front,
+        Pane::Breakpoints,
+        Pane::Bookmarks,
+        Pane::Space,
+        Pane::Quality,
+        Pane::MetricLens,
+        Pane::Parametric,
+        Pane::Inspector,
+        Pane::History,
+        Pane::Parameters,
+        Pane::Layers,
+    ];
+
     fn name(self) -> &'static str {
         match self {
             Pane::Front => "Front",
@@ -65,6 +81,14 @@ enum Room {
 }
 
 impl Room {
+    fn name(self) -> &'static str {
+        match self {
+            Room::Wide => "wide",
+            Room::Middle => "middle",
+            Room::Narrow => "narrow",
+        }
+    }
+
     fn of(width: f32) -> Room {
         if width >= LEFT + LENS + RIGHT + VIEW {
             Room::Wide
@@ -83,6 +107,10 @@ pub struct Layout {
     /// The column that takes what the others leave, and the size at the last frame.
     middle: Option<TileId>,
     size: Vec2,
+    /// How a person has arranged the docks, by the room that there was.
+    arranged: BTreeMap<String, Value>,
+    /// Whether a person is moving something.
+    edited: bool,
 }
 
 impl Layout {
@@ -97,16 +125,52 @@ impl Layout {
     ) {
         let size = ui.available_size();
         let room = Room::of(size.x);
-        let reset = std::mem::take(&mut state.reset_layout);
-        if reset || self.tree.as_ref().is_none_or(|tree| tree.1 != room) {
-            self.build(room, size);
+        if std::mem::take(&mut state.reset_layout) {
+            self.arranged.clear();
+            self.tree = None;
+            state.arrange(None);
+        }
+        if std::mem::take(&mut state.relayout) {
+            let kept = state.kept.layout.as_ref().and_then(|text| serde_json::from_str::<Value>(text).ok());
+            self.arrange(kept.as_ref());
+            self.tree = None;
+        }
+        if self.tree.as_ref().is_none_or(|tree| tree.1 != room) {
+            match self.arranged.get(room.name()).and_then(written::read) {
+                Some((tree, middle)) => {
+                    (self.tree, self.middle) = (Some((tree, room)), Some(middle));
+                    self.size = size;
+                }
+                None => self.build(room, size),
+            }
         } else if size != self.size {
             self.keep_sides(size);
         }
         self.size = size;
         let Some((tree, _)) = &mut self.tree else { return };
-        let mut docks = Docks { state, views, commands, palette };
+        let mut docks = Docks { state, views, commands, palette, edited: false };
         tree.ui(&mut docks, ui);
+        self.edited |= docks.edited;
+        if self.edited && !ui.input(|input| input.pointer.any_down()) {
+            self.edited = false;
+            self.arranged.insert(room.name().to_owned(), written::write(tree));
+            state.arrange(Some(self.arranged().to_string()));
+        }
+    }
+
+    /// How a person has arranged the docks: by the room that there was.
+    pub fn arranged(&self) -> Value {
+        Value::Object(self.arranged.iter().map(|(room, docks)| (room.clone(), docks.clone())).collect())
+    }
+
+    /// Arranges the docks as they were; those that cannot be read stand as at first.
+    pub fn arrange(&mut self, arranged: Option<&Value>) {
+        self.arranged.clear();
+        for (room, docks) in arranged.and_then(Value::as_object).into_iter().flatten() {
+            if written::read(docks).is_some() {
+                self.arranged.insert(room.clone(), docks.clone());
+            }
+        }
     }
 
     fn build(&mut self, room: Room, size: Vec2) {
@@ -180,125 +244,5 @@ impl Layout {
                 row.shares.set_share(id, if id == middle { (size.x - sides).max(1.0) } else { width });
             }
         }
-    }
-}
-
-/// Shows each panel where egui_tiles wants it.
-struct Docks<'a> {
-    state: &'a mut State,
-    views: &'a mut Views,
-    commands: &'a mut Vec<Command>,
-    palette: &'static Palette,
-}
-
-impl Behavior<Pane> for Docks<'_> {
-    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
-        let Docks { state, views, commands, palette } = self;
-        let rect = ui.max_rect();
-        let ground = match pane {
-            Pane::Space | Pane::MetricLens | Pane::Parametric => palette.ground,
-            _ => palette.panel,
-        };
-        ui.painter().rect_filled(rect, 0.0, ink(ground));
-        match pane {
-            Pane::Space => views.space(ui, state, commands, palette),
-            Pane::MetricLens => views.other(ui, state, Lens::Metric, palette),
-            Pane::Parametric => views.other(ui, state, Lens::Whole, palette),
-            Pane::Front => panels::front::show(ui, state, commands, palette),
-            Pane::Breakpoints => panels::breakpoints::show(ui, state, commands, palette),
-            Pane::Bookmarks => panels::breakpoints::bookmarks(ui, state, commands, palette),
-            Pane::Quality => panels::plots::show(ui, state, commands, palette),
-            Pane::Inspector => panels::inspector::show(ui, state, commands, palette),
-            Pane::History => panels::history::show(ui, state, commands, palette),
-            Pane::Parameters => panels::parameters::show(ui, state, commands, palette),
-            Pane::Layers => panels::layers::show(ui, state, commands, palette),
-        }
-        UiResponse::None
-    }
-
-    fn tab_title_for_pane(&mut self, pane: &Pane) -> egui::WidgetText {
-        pane.name().into()
-    }
-
-    fn tab_ui(
-        &mut self,
-        tiles: &mut Tiles<Pane>,
-        ui: &mut Ui,
-        id: egui::Id,
-        tile: TileId,
-        tab: &TabState,
-    ) -> egui::Response {
-        let name = match tiles.get(tile) {
-            Some(Tile::Pane(pane)) => pane.name(),
-            _ => "Group",
-        };
-        let colour = ink(if tab.active { self.palette.strong } else { self.palette.weak });
-        let font = if tab.active { theme::medium(theme::BODY) } else { theme::regular(theme::BODY) };
-        let text = ui.painter().layout_no_wrap(name.to_owned(), font, colour);
-        let (_, rect) = ui.allocate_space(Vec2::new(text.size().x + 20.0, ui.available_height()));
-        let response = ui.interact(rect, id, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::selected(egui::Role::Tab, true, tab.active, name));
-        if ui.is_rect_visible(rect) && !tab.is_being_dragged {
-            let colour = if response.hovered() { ink(self.palette.strong) } else { colour };
-            let at = egui::Align2::CENTER_CENTER.align_size_within_rect(text.size(), rect).min;
-            ui.painter().galley_with_override_text_color(at, text, colour);
-            if tab.active {
-                let rule = Rect::from_min_max(
-                    rect.left_bottom() + Vec2::new(3.0, -2.0),
-                    rect.right_bottom() - Vec2::new(3.0, 0.0),
-                );
-                ui.painter().rect_filled(rule, 0.0, ink(self.palette.base));
-            }
-        }
-        self.on_tab_button(tiles, tile, response)
-    }
-
-    fn top_bar_right_ui(&mut self, tiles: &Tiles<Pane>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
-        let active = tabs.active.and_then(|id| tiles.get_pane(&id));
-        match active {
-            Some(Pane::Space) => {
-                // The tabs come first: what the legend has no room for is in the help.
-                let font = theme::medium(theme::BODY);
-                let width = |id: &TileId| {
-                    let name = tiles.get_pane(id).map_or("", |pane| pane.name());
-                    ui.painter().layout_no_wrap(name.to_owned(), font.clone(), Color32::WHITE).size().x + 20.0
-                };
-                let tabs: f32 = tabs.children.iter().map(width).sum();
-                panels::legend::show(ui, tabs + 12.0, self.state, self.commands, self.palette);
-            }
-            Some(Pane::Parameters) => panels::parameters::reset(ui, self.state, self.commands),
-            _ => {}
-        }
-    }
-
-    fn tab_bar_height(&self, _: &egui::Style) -> f32 {
-        28.0
-    }
-
-    fn gap_width(&self, _: &egui::Style) -> f32 {
-        2.0
-    }
-
-    fn min_size(&self) -> f32 {
-        120.0
-    }
-
-    fn tab_bar_color(&self, _: &egui::Visuals) -> Color32 {
-        ink(self.palette.panel)
-    }
-
-    fn tab_bar_hline_stroke(&self, _: &egui::Visuals) -> Stroke {
-        Stroke::new(1.0, ink(self.palette.line))
-    }
-
-    fn resize_stroke(&self, _: &egui::Style, state: egui_tiles::ResizeState) -> Stroke {
-        match state {
-            egui_tiles::ResizeState::Idle => Stroke::new(2.0, ink(self.palette.line)),
-            _ => Stroke::new(2.0, ink(self.palette.weak)),
-        }
-    }
-
-    fn simplification_options(&self) -> SimplificationOptions {
-        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
     }
 }

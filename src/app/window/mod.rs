@@ -10,6 +10,8 @@ mod session;
 mod measure;
 mod command;
 mod files;
+mod settings;
+mod graphics;
 mod state;
 mod apply;
 mod viewport;
@@ -21,8 +23,6 @@ mod app;
 use std::process::ExitCode;
 
 use eframe::egui::{Vec2, ViewportBuilder};
-use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
-use eframe::wgpu;
 
 use crate::core::fault::Fault;
 
@@ -30,42 +30,43 @@ pub use app::App;
 pub use command::Command;
 pub use session::{Goal, Source};
 
+/// The largest window in points: egui's textures end there.
+const LARGEST: f32 = 8192.0;
+
 /// Opens the window on what is named, and returns when it is closed.
 ///
 /// # Errors
-/// Where there is no display or no graphics adapter.
+/// Where there is no display or no graphics adapter, or where the graphics device is lost.
 pub fn open(source: Source) -> Result<ExitCode, Fault> {
-    let mut wgpu_options = WgpuConfiguration::default();
-    if let WgpuSetup::CreateNew(setup) = &mut wgpu_options.wgpu_setup {
-        ask_for_what_there_is(setup);
-    }
+    let path = settings::path();
+    let kept = path.as_ref().and_then(|path| settings::Settings::read(path).ok().flatten());
+    let size = kept.and_then(|kept| kept.window).map_or(Vec2::new(1600.0, 1000.0), Vec2::from);
+    let least = Vec2::new(720.0, 480.0);
     let options = eframe::NativeOptions {
         viewport: ViewportBuilder::default()
             .with_title("quadfront")
             .with_app_id("quadfront")
-            .with_inner_size(Vec2::new(1600.0, 1000.0))
-            .with_min_inner_size(Vec2::new(720.0, 480.0))
+            .with_inner_size(size.clamp(least, Vec2::splat(LARGEST)))
+            .with_min_inner_size(least)
+            .with_max_inner_size(Vec2::splat(LARGEST))
             .with_drag_and_drop(true),
         renderer: eframe::Renderer::Wgpu,
-        wgpu_options,
+        wgpu_options: graphics::options(),
         persist_window: false,
         ..eframe::NativeOptions::default()
     };
-    let shown = eframe::run_native("quadfront", options, Box::new(|cc| Ok(Box::new(App::new(cc, Some(source))))));
+    let lost = graphics::Lost::default();
+    let watch = lost.clone();
+    let shown = eframe::run_native(
+        "quadfront",
+        options,
+        Box::new(move |cc| Ok(Box::new(App::kept(cc, Some(source), path, watch)))),
+    );
     shown.map_err(|error| {
         Fault::new(format!("The window cannot be opened: {}", error.to_string().trim_end_matches('.'))).remedy(
             "It needs a display and a graphics driver; on Debian: apt-get install libvulkan1 mesa-vulkan-drivers. \
              quadfront convert and quadfront render work without",
         )
     })?;
-    Ok(ExitCode::SUCCESS)
-}
-
-/// The limits of the device are those of the adapter: large meshes need large buffers.
-fn ask_for_what_there_is(setup: &mut WgpuSetupCreateNew) {
-    setup.device_descriptor = std::sync::Arc::new(|adapter| wgpu::DeviceDescriptor {
-        label: Some("quadfront"),
-        required_limits: adapter.limits(),
-        ..wgpu::DeviceDescriptor::default()
-    });
+    lost.fault().map_or(Ok(ExitCode::SUCCESS), Err)
 }

@@ -18,7 +18,7 @@ pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
 use crate::core::convert::conversion::Background;
-use crate::core::convert::event::Event;
+use crate::core::convert::event::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::io::case::Case;
 use crate::core::mesh::ids::{ElementId, NodeId};
@@ -71,7 +71,7 @@ pub enum Told {
     /// How often each of the conditions holds in what is known of the run.
     Hits(Vec<usize>),
     /// Why a segment of the front was or was not chosen, at a step.
-    Explained(u64, Arc<SegmentTold>),
+    Explained(u64, Arc<Explained>),
     /// There is nothing of what was asked for; so many asks are answered by that.
     Nothing(&'static str, usize),
     /// Something went wrong; so many asks are answered by that.
@@ -101,6 +101,14 @@ pub struct Tracked {
     pub live: u32,
     /// The quadrilateral that it formed, with its quality.
     pub formed: Option<(ElementId, f32)>,
+}
+
+/// Why a segment was or was not chosen.
+#[derive(Clone, Debug)]
+pub struct Explained {
+    pub told: SegmentTold,
+    /// The step that put it off, with what spoke against its last attempt; where it is put off.
+    pub put_off: Option<(u64, Option<Why>)>,
 }
 
 /// What became of something up to a step.

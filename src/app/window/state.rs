@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::files::Dialog;
 use super::measure::{Measuring, Times};
 use super::panels::timeline::Columns;
-use super::session::{Moment, Opened, Past, Session, Source, Stops, Told, Tracked, Verdict, Wake};
+use super::session::{Explained, Moment, Opened, Past, Session, Source, Stops, Told, Tracked, Verdict, Wake};
 use glam::DVec2;
 
 use crate::app::input;
@@ -16,7 +16,6 @@ use crate::core::io::built_in;
 use crate::core::mesh::ids::NodeId;
 use crate::core::run::breakpoint::Condition;
 use crate::core::run::copies::Since;
-use crate::core::run::explain::SegmentTold;
 use crate::core::run::run::{Bookmark, Edit, Run};
 use crate::core::run::timeline::Sample;
 use crate::core::run::watch::Watched;
@@ -127,6 +126,10 @@ pub struct State {
     /// Changes when what lies over it changes.
     pub over_epoch: u64,
     pub reset_layout: bool,
+    /// The docks are to be arranged as `kept.layout` says.
+    pub relayout: bool,
+    /// Height of the timeline with its buttons.
+    pub bottom: f32,
     pub screenshot: bool,
     /// What the timeline has counted, and the row whose kinds stand apart.
     pub columns: Columns,
@@ -140,7 +143,7 @@ pub struct State {
     /// How often each breakpoint is met.
     pub hits: Vec<usize>,
     /// Why the picked segment was or was not chosen, at a step.
-    pub explained: Option<(u64, Arc<SegmentTold>)>,
+    pub explained: Option<(u64, Arc<Explained>)>,
     /// What was asked to be explained last.
     asked: Option<(u64, [NodeId; 2])>,
     /// What became of what is picked.
@@ -151,6 +154,8 @@ pub struct State {
     /// Whether that is shown.
     pub show_times: bool,
     pub measuring: Option<Measuring>,
+    /// Whether the graphics device is lost.
+    pub is_lost: bool,
 }
 
 /// Where the main view is to look next.
@@ -214,6 +219,8 @@ impl State {
             style_epoch: 0,
             over_epoch: 0,
             reset_layout: false,
+            relayout: false,
+            bottom: 216.0,
             screenshot: false,
             columns: Columns::default(),
             open_lanes: None,
@@ -228,6 +235,7 @@ impl State {
             times: Times::default(),
             show_times: false,
             measuring: None,
+            is_lost: false,
         }
     }
 
@@ -343,10 +351,10 @@ impl State {
     }
 
     /// Why a segment of the front was or was not chosen; asked for where it is not known yet.
-    pub fn explanation(&mut self, ends: [NodeId; 2]) -> Option<Arc<SegmentTold>> {
+    pub fn explanation(&mut self, ends: [NodeId; 2]) -> Option<Arc<Explained>> {
         let step = self.moment.as_ref()?.step;
         if let Some((at, told)) = &self.explained
-            && (*at, [told.row.a, told.row.b]) == (step, ends)
+            && (*at, [told.told.row.a, told.told.row.b]) == (step, ends)
         {
             return Some(told.clone());
         }
@@ -370,6 +378,15 @@ impl State {
             self.session.as_ref()?.past(watched);
         }
         None
+    }
+
+    /// Something in a panel is pointed at, and stands out in the view.
+    pub fn hover(&mut self, what: Option<Outlined>) {
+        if self.hovered != what {
+            self.hovered = what;
+            self.hover_from_view = true;
+            self.over_epoch += 1;
+        }
     }
 
     /// The breakpoints and watchpoints that are on.

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use eframe::egui::epaint::Shadow;
 use eframe::egui::style::{HandleShape, ScrollStyle, WidgetVisuals};
+use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
-    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle,
-    Vec2, Visuals,
+    Align, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style,
+    TextStyle, Vec2, Visuals,
 };
 
 use crate::render::palette::{DARK, LIGHT, Palette, Rgba};
@@ -44,6 +45,45 @@ pub fn medium(size: f32) -> FontId {
 /// Ordinary text.
 pub fn regular(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
+}
+
+/// Text with low parts, written `_{x}`, and parts that stand out, written `**x**`.
+pub fn formula(text: &str, size: f32, colour: Color32, strong: Color32) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    let mut stands_out = false;
+    for (k, part) in text.split("**").enumerate() {
+        if k > 0 {
+            stands_out = !stands_out;
+        }
+        let mut rest = part;
+        while !rest.is_empty() {
+            let (plain, low, after) = match rest.split_once("_{").and_then(|(plain, after)| {
+                let (low, after) = after.split_once('}')?;
+                Some((plain, low, after))
+            }) {
+                Some(parts) => parts,
+                None => (rest, "", ""),
+            };
+            let (font, colour) = match stands_out {
+                true => (semibold as fn(f32) -> FontId, strong),
+                false => (regular as fn(f32) -> FontId, colour),
+            };
+            job.append(
+                plain,
+                0.0,
+                TextFormat { font_id: font(size), color: colour, valign: Align::Center, ..TextFormat::default() },
+            );
+            let format = TextFormat {
+                font_id: font(0.75 * size),
+                color: colour,
+                valign: Align::BOTTOM,
+                ..TextFormat::default()
+            };
+            job.append(low, 0.0, format);
+            rest = after;
+        }
+    }
+    job
 }
 
 /// Makes fonts and styles known to a context.

@@ -9,6 +9,7 @@ use glam::{DMat2, DVec2};
 
 use super::command::Command;
 use super::labels;
+use super::panels::inspector;
 use super::session::Moment;
 use super::state::{Look, State};
 use super::theme::ink;
@@ -46,6 +47,8 @@ pub struct Views {
     seen_style: Option<(u64, bool)>,
     seen_over: Option<u64>,
     hint: Option<ElementId>,
+    /// What the open menu is about.
+    menu_of: Option<Outlined>,
 }
 
 /// A view's camera with its place on the screen.
@@ -150,6 +153,23 @@ impl Views {
             && let Some(what) = hovered
         {
             commands.push(Command::Show(what));
+        }
+        if response.secondary_clicked() {
+            self.menu_of = hovered;
+        }
+        if let Some(what) = self.menu_of {
+            response.context_menu(|ui| {
+                ui.label(super::words::thing(what));
+                if ui.button("Select").clicked() {
+                    commands.push(Command::Pick(Some(what)));
+                    ui.close();
+                }
+                if ui.button(Command::Show(what).name()).clicked() {
+                    commands.push(Command::Show(what));
+                    ui.close();
+                }
+                inspector::past::actions(ui, state, what, commands);
+            });
         }
         if hovered.is_some() && response.hovered() {
             ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);

@@ -1,7 +1,7 @@
 //! Numbers and events in words, as everywhere in the window: integers grouped by thin spaces, a true minus, an en dash for what
 //! is not defined.
 
-use crate::core::convert::candidates::Passed;
+use crate::core::convert::candidates::{Candidate, Candidates, Passed};
 use crate::core::convert::event::{Event, Purpose, Why};
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
@@ -176,15 +176,16 @@ pub fn event(event: &Event) -> String {
 }
 
 /// Why an edge is not the side.
-pub fn passed(passed: Passed) -> &'static str {
+pub fn passed(passed: Passed, candidate: &Candidate, tried: &Candidates) -> String {
     match passed {
-        Passed::Taken => "ends at a corner that is taken",
-        Passed::WideAngle => "front, but not below θrect",
-        Passed::SmallAngle => "the front is the side",
-        Passed::LaidDown => "this attempt has its own",
-        Passed::Farther => "another is nearer",
-        Passed::NotNeeded => "no swap is needed",
-        Passed::NotPositive => "the swap would fold over",
+        Passed::Taken => "ends at a corner that is taken".to_owned(),
+        Passed::WideAngle => "front, but not below \u{3b8}rect".to_owned(),
+        Passed::SmallAngle => "the front is the side".to_owned(),
+        Passed::LaidDown => "this attempt has its own".to_owned(),
+        Passed::Farther if candidate.deviation > tried.limit => format!("more than {}°", degrees(tried.limit)),
+        Passed::Farther => "another is nearer".to_owned(),
+        Passed::NotNeeded => "no swap is needed".to_owned(),
+        Passed::NotPositive => "it would fold over".to_owned(),
     }
 }
 

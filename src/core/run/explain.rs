@@ -121,6 +121,8 @@ pub struct SegmentTold {
     pub is_base: bool,
     /// Between which values of c it would be chosen just so; where it is the first.
     pub margin_of_c: Option<[f64; 2]>,
+    /// Between which values of c it would be chosen; where it is not the first.
+    pub chosen_for_c: Option<[f64; 2]>,
     /// Between which values of theta_rect, in degrees.
     pub margin_of_theta_rect: Option<[f64; 2]>,
     #[serde(skip)]
@@ -148,6 +150,7 @@ impl SegmentTold {
             verdict: verdict(table, &row),
             is_base: converter.phase().base().is_some_and(|base| base.a == a && base.b == b),
             margin_of_c: table.margin_of_c(&row),
+            chosen_for_c: table.chosen_for_c(&row),
             margin_of_theta_rect: table.margin_of_theta_rect(&row).map(|margin| margin.map(f64::to_degrees)),
             parameters: parameters.clone(),
         })

@@ -192,6 +192,24 @@ impl FrontTable {
         Some([low, high])
     }
 
+    /// Values of c from (excluded) and to (included) between which a segment that is not the choice would be chosen, all else as
+    /// it is; none where there are none, or where the order does not look at c.
+    pub fn chosen_for_c(&self, row: &Row) -> Option<[f64; 2]> {
+        if self.parameters.selection != Selection::Table1 || row.is_put_off || self.choice()?.h == row.h {
+            return None;
+        }
+        let best = BestOfClass::of(self);
+        let mut bounds: Vec<f64> = best.windows().map(|window| window / self.h_min).collect();
+        bounds.extend([0.0, f64::INFINITY]);
+        bounds.sort_unstable_by(f64::total_cmp);
+        bounds.dedup();
+        let between = |pair: &[f64]| if pair[1].is_finite() { 0.5 * (pair[0] + pair[1]) } else { pair[0] + 1.0 };
+        let chosen = |pair: &&[f64]| best.choice(between(pair) * self.h_min) == Some(row.h);
+        let mut found = bounds.windows(2).skip_while(|pair| !chosen(pair)).take_while(chosen);
+        let first = found.next()?;
+        Some([first[0], found.last().map_or(first[1], |pair| pair[1])])
+    }
+
     /// Values of theta_rect from (excluded) and to (included), in radians, within 90 and 180 degrees, between which this very
     /// segment would be chosen, all else as it is; none where it is not the choice, or where the order does not look at it.
     pub fn margin_of_theta_rect(&self, row: &Row) -> Option<[f64; 2]> {

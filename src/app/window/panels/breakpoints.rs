@@ -1,52 +1,184 @@
-//! Conditions to stop at, and steps that a person has marked.
+//! Conditions and things to stop at, and steps that a person has marked.
 
-use eframe::egui::{Align, Key, Layout, ScrollArea, TextEdit, Ui};
+use eframe::egui::{
+    self, Align, Id, Key, Label, Layout, Modifiers, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo,
+};
 
 use super::{icon_button, inset, note};
 use crate::app::window::command::Command;
-use crate::app::window::icons;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
-use crate::app::window::words;
+use crate::app::window::theme::{self, ink};
+use crate::app::window::{icons, words};
+use crate::core::run::breakpoint::{Condition, FIELDS, Holds};
+use crate::core::run::watch::Watched;
 use crate::render::palette::Palette;
+use crate::render::scene::Outlined;
 
-/// Shows the breakpoints.
+/// Fields and words that are offered at once.
+const OFFERED: usize = 6;
+
+/// Shows the breakpoints and watchpoints.
 pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
     inset().show(ui, |ui| {
-        let room = (ui.available_height() - 34.0).max(30.0);
+        let offers = offers(&state.breakpoint_field);
+        let below = 34.0 + if state.breakpoint_field.is_empty() { 0.0 } else { 20.0 * (offers.len() as f32 + 1.5) };
+        let room = (ui.available_height() - below).max(30.0);
         ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
-            if state.kept.breakpoints.is_empty() {
-                ui.label(note("None yet. Try quad.min_angle < 30.", palette));
+            if state.kept.breakpoints.is_empty() && state.kept.watches.is_empty() {
+                ui.add(Label::new(note("None yet. Try quad.min_angle < 30.", palette)).wrap());
+                let text = "Or select a node, an edge or an element and press Watch in the inspector.";
+                ui.add(Label::new(note(text, palette)).wrap());
             }
-            for (k, (text, on)) in state.kept.breakpoints.iter().enumerate() {
-                ui.horizontal(|ui| {
-                    let mut on = *on;
-                    if ui.checkbox(&mut on, text).changed() {
-                        commands.push(Command::SwitchBreakpoint(k));
-                    }
-                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                        let command = Command::RemoveBreakpoint(k);
-                        if icon_button(ui, icons::X, 13.0, &command, true).clicked() {
-                            commands.push(command);
-                        }
-                        if let Some(hits) = state.hits.get(k) {
-                            ui.label(note(words::grouped(*hits as u64), palette)).on_hover_text("Hits in this run");
-                        }
-                    });
-                });
-            }
+            conditions(ui, state, commands, palette);
+            watches(ui, state, commands, palette);
         });
-        let field = TextEdit::singleline(&mut state.breakpoint_field)
-            .hint_text("a condition, e.g. kind == seamed")
-            .desired_width(f32::INFINITY);
-        let response = ui.add(field);
-        response.widget_info(|| {
-            eframe::egui::WidgetInfo::labeled(eframe::egui::Role::TextInput, true, "Condition of a new breakpoint")
-        });
-        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
-            commands.push(Command::AddBreakpoint(std::mem::take(&mut state.breakpoint_field)));
-        }
+        field(ui, state, &offers, commands, palette);
     });
+}
+
+fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    for (k, (text, on)) in state.kept.breakpoints.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let mut on = *on;
+            if ui.checkbox(&mut on, text).on_hover_text("Switch it on or off").changed() {
+                commands.push(Command::SwitchBreakpoint(k));
+            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let command = Command::RemoveBreakpoint(k);
+                if icon_button(ui, icons::X, 13.0, &command, true).clicked() {
+                    commands.push(command);
+                }
+                if let Some(hits) = state.hits.get(k) {
+                    let text = format!("{} in this run", words::grouped(*hits as u64));
+                    ui.label(note(text, palette)).on_hover_text("How often it holds in what is known of the run");
+                }
+            });
+        });
+    }
+}
+
+/// What is watched, as the view knows it.
+pub fn outlined(watched: Watched) -> Outlined {
+    match watched {
+        Watched::Node(node) => Outlined::Node(node),
+        Watched::Edge(a, b) => Outlined::Edge([a, b]),
+        Watched::Element(element) => Outlined::Element(element),
+    }
+}
+
+fn watches(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+    for (k, (watched, on)) in state.kept.watches.clone().into_iter().enumerate() {
+        let what = outlined(watched);
+        ui.horizontal(|ui| {
+            let mut on = on;
+            let name = format!("{}  {}", icons::EYE, words::thing(what));
+            let response = ui.checkbox(&mut on, name);
+            response.widget_info(|| {
+                WidgetInfo::selected(Role::CheckBox, true, on, format!("Watch {}", words::thing(what)))
+            });
+            if response.hovered() {
+                state.hover(Some(what));
+            }
+            if response.on_hover_text("Stops where it is touched, forward and backward").changed() {
+                commands.push(Command::SwitchWatch(k));
+            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let button = egui::Button::new(RichText::new(icons::X).font(theme::regular(13.0)));
+                let response = ui.add(button.frame_when_inactive(false));
+                let label = format!("Stop watching {}", words::thing(what));
+                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label.clone()));
+                if response.on_hover_text(&label).clicked() {
+                    commands.push(Command::Watch(what));
+                }
+                let touched = ui.add(Label::new(note("touched last", palette)).sense(Sense::click()).selectable(false));
+                if touched.on_hover_text("Goes back to the step that touched it last").clicked() {
+                    commands.push(Command::LastTouch(what));
+                }
+            });
+        });
+    }
+}
+
+/// What could stand in place of the word that is being typed, with what it means.
+fn offers(text: &str) -> Vec<(String, String)> {
+    if text.trim().is_empty() {
+        return Vec::new();
+    }
+    let start = word_start(text);
+    let (before, word) = text.split_at(start);
+    let before = before.trim_end();
+    let compared = ["==", "!="].iter().find_map(|sign| before.strip_suffix(sign)).map(str::trim_end);
+    if let Some(field) = compared {
+        let name = &field[word_start(field)..];
+        let words = FIELDS.iter().find(|f| f.name == name).map_or(&[][..], |field| field.holds.words());
+        let fits = words.iter().filter(|w| w.contains(word) && **w != word);
+        return fits.take(OFFERED).map(|w| ((*w).to_owned(), String::new())).collect();
+    }
+    let is_value = before.ends_with(['<', '>', '=']);
+    if word.is_empty() || is_value || FIELDS.iter().any(|field| field.name == word) {
+        return Vec::new();
+    }
+    let mut fits: Vec<_> = FIELDS.iter().filter(|field| field.name.contains(word)).collect();
+    fits.sort_by_key(|field| !field.name.starts_with(word));
+    let unit = |holds: Holds| if holds == Holds::Degrees { ", degrees" } else { "" };
+    fits.iter().take(OFFERED).map(|f| (f.name.to_owned(), format!("{}{}", f.doc, unit(f.holds)))).collect()
+}
+
+/// Where the word at the end of a text begins.
+fn word_start(text: &str) -> usize {
+    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+    text.rfind(|c| !is_word(c)).map_or(0, |at| at + text[at..].chars().next().map_or(1, char::len_utf8))
+}
+
+fn field(ui: &mut Ui, state: &mut State, offers: &[(String, String)], commands: &mut Vec<Command>, palette: &Palette) {
+    let id = Id::unique("condition");
+    // Tab takes the first offer; it must not leave the field.
+    let has_focus = ui.memory(|memory| memory.has_focus(id));
+    let taken = has_focus && !offers.is_empty() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab));
+    let field = TextEdit::singleline(&mut state.breakpoint_field)
+        .id(id)
+        .lock_focus(true)
+        .hint_text("a condition, e.g. kind == seamed")
+        .desired_width(f32::INFINITY);
+    let response = ui.add(field);
+    response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Condition of a new breakpoint"));
+    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    let mut chosen = taken.then(|| offers[0].0.clone());
+    let parsed = Condition::parse(&state.breakpoint_field);
+    if entered && parsed.is_ok() {
+        commands.push(Command::AddBreakpoint(std::mem::take(&mut state.breakpoint_field)));
+        return;
+    }
+    for (k, (name, doc)) in offers.iter().enumerate() {
+        let text = RichText::new(format!("{name}   {doc}")).font(theme::regular(theme::TABLE));
+        let text = text.color(ink(if k == 0 { palette.strong } else { palette.text }));
+        let offer = ui.add(Label::new(text).sense(Sense::click()).selectable(false).truncate());
+        offer.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Use {name}")));
+        if offer.on_hover_text(if k == 0 { "Tab takes it" } else { doc }).clicked() {
+            chosen = Some(name.clone());
+        }
+    }
+    if let Some(chosen) = chosen {
+        let start = word_start(&state.breakpoint_field);
+        state.breakpoint_field.truncate(start);
+        state.breakpoint_field += &chosen;
+        state.breakpoint_field.push(' ');
+        response.request_focus();
+        if let Some(mut edit) = egui::TextEdit::load_state(ui.ctx(), id) {
+            let end = egui::text::CCursor::new(state.breakpoint_field.chars().count());
+            edit.cursor.set_char_range(Some(egui::text::CCursorRange::one(end)));
+            edit.store(ui.ctx(), id);
+        }
+    } else if let (Err(fault), false) = (&parsed, state.breakpoint_field.trim().is_empty()) {
+        // While one types it is a hint; after Enter, and until it is mended, an error.
+        let colour = if response.has_focus() { palette.weak } else { palette.broken };
+        let text = RichText::new(fault.to_string()).font(theme::regular(theme::TABLE)).color(ink(colour));
+        ui.add(Label::new(text).wrap());
+    }
+    if entered {
+        response.request_focus();
+    }
 }
 
 /// Shows the bookmarks.
@@ -56,9 +188,31 @@ pub fn bookmarks(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palett
             ui.label(note("None yet. Ctrl+B marks the step at hand.", palette));
         }
         for step in &state.kept.bookmarks {
-            if ui.button(format!("{}  step {}", icons::BOOKMARK, words::grouped(*step))).clicked() {
+            let what = step.checked_sub(1).and_then(|k| state.track.get(k as usize));
+            let what = what.map_or(String::new(), |tracked| words::kind(tracked.kind));
+            let text = format!("{}  step {}   {what}", icons::BOOKMARK, words::grouped(*step));
+            if ui.button(text).on_hover_text("Goes to that step").clicked() {
                 commands.push(Command::Go(Goal::Step(*step)));
             }
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(text: &str) -> Vec<String> {
+        offers(text).into_iter().map(|offer| offer.0).collect()
+    }
+
+    #[test]
+    fn fields_are_offered_while_one_types_and_words_after_a_comparison() {
+        assert!(names("").is_empty());
+        assert_eq!(names("quad.mi"), ["quad.min_angle"]);
+        assert_eq!(names("kind == seamed && angle")[..2], ["quad.min_angle", "quad.max_angle"]);
+        assert!(names("kind == rolled").contains(&"rolled_back".to_owned()));
+        assert!(names("quad.min_angle < 3").is_empty());
+        assert!(names("quad.min_angle").is_empty(), "it is there already");
+    }
 }

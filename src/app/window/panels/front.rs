@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
 use egui_extras::{Column, TableBuilder};
 
+use super::inspector;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::Moment;
@@ -194,6 +195,9 @@ fn table(
             if response.hovered() {
                 pointed = Some(Outlined::Edge(ends));
             }
+            response.context_menu(|ui| {
+                inspector::past::actions(ui, state, Outlined::Edge(ends), commands);
+            });
             if response.double_clicked() {
                 commands.push(Command::Show(Outlined::Edge(ends)));
             } else if response.clicked() {
@@ -201,10 +205,8 @@ fn table(
             }
         });
     });
-    if pointed.is_some() && pointed != state.hovered {
-        state.hovered = pointed;
-        state.hover_from_view = true;
-        state.over_epoch += 1;
+    if pointed.is_some() {
+        state.hover(pointed);
     }
 }
 

@@ -8,9 +8,9 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
 use super::moment::{Moment, Verdict, segment};
-use super::{Ask, Goal, Opened, Past, Told, Tracked, Voice};
+use super::{Ask, Explained, Goal, Opened, Past, Told, Tracked, Voice};
 use crate::core::convert::candidates::Candidates;
-use crate::core::convert::event::Event;
+use crate::core::convert::event::{Event, Why};
 use crate::core::convert::walk::standing;
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::{ElementId, NodeId};
@@ -215,10 +215,21 @@ impl Worker {
     }
 
     fn explain(&self, a: NodeId, b: NodeId) {
-        let told = SegmentTold::of(self.history.state(), a, b);
-        if let Some(told) = told {
-            self.voice.say(Told::Explained(self.history.step(), Arc::new(told)));
-        }
+        let Some(told) = SegmentTold::of(self.history.state(), a, b) else { return };
+        let put_off = if told.row.is_put_off { self.put_off(a, b) } else { None };
+        self.voice.say(Told::Explained(self.history.step(), Arc::new(Explained { told, put_off })));
+    }
+
+    /// The last step that put a segment off, with what spoke against its last attempt, as far as events are kept.
+    fn put_off(&self, a: NodeId, b: NodeId) -> Option<(u64, Option<Why>)> {
+        let log = self.history.log();
+        let deferred = Event::Deferred { a, b };
+        let step = (1..=self.history.step()).rev().find(|step| log.event(*step) == Some(&deferred))?;
+        let why = match log.event(step - 1) {
+            Some(Event::RolledBack { why, .. }) => Some(*why),
+            _ => None,
+        };
+        Some((step, why))
     }
 
     /// Counts how often the conditions hold, in what is known and still kept of the run.

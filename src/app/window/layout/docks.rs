@@ -1,0 +1,138 @@
+//! Shows each panel where egui_tiles wants it, with tabs and bars in the manner of the window.
+
+use eframe::egui::{self, Color32, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo};
+use egui_tiles::{Behavior, EditAction, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, UiResponse};
+
+use super::Pane;
+use crate::app::window::command::Command;
+use crate::app::window::panels;
+use crate::app::window::state::State;
+use crate::app::window::theme::{self, ink};
+use crate::app::window::viewport::{Lens, Views};
+use crate::render::palette::Palette;
+
+/// All panels with what they show.
+pub struct Docks<'a> {
+    pub state: &'a mut State,
+    pub views: &'a mut Views,
+    pub commands: &'a mut Vec<Command>,
+    pub palette: &'static Palette,
+    /// Whether a person has moved something.
+    pub edited: bool,
+}
+
+impl Behavior<Pane> for Docks<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
+        let Docks { state, views, commands, palette, .. } = self;
+        let rect = ui.max_rect();
+        let ground = match pane {
+            Pane::Space | Pane::MetricLens | Pane::Parametric => palette.ground,
+            _ => palette.panel,
+        };
+        ui.painter().rect_filled(rect, 0.0, ink(ground));
+        match pane {
+            Pane::Space => views.space(ui, state, commands, palette),
+            Pane::MetricLens => views.other(ui, state, Lens::Metric, palette),
+            Pane::Parametric => views.other(ui, state, Lens::Whole, palette),
+            Pane::Front => panels::front::show(ui, state, commands, palette),
+            Pane::Breakpoints => panels::breakpoints::show(ui, state, commands, palette),
+            Pane::Bookmarks => panels::breakpoints::bookmarks(ui, state, commands, palette),
+            Pane::Quality => panels::plots::show(ui, state, commands, palette),
+            Pane::Inspector => panels::inspector::show(ui, state, commands, palette),
+            Pane::History => panels::history::show(ui, state, commands, palette),
+            Pane::Parameters => panels::parameters::show(ui, state, commands, palette),
+            Pane::Layers => panels::layers::show(ui, state, commands, palette),
+        }
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> egui::WidgetText {
+        pane.name().into()
+    }
+
+    fn tab_ui(
+        &mut self,
+        tiles: &mut Tiles<Pane>,
+        ui: &mut Ui,
+        id: egui::Id,
+        tile: TileId,
+        tab: &TabState,
+    ) -> egui::Response {
+        let name = match tiles.get(tile) {
+            Some(Tile::Pane(pane)) => pane.name(),
+            _ => "Group",
+        };
+        let colour = ink(if tab.active { self.palette.strong } else { self.palette.weak });
+        let font = if tab.active { theme::medium(theme::BODY) } else { theme::regular(theme::BODY) };
+        let text = ui.painter().layout_no_wrap(name.to_owned(), font, colour);
+        let (_, rect) = ui.allocate_space(Vec2::new(text.size().x + 20.0, ui.available_height()));
+        let response = ui.interact(rect, id, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::selected(egui::Role::Tab, true, tab.active, name));
+        if ui.is_rect_visible(rect) && !tab.is_being_dragged {
+            let colour = if response.hovered() { ink(self.palette.strong) } else { colour };
+            let at = egui::Align2::CENTER_CENTER.align_size_within_rect(text.size(), rect).min;
+            ui.painter().galley_with_override_text_color(at, text, colour);
+            if tab.active {
+                let rule = Rect::from_min_max(
+                    rect.left_bottom() + Vec2::new(3.0, -2.0),
+                    rect.right_bottom() - Vec2::new(3.0, 0.0),
+                );
+                ui.painter().rect_filled(rule, 0.0, ink(self.palette.base));
+            }
+        }
+        self.on_tab_button(tiles, tile, response)
+    }
+
+    fn top_bar_right_ui(&mut self, tiles: &Tiles<Pane>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
+        let active = tabs.active.and_then(|id| tiles.get_pane(&id));
+        match active {
+            Some(Pane::Space) => {
+                // The tabs come first: what the legend has no room for is in the help.
+                let font = theme::medium(theme::BODY);
+                let width = |id: &TileId| {
+                    let name = tiles.get_pane(id).map_or("", |pane| pane.name());
+                    ui.painter().layout_no_wrap(name.to_owned(), font.clone(), Color32::WHITE).size().x + 20.0
+                };
+                let tabs: f32 = tabs.children.iter().map(width).sum();
+                panels::legend::show(ui, tabs + 12.0, self.state, self.commands, self.palette);
+            }
+            Some(Pane::Parameters) => panels::parameters::reset(ui, self.state, self.commands),
+            _ => {}
+        }
+    }
+
+    fn on_edit(&mut self, action: EditAction) {
+        self.edited |= action != EditAction::TileDragged;
+    }
+
+    fn tab_bar_height(&self, _: &egui::Style) -> f32 {
+        28.0
+    }
+
+    fn gap_width(&self, _: &egui::Style) -> f32 {
+        2.0
+    }
+
+    fn min_size(&self) -> f32 {
+        120.0
+    }
+
+    fn tab_bar_color(&self, _: &egui::Visuals) -> Color32 {
+        ink(self.palette.panel)
+    }
+
+    fn tab_bar_hline_stroke(&self, _: &egui::Visuals) -> Stroke {
+        Stroke::new(1.0, ink(self.palette.line))
+    }
+
+    fn resize_stroke(&self, _: &egui::Style, state: egui_tiles::ResizeState) -> Stroke {
+        match state {
+            egui_tiles::ResizeState::Idle => Stroke::new(2.0, ink(self.palette.line)),
+            _ => Stroke::new(2.0, ink(self.palette.weak)),
+        }
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+}

@@ -1,0 +1,46 @@
+//! An edge that is no front segment: live, dead or boundary, and what lies beside it.
+
+use eframe::egui::Ui;
+
+use super::{elements, ends, formula, gone, heading, note, title};
+use crate::app::window::command::Command;
+use crate::app::window::session::Moment;
+use crate::app::window::state::State;
+use crate::app::window::words;
+use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::run::explain::{EdgeKind, EdgeTold};
+use crate::render::palette::Palette;
+
+pub fn show(
+    ui: &mut Ui,
+    state: &mut State,
+    moment: &Moment,
+    between: [NodeId; 2],
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    title(ui, format!("Edge {}", words::edge(between)), palette);
+    let [a, b] = between;
+    let mesh = &moment.mesh;
+    let Some(told) = EdgeTold::of(mesh, a, b) else { return gone(ui, "The edge", palette) };
+    let kind = match told.kind {
+        EdgeKind::Live => "live: between live triangles, it can be changed",
+        EdgeKind::Front => "front: live triangles on one side",
+        EdgeKind::Dead => "dead: between quadrilaterals",
+        EdgeKind::Boundary => "boundary: used up",
+    };
+    let boundary = if told.is_boundary && told.kind != EdgeKind::Boundary { "  ·  on the boundary" } else { "" };
+    ui.label(note(format!("{kind}{boundary}"), palette));
+    heading(ui, "Length", "eqs. 4, 5", palette);
+    let text =
+        format!("**{}** metric,  {} in space", words::fixed(told.length_metric, 2), words::size(told.length_physical));
+    formula(ui, &text, palette).on_hover_text("In a plane case the parametric length is that in space.");
+    heading(ui, "Beside it", "", palette);
+    let sides = [mesh.half_edge_between(a, b), mesh.half_edge_between(b, a)];
+    let beside: Vec<ElementId> = sides.into_iter().flatten().map(|h| h.element()).collect();
+    let (live, dead): (Vec<ElementId>, Vec<ElementId>) = beside.into_iter().partition(|e| mesh.is_triangle(*e));
+    elements(ui, "live triangles", &live, state, commands, palette);
+    elements(ui, "dead quads", &dead, state, commands, palette);
+    heading(ui, "Ends", "what their metrics ask for", palette);
+    ends(ui, state, moment, &[("", a), ("", b)], commands, palette);
+}

@@ -1,0 +1,41 @@
+//! An element: live or dead, its quality, angles and areas in the metric and in space.
+
+use eframe::egui::Ui;
+
+use super::{ends, formula, gone, heading, note, title};
+use crate::app::window::command::Command;
+use crate::app::window::session::Moment;
+use crate::app::window::state::State;
+use crate::app::window::words;
+use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::run::explain::ElementTold;
+use crate::render::palette::Palette;
+
+pub fn show(
+    ui: &mut Ui,
+    state: &mut State,
+    moment: &Moment,
+    e: ElementId,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    let Some(told) = ElementTold::of(&moment.mesh, e) else {
+        title(ui, format!("Element {}", e.0), palette);
+        return gone(ui, "The element", palette);
+    };
+    title(ui, format!("{} {}", if told.is_live { "Triangle" } else { "Quadrilateral" }, e.0), palette);
+    let state_of = if told.is_live { "live".to_owned() } else { format!("dead  ·  level {}", told.level) };
+    ui.label(note(format!("{state_of}  ·  region {}", told.region), palette));
+    heading(ui, "Quality", "0 to 1, in the metric", palette);
+    formula(ui, &format!("**{}**", words::fixed(told.quality, 2)), palette);
+    heading(ui, "Angles", "degrees, at its nodes", palette);
+    let list = |angles: &[f64]| angles.iter().map(|a| words::fixed(*a, 1)).collect::<Vec<_>>().join("   ");
+    formula(ui, &format!("metric   **{}**", list(&told.angles_metric)), palette);
+    formula(ui, &format!("space    {}", list(&told.angles_physical)), palette);
+    heading(ui, "Area", "1 is a unit square of the metric", palette);
+    let areas = format!("**{}** metric,  {} in space", words::fixed(told.area_metric, 2), words::size(told.area));
+    formula(ui, &areas, palette);
+    heading(ui, "Nodes", "what their metrics ask for", palette);
+    let nodes: Vec<(&str, NodeId)> = told.nodes.iter().map(|n| ("", *n)).collect();
+    ends(ui, state, moment, &nodes, commands, palette);
+}

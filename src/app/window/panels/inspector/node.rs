@@ -1,0 +1,58 @@
+//! A node: its place and metric, what lies around it, its frontal angles.
+
+use eframe::egui::Ui;
+
+use super::{axis, elements, formula, gone, heading, note, title};
+use crate::app::window::command::Command;
+use crate::app::window::session::Moment;
+use crate::app::window::state::State;
+use crate::app::window::words;
+use crate::core::mesh::ids::NodeId;
+use crate::core::run::explain::NodeTold;
+use crate::render::palette::Palette;
+use crate::render::scene::Outlined;
+
+pub fn show(
+    ui: &mut Ui,
+    state: &mut State,
+    moment: &Moment,
+    node: NodeId,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    title(ui, format!("Node {}", node.0), palette);
+    let mesh = &moment.mesh;
+    let Some(told) = NodeTold::of(mesh, node) else { return gone(ui, "The node", palette) };
+    let place = if told.is_fixed { "on the boundary: it stays" } else { "free: it may be moved" };
+    ui.label(note(format!("{place}  ·  {} edges", told.valence), palette));
+    heading(ui, "Place", "plane case: u = x, v = y", palette);
+    let [x, y, z] = told.xyz.map(words::size);
+    formula(ui, &format!("x = **{x}**   y = **{y}**   z = {z}"), palette);
+    formula(ui, &format!("u = {}   v = {}", words::size(told.uv[0]), words::size(told.uv[1])), palette);
+    heading(ui, "Metric", "eq. 3", palette);
+    let [uu, uv, vv] = told.metric.tensor.map(words::size);
+    formula(ui, &format!("M = ( {uu}   {uv} ;  {uv}   {vv} )"), palette);
+    for (k, name) in [(1, "1"), (0, "2")] {
+        let text = format!(
+            "h_{{{name}}} = **{}**  along {}°,   \u{3bb} = {}",
+            words::size(told.metric.sizes[k]),
+            words::fixed(axis(told.metric.directions[k]), 1),
+            words::size(told.metric.lambda[k])
+        );
+        formula(ui, &text, palette);
+    }
+    if !told.sectors.is_empty() {
+        heading(ui, "Frontal angles", "fig. 9; one for each live sector", palette);
+    }
+    for (h, angle) in &told.sectors {
+        let ends = [mesh.origin(*h), mesh.target(*h)];
+        ui.horizontal(|ui| {
+            formula(ui, &format!("\u{3b8} = **{}°**  left of", words::fixed(*angle, 1)), palette);
+            let name = words::segment(ends[0], ends[1]);
+            super::link(ui, name, Outlined::Edge(ends), state, commands, palette);
+        });
+    }
+    heading(ui, "Elements around it", "", palette);
+    elements(ui, "live triangles", &told.live, state, commands, palette);
+    elements(ui, "dead quads", &told.dead, state, commands, palette);
+}
