@@ -35,6 +35,8 @@ pub struct App {
     /// Whether the last frame asked for this one at once.
     moving: bool,
     lost: Lost,
+    /// Whether somebody clears the window in the colour of panels.
+    is_cleared: bool,
     /// Where it is kept how the window was left, and what stands there.
     path: Option<PathBuf>,
     written: Option<Settings>,
@@ -83,10 +85,17 @@ impl App {
             taken: Arc::default(),
             moving: false,
             lost,
+            is_cleared: false,
             path,
             written: settings,
             changed: None,
         }
+    }
+
+    /// The same in a window that is cleared as [`eframe::App::clear_color`] says.
+    pub fn cleared(mut self) -> App {
+        self.is_cleared = true;
+        self
     }
 
     /// Does what a person asks for.
@@ -245,10 +254,12 @@ impl eframe::App for App {
             context.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
         }
         self.play(&context);
+        self.state.hear_soon();
         self.screenshots(&context);
         let palette = theme::palette(context.theme() == egui::Theme::Dark);
         let (state, commands) = (&mut self.state, &mut self.commands);
-        let plain = Frame::NONE.fill(theme::ink(palette.panel));
+        // The window is cleared in the colour of panels: every layer over all of it costs where the processor paints.
+        let plain = if self.is_cleared { Frame::NONE } else { Frame::NONE.fill(theme::ink(palette.panel)) };
         Panel::top("menus")
             .frame(plain)
             .exact_size(32.0)
@@ -261,8 +272,7 @@ impl eframe::App for App {
             .show(ui, |ui| panels::time::show(ui, state, commands, palette));
         state.bottom = time.response.rect.height();
         panels::messages::show(ui, state, palette);
-        let ground = Frame::NONE.fill(theme::ink(palette.line));
-        egui::CentralPanel::default().frame(ground).show(ui, |ui| {
+        egui::CentralPanel::default().frame(plain).show(ui, |ui| {
             self.layout.show(ui, state, &mut self.views, commands, palette);
         });
         panels::over::show(&context, state, commands, palette);
@@ -285,6 +295,10 @@ impl eframe::App for App {
             self.state.title.clone_from(&title);
             context.send_viewport_cmd(ViewportCommand::Title(title));
         }
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self) {

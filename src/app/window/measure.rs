@@ -51,13 +51,13 @@ pub struct Measuring {
     states: [Vec<f64>; 2],
     frames: [Vec<f64>; 2],
     asked: Option<Instant>,
-    /// Whether the frame that shows the state was begun.
-    shown: bool,
+    /// Whether the state came after the frame that asked for it.
+    late: bool,
 }
 
 impl Default for Measuring {
     fn default() -> Self {
-        Measuring { left: 2 * QUADS, states: Default::default(), frames: Default::default(), asked: None, shown: false }
+        Measuring { left: 2 * QUADS, states: Default::default(), frames: Default::default(), asked: None, late: false }
     }
 }
 
@@ -65,10 +65,14 @@ impl Measuring {
     /// At the beginning of a frame: where the state that was asked for has been shown by the frame before, asks for the next.
     /// `took`: how long that state took. None while it is not there.
     pub fn next(&mut self, is_there: bool, took: Duration) -> Option<Goal> {
-        if !is_there || (self.asked.is_some() && !std::mem::replace(&mut self.shown, true)) {
+        if !is_there {
+            self.late = true;
             return None;
         }
-        self.shown = false;
+        if self.asked.is_some() && std::mem::take(&mut self.late) {
+            // It came after its frame was begun, and is shown by this one.
+            return None;
+        }
         if let Some(asked) = self.asked.take() {
             let back = usize::from(self.left < QUADS);
             self.states[back].push(1e3 * took.as_secs_f64());

@@ -53,6 +53,8 @@ pub fn open(source: Source) -> Result<ExitCode, Fault> {
         renderer: eframe::Renderer::Wgpu,
         wgpu_options: graphics::options(),
         persist_window: false,
+        // Large even colours need none, and it is paid for at every pixel.
+        dithering: false,
         ..eframe::NativeOptions::default()
     };
     let lost = graphics::Lost::default();
@@ -60,7 +62,7 @@ pub fn open(source: Source) -> Result<ExitCode, Fault> {
     let shown = eframe::run_native(
         "quadfront",
         options,
-        Box::new(move |cc| Ok(Box::new(App::kept(cc, Some(source), path, watch)))),
+        Box::new(move |cc| Ok(Box::new(App::kept(cc, Some(source), path, watch).cleared()))),
     );
     shown.map_err(|error| {
         Fault::new(format!("The window cannot be opened: {}", error.to_string().trim_end_matches('.'))).remedy(

@@ -201,6 +201,11 @@ impl Session {
         self.stop.store(true, Ordering::Relaxed);
     }
 
+    /// What is told next, where that comes soon.
+    pub fn hear_within(&self, patience: Duration) -> Option<Told> {
+        self.told.recv_timeout(patience).ok()
+    }
+
     /// What has been told since the last time.
     pub fn hear(&self) -> impl Iterator<Item = Told> + '_ {
         self.told.try_iter()

@@ -1,7 +1,7 @@
 //! What the window knows: the run as far as it has been told, what a person has set, and what is open over the window.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::files::Dialog;
 use super::measure::{Measuring, Times};
@@ -21,6 +21,9 @@ use crate::core::run::timeline::Sample;
 use crate::core::run::watch::Watched;
 use crate::render::camera::Camera;
 use crate::render::scene::{ColourBy, Layers, Outlined};
+
+/// How long a frame waits for the state that it asked for.
+const PATIENCE: Duration = Duration::from_millis(4);
 
 /// What undo takes back: all that a person sets.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -283,40 +286,54 @@ impl State {
     pub fn hear(&mut self) {
         let Some(session) = &self.session else { return };
         let told: Vec<Told> = session.hear().collect();
-        for told in told {
-            match told {
-                Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
-                Told::Opened(opened) => {
-                    self.kept.edits = opened.run.edits().to_vec();
-                    self.kept.bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
-                    self.opened = Some(opened);
+        told.into_iter().for_each(|told| self.take(told));
+    }
+
+    /// Where the session owes an answer, waits for it, but not so long that anybody notices: most states are there at once,
+    /// and are seen in the very frame that asked for them.
+    pub fn hear_soon(&mut self) {
+        let begin = Instant::now();
+        while self.waiting > 0
+            && let Some(left) = PATIENCE.checked_sub(begin.elapsed())
+            && let Some(told) = self.session.as_ref().and_then(|session| session.hear_within(left))
+        {
+            self.take(told);
+        }
+    }
+
+    fn take(&mut self, told: Told) {
+        match told {
+            Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
+            Told::Opened(opened) => {
+                self.kept.edits = opened.run.edits().to_vec();
+                self.kept.bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
+                self.opened = Some(opened);
+            }
+            Told::Moment(moment, asks) => self.arrive(moment, asks),
+            Told::Track { from, steps, samples, end } => {
+                self.track.truncate(from as usize);
+                self.track.extend(steps);
+                self.samples.retain(|sample| sample.step <= from && from > 0);
+                self.samples.extend(samples);
+                self.track_epoch += 1;
+                self.recorded = end;
+            }
+            Told::Checked(step, verdict) => {
+                if self.moment.as_ref().is_some_and(|moment| moment.step == step) {
+                    self.verdict = verdict;
                 }
-                Told::Moment(moment, asks) => self.arrive(moment, asks),
-                Told::Track { from, steps, samples, end } => {
-                    self.track.truncate(from as usize);
-                    self.track.extend(steps);
-                    self.samples.retain(|sample| sample.step <= from && from > 0);
-                    self.samples.extend(samples);
-                    self.track_epoch += 1;
-                    self.recorded = end;
-                }
-                Told::Checked(step, verdict) => {
-                    if self.moment.as_ref().is_some_and(|moment| moment.step == step) {
-                        self.verdict = verdict;
-                    }
-                }
-                Told::Past(past) => self.past = Some(past),
-                Told::Hits(hits) => self.hits = hits,
-                Told::Explained(step, told) => self.explained = Some((step, told)),
-                Told::Nothing(words, asks) => {
-                    self.notice(words.to_owned());
-                    self.answered(asks);
-                }
-                Told::Fault(fault, asks) => {
-                    self.complain(&fault);
-                    self.answered(asks);
-                    self.playing = None;
-                }
+            }
+            Told::Past(past) => self.past = Some(past),
+            Told::Hits(hits) => self.hits = hits,
+            Told::Explained(step, told) => self.explained = Some((step, told)),
+            Told::Nothing(words, asks) => {
+                self.notice(words.to_owned());
+                self.answered(asks);
+            }
+            Told::Fault(fault, asks) => {
+                self.complain(&fault);
+                self.answered(asks);
+                self.playing = None;
             }
         }
     }

@@ -87,6 +87,7 @@ impl Views {
         let response = ui.interact(rect, ui.scope_id().with("space"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, spoken(state)));
         let Some(moment) = state.moment.clone() else {
+            ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
             return empty(ui, state, commands, palette);
         };
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
@@ -104,13 +105,18 @@ impl Views {
     /// Another view of the same scene.
     pub fn other(&mut self, ui: &mut Ui, state: &mut State, lens: Lens, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());
-        let Some(moment) = state.moment.clone() else { return };
+        let ground = |ui: &Ui| ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
+        let Some(moment) = state.moment.clone() else {
+            ground(ui);
+            return;
+        };
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         let camera = match lens {
             Lens::Metric => metric_lens(state, &moment),
             Lens::Whole => other_end(state, &moment, size),
         };
         let Some(camera) = camera else {
+            ground(ui);
             let text = "Pick a node or a front segment to see it in its own metric.";
             let font = super::theme::regular(super::theme::TABLE);
             ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, font, ink(palette.weak));

@@ -1,5 +1,6 @@
 //! A scene drawn by the graphics card: into a picture of its own with depth and four samples a pixel, which is then laid
-//! into the window. A view whose scene and camera stay as they were is not drawn again.
+//! into the window. A view whose scene and camera stay as they were is not drawn again. Where the "card" is the processor, one
+//! sample is enough: lines and dots have soft edges of their own, and faces end under lines.
 
 mod buffer;
 mod pipelines;
@@ -16,6 +17,11 @@ use super::palette::Rgba;
 use super::scene::{Dot, Face, Line, Scene};
 
 pub use self::target::read_back;
+
+/// Samples a pixel on an adapter: four; one where the processor does the card's work.
+pub fn samples(adapter: &wgpu::AdapterInfo) -> u32 {
+    if adapter.device_type == wgpu::DeviceType::Cpu { 1 } else { 4 }
+}
 
 /// How a view is to be drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,10 +70,10 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// A painter whose pictures are laid into targets of the format `window`.
-    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat) -> Painter {
+    /// A painter whose pictures are laid into targets of the format `window`, with so many samples a pixel (1 or 4).
+    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Painter {
         Painter {
-            pipelines: Pipelines::new(device, window),
+            pipelines: Pipelines::new(device, window, samples),
             faces: Patched::new("faces"),
             edges: Patched::new("edges"),
             dots: Patched::new("dots"),

@@ -10,7 +10,6 @@ pub(super) const BLIT: &str = include_str!("blit.wgsl");
 /// Colours are numbers in sRGB and stay that: blending looks as in the figures' vectors.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-pub(super) const SAMPLES: u32 = 4;
 
 /// Attributes of the instances, in the order of their fields.
 pub(super) const FACE: [wgpu::VertexFormat; 5] = [Float32x3, Float32x3, Float32x3, Float32x3, Unorm8x4];
@@ -18,6 +17,8 @@ pub(super) const LINE: [wgpu::VertexFormat; 6] = [Float32x3, Float32x3, Unorm8x4
 pub(super) const DOT: [wgpu::VertexFormat; 7] = [Float32x3, Float32, Unorm8x4, Unorm8x4, Float32, Float32, Float32];
 
 pub(super) struct Pipelines {
+    /// Samples a pixel.
+    pub samples: u32,
     pub faces: wgpu::RenderPipeline,
     pub lines: wgpu::RenderPipeline,
     pub dots: wgpu::RenderPipeline,
@@ -27,7 +28,7 @@ pub(super) struct Pipelines {
 }
 
 impl Pipelines {
-    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat) -> Pipelines {
+    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Pipelines {
         let module = |label, text: &'static str| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(label),
@@ -61,9 +62,10 @@ impl Pipelines {
             ],
         });
         let over_mesh = |name, formats: &[wgpu::VertexFormat], size, writes_depth| {
-            mesh_pipeline(device, &view_layout, &mesh, name, formats, size, writes_depth)
+            mesh_pipeline(device, &view_layout, &mesh, name, formats, size, writes_depth, samples)
         };
         Pipelines {
+            samples,
             faces: over_mesh("face", &FACE, size_of::<Face>(), true),
             lines: over_mesh("line", &LINE, size_of::<Line>(), false),
             dots: over_mesh("dot", &DOT, size_of::<Dot>(), false),
@@ -105,6 +107,7 @@ fn mesh_pipeline(
     formats: &[wgpu::VertexFormat],
     size: usize,
     writes_depth: bool,
+    samples: u32,
 ) -> wgpu::RenderPipeline {
     let attributes = attributes(formats);
     debug_assert_eq!(formats.iter().map(wgpu::VertexFormat::size).sum::<u64>(), size as u64, "{name}");
@@ -129,7 +132,7 @@ fn mesh_pipeline(
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState { count: SAMPLES, ..wgpu::MultisampleState::default() },
+        multisample: wgpu::MultisampleState { count: samples, ..wgpu::MultisampleState::default() },
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some(&format!("{name}_fragment")),

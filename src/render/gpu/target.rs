@@ -1,7 +1,7 @@
 //! What a view is drawn into, and how its pixels come back.
 
 use super::Uniform;
-use super::pipelines::{COLOUR, DEPTH, Pipelines, SAMPLES};
+use super::pipelines::{COLOUR, DEPTH, Pipelines};
 use crate::core::fault::Fault;
 use crate::render::palette::Rgba;
 
@@ -14,7 +14,8 @@ pub(super) struct Target {
     /// The finished picture, one sample a pixel.
     pub picture: wgpu::Texture,
     finished: wgpu::TextureView,
-    samples: wgpu::TextureView,
+    /// Where a pixel has several samples.
+    samples: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
     /// What the picture shows.
     pub drawn: Option<(u64, Uniform, Rgba)>,
@@ -64,8 +65,8 @@ impl Target {
             uniform,
             view_group,
             blit_group,
-            samples: view(&texture("samples", COLOUR, SAMPLES, attachment)),
-            depth: view(&texture("depth", DEPTH, SAMPLES, attachment)),
+            samples: (pipelines.samples > 1).then(|| view(&texture("samples", COLOUR, pipelines.samples, attachment))),
+            depth: view(&texture("depth", DEPTH, pipelines.samples, attachment)),
             picture,
             finished,
             drawn: None,
@@ -74,13 +75,17 @@ impl Target {
 
     /// Begins drawing on an empty ground.
     pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, ground: wgpu::Color) -> wgpu::RenderPass<'e> {
+        let (view, resolve_target, store) = match &self.samples {
+            Some(samples) => (samples, Some(&self.finished), wgpu::StoreOp::Discard),
+            None => (&self.finished, None, wgpu::StoreOp::Store),
+        };
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("mesh"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.samples,
+                view,
                 depth_slice: None,
-                resolve_target: Some(&self.finished),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(ground), store: wgpu::StoreOp::Discard },
+                resolve_target,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(ground), store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,

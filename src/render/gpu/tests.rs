@@ -73,8 +73,13 @@ fn shaders_are_valid_and_their_inputs_are_those_of_the_instances() {
 #[test]
 fn faces_lines_and_dots_are_where_they_should_be() {
     let Some((device, queue)) = device() else { return };
-    let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm);
-    let bytes = pixels(&mut painter, &device, &queue, &view(), &scene());
+    for samples in [1, 4] {
+        let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, samples);
+        looks_right(&pixels(&mut painter, &device, &queue, &view(), &scene()));
+    }
+}
+
+fn looks_right(bytes: &[u8]) {
     let at = |x: usize, y: usize| Rgba(bytes[4 * (100 * y + x)..][..4].try_into().unwrap());
     assert_eq!(at(20, 90), DARK.dead);
     assert_eq!(at(20, 40), DARK.live);
@@ -90,7 +95,7 @@ fn faces_lines_and_dots_are_where_they_should_be() {
 #[test]
 fn a_view_that_has_not_changed_sends_and_draws_nothing() {
     let Some((device, queue)) = device() else { return };
-    let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm);
+    let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, 4);
     let mut scene = scene();
     let before = pixels(&mut painter, &device, &queue, &view(), &scene);
     let sent = painter.bytes_sent();

@@ -40,9 +40,9 @@ impl Scene {
         self.anchor = anchor;
         self.generation += 1;
         self.resize(drawn.mesh);
-        for e in (0..drawn.mesh.element_slots() as u32).map(ElementId) {
-            self.set_element(drawn, e);
-        }
+        let slots = (0..drawn.mesh.element_slots() as u32).map(ElementId);
+        slots.clone().for_each(|e| self.leave_places(drawn.mesh, e));
+        slots.for_each(|e| self.set_element(drawn, e));
         for node in (0..drawn.mesh.node_slots() as u32).map(NodeId) {
             self.set_node(drawn, node);
         }
@@ -60,9 +60,9 @@ impl Scene {
         around.extend(elements.iter().copied().filter(|e| e.index() < mesh.element_slots()));
         around.sort_unstable();
         around.dedup();
-        for &e in &around {
-            self.set_element(drawn, e);
-        }
+        // Places that are left are there for the edges that come.
+        around.iter().for_each(|e| self.leave_places(mesh, *e));
+        around.iter().for_each(|e| self.set_element(drawn, *e));
         let here = around.iter().filter(|e| mesh.has_element(**e));
         let mut near: Vec<NodeId> = here.flat_map(|e| mesh.corners(*e)).collect();
         near.extend(nodes.iter().copied().filter(|n| n.index() < mesh.node_slots()));
@@ -82,23 +82,32 @@ impl Scene {
         self.boundary_places.resize(4 * mesh.element_slots(), &mut self.boundary, generation);
     }
 
-    /// The face of an element slot and the edges around it, or nothing where it is a tombstone.
+    /// Takes away the edges of an element slot that have their places by other half-edges, or are none any more.
+    fn leave_places(&mut self, mesh: &Mesh, e: ElementId) {
+        for h in (0..4).map(|corner| e.half_edge(corner)) {
+            let twin = side(mesh, h).map(|h| mesh.twin(h));
+            if twin.is_none_or(|twin| twin.is_some_and(|t| t < h)) {
+                self.places.put(h.index(), None, &mut self.edges, self.generation);
+            }
+            if twin != Some(None) {
+                self.boundary_places.put(h.index(), None, &mut self.boundary, self.generation);
+            }
+        }
+    }
+
+    /// The face of an element slot, or nothing where it is a tombstone, and the edges around it.
     fn set_element(&mut self, drawn: &Drawn<'_>, e: ElementId) {
         let mesh = drawn.mesh;
         self.faces.set(e.index(), self.face(drawn, e, 0.0), self.generation);
-        for corner in 0..4 {
-            let h = e.half_edge(corner);
-            let is_side = (corner as usize) < mesh.sides(e);
-            let twin = if is_side { mesh.twin(h) } else { None };
+        for h in mesh.half_edges(e) {
             // Of the two half-edges of an edge the one with the smaller id has its place.
+            let twin = mesh.twin(h);
             let first = twin.map_or(h, |t| t.min(h));
-            let line = if is_side { self.edge(drawn, first) } else { None };
-            if first != h {
-                self.places.put(h.index(), None, &mut self.edges, self.generation);
+            self.places.put(first.index(), self.edge(drawn, first), &mut self.edges, self.generation);
+            if twin.is_none() {
+                let line = self.boundary_line(drawn, h);
+                self.boundary_places.put(h.index(), line, &mut self.boundary, self.generation);
             }
-            self.places.put(first.index(), line, &mut self.edges, self.generation);
-            let boundary = if is_side && twin.is_none() { self.boundary_line(drawn, h) } else { None };
-            self.boundary_places.put(h.index(), boundary, &mut self.boundary, self.generation);
         }
     }
 
@@ -184,6 +193,11 @@ impl Scene {
         };
         self.dots.set(node.index(), dot, self.generation);
     }
+}
+
+/// The half-edge in a slot, where it is a side of its element.
+fn side(mesh: &Mesh, h: HalfEdgeId) -> Option<HalfEdgeId> {
+    ((h.corner() as usize) < mesh.sides(h.element())).then_some(h)
 }
 
 fn corners(mesh: &Mesh, e: ElementId, anchor: DVec3) -> [[f32; 3]; 4] {

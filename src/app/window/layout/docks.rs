@@ -24,12 +24,6 @@ pub struct Docks<'a> {
 impl Behavior<Pane> for Docks<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
         let Docks { state, views, commands, palette, .. } = self;
-        let rect = ui.max_rect();
-        let ground = match pane {
-            Pane::Space | Pane::MetricLens | Pane::Parametric => palette.ground,
-            _ => palette.panel,
-        };
-        ui.painter().rect_filled(rect, 0.0, ink(ground));
         match pane {
             Pane::Space => views.space(ui, state, commands, palette),
             Pane::MetricLens => views.other(ui, state, Lens::Metric, palette),
