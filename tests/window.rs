@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use quadfront::app::window::{App, Command, Goal, Source};
+use quadfront::app::window::{App, Command, Goal, Lost, Source};
+use quadfront::render::scene::Outlined;
 
 fn has_adapter() -> bool {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -228,4 +229,222 @@ fn a_file_that_is_not_there_is_a_message_and_the_window_goes_on() {
     assert!(harness.state().state.faults.is_empty());
     apply(&mut harness, Command::Open(Source::named("example1")));
     assert_eq!(step(&harness), 0);
+}
+
+/// Runs frames until something is shown by its label.
+fn wait_for(harness: &mut Harness<'static, App>, label: &str) {
+    let begin = Instant::now();
+    while harness.query_by_label(label).is_none() {
+        assert!(begin.elapsed() < Duration::from_secs(20), "{label} is not shown");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.run_steps(1);
+    }
+}
+
+#[test]
+fn a_node_that_is_watched_stops_the_run_forward_and_backward_and_tells_who_touched_it() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::Go(Goal::ToQuads(40)));
+    let node = harness.state().state.moment.as_ref().unwrap().front[0].a;
+    apply(&mut harness, Command::Pick(Some(Outlined::Node(node))));
+    harness.get_by_label("Watch").click();
+    settle(&mut harness);
+    harness.get_by_label(&format!("Watch node {}", node.0));
+    let begin = step(&harness);
+    press(&mut harness, Modifiers::NONE, Key::F5);
+    let first = step(&harness);
+    press(&mut harness, Modifiers::NONE, Key::F5);
+    let second = step(&harness);
+    assert!(begin < first && first < second, "{begin} {first} {second}");
+    press(&mut harness, Modifiers::ALT, Key::F5);
+    assert_eq!(step(&harness), first);
+    apply(&mut harness, Command::Go(Goal::Step(second)));
+    wait_for(&mut harness, "What became of it");
+    apply(&mut harness, Command::Go(Goal::Step(second + 1)));
+    harness.get_by_label("Who touched this last").click();
+    settle(&mut harness);
+    assert!(step(&harness) <= second);
+    harness.get_by_label("Stop watching").click();
+    settle(&mut harness);
+    assert!(harness.state().state.kept.watches.is_empty());
+}
+
+#[test]
+fn a_quadrilateral_tells_when_it_was_made_and_what_it_ate() {
+    let Some(mut harness) = window() else { return };
+    let (at, element) = {
+        let track = &harness.state().state.track;
+        let found = track.iter().enumerate().filter_map(|(k, t)| Some((k as u64 + 1, t.formed?.0))).nth(30);
+        found.unwrap()
+    };
+    apply(&mut harness, Command::Go(Goal::Step(at + 3)));
+    apply(&mut harness, Command::Pick(Some(Outlined::Element(element))));
+    harness.get_by_label(&format!("Quadrilateral {}", element.0));
+    wait_for(&mut harness, "What became of it");
+    assert!(harness.query_by_label_contains("It ate the triangles").is_some());
+    harness.get_by_label("When was this made").click();
+    settle(&mut harness);
+    assert_eq!(step(&harness), at);
+}
+
+#[test]
+fn fields_of_conditions_are_offered_and_an_error_stays_where_it_can_be_mended() {
+    let Some(mut harness) = window() else { return };
+    let field = "Condition of a new breakpoint";
+    harness.get_by_label(field).focus();
+    harness.run_steps(2);
+    harness.get_by_label(field).type_text("quad.mi");
+    harness.run_steps(3);
+    harness.get_by_label("Use quad.min_angle").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().state.breakpoint_field, "quad.min_angle ");
+    harness.get_by_label(field).type_text("<");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.state().state.kept.breakpoints.is_empty());
+    assert!(harness.query_by_label_contains("position").is_some(), "the error says where");
+    harness.get_by_label(field).focus();
+    harness.run_steps(2);
+    harness.get_by_label(field).type_text(" 30");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert_eq!(harness.state().state.kept.breakpoints, [("quad.min_angle < 30".to_owned(), true)]);
+}
+
+#[test]
+fn the_inspector_says_why_with_the_numbers_of_the_paper() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::Go(Goal::Kind("base_selected", true)));
+    for label in ["H-value", "Frontal angles", "Why this segment", "Length", "Ends"] {
+        harness.get_by_label(label);
+    }
+    assert!(harness.query_by_label_contains("Same choice for").is_some());
+    apply(&mut harness, Command::Go(Goal::Kind("side_chosen", true)));
+    assert!(harness.query_by_label_contains("tried").is_some(), "what the side was chosen from");
+    assert!(harness.query_all_by_label_contains("taken").next().is_some());
+}
+
+#[test]
+fn the_timeline_gives_each_kind_a_row_of_its_own_and_its_state_is_spoken() {
+    let Some(mut harness) = window() else { return };
+    assert!(harness.query_by_label_contains("Timeline: step 0 of").is_some());
+    assert!(harness.query_by_label("Lane: side swapped").is_none());
+    harness.get_by_label("Lane: swap").click();
+    harness.run_steps(3);
+    harness.get_by_label("Lane: side swapped").click();
+    harness.run_steps(3);
+    harness.get_by_label("Lane: swap");
+}
+
+#[test]
+fn a_tab_that_was_opened_is_closed_by_undo() {
+    let Some(mut harness) = window() else { return };
+    harness.get_by_label("History").click();
+    harness.run_steps(4);
+    harness.get_by_label("Changes of this run");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(harness.query_by_label("Changes of this run").is_none());
+    press(&mut harness, Modifiers::COMMAND, Key::Y);
+    harness.get_by_label("Changes of this run");
+}
+
+#[test]
+fn the_window_is_found_again_as_it_was_left_and_nonsense_is_told() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("window.json");
+    let start = |path: std::path::PathBuf| {
+        let source = Source::BuiltIn("two-faces".to_owned());
+        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
+        let mut harness = builder.build_eframe(|cc| App::kept(cc, Some(source), Some(path), Lost::default()));
+        settle(&mut harness);
+        harness
+    };
+    let mut harness = start(path.clone());
+    harness.get_by_label("Layers").click();
+    apply(&mut harness, Command::Layer(7));
+    apply(&mut harness, Command::ToggleTheme);
+    let begin = Instant::now();
+    while !path.exists() {
+        assert!(begin.elapsed() < Duration::from_secs(20), "nothing is kept");
+        std::thread::sleep(Duration::from_millis(50));
+        harness.run_steps(1);
+    }
+    let text = std::fs::read_to_string(&path).unwrap();
+    let again = start(path.clone());
+    assert!(again.state().state.kept.layers.ellipses);
+    assert!(text.contains("\"dark\": false"), "{text}");
+    again.get_by_label("Colour by");
+    drop(again);
+    std::fs::write(&path, &text[..text.len() / 2]).unwrap();
+    let bad = start(path);
+    assert!(bad.state().state.faults[0].contains("window.json"), "{:?}", bad.state().state.faults);
+    assert!(!bad.state().state.kept.layers.ellipses);
+}
+
+#[test]
+fn a_window_of_hardly_any_size_and_back_is_no_trouble() {
+    let Some(mut harness) = window() else { return };
+    let before = harness.render().unwrap().into_raw();
+    for size in [Vec2::new(1.0, 1.0), Vec2::new(3000.0, 2.0), Vec2::new(300.0, 900.0), Vec2::new(1280.0, 800.0)] {
+        harness.set_size(size);
+        harness.run_steps(4);
+        harness.render().unwrap();
+    }
+    settle(&mut harness);
+    let picture = harness.render().unwrap();
+    if let Some(folder) = std::env::var_os("QUADFRONT_PICTURES") {
+        picture.save(std::path::Path::new(&folder).join("resized.png")).unwrap();
+    }
+    let after = picture.into_raw();
+    assert!(difference(&before, &after) < 0.02, "{}", difference(&before, &after));
+}
+
+#[test]
+fn a_lost_device_saves_the_run_and_says_where() {
+    if !has_adapter() {
+        return;
+    }
+    let lost = Lost::default();
+    let (device, heard) = (std::sync::Arc::new(std::sync::Mutex::new(None)), lost.clone());
+    let kept = device.clone();
+    let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
+    let mut harness = builder.build_eframe(|cc| {
+        *kept.lock().unwrap() = cc.wgpu_render_state.as_ref().map(|render| render.device.clone());
+        App::kept(cc, Some(Source::BuiltIn("two-faces".to_owned())), None, heard)
+    });
+    settle(&mut harness);
+    let device = device.lock().unwrap().take().unwrap();
+    device.destroy();
+    let begin = Instant::now();
+    while !harness.state().state.is_lost {
+        assert!(begin.elapsed() < Duration::from_secs(20), "nobody has heard of it");
+        let _ = device.poll(wgpu::PollType::Poll);
+        std::thread::sleep(Duration::from_millis(10));
+        harness.run_steps(1);
+    }
+    let told = lost.fault().unwrap().to_string();
+    let path = std::path::PathBuf::from(told.split_whitespace().last().unwrap().trim_end_matches('.'));
+    assert!(told.contains("was lost") && path.exists(), "{told}");
+    std::fs::remove_file(path).unwrap();
+}
+
+#[test]
+fn times_are_shown_and_measured_where_they_are_asked_for() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::ShowTimes);
+    press(&mut harness, Modifiers::NONE, Key::ArrowRight);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("state ").is_some());
+    harness.state_mut().apply(Command::Measure);
+    let begin = Instant::now();
+    while harness.state().state.measuring.is_some() {
+        assert!(begin.elapsed() < Duration::from_secs(60));
+        harness.run_steps(1);
+    }
+    assert!(harness.query_by_label_contains("60 quads on and back").is_some());
 }

@@ -264,13 +264,17 @@ impl eframe::App for App {
             .frame(plain)
             .exact_size(32.0)
             .show(ui, |ui| panels::top::show(ui, state, commands, palette));
-        let time = Panel::bottom("time")
+        // A window that has no room for the timeline does not make it forget its height.
+        let squashed = ui.available_height() < state.bottom + BOTTOM[0];
+        let time = Panel::bottom(if squashed { "time squashed" } else { "time" })
             .frame(plain)
             .default_size(state.bottom)
             .size_range(BOTTOM[0]..=BOTTOM[1])
             .resizable(true)
             .show(ui, |ui| panels::time::show(ui, state, commands, palette));
-        state.bottom = time.response.rect.height();
+        if !squashed {
+            state.bottom = time.response.rect.height();
+        }
         panels::messages::show(ui, state, palette);
         egui::CentralPanel::default().frame(plain).show(ui, |ui| {
             self.layout.show(ui, state, &mut self.views, commands, palette);

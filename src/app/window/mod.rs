@@ -28,6 +28,7 @@ use crate::core::fault::Fault;
 
 pub use app::App;
 pub use command::Command;
+pub use graphics::Lost;
 pub use session::{Goal, Source};
 
 /// The largest window in points: egui's textures end there.

@@ -104,6 +104,8 @@ pub struct State {
     pub undo: Vec<Kept>,
     pub redo: Vec<Kept>,
     pub hovered: Option<Outlined>,
+    /// What a bar of a plot stands for, lit up in the views.
+    pub lit: Vec<Outlined>,
     /// The camera of the main view; none until a mesh is fitted to it.
     pub camera: Option<Camera>,
     /// Whether the main view shows the whole mesh, and its size in points.
@@ -206,6 +208,7 @@ impl State {
             undo: Vec::new(),
             redo: Vec::new(),
             hovered: None,
+            lit: Vec::new(),
             camera: None,
             fitted: true,
             view_size: DVec2::ZERO,
@@ -352,6 +355,7 @@ impl State {
         self.changes.note(&moment.changes, moment.mesh.element_slots());
         self.verdict = moment.verdict.clone();
         self.times.state(moment.took);
+        self.lit.clear();
         self.moment = Some(moment);
         self.answered(asks);
         self.over_epoch += 1;

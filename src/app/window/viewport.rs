@@ -1,17 +1,22 @@
 //! The views: the mesh in space, the same from the other end of the zoom, and through the metric of a node.
 
+mod cameras;
+
 use std::sync::Arc;
 
-use eframe::egui::{self, PaintCallbackInfo, PointerButton, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
+use eframe::egui::{self, PaintCallbackInfo, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::wgpu;
-use glam::{DMat2, DVec2};
+use glam::DVec2;
+
+use cameras::{aim, metric_lens, other_end, steer};
+pub use cameras::{lens_node, middle};
 
 use super::command::Command;
 use super::labels;
 use super::panels::inspector;
 use super::session::Moment;
-use super::state::{Look, State};
+use super::state::State;
 use super::theme::ink;
 use crate::core::convert::candidates::Passed;
 use crate::core::front::sector::Side;
@@ -21,14 +26,7 @@ use crate::render::camera::Camera;
 use crate::render::gpu::{Painter, View};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::pick;
-use crate::render::scene::{self, ColourBy, Decision, Drawn, Outlined, Overlay, Scene, Shading};
-
-/// Points left free around a fitted mesh.
-const MARGIN: f64 = 34.0;
-/// Points for a unit in the metric lens.
-const LENS: f64 = 92.0;
-/// Points for the base segment when the decision is looked at.
-const DECISION: f64 = 180.0;
+use crate::render::scene::{ColourBy, Decision, Drawn, Outlined, Overlay, Scene, Shading};
 
 /// A view beside the main one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +45,8 @@ pub struct Views {
     seen_style: Option<(u64, bool)>,
     seen_over: Option<u64>,
     hint: Option<ElementId>,
+    /// Labels of the views in the frame before.
+    labels: [labels::Memory; 3],
     /// What the open menu is about.
     menu_of: Option<Outlined>,
 }
@@ -98,7 +98,7 @@ impl Views {
         self.hover(ui, &response, state, &moment, &frame, commands);
         self.update(state, &moment, palette, &frame);
         self.paint(ui, 0, &frame, palette);
-        labels::show(ui, &frame, state, &moment, palette, labels::Which::Main);
+        labels::show(ui, &frame, state, &moment, palette, labels::Which::Main, &mut self.labels[0]);
         labels::shading(ui, &frame, &self.shading, palette);
     }
 
@@ -125,8 +125,8 @@ impl Views {
         let frame = Frame { camera, rect };
         self.update(state, &moment, palette, &frame);
         self.paint(ui, if lens == Lens::Metric { 1 } else { 2 }, &frame, palette);
-        let which = if lens == Lens::Metric { labels::Which::Lens } else { labels::Which::Whole };
-        labels::show(ui, &frame, state, &moment, palette, which);
+        let (which, k) = if lens == Lens::Metric { (labels::Which::Lens, 1) } else { (labels::Which::Whole, 2) };
+        labels::show(ui, &frame, state, &moment, palette, which, &mut self.labels[k]);
     }
 
     fn hover(
@@ -224,6 +224,7 @@ impl Views {
                 refused: &refused(moment),
                 picked: state.kept.picked,
                 hovered: state.hovered,
+                lit: &state.lit,
                 background: background.map(|opened| &opened.background.mesh),
             };
             Arc::make_mut(&mut self.scene).set_overlay(&overlay, state.kept.layers, palette);
@@ -279,117 +280,6 @@ fn whole_pixels(rect: Rect, pixels: f32) -> Rect {
         egui::pos2(whole(rect.min.x), whole(rect.min.y)),
         egui::pos2(whole(rect.max.x).max(rect.min.x + 1.0), whole(rect.max.y).max(rect.min.y + 1.0)),
     )
-}
-
-/// The camera of the main view, after what was asked of it.
-fn aim(state: &mut State, moment: &Moment, size: DVec2) -> Camera {
-    let bounds = scene::bounds(&moment.mesh).unwrap_or([DVec2::ZERO, DVec2::ONE]);
-    let fitted = Camera::fit(bounds, size, MARGIN);
-    let mut camera = state.camera.unwrap_or(fitted);
-    // A view that still shows the whole mesh goes on doing so when its size changes.
-    if state.fitted && state.view_size != size {
-        camera = fitted;
-    }
-    state.view_size = size;
-    match state.look.take() {
-        None => {}
-        Some(Look::Fit) => (camera, state.fitted) = (fitted, true),
-        Some(Look::Decision) => {
-            if let Some([a, b]) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
-                near(&mut camera, moment, [a, b]);
-                state.fitted = false;
-            }
-        }
-        Some(Look::At(what)) => {
-            if let Some(p) = middle(moment, what) {
-                let scale = camera.scale;
-                camera.look_at(p, scale);
-                state.fitted = false;
-            }
-        }
-    }
-    if state.camera.is_some_and(|before| before != camera) && state.fitted && camera != fitted {
-        state.fitted = false;
-    }
-    camera
-}
-
-fn near(camera: &mut Camera, moment: &Moment, [a, b]: [NodeId; 2]) {
-    let mesh = &moment.mesh;
-    if mesh.has_node(a) && mesh.has_node(b) {
-        let (p, q) = (mesh.uv(a), mesh.uv(b));
-        camera.look_at(0.5 * (p + q), DECISION / p.distance(q).max(f64::MIN_POSITIVE));
-    }
-}
-
-/// The middle of something that is there.
-pub fn middle(moment: &Moment, what: Outlined) -> Option<DVec2> {
-    let mesh = &moment.mesh;
-    match what {
-        Outlined::Node(node) => mesh.has_node(node).then(|| mesh.uv(node)),
-        Outlined::Edge([a, b]) => (mesh.has_node(a) && mesh.has_node(b)).then(|| 0.5 * (mesh.uv(a) + mesh.uv(b))),
-        Outlined::Element(e) => mesh.has_element(e).then(|| {
-            let corners: Vec<DVec2> = mesh.corners(e).map(|n| mesh.uv(n)).collect();
-            corners.iter().sum::<DVec2>() / corners.len() as f64
-        }),
-    }
-}
-
-/// Pan by dragging, zoom by the wheel or two fingers, turn by dragging with the second button.
-fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect) {
-    let drag = response.drag_delta();
-    let by = DVec2::new(f64::from(drag.x), f64::from(drag.y));
-    if response.dragged_by(PointerButton::Primary) || response.dragged_by(PointerButton::Middle) {
-        camera.pan(by);
-    } else if response.dragged_by(PointerButton::Secondary) {
-        camera.orbit(by);
-    }
-    let Some(at) = response.hover_pos() else { return };
-    let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-    let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
-    if factor != 1.0 {
-        let frame = Frame { camera: *camera, rect };
-        camera.zoom(factor, frame.inside(at), frame.size());
-    }
-}
-
-/// The node whose metric the lens shows, and the node that lies to its right: A and B of what is picked or of the decision.
-pub fn lens_node(state: &State, moment: &Moment) -> Option<(NodeId, Option<NodeId>)> {
-    let found = match (state.kept.picked, state.picked_segment().or(Decision::of(&moment.phase).base)) {
-        (Some(Outlined::Node(node)), _) => (node, None),
-        (_, Some([a, b])) => (a, Some(b)),
-        _ => return None,
-    };
-    moment.mesh.has_node(found.0).then_some(found)
-}
-
-/// The metric of that node: its symmetric root, turned so that A to B runs right and the live side is up.
-fn metric_lens(state: &State, moment: &Moment) -> Option<Camera> {
-    let mesh = &moment.mesh;
-    let (node, towards) = lens_node(state, moment)?;
-    let root = mesh.metric(node).sqrt();
-    let root = DMat2::from_cols(DVec2::new(root.uu, root.uv), DVec2::new(root.uv, root.vv));
-    let towards = towards.filter(|b| mesh.has_node(*b));
-    let along = towards.map(|b| (root * (mesh.uv(b) - mesh.uv(node))).normalize_or(DVec2::X));
-    let turn = along.map_or(DMat2::IDENTITY, |d| DMat2::from_cols(DVec2::new(d.x, -d.y), DVec2::new(d.y, d.x)));
-    let mut camera = Camera::through_lens(mesh.uv(node), turn * root, LENS);
-    if along.is_some() {
-        // The base runs right from A: what comes of it lies up and to the right.
-        camera.pan(DVec2::new(-40.0, 60.0));
-    }
-    Some(camera)
-}
-
-/// The other end of the zoom: the whole mesh, or the decision where the main view shows the whole already.
-fn other_end(state: &State, moment: &Moment, size: DVec2) -> Option<Camera> {
-    let whole = Camera::fit(scene::bounds(&moment.mesh)?, size, 14.0);
-    let decision = Decision::of(&moment.phase).base.or(state.picked_segment());
-    let mut camera = whole;
-    if let (true, Some(ends)) = (state.fitted, decision) {
-        near(&mut camera, moment, ends);
-        camera.scale *= 0.7;
-    }
-    Some(camera)
 }
 
 /// What egui's renderer is handed: the scene as it was when the frame was made.

@@ -72,6 +72,8 @@ pub struct Overlay<'a> {
     pub picked: Option<Outlined>,
     /// What the pointer is over.
     pub hovered: Option<Outlined>,
+    /// What a plot or a list has lit up.
+    pub lit: &'a [Outlined],
     /// The mesh at step 0, where that layer is on.
     pub background: Option<&'a Mesh>,
 }
@@ -90,6 +92,7 @@ impl Scene {
         self.add_changed(&mut over, overlay, palette);
         self.under.replace(&over, self.generation);
         over.clear();
+        self.add_lit(&mut over, overlay, palette);
         self.add_hover(&mut over, &mut dots, overlay, palette);
         self.add_front(&mut over, overlay, layers, palette);
         self.add_picked(&mut over, &mut dots, overlay, palette);
@@ -144,6 +147,21 @@ impl Scene {
             for segment in overlay.front.iter().filter(|s| s.class == class) {
                 let k = usize::from(class) - 1;
                 self.add(over, overlay.mesh, [segment.a, segment.b], palette.front[k], FRONT[k]);
+            }
+        }
+    }
+
+    fn add_lit(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, palette: &Palette) {
+        let mesh = overlay.mesh;
+        for what in overlay.lit {
+            match *what {
+                Outlined::Edge(ends) => self.add(over, mesh, ends, palette.selection, 2.5),
+                Outlined::Element(e) if mesh.has_element(e) => {
+                    for h in mesh.half_edges(e) {
+                        self.add(over, mesh, [mesh.origin(h), mesh.target(h)], palette.selection, 2.0);
+                    }
+                }
+                _ => {}
             }
         }
     }
@@ -274,6 +292,7 @@ mod tests {
             refused: &[[NodeId(0), NodeId(2)]],
             picked: None,
             hovered: None,
+            lit: &[],
             background: None,
         };
         let mut scene = Scene::default();
@@ -297,6 +316,7 @@ mod tests {
             refused: &[],
             picked: Some(Outlined::Edge([NodeId(0), NodeId(9)])),
             hovered: Some(Outlined::Element(ElementId(9))),
+            lit: &[Outlined::Element(ElementId(5)), Outlined::Edge([NodeId(8), NodeId(9)])],
             background: None,
         };
         let mut scene = Scene::default();

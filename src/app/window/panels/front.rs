@@ -133,8 +133,18 @@ fn table(
         .auto_shrink(false)
         .animate_scrolling(false)
         .cell_layout(Layout::right_to_left(Align::Center));
-    for (_, _, width, _) in COLUMNS {
-        builder = builder.column(Column::exact(width));
+    // Node numbers of large meshes need more room; the loop is told elsewhere where there is only one.
+    let most = moment.front.iter().map(|s| s.a.max(s.b).0).max().unwrap_or(0);
+    let digits = most.max(1).ilog10() as f32 + 1.0;
+    let one_loop = moment.loops.len() < 2;
+    for (column, _, width, _) in COLUMNS {
+        builder = builder.column(Column::exact(match column {
+            FrontColumn::Nodes => width.max(14.5 * digits + 22.0),
+            FrontColumn::HValue if digits > 4.0 => 44.0,
+            FrontColumn::Level if one_loop => 25.0,
+            FrontColumn::Loop if one_loop => 5.0,
+            _ => width,
+        }));
     }
     builder = builder.column(Column::remainder().at_least(2.0));
     let wanted = edge(state.scroll_to.take());
@@ -144,7 +154,11 @@ fn table(
     let mut pointed = None;
     let table = builder.header(22.0, |mut header| {
         for (column, name, _, tip) in COLUMNS {
-            header.col(|ui| head(ui, state, column, name, tip, palette));
+            header.col(|ui| {
+                if !(one_loop && column == FrontColumn::Loop) {
+                    head(ui, state, column, name, tip, palette);
+                }
+            });
         }
         header.col(|_| {});
     });
@@ -164,7 +178,7 @@ fn table(
                 words::degrees(segment.theta[0]),
                 words::degrees(segment.theta[1]),
                 segment.level.to_string(),
-                (moment.rows[place].front_loop + 1).to_string(),
+                if one_loop { String::new() } else { (moment.rows[place].front_loop + 1).to_string() },
             ];
             for (k, text) in texts.into_iter().enumerate() {
                 row.col(|ui| {

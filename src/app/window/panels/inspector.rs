@@ -52,6 +52,12 @@ fn title(ui: &mut Ui, text: String, palette: &Palette) {
     ui.label(RichText::new(text).font(theme::semibold(theme::TITLE)).color(ink(palette.strong)));
 }
 
+/// What can be done with what is shown.
+fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Command>) {
+    ui.add_space(3.0);
+    ui.horizontal_wrapped(|ui| past::actions(ui, state, what, commands));
+}
+
 /// A line of formulas: `_{x}` is set low, `**x**` stands out.
 fn formula(ui: &mut Ui, text: &str, palette: &Palette) -> Response {
     ui.label(theme::formula(text, theme::FORMULA, ink(palette.text), ink(palette.strong)))

@@ -24,7 +24,13 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
     head(ui, "Edge lengths in the metric (fig. 23)", format!("mean {}, unit is 1", words::fixed(mean, 3)), palette);
     let [dead, live] = edges;
     let series = [("quads", dead, palette.front[1]), ("triangles", live, palette.hint)];
-    chart(ui, "lengths", half, [0.0, LONGEST], series, palette);
+    if let Some([low, high]) = chart(ui, "lengths", half, [0.0, LONGEST], series, palette) {
+        let mesh = &moment.mesh;
+        let fits = |length: f64| length >= low && (length < high || high >= LONGEST);
+        let edges = mesh.edges().filter(|h| fits(mesh.length(*h)));
+        let lit = edges.map(|h| Outlined::Edge([mesh.origin(h), mesh.target(h)])).collect();
+        light(state, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
+    }
     let (least, greatest, worst) = corner_angles(&moment);
     let note = match worst {
         Some((e, angle)) => format!("smallest {}°, of element {}", words::degrees(angle), e.0),
@@ -36,7 +42,24 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         commands.push(Command::Pick(Some(Outlined::Element(e))));
     }
     let series = [("least", least, palette.front[1]), ("greatest", greatest, palette.front[2])];
-    chart(ui, "angles", half, [0.0, 180.0], series, palette);
+    if let Some([low, high]) = chart(ui, "angles", half, [0.0, 180.0], series, palette) {
+        let mesh = &moment.mesh;
+        let fits = |angle: f64| (low..high).contains(&angle.to_degrees());
+        let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && angles(mesh, *e).into_iter().any(fits));
+        let lit = quads.map(Outlined::Element).collect();
+        light(
+            state,
+            lit,
+            &format!("quads with such an angle of {}° to {}°", words::fixed(low, 0), words::fixed(high, 0)),
+        );
+    }
+}
+
+/// Lights up what a bar stands for.
+fn light(state: &mut State, lit: Vec<Outlined>, what: &str) {
+    state.notice(format!("{} {what} are lit up in the views.", words::grouped(lit.len() as u64)));
+    state.lit = lit;
+    state.over_epoch += 1;
 }
 
 /// The head of a plot; true where its note was clicked.
@@ -54,7 +77,15 @@ fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
     clicked
 }
 
-fn chart(ui: &mut Ui, id: &str, height: f32, range: [f64; 2], series: [(&str, Vec<u32>, Rgba); 2], palette: &Palette) {
+/// Shows bars; tells the ends of one that was clicked.
+fn chart(
+    ui: &mut Ui,
+    id: &str,
+    height: f32,
+    range: [f64; 2],
+    series: [(&str, Vec<u32>, Rgba); 2],
+    palette: &Palette,
+) -> Option<[f64; 2]> {
     let width = (range[1] - range[0]) / BARS as f64;
     let plot = Plot::new(id)
         .height(height.max(80.0))
@@ -66,7 +97,7 @@ fn chart(ui: &mut Ui, id: &str, height: f32, range: [f64; 2], series: [(&str, Ve
         .legend(Legend::default())
         .include_x(range[0])
         .include_x(range[1]);
-    plot.show(ui, |plot| {
+    let shown = plot.show(ui, |plot| {
         for (k, (name, counts, colour)) in series.into_iter().enumerate() {
             let fill = ink(colour);
             let bars = counts.iter().enumerate().map(|(i, count)| {
@@ -77,6 +108,10 @@ fn chart(ui: &mut Ui, id: &str, height: f32, range: [f64; 2], series: [(&str, Ve
             plot.bar_chart(BarChart::new(name, bars.collect()).color(ink(colour)));
         }
     });
+    let at = shown.response.interact_pointer_pos().filter(|_| shown.response.clicked())?;
+    let x = shown.transform.value_from_position(at).x;
+    let bar = ((x - range[0]) / width).floor();
+    (0.0..BARS as f64).contains(&bar).then(|| [range[0] + bar * width, range[0] + (bar + 1.0) * width])
 }
 
 /// Counts of edges of quadrilaterals and of live triangles by metric length, and the mean length of all.

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{elements, ends, formula, gone, heading, note, title};
+use super::{actions, elements, ends, formula, gone, heading, note, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -10,6 +10,7 @@ use crate::app::window::words;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::run::explain::{EdgeKind, EdgeTold};
 use crate::render::palette::Palette;
+use crate::render::scene::Outlined;
 
 pub fn show(
     ui: &mut Ui,
@@ -31,6 +32,7 @@ pub fn show(
     };
     let boundary = if told.is_boundary && told.kind != EdgeKind::Boundary { "  ·  on the boundary" } else { "" };
     ui.label(note(format!("{kind}{boundary}"), palette));
+    actions(ui, state, Outlined::Edge(between), commands);
     heading(ui, "Length", "eqs. 4, 5", palette);
     let text =
         format!("**{}** metric,  {} in space", words::fixed(told.length_metric, 2), words::size(told.length_physical));

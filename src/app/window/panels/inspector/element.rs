@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{ends, formula, gone, heading, note, title};
+use super::{actions, ends, formula, gone, heading, note, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -10,6 +10,7 @@ use crate::app::window::words;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::run::explain::ElementTold;
 use crate::render::palette::Palette;
+use crate::render::scene::Outlined;
 
 pub fn show(
     ui: &mut Ui,
@@ -26,6 +27,7 @@ pub fn show(
     title(ui, format!("{} {}", if told.is_live { "Triangle" } else { "Quadrilateral" }, e.0), palette);
     let state_of = if told.is_live { "live".to_owned() } else { format!("dead  ·  level {}", told.level) };
     ui.label(note(format!("{state_of}  ·  region {}", told.region), palette));
+    actions(ui, state, Outlined::Element(e), commands);
     heading(ui, "Quality", "0 to 1, in the metric", palette);
     formula(ui, &format!("**{}**", words::fixed(told.quality, 2)), palette);
     heading(ui, "Angles", "degrees, at its nodes", palette);

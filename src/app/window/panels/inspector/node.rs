@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{axis, elements, formula, gone, heading, note, title};
+use super::{actions, axis, elements, formula, gone, heading, note, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -25,6 +25,7 @@ pub fn show(
     let Some(told) = NodeTold::of(mesh, node) else { return gone(ui, "The node", palette) };
     let place = if told.is_fixed { "on the boundary: it stays" } else { "free: it may be moved" };
     ui.label(note(format!("{place}  ·  {} edges", told.valence), palette));
+    actions(ui, state, Outlined::Node(node), commands);
     heading(ui, "Place", "plane case: u = x, v = y", palette);
     let [x, y, z] = told.xyz.map(words::size);
     formula(ui, &format!("x = **{x}**   y = **{y}**   z = {z}"), palette);

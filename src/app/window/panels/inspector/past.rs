@@ -13,8 +13,6 @@ use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
 pub fn show(ui: &mut Ui, state: &mut State, what: Outlined, commands: &mut Vec<Command>, palette: &Palette) {
-    ui.add_space(8.0);
-    ui.horizontal_wrapped(|ui| actions(ui, state, what, commands));
     let Some(past) = state.past(watched(what)) else { return };
     heading(ui, "What became of it", "up to this step", palette);
     if let Some((step, eaten)) = &past.made {

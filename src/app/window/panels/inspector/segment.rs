@@ -42,14 +42,16 @@ pub fn show(
         }
         ui.label(note(about, palette));
     });
-    if !is_base {
-        ui.add_space(4.0);
+    let what = Outlined::Edge([s.a, s.b]);
+    ui.add_space(3.0);
+    ui.horizontal_wrapped(|ui| {
         let tip = "In place of the base that was just selected, or else at the next selection, whatever its rank: a change of \
                    the run";
-        if ui.button("Choose as base").on_hover_text(tip).clicked() {
+        if !is_base && ui.button("Choose as base").on_hover_text(tip).clicked() {
             commands.push(Command::ChooseBase([s.a, s.b]));
         }
-    }
+        super::past::actions(ui, state, what, commands);
+    });
     h_value(ui, moment, s, palette);
     heading(ui, "Frontal angles", "metric of the node", palette);
     for (side, name) in Side::BOTH.into_iter().zip(["A", "B"]) {

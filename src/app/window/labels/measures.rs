@@ -1,0 +1,140 @@
+//! What is measured against: metric ellipses, the unit grid of the lens, the frame of the main view, scale bar and axes, and the
+//! legend of colours.
+
+use eframe::egui::{Align2, Pos2, Rect, Shape, Stroke, Ui, Vec2};
+use glam::DVec2;
+
+use super::{ELLIPSE, MOST_ELLIPSES, Over};
+use crate::app::window::state::State;
+use crate::app::window::theme::{self, ink};
+use crate::app::window::viewport::{self, Frame};
+use crate::app::window::words;
+use crate::render::palette::Palette;
+use crate::render::scene::{ColourBy, Shading};
+
+impl Over<'_> {
+    pub(super) fn ellipses(&self) {
+        let mesh = &self.moment.mesh;
+        let mut shown = 0;
+        for node in mesh.nodes() {
+            let p = mesh.uv(node);
+            if !self.frame.rect.contains(self.frame.place(p)) {
+                continue;
+            }
+            let ([small, large], [along, across]) = mesh.metric(node).eigen();
+            let axes = [along * (ELLIPSE / small.sqrt()), across * (ELLIPSE / large.sqrt())];
+            let centre = self.frame.place(p);
+            if axes.iter().any(|axis| self.frame.place(p + *axis).distance(centre) < 4.0) {
+                continue;
+            }
+            let point = |k: i32| {
+                let t = f64::from(k) * std::f64::consts::TAU / 48.0;
+                self.frame.place(p + axes[0] * libm::cos(t) + axes[1] * libm::sin(t))
+            };
+            let stroke = Stroke::new(1.0, ink(self.palette.ellipse));
+            self.painter.add(Shape::closed_line((0..48).map(point).collect(), stroke));
+            shown += 1;
+            if shown == MOST_ELLIPSES {
+                break;
+            }
+        }
+    }
+
+    /// The unit circle around the node of the lens, dashed, over a unit grid.
+    pub(super) fn unit_grid(&self, state: &State) {
+        let (frame, palette) = (self.frame, self.palette);
+        let Some(origin) = viewport::lens_node(state, self.moment).and_then(|node| self.place(node.0)) else {
+            return;
+        };
+        let unit = frame.camera.scale as f32;
+        let grid = Stroke::new(1.0, ink(palette.line));
+        let lines = |from: f32, least: f32, most: f32| {
+            let first = ((least - from) / unit).ceil() as i32;
+            let last = ((most - from) / unit).floor() as i32;
+            (first..=last).map(move |k| from + unit * k as f32)
+        };
+        for x in lines(origin.x, frame.rect.left(), frame.rect.right()) {
+            self.painter.vline(x, frame.rect.y_range(), grid);
+        }
+        for y in lines(origin.y, frame.rect.top(), frame.rect.bottom()) {
+            self.painter.hline(frame.rect.x_range(), y, grid);
+        }
+        let circle: Vec<Pos2> =
+            (0..=96).map(|k| origin + unit * Vec2::angled(k as f32 * std::f32::consts::TAU / 96.0)).collect();
+        let stroke = Stroke::new(1.0, ink(palette.weak));
+        self.painter.extend(Shape::dashed_line(&circle, stroke, 4.0, 4.0));
+    }
+
+    /// What the main view shows, as a frame; only where it is smaller than this view.
+    pub(super) fn main_frame(&self, state: &State) {
+        let Some(camera) = state.camera.filter(|_| !state.fitted) else { return };
+        let size = state.view_size;
+        let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), size, DVec2::new(0.0, size.y)];
+        let corners = corners.map(|at| camera.unproject(at, size).map(|p| self.frame.place(p)));
+        if let [Some(a), Some(b), Some(c), Some(d)] = corners {
+            let stroke = Stroke::new(1.25, ink(self.palette.selection));
+            self.painter.add(Shape::closed_line(vec![a, b, c, d], stroke));
+        }
+    }
+
+    pub(super) fn scale_bar(&self) {
+        let scale = self.frame.camera.points_per_unit();
+        let wanted = 120.0 / scale;
+        let power = libm::pow(10.0, libm::floor(libm::log10(wanted)));
+        let length = [5.0, 2.0, 1.0].into_iter().map(|k| k * power).find(|l| *l <= wanted).unwrap_or(power);
+        let (left, y) = (self.frame.rect.left() + 18.0, self.frame.rect.bottom() - 20.0);
+        let right = left + (length * scale) as f32;
+        let stroke = Stroke::new(1.0, ink(self.palette.weak));
+        self.painter.hline(left..=right, y, stroke);
+        for x in [left, right] {
+            self.painter.vline(x, y - 3.0..=y + 3.0, stroke);
+        }
+        let text = if (1e-4..1e5).contains(&length) { format!("{length}") } else { words::size(length) };
+        let text = if text.len() > 8 { words::size(length) } else { text };
+        let at = Pos2::new(right + 8.0, y);
+        self.painter.text(at, Align2::LEFT_CENTER, text, theme::regular(11.5), ink(self.palette.weak));
+    }
+
+    pub(super) fn axes(&self) {
+        let origin = self.frame.rect.right_bottom() + Vec2::new(-42.0, -20.0);
+        let stroke = Stroke::new(1.0, ink(self.palette.weak));
+        let centre = self.frame.camera.centre;
+        let at = |p: glam::DVec3| self.frame.camera.project(p, self.frame.size());
+        for (axis, name) in [(glam::DVec3::X, "x"), (glam::DVec3::Y, "y")] {
+            let d = (at(centre + axis) - at(centre)) / self.frame.camera.scale;
+            let d = Vec2::new(d.x as f32, d.y as f32);
+            self.painter.line_segment([origin, origin + 24.0 * d], stroke);
+            let text = origin + 32.0 * d;
+            self.painter.text(text, Align2::CENTER_CENTER, name, theme::regular(11.5), ink(self.palette.weak));
+        }
+    }
+}
+
+/// The legend of what elements are coloured by.
+pub fn shading(ui: &Ui, frame: &Frame, shading: &Shading, palette: &Palette) {
+    let Some(map) = shading.by.map() else { return };
+    let painter = ui.painter_at(frame.rect);
+    let (width, height) = (160.0, 8.0);
+    let left = frame.rect.left() + 18.0;
+    let top = frame.rect.bottom() - 62.0;
+    let plate = Rect::from_min_size(Pos2::new(left - 8.0, top - 22.0), Vec2::new(width + 16.0, height + 44.0));
+    painter.rect_filled(plate, 3.0, ink(palette.label_plate));
+    for k in 0..32 {
+        let x = left + width * k as f32 / 32.0;
+        let cell = Rect::from_min_size(Pos2::new(x, top), Vec2::new(width / 32.0 + 0.5, height));
+        painter.rect_filled(cell, 0.0, ink(map.at(k as f32 / 31.0)));
+    }
+    let font = theme::regular(theme::TIMELINE);
+    let scale = if shading.logarithmic { ", logarithmic" } else { "" };
+    let title = format!("{} ({}{scale})", shading.by.name(), map.name());
+    painter.text(Pos2::new(left, top - 5.0), Align2::LEFT_BOTTOM, title, font.clone(), ink(palette.label));
+    let number = |x: f64| match shading.by {
+        ColourBy::Level | ColourBy::Birth => words::grouped(x.max(0.0) as u64),
+        ColourBy::Angle => format!("{}°", words::fixed(x, 0)),
+        ColourBy::Quality => words::fixed(x, 1),
+        _ => words::size(x),
+    };
+    let y = top + height + 3.0;
+    painter.text(Pos2::new(left, y), Align2::LEFT_TOP, number(shading.range[0]), font.clone(), ink(palette.label));
+    painter.text(Pos2::new(left + width, y), Align2::RIGHT_TOP, number(shading.range[1]), font, ink(palette.label));
+}
