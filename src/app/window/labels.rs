@@ -78,17 +78,19 @@ pub fn show(
     if state.kept.layers.ellipses && which == Which::Main {
         over.ellipses();
     }
-    if state.kept.layers.arcs && !small {
-        over.wedges_and_arcs(&decision, which);
-    }
     if !small {
         over.letters(&decision);
     }
     if state.kept.layers.labels && which != Which::Whole {
         over.base(&decision, which);
+    }
+    if state.kept.layers.arcs && !small {
+        over.wedges_and_arcs(&decision, which);
+    }
+    if state.kept.layers.labels && which != Which::Whole {
         if which == Which::Main {
             over.pointed(state);
-            over.front_labels();
+            over.front_labels(&decision);
             over.node_ids(&decision);
         }
     }
@@ -215,9 +217,9 @@ impl Over<'_> {
         self.moment.front.iter().find(|s| [s.a, s.b] == ends || [s.b, s.a] == ends)
     }
 
-    fn front_labels(&mut self) {
+    fn front_labels(&mut self, decision: &Decision) {
         let moment = self.moment;
-        for segment in &moment.front {
+        for segment in moment.front.iter().filter(|s| decision.base != Some([s.a, s.b])) {
             let Some((p, q)) = self.place(segment.a).zip(self.place(segment.b)) else { continue };
             if p.distance(q) < 70.0 || !self.frame.rect.contains(p + 0.5 * (q - p)) {
                 continue;

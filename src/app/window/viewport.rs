@@ -14,7 +14,7 @@ pub use cameras::{lens_node, middle};
 
 use super::command::Command;
 use super::labels;
-use super::panels::inspector;
+use super::panels::{self, inspector};
 use super::session::Moment;
 use super::state::State;
 use super::theme::ink;
@@ -117,9 +117,11 @@ impl Views {
         };
         let Some(camera) = camera else {
             ground(ui);
-            let text = "Pick a node or a front segment to see it in its own metric.";
-            let font = super::theme::regular(super::theme::TABLE);
-            ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, font, ink(palette.weak));
+            let text = "Select a node or a front segment to see it in its own metric.";
+            let inner = Rect::from_center_size(rect.center(), Vec2::new((rect.width() - 40.0).max(1.0), 60.0));
+            ui.scope_builder(egui::UiBuilder::new().max_rect(inner), |ui| {
+                ui.vertical_centered(|ui| ui.add(egui::Label::new(panels::note(text, palette)).wrap()));
+            });
             return;
         };
         let frame = Frame { camera, rect };

@@ -51,7 +51,7 @@ impl Over<'_> {
         }
         let colour = ink(self.palette.label.faded(0.8));
         let mut points = vec![centre];
-        points.extend(arc(centre, legs, 9.0));
+        points.extend(arc(centre, legs, 14.0));
         self.painter.add(Shape::convex_polygon(points, colour, Stroke::NONE));
     }
 

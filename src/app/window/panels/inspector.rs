@@ -72,8 +72,13 @@ fn gone(ui: &mut Ui, what: &str, palette: &Palette) {
     ui.label(note(format!("{what} does not exist at this step."), palette));
 }
 
+/// Points between columns.
+const GAP: f32 = 7.0;
+
 /// One row of a table in columns of fixed widths, the last one taking the rest; what does not fit is cut and told on hover.
 fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground: Option<Rgba>) -> Response {
+    // Numbers stand to the right, words to the left.
+    let left_last = texts.last().is_some_and(|text| text.contains(char::is_alphabetic) && !text.ends_with('°'));
     let full = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(Vec2::new(full, 20.0), Sense::click());
     if let Some(ground) = ground {
@@ -84,13 +89,13 @@ fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground
         let is_last = k + 1 == texts.len();
         let width = if is_last { rect.right() - x } else { widths[k] };
         let cell = Rect::from_min_size(rect.min + Vec2::new(x - rect.left(), 0.0), Vec2::new(width.max(0.0), 20.0));
-        let first = k == 0 || (is_last && widths.len() < texts.len());
+        let first = k == 0 || (is_last && left_last);
         let layout = if first { Layout::left_to_right(Align::Center) } else { Layout::right_to_left(Align::Center) };
         ui.scope_builder(UiBuilder::new().max_rect(cell).layout(layout), |ui| {
             let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
             ui.add(Label::new(text).selectable(false).truncate());
         });
-        x += width + 9.0;
+        x += width + GAP;
     }
     response
 }
@@ -141,8 +146,8 @@ fn ends(
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
-    let widths = [52.0, 44.0, 44.0, 44.0, 44.0, 38.0];
-    table_head(ui, &widths, &["", "x", "y", "h\u{2081}", "h\u{2082}", "h\u{2081} axis °"], palette);
+    let widths = [38.0, 44.0, 44.0, 48.0, 44.0];
+    table_head(ui, &widths, &["", "x", "y", "h\u{2081}", "h\u{2082}", "axis °"], palette);
     for (k, (name, node)) in nodes.iter().enumerate() {
         let p = moment.mesh.uv(*node);
         let told = MetricTold::of(moment.mesh.metric_ref(*node));
@@ -160,7 +165,7 @@ fn ends(
             state.hover(Some(Outlined::Node(*node)));
         }
         let tip = format!(
-            "node {}: M = ({}, {}, {}), \u{3bb} = {} and {}; click to select it",
+            "node {}: h\u{2081} runs along the axis; M = ({}, {}, {}), \u{3bb} = {} and {}; click to select it",
             node.0,
             words::size(told.tensor[0]),
             words::size(told.tensor[1]),

@@ -150,7 +150,7 @@ fn candidates(
         words::degrees(tried.limit)
     );
     ui.add(eframe::egui::Label::new(note(aim, palette)).wrap());
-    let widths = [62.0, 42.0, 42.0, 38.0];
+    let widths = [60.0, 40.0, 34.0, 36.0];
     table_head(ui, &widths, &["edge", "angle °", "off °", "length", "verdict"], palette);
     for (k, candidate) in tried.edges.iter().enumerate() {
         let ends = [from, candidate.node];
