@@ -61,7 +61,7 @@ impl App {
         }
         let mut state = State::new(Arc::new(move || context.request_repaint()));
         let mut layout = Layout::default();
-        let read = path.as_ref().map_or(Ok(None), Settings::read);
+        let read = path.as_deref().map_or(Ok(None), Settings::read);
         let settings = read.unwrap_or_else(|fault| {
             state.complain(&fault);
             None
@@ -90,6 +90,12 @@ impl App {
             written: settings,
             changed: None,
         }
+    }
+
+    /// The same in a program that was started then.
+    pub fn started(mut self, at: Instant) -> App {
+        self.state.times.started = Some(at);
+        self
     }
 
     /// The same in a window that is cleared as [`eframe::App::clear_color`] says.
@@ -178,13 +184,14 @@ impl App {
     fn measure(&mut self, context: &Context, frame: &eframe::Frame) {
         let busy = self.state.is_busy();
         let took = self.state.moment.as_ref().map_or(Duration::ZERO, |moment| moment.took);
+        let end = self.state.track.len() as u64;
         let Some(measuring) = &mut self.state.measuring else { return };
         context.request_repaint();
         if let Some(render) = frame.wgpu_render_state() {
             // A frame is done when the card is.
             let _ = render.device.poll(wgpu::PollType::wait_indefinitely());
         }
-        if let Some(goal) = measuring.next(!busy, took) {
+        if let Some(goal) = measuring.next(!busy, took, end) {
             self.state.apply(Command::Go(goal));
         } else if let Some(told) = measuring.told() {
             println!("{told}");
@@ -241,6 +248,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         self.state.times.frame(std::mem::take(&mut self.moving));
+        self.state.times.first(self.views.has_shown());
         self.state.hear();
         self.graphics(&context);
         self.measure(&context, frame);

@@ -87,12 +87,10 @@ pub fn show(
     if state.kept.layers.arcs && !small {
         over.wedges_and_arcs(&decision, which);
     }
-    if state.kept.layers.labels && which != Which::Whole {
-        if which == Which::Main {
-            over.pointed(state);
-            over.front_labels(&decision);
-            over.node_ids(&decision);
-        }
+    if state.kept.layers.labels && which == Which::Main {
+        over.pointed(state);
+        over.front_labels(&decision);
+        over.node_ids(&decision);
     }
     if which == Which::Main {
         over.scale_bar();

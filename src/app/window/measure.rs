@@ -6,6 +6,8 @@ use super::session::Goal;
 
 /// Quadrilaterals that are stepped on, and back again.
 const QUADS: usize = 60;
+/// Leaps to steps all over the run.
+const LEAPS: usize = 20;
 /// A pause between two frames that is longer is no frame's own.
 const PAUSE: Duration = Duration::from_secs(2);
 
@@ -15,9 +17,19 @@ pub struct Times {
     state: Option<Duration>,
     frame: Option<Duration>,
     begun: Option<Instant>,
+    /// When the program was started, and how long it took from there to the first picture.
+    pub started: Option<Instant>,
+    first: Option<Duration>,
 }
 
 impl Times {
+    /// A frame begins; `is_shown`: the one before has shown a mesh.
+    pub fn first(&mut self, is_shown: bool) {
+        if is_shown && self.first.is_none() {
+            self.first = self.started.map(|started| started.elapsed());
+        }
+    }
+
     /// A state took so long, from asking to telling.
     pub fn state(&mut self, took: Duration) {
         self.state = Some(took);
@@ -39,7 +51,8 @@ impl Times {
             Some(time) => super::words::fixed(1e3 * time.as_secs_f64(), decimals),
             None => super::words::UNDEFINED.to_owned(),
         };
-        format!("state {} ms  \u{b7}  frame {} ms", told(self.state, 2), told(self.frame, 0))
+        let first = told(self.first, 0);
+        format!("first {first} ms  \u{b7}  state {} ms  \u{b7}  frame {} ms", told(self.state, 2), told(self.frame, 0))
     }
 }
 
@@ -47,9 +60,9 @@ impl Times {
 #[derive(Clone, Debug)]
 pub struct Measuring {
     left: usize,
-    /// Times of states and of frames, on and back.
-    states: [Vec<f64>; 2],
-    frames: [Vec<f64>; 2],
+    /// Times of states and of frames: on, back, leaping.
+    states: [Vec<f64>; 3],
+    frames: [Vec<f64>; 3],
     asked: Option<Instant>,
     /// Whether the state came after the frame that asked for it.
     late: bool,
@@ -57,14 +70,21 @@ pub struct Measuring {
 
 impl Default for Measuring {
     fn default() -> Self {
-        Measuring { left: 2 * QUADS, states: Default::default(), frames: Default::default(), asked: None, late: false }
+        Measuring {
+            left: 2 * QUADS + LEAPS,
+            states: Default::default(),
+            frames: Default::default(),
+            asked: None,
+            late: false,
+        }
     }
 }
 
 impl Measuring {
     /// At the beginning of a frame: where the state that was asked for has been shown by the frame before, asks for the next.
     /// `took`: how long that state took. None while it is not there.
-    pub fn next(&mut self, is_there: bool, took: Duration) -> Option<Goal> {
+    /// `end`: the last step that is known.
+    pub fn next(&mut self, is_there: bool, took: Duration, end: u64) -> Option<Goal> {
         if !is_there {
             self.late = true;
             return None;
@@ -73,14 +93,23 @@ impl Measuring {
             // It came after its frame was begun, and is shown by this one.
             return None;
         }
+        let kind = |left: usize| match left.checked_sub(LEAPS) {
+            None => 2,
+            Some(left) => usize::from(left < QUADS),
+        };
         if let Some(asked) = self.asked.take() {
-            let back = usize::from(self.left < QUADS);
-            self.states[back].push(1e3 * took.as_secs_f64());
-            self.frames[back].push(1e3 * asked.elapsed().as_secs_f64());
+            let kind = kind(self.left);
+            self.states[kind].push(1e3 * took.as_secs_f64());
+            self.frames[kind].push(1e3 * asked.elapsed().as_secs_f64());
         }
         self.left = self.left.checked_sub(1)?;
         self.asked = Some(Instant::now());
-        Some(Goal::Quads(if self.left >= QUADS { 1 } else { -1 }))
+        Some(match kind(self.left) {
+            0 => Goal::Quads(1),
+            1 => Goal::Quads(-1),
+            // Neighbours in time are far from each other in the run.
+            _ => Goal::Step(end * (self.left * 7 % LEAPS) as u64 / LEAPS as u64),
+        })
     }
 
     /// What was measured, where it is done.
@@ -95,11 +124,11 @@ impl Measuring {
             let told = |share| super::words::fixed(at(share).unwrap_or(f64::NAN), decimals);
             format!("{} ({})", told(0.5), told(1.0))
         };
-        let [on, back] = [0, 1].map(|k| (spread(&self.states[k], 2), spread(&self.frames[k], 0)));
+        let [on, back, leap] = [0, 1, 2].map(|k| (spread(&self.states[k], 2), spread(&self.frames[k], 0)));
         Some(format!(
-            "{QUADS} quads on and back, milliseconds, median (largest): state {} on, {} back; until the picture stands {} on, \
-             {} back.",
-            on.0, back.0, on.1, back.1
+            "{QUADS} quads on and back, {LEAPS} leaps; milliseconds, median (largest): state {} on, {} back, {} leaping; until the \
+             picture stands {}, {}, {}.",
+            on.0, back.0, leap.0, on.1, back.1, leap.1
         ))
     }
 }

@@ -21,6 +21,7 @@ mod panels;
 mod app;
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use eframe::egui::{Vec2, ViewportBuilder};
 
@@ -39,8 +40,9 @@ const LARGEST: f32 = 8192.0;
 /// # Errors
 /// Where there is no display or no graphics adapter, or where the graphics device is lost.
 pub fn open(source: Source) -> Result<ExitCode, Fault> {
+    let started = Instant::now();
     let path = settings::path();
-    let kept = path.as_ref().and_then(|path| settings::Settings::read(path).ok().flatten());
+    let kept = path.as_deref().and_then(|path| settings::Settings::read(path).ok().flatten());
     let size = kept.and_then(|kept| kept.window).map_or(Vec2::new(1600.0, 1000.0), Vec2::from);
     let least = Vec2::new(720.0, 480.0);
     let options = eframe::NativeOptions {
@@ -63,10 +65,17 @@ pub fn open(source: Source) -> Result<ExitCode, Fault> {
     let shown = eframe::run_native(
         "quadfront",
         options,
-        Box::new(move |cc| Ok(Box::new(App::kept(cc, Some(source), path, watch).cleared()))),
+        Box::new(move |cc| Ok(Box::new(App::kept(cc, Some(source), path, watch).cleared().started(started)))),
     );
     shown.map_err(|error| {
-        Fault::new(format!("The window cannot be opened: {}", error.to_string().trim_end_matches('.'))).remedy(
+        let what = match &error {
+            eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => "there is no display".to_owned(),
+            eframe::Error::Wgpu(_) => {
+                format!("there is no graphics adapter ({})", error.to_string().trim_end_matches('.'))
+            }
+            _ => error.to_string().trim_end_matches('.').to_owned(),
+        };
+        Fault::new(format!("The window cannot be opened: {what}")).remedy(
             "It needs a display and a graphics driver; on Debian: apt-get install libvulkan1 mesa-vulkan-drivers. \
              quadfront convert and quadfront render work without",
         )

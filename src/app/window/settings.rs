@@ -1,7 +1,7 @@
 //! What is kept of the window from one start to the next: where its panels are, what it draws, and how large it is. A small file in
 //! the user's own folder for such things; one that cannot be read is told and left out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -74,7 +74,7 @@ impl Settings {
     ///
     /// # Errors
     /// A file that is there and cannot be read.
-    pub fn read(path: &PathBuf) -> Result<Option<Settings>, Fault> {
+    pub fn read(path: &Path) -> Result<Option<Settings>, Fault> {
         let fault = |what: String| {
             Fault::new(format!("What was kept of the window cannot be read: {what}"))
                 .at(path.display().to_string())
@@ -96,7 +96,7 @@ impl Settings {
     ///
     /// # Errors
     /// What the system says.
-    pub fn write(&self, path: &PathBuf) -> Result<(), Fault> {
+    pub fn write(&self, path: &Path) -> Result<(), Fault> {
         let text = serde_json::to_string_pretty(self).map_err(|error| Fault::new(error.to_string()))?;
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|error| {

@@ -81,6 +81,11 @@ impl Frame {
 }
 
 impl Views {
+    /// Whether a mesh has been shown.
+    pub fn has_shown(&self) -> bool {
+        self.seen_style.is_some()
+    }
+
     /// The main view.
     pub fn space(&mut self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());

@@ -105,5 +105,5 @@ fn a_view_that_has_not_changed_sends_and_draws_nothing() {
     scene.over.set(0, white, 2);
     scene.generation += 1;
     assert_ne!(pixels(&mut painter, &device, &queue, &view(), &scene), before);
-    assert_eq!(painter.bytes_sent() - sent, (scene.over.items().len() * size_of::<Line>()) as u64);
+    assert_eq!(painter.bytes_sent() - sent, size_of_val(scene.over.items()) as u64);
 }
