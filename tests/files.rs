@@ -188,6 +188,37 @@ fn obj_takes_every_form_of_a_face() {
 }
 
 #[test]
+fn an_independent_reader_finds_in_our_obj_what_we_wrote() {
+    let mesh = plates();
+    let bytes = bytes_of(Format::Obj, &mesh, TEXT);
+    let (models, _) =
+        tobj::load_obj_buf(&mut &bytes[..], &tobj::LoadOptions::default(), |_| Ok(Default::default())).unwrap();
+    let mut faces = Vec::new();
+    for model in &models {
+        let position = |k: &u32| {
+            let p = &model.mesh.positions[3 * *k as usize..][..3];
+            [p[0], p[1], p[2]]
+        };
+        let corners: Vec<[f64; 3]> = model.mesh.indices.iter().map(position).collect();
+        // Where all faces of a group are triangles there are no arities.
+        let sides =
+            if model.mesh.face_arities.is_empty() { &vec![3; corners.len() / 3] } else { &model.mesh.face_arities };
+        let mut rest = &corners[..];
+        for &n in sides {
+            let (face, after) = rest.split_at(n as usize);
+            faces.push((model.name.clone(), face.to_vec()));
+            rest = after;
+        }
+    }
+    let place = |k: &u32| mesh.points[*k as usize].to_array();
+    let name = |tag: u32| mesh.group_name(2, tag).unwrap().replace(' ', "_");
+    let triangles =
+        mesh.triangles.iter().zip(&mesh.triangle_tags).map(|(t, &tag)| (name(tag), t.iter().map(place).collect()));
+    let quads = mesh.quads.iter().zip(&mesh.quad_tags).map(|(q, &tag)| (name(tag), q.iter().map(place).collect()));
+    assert_eq!(faces, triangles.chain(quads).collect::<Vec<(String, Vec<[f64; 3]>)>>());
+}
+
+#[test]
 fn groups_of_obj_are_regions_and_come_back() {
     let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no all\ng left side\nf 1 2 3\ng right\nf 1 3 4\ng left\nf 1 2 4\n";
     let mesh = read_bytes("a.obj", text.as_bytes(), Format::Obj).unwrap();

@@ -94,12 +94,8 @@ impl<'a> Import<'a> {
     fn checked(file: &'a MeshFile) -> Result<Self, Fault> {
         let (n, quads) = (file.triangles.len(), file.quads.len());
         if quads > 0 {
-            let what = if n == 0 {
-                format!("The mesh has quadrilaterals already: all of its {quads} elements")
-            } else {
-                format!("{quads} of its {} elements are quadrilaterals", n + quads)
-            };
-            return Err(Fault::new(what).remedy("Give a mesh of triangles only"));
+            return Err(Fault::new(format!("The mesh has quadrilaterals already: all of its {quads} elements"))
+                .remedy("Give a mesh of triangles"));
         }
         if n == 0 {
             let skipped: Vec<String> = file.skipped.iter().map(|(kind, n)| format!("{n} {kind}")).collect();

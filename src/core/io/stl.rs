@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::mesh_file::{Group, MeshFile};
 use super::scan::{Scanner, shown};
-use super::weld::{SINGLE, weld};
+use super::weld::{SINGLE, Welder, weld};
 use crate::core::fault::Fault;
 
 /// What stands before the triangles of a binary file: 80 bytes of anything and their number.
@@ -19,24 +19,16 @@ const TRIANGLE: usize = 50;
 /// # Errors
 /// With the line or the byte: words that are not STL's, numbers that are none or not finite, a file that is cut off.
 pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
-    let mut corners = Vec::new();
-    let mut mesh = MeshFile::default();
     // A binary file may begin with the word "solid" too: its length tells.
     if bytes.len() >= HEADER && is_binary(bytes) {
-        read_binary(name, bytes, &mut corners)?;
-    } else if bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
-        read_text(Scanner::new(name, bytes), &mut corners, &mut mesh)?;
-    } else {
-        return Err(Fault::new(
-            "This is not STL: it does not begin with \"solid\", and its length is not that of binary STL",
-        )
-        .at(name)
-        .remedy("It may be cut off: write it again"));
+        return read_binary(name, bytes);
     }
-    let (points, standing) = weld(&corners, SINGLE);
-    mesh.points = points;
-    mesh.triangles = standing.as_chunks().0.to_vec();
-    Ok(mesh)
+    if bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
+        return read_text(Scanner::new(name, bytes));
+    }
+    Err(Fault::new("This is not STL: it does not begin with \"solid\", and its length is not that of binary STL")
+        .at(name)
+        .remedy("It may be cut off: write it again"))
 }
 
 /// Whether the length is that of the number of triangles which a binary file announces.
@@ -45,30 +37,34 @@ fn is_binary(bytes: &[u8]) -> bool {
     bytes.len() - HEADER == count.saturating_mul(TRIANGLE)
 }
 
-fn read_binary(name: &str, bytes: &[u8], corners: &mut Vec<DVec3>) -> Result<(), Fault> {
+fn read_binary(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes);
     s.set_binary();
-    let triangles = &bytes[HEADER..];
-    corners.reserve_exact(3 * triangles.len() / TRIANGLE);
-    for (i, triangle) in triangles.chunks_exact(TRIANGLE).enumerate() {
-        for corner in 0..3 {
-            let mut p = DVec3::ZERO;
-            for axis in 0..3 {
-                let at = 12 * (corner + 1) + 4 * axis;
-                let number = [0, 1, 2, 3].map(|k| triangle[at + k]);
-                p[axis] = f64::from(f32::from_le_bytes(number));
-            }
+    let triangles = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
+    let corner = |triangle: &[u8; TRIANGLE], corner: usize| {
+        let axis = |axis: usize| {
+            let at = 12 * (corner + 1) + 4 * axis;
+            f64::from(f32::from_le_bytes([0, 1, 2, 3].map(|k| triangle[at + k])))
+        };
+        DVec3::new(axis(0), axis(1), axis(2))
+    };
+    let mut largest: f64 = 0.0;
+    for (i, triangle) in triangles.iter().enumerate() {
+        for p in [0, 1, 2].map(|k| corner(triangle, k)) {
             if !p.is_finite() {
                 let what = format!("Triangle {} has a corner at {}, {}, {}", i + 1, p.x, p.y, p.z);
                 return Err(s.fault_at(HEADER + i * TRIANGLE, what).remedy("Coordinates must be finite numbers"));
             }
-            corners.push(p);
+            largest = largest.max(p.abs().max_element());
         }
     }
-    Ok(())
+    let mut welder = Welder::new(SINGLE, largest);
+    let triangles = triangles.iter().map(|t| [0, 1, 2].map(|k| welder.weld(corner(t, k)))).collect();
+    Ok(MeshFile { triangles, points: welder.points(), ..MeshFile::default() })
 }
 
-fn read_text(mut s: Scanner, corners: &mut Vec<DVec3>, mesh: &mut MeshFile) -> Result<(), Fault> {
+fn read_text(mut s: Scanner) -> Result<MeshFile, Fault> {
+    let (mut mesh, mut corners) = (MeshFile::default(), Vec::new());
     let mut solid: u32 = 0;
     while let Some(word) = s.word() {
         if !word.eq_ignore_ascii_case(b"solid") {
@@ -106,7 +102,10 @@ fn read_text(mut s: Scanner, corners: &mut Vec<DVec3>, mesh: &mut MeshFile) -> R
             mesh.triangle_tags.push(solid);
         }
     }
-    Ok(())
+    let (points, standing) = weld(&corners, SINGLE);
+    mesh.points = points;
+    mesh.triangles = standing.as_chunks().0.to_vec();
+    Ok(mesh)
 }
 
 fn keyword(s: &mut Scanner, keyword: &str) -> Result<(), Fault> {

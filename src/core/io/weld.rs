@@ -7,44 +7,64 @@ use rustc_hash::FxHashMap;
 /// For formats in single precision: some rounding errors of the largest coordinate.
 pub const SINGLE: f64 = 4.0 * f32::EPSILON as f64;
 
-/// Joins points that lie within `relative` times the largest coordinate of each other; the first of them stays, in the order
-/// given. Returns the points that stay, and for each point given the place of the one that stands for it. A chain of points
-/// is not drawn together: each is compared with the ones that stay.
-pub fn weld(points: &[DVec3], relative: f64) -> (Vec<DVec3>, Vec<u32>) {
-    let largest = points.iter().filter(|p| p.is_finite()).fold(0.0_f64, |l, p| l.max(p.abs().max_element()));
-    let near = (relative * largest).max(f64::MIN_POSITIVE);
-    // Cells much larger than the distance: a point seldom has to look beyond its own.
-    let cell = 64.0 * near;
-    let mut kept: Vec<DVec3> = Vec::new();
-    let mut standing = Vec::with_capacity(points.len());
-    // The last point of each cell, and for each point the one before it in its cell.
-    let mut last: FxHashMap<[i64; 3], u32> = FxHashMap::default();
-    let mut before: Vec<u32> = Vec::new();
-    for &p in points {
-        let key = |p: DVec3| (p / cell).floor().to_array().map(|x| x as i64);
-        let (low, high) = (key(p - near), key(p + near));
+/// Joins points that lie within some distance of each other; the first of them stays. A chain of points is not drawn together: each is
+/// compared with the ones that stay.
+pub struct Welder {
+    near: f64,
+    /// Side of the cells that points are found by, much larger than the distance: a point seldom has to look beyond its own.
+    cell: f64,
+    kept: Vec<DVec3>,
+    /// The last point of each cell, and for each point the one before it in its cell.
+    last: FxHashMap<[i64; 3], u32>,
+    before: Vec<u32>,
+}
+
+impl Welder {
+    /// A welder within `relative` times the largest coordinate, whichever sign it has.
+    pub fn new(relative: f64, largest: f64) -> Welder {
+        let near = (relative * largest).max(f64::MIN_POSITIVE);
+        Welder { near, cell: 64.0 * near, kept: Vec::new(), last: FxHashMap::default(), before: Vec::new() }
+    }
+
+    /// The place of the point that stands for `p` among those that stay: an earlier one, or itself.
+    pub fn weld(&mut self, p: DVec3) -> u32 {
+        let key = |p: DVec3| (p / self.cell).floor().to_array().map(|x| x as i64);
+        let (low, high) = (key(p - self.near), key(p + self.near));
         let mut found: Option<u32> = None;
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    let mut at = last.get(&[x, y, z]).copied().unwrap_or(u32::MAX);
+                    let mut at = self.last.get(&[x, y, z]).copied().unwrap_or(u32::MAX);
                     while at != u32::MAX {
-                        if kept[at as usize].distance(p) <= near && found.is_none_or(|f| at < f) {
+                        if self.kept[at as usize].distance(p) <= self.near && found.is_none_or(|f| at < f) {
                             found = Some(at);
                         }
-                        at = before[at as usize];
+                        at = self.before[at as usize];
                     }
                 }
             }
         }
-        standing.push(found.unwrap_or_else(|| {
-            let new = kept.len() as u32;
-            kept.push(p);
-            before.push(last.insert(key(p), new).unwrap_or(u32::MAX));
-            new
-        }));
+        if let Some(found) = found {
+            return found;
+        }
+        let (new, key) = (self.kept.len() as u32, key(p));
+        self.kept.push(p);
+        self.before.push(self.last.insert(key, new).unwrap_or(u32::MAX));
+        new
     }
-    (kept, standing)
+
+    /// The points that stay.
+    pub fn points(self) -> Vec<DVec3> {
+        self.kept
+    }
+}
+
+/// Joins points within `relative` times the largest coordinate. Returns the points that stay, and for each point given the place
+/// of the one that stands for it.
+pub fn weld(points: &[DVec3], relative: f64) -> (Vec<DVec3>, Vec<u32>) {
+    let mut welder = Welder::new(relative, points.iter().fold(0.0, |largest, p| p.abs().max_element().max(largest)));
+    let standing = points.iter().map(|&p| welder.weld(p)).collect();
+    (welder.points(), standing)
 }
 
 #[cfg(test)]
