@@ -1,16 +1,17 @@
 //! What the window knows: the run as far as it has been told, what a person has set, and what is open over the window.
 
+mod hearing;
+
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::files::Dialog;
 use super::measure::{Measuring, Times};
 use super::panels::timeline::Columns;
-use super::session::{Explained, Moment, Opened, Past, Session, Source, Stops, Told, Tracked, Verdict, Wake};
+use super::session::{Explained, Moment, Opened, Past, Session, Source, Stops, Tracked, Verdict, Wake};
 use glam::DVec2;
 
 use crate::app::input;
-use crate::core::convert::phase::Phase;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
 use crate::core::mesh::ids::NodeId;
@@ -21,9 +22,6 @@ use crate::core::run::timeline::Sample;
 use crate::core::run::watch::Watched;
 use crate::render::camera::Camera;
 use crate::render::scene::{ColourBy, Layers, Outlined};
-
-/// How long a frame waits for the state that it asked for.
-const PATIENCE: Duration = Duration::from_millis(4);
 
 /// What undo takes back: all that a person sets.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -285,82 +283,6 @@ impl State {
         self.notice = Some((text, Instant::now()));
     }
 
-    /// Hears what the session has to tell.
-    pub fn hear(&mut self) {
-        let Some(session) = &self.session else { return };
-        let told: Vec<Told> = session.hear().collect();
-        told.into_iter().for_each(|told| self.take(told));
-    }
-
-    /// Where the session owes an answer, waits for it, but not so long that anybody notices: most states are there at once,
-    /// and are seen in the very frame that asked for them.
-    pub fn hear_soon(&mut self) {
-        let begin = Instant::now();
-        while self.waiting > 0
-            && let Some(left) = PATIENCE.checked_sub(begin.elapsed())
-            && let Some(told) = self.session.as_ref().and_then(|session| session.hear_within(left))
-        {
-            self.take(told);
-        }
-    }
-
-    fn take(&mut self, told: Told) {
-        match told {
-            Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
-            Told::Opened(opened) => {
-                self.kept.edits = opened.run.edits().to_vec();
-                self.kept.bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
-                self.opened = Some(opened);
-            }
-            Told::Moment(moment, asks) => self.arrive(moment, asks),
-            Told::Track { from, steps, samples, end } => {
-                self.track.truncate(from as usize);
-                self.track.extend(steps);
-                self.samples.retain(|sample| sample.step <= from && from > 0);
-                self.samples.extend(samples);
-                self.track_epoch += 1;
-                self.recorded = end;
-            }
-            Told::Checked(step, verdict) => {
-                if self.moment.as_ref().is_some_and(|moment| moment.step == step) {
-                    self.verdict = verdict;
-                }
-            }
-            Told::Past(past) => self.past = Some(past),
-            Told::Hits(hits) => self.hits = hits,
-            Told::Explained(step, told) => self.explained = Some((step, told)),
-            Told::Nothing(words, asks) => {
-                self.notice(words.to_owned());
-                self.answered(asks);
-            }
-            Told::Fault(fault, asks) => {
-                self.complain(&fault);
-                self.answered(asks);
-                self.playing = None;
-            }
-        }
-    }
-
-    fn answered(&mut self, asks: usize) {
-        self.waiting = self.waiting.saturating_sub(asks);
-        if self.waiting == 0 {
-            (self.progress, self.since) = (None, None);
-        }
-    }
-
-    fn arrive(&mut self, moment: Arc<Moment>, asks: usize) {
-        if self.playing.is_some() && moment.phase == Phase::Done {
-            self.playing = None;
-        }
-        self.changes.note(&moment.changes, moment.mesh.element_slots());
-        self.verdict = moment.verdict.clone();
-        self.times.state(moment.took);
-        self.lit.clear();
-        self.moment = Some(moment);
-        self.answered(asks);
-        self.over_epoch += 1;
-    }
-
     /// The run is another from now on.
     pub fn run_changed(&mut self) {
         self.recorded = false;
@@ -369,36 +291,6 @@ impl State {
             self.waiting += 1;
             self.since.get_or_insert_with(Instant::now);
         }
-    }
-
-    /// Why a segment of the front was or was not chosen; asked for where it is not known yet.
-    pub fn explanation(&mut self, ends: [NodeId; 2]) -> Option<Arc<Explained>> {
-        let step = self.moment.as_ref()?.step;
-        if let Some((at, told)) = &self.explained
-            && (*at, [told.told.row.a, told.told.row.b]) == (step, ends)
-        {
-            return Some(told.clone());
-        }
-        if self.asked != Some((step, ends)) {
-            self.asked = Some((step, ends));
-            self.session.as_ref()?.explain(ends);
-        }
-        None
-    }
-
-    /// What became of something up to the step at hand; asked for where it is not known yet and nothing else is under way.
-    pub fn past(&mut self, watched: Watched) -> Option<Arc<Past>> {
-        let step = self.moment.as_ref()?.step;
-        if let Some(past) = &self.past
-            && (past.step, past.watched) == (step, watched)
-        {
-            return Some(past.clone());
-        }
-        if self.asked_past != Some((step, watched)) && !self.is_busy() && self.playing.is_none() {
-            self.asked_past = Some((step, watched));
-            self.session.as_ref()?.past(watched);
-        }
-        None
     }
 
     /// Something in a panel is pointed at, and stands out in the view.

@@ -31,6 +31,12 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
             match shown {
                 None => {
                     ui.label(note("Point at anything to see it; click to keep it.", palette));
+                    if moment.step == 0 {
+                        let text = "Right goes on by one quadrilateral, Ctrl+Right by one operation; Left and Ctrl+Left go back. \
+                                    While one is made, this panel says why its base was chosen.";
+                        ui.add_space(6.0);
+                        ui.add(Label::new(note(text, palette)).wrap());
+                    }
                 }
                 Some(Outlined::Edge(ends)) => {
                     match moment.front.iter().position(|s| [s.a, s.b] == ends || [s.b, s.a] == ends) {

@@ -1,24 +1,22 @@
 //! The thread that has the history of the run: it goes where it is asked to go, answers what is asked of the state at hand, and
 //! lends another thread the recorder that runs ahead.
 
+mod arriving;
+
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
-use super::moment::{Moment, Verdict, segment};
 use super::{Ask, Explained, Goal, Opened, Past, Told, Tracked, Voice};
-use crate::core::convert::candidates::Candidates;
 use crate::core::convert::event::{Event, Why};
-use crate::core::convert::walk::standing;
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::run::breakpoint::{self, Condition};
 use crate::core::run::copies::{Copies, Since};
 use crate::core::run::explain::SegmentTold;
-use crate::core::run::front_table::{FrontTable, Row};
-use crate::core::run::history::{BUDGET, Changes, History};
+use crate::core::run::history::{BUDGET, History};
 use crate::core::run::recorder::{Recorder, Stretch};
 use crate::core::run::run::{Edit, Run};
 use crate::core::run::timeline::Sample;
@@ -360,103 +358,5 @@ impl Worker {
             });
         }
         Ok(if forward { found.into_iter().min() } else { found.into_iter().max() })
-    }
-
-    /// Goes to a step, and takes note of what that changes.
-    fn walk(&mut self, step: u64) -> Result<Changes, Fault> {
-        self.history.seek(step)?;
-        let changes = self.history.take_changes();
-        self.copies.note(&changes);
-        self.since.note(&changes, self.history.state().mesh.element_slots());
-        Ok(changes)
-    }
-
-    /// Goes to a step in such a way that what the last steps changed is known; tells what the last one had to choose from.
-    fn walk_with_recent(&mut self, step: u64) -> Result<Option<Candidates>, Fault> {
-        let first = (step + 1).saturating_sub(RECENT).max(1);
-        let is_known = |recent: &VecDeque<(u64, _)>, step: u64| recent.iter().any(|known| known.0 == step);
-        let unknown = (first..=step).find(|k| !is_known(&self.recent, *k)).unwrap_or(step);
-        if step == 0 {
-            self.walk(0)?;
-            return Ok(None);
-        }
-        self.walk(unknown - 1)?;
-        let mut candidates = None;
-        for k in unknown..=step {
-            if k == step {
-                candidates = self.history.state().candidates();
-            }
-            let changed: Arc<[ElementId]> = match self.walk(k)? {
-                Changes::Some { elements, .. } => elements.into(),
-                Changes::Everything => Arc::new([]),
-            };
-            if !is_known(&self.recent, k) {
-                self.recent.push_back((k, changed));
-            }
-        }
-        while self.recent.len() > 4 * RECENT as usize {
-            self.recent.pop_front();
-        }
-        Ok(candidates)
-    }
-
-    fn moment(&mut self, step: u64, since: Instant) -> Result<Moment, Fault> {
-        let step = step.min(self.history.log().known());
-        let candidates = self.walk_with_recent(step)?;
-        let mut recent: Vec<_> = self.recent.iter().filter(|r| r.0 <= step && !r.1.is_empty()).collect();
-        recent.sort_unstable_by_key(|r| std::cmp::Reverse(r.0));
-        recent.retain(|r| r.0 + RECENT > step);
-        let changed = std::array::from_fn(|k| recent.get(k).map_or_else(|| Arc::new([]) as _, |r| r.1.clone()));
-        let event = self.history.event(step)?;
-        let state = self.history.state();
-        let table = FrontTable::of(state);
-        let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
-        let base = state.phase().base().and_then(|base| SegmentTold::in_table(state, &table, base.a, base.b));
-        let changes = self.since.take();
-        self.unchecked |= std::mem::take(&mut self.was_broken) || changes == Changes::Everything;
-        let found = match &changes {
-            Changes::Everything => Ok(()),
-            Changes::Some { nodes, elements } => state.mesh.check_around(nodes, elements),
-        };
-        let odd = table.loops.iter().position(|ring| self.even && !ring.segments.is_multiple_of(2));
-        let odd = odd.map(|k| format!("loop {} of the front is odd, with {} segments", k + 1, table.loops[k].segments));
-        let verdict = match found.err().or(odd) {
-            Some(what) => {
-                self.was_broken = true;
-                Verdict::Broken(what)
-            }
-            None if self.unchecked => Verdict::Looking,
-            None => Verdict::Holds,
-        };
-        Ok(Moment {
-            step,
-            standing: standing(state),
-            phase: state.phase().plain(),
-            event,
-            mesh: self.copies.of(&state.mesh),
-            parameters: state.parameters().clone(),
-            changes,
-            changed,
-            front: rows.iter().map(segment).collect(),
-            rows,
-            loops: table.loops,
-            candidates,
-            base,
-            verdict,
-            took: since.elapsed(),
-        })
-    }
-
-    /// Checks the whole mesh at hand.
-    fn check(&mut self) {
-        self.unchecked = false;
-        let verdict = match self.history.state().mesh.check() {
-            Ok(()) => Verdict::Holds,
-            Err(what) => {
-                self.was_broken = true;
-                Verdict::Broken(what)
-            }
-        };
-        self.voice.say(Told::Checked(self.history.step(), verdict));
     }
 }
