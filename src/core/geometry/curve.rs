@@ -332,7 +332,7 @@ fn lerp(a: DVec2, b: DVec2, t: f64) -> DVec2 {
 }
 
 /// Which of `n` equal pieces of [0, 1] holds `t`, and where in it, exactly 0 or 1 at its ends.
-fn piece(n: usize, t: f64) -> (usize, f64) {
+pub(super) fn piece(n: usize, t: f64) -> (usize, f64) {
     let x = t * n as f64;
     let nearest = x.round();
     // A corner's parameter i / n comes back as i.

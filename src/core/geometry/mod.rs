@@ -1,8 +1,11 @@
-//! Curves and planar domains, and the exact predicates that every topological decision uses.
+//! Curves, surfaces and the domains on them, and the exact predicates that every topological decision uses.
 
 pub mod predicates;
 pub mod nurbs;
 pub mod curve;
+pub mod surface;
+pub mod primitive;
+pub mod space_curve;
 pub mod place;
 pub mod loops;
 pub mod crossing;
