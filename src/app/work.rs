@@ -16,7 +16,6 @@ use crate::core::io::report::{CaseTold, LastResort, Program, Report};
 use crate::core::io::statistics::Statistics;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::soundness::{Allow, examine};
-use crate::core::metric::field::Place;
 use crate::core::progress::{Stage, Watch};
 use crate::core::run::run::Run;
 use crate::render::picture::Picture;
@@ -53,8 +52,7 @@ pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles
     watch.tell(Stage::Check, 0, 0);
     let mut export = Export::of(&mesh, &regions);
     let statistics = Statistics::measure(export.measured(), &sizing)?;
-    let places = export.file.points.iter().map(|p| Place::in_plane(p.truncate()));
-    export.file.metric = Some(places.map(|place| sizing.metric3(&place)).collect::<Result<_, _>>()?);
+    export.file.metric = Some(export.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
     Ok(Triangles { file: export.file, statistics, repairs })
 }
 

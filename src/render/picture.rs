@@ -180,7 +180,7 @@ mod tests {
     fn a_state_shows_every_front_segment_once_by_its_class_and_the_base_on_top() {
         let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
         let point = (0..4).map(PointId).collect();
-        let set = TriangleSet { uv, point, triangles: vec![[0, 1, 2], [0, 2, 3]], region: vec![0; 2] };
+        let set = TriangleSet { uv, point, triangles: vec![[0, 1, 2], [0, 2, 3]], region: vec![0; 2], ..TriangleSet::default() };
         let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4]);
         let base = Base { a: NodeId(0), b: NodeId(1), theta: [1.5; 2], length: 1.0, level: 0 };
         let picture = Picture::of_state(&mesh, &Parameters::default(), Some(&base));

@@ -6,11 +6,16 @@ pub mod curve;
 pub mod surface;
 pub mod primitive;
 pub mod space_curve;
+pub mod chart;
+pub mod atlas;
+pub mod image;
 pub mod place;
 pub mod loops;
 pub mod crossing;
 pub mod inside;
 pub mod assembly;
 pub mod domain;
+pub mod lifting;
+pub mod complex;
 #[cfg(test)]
 pub(crate) mod fixtures;

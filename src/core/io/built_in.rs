@@ -18,6 +18,8 @@ cases![
     CASES,
     "",
     "example1",
+    "example2",
+    "example2-half",
     "square-linear",
     "polar-1",
     "polar-2",
