@@ -9,6 +9,7 @@ use crate::core::convert::converter::{Converter, Counts};
 use crate::core::convert::phase::Base;
 use crate::core::convert::walk::{Stop, Tell, Told, walk_editing};
 use crate::core::fault::Fault;
+use crate::core::geometry::place::number;
 use crate::core::io::case::Case;
 use crate::core::io::export::Export;
 use crate::core::io::mesh_file::MeshFile;
@@ -103,7 +104,8 @@ pub(super) fn convert(
     let of = if at.is_some() { Export::of_state } else { Export::of };
     let export = of(&converted.mesh, &converted.regions);
     // On the way there are triangles; both sides of a crack lie at the same place.
-    let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, ..Allow::default() });
+    let branching = converted.mesh.ground().is_some();
+    let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, branching });
     let resort = converted.last_resort.quads();
     let report = Report {
         program: Program::this(),
@@ -156,7 +158,20 @@ fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     if let Err(what) = mesh.check() {
         return Some(Fault::new(format!("The mesh is not sound: {what}")));
     }
-    examine(file).verdict(allow).err()
+    if let Err(fault) = examine(file).verdict(allow) {
+        return Some(fault);
+    }
+    let folded = if allow.triangles { Vec::new() } else { mesh.folded() };
+    let first = mesh.corners(*folded.first()?).next()?;
+    let [x, y, z] = mesh.xyz(first).to_array().map(number);
+    let what = match folded.len() {
+        1 => "1 quadrilateral folds over its surface".to_owned(),
+        n => format!("{n} quadrilaterals fold over their surface"),
+    };
+    Some(
+        Fault::new(format!("The mesh is too coarse for its surface: {what} (the first at {x}, {y}, {z})"))
+            .remedy("Ask for smaller sizes there, for example by a metric of kind \"curvature\""),
+    )
 }
 
 fn events(converted: &Converted) -> BTreeMap<String, u64> {

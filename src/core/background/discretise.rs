@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::cut::Sets;
 use super::length::{Piece, about, give, measure, share_out};
 use super::parity;
 use crate::core::fault::Fault;
@@ -156,7 +157,10 @@ impl<'a> Division<'a> {
         for (f, steps) in loops.chain(walks) {
             while steps.iter().map(|s| self.segments(s.curve)).sum::<u32>() < 4 {
                 let stretched = |id: CurveId| self.pieces[id.index()].iter().map(Piece::stretched).fold(0.0, f64::max);
-                let free = steps.iter().map(|s| self.first(s.curve)).filter(|id| self.domain.curves[id.index()].segments.is_none());
+                let free = steps
+                    .iter()
+                    .map(|s| self.first(s.curve))
+                    .filter(|id| self.domain.curves[id.index()].segments.is_none());
                 let Some(id) = free.max_by(|a, b| stretched(*a).total_cmp(&stretched(*b)).then(b.cmp(a))) else {
                     return Err(self.told_loop(f, steps, |name, n| {
                         Fault::new(format!("The {name} has {n} segments; it needs at least 4"))
@@ -251,6 +255,18 @@ impl<'a> Division<'a> {
         ids.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1).map(|g| g[0]).collect()
     }
 
+    /// The first vertex at the same point of space for each vertex of the plane. Vertices are joined by the curves whose
+    /// images end in them: where faces, or the sides of a cut, have no curve in common, they meet in a place and are apart.
+    fn joined_vertices(&self) -> Vec<u32> {
+        let mut sets = Sets::new(self.domain.vertices.len());
+        for curve in &self.domain.curves {
+            let first = &self.domain.curves[curve.first.index()];
+            sets.join(curve.ends[0], first.ends[0]);
+            sets.join(curve.ends[1], first.ends[1]);
+        }
+        (0..self.domain.vertices.len() as u32).map(|v| sets.find(v)).collect()
+    }
+
     /// The nodes: each piece of each curve at equal metric arclength.
     ///
     /// # Errors
@@ -258,8 +274,7 @@ impl<'a> Division<'a> {
     pub fn nodes(&self) -> Result<DividedDomain, Fault> {
         let mut divided = DividedDomain { nodes: self.domain.vertices.clone(), ..DividedDomain::default() };
         if let Some(spatial) = &self.domain.spatial {
-            let first = |v: &u32| spatial.vertex_of.iter().position(|w| w == v).unwrap_or(0) as u32;
-            divided.joined = spatial.vertex_of.iter().map(first).collect();
+            divided.joined = self.joined_vertices();
             divided.xyz = spatial.vertex_of.iter().map(|&v| spatial.vertices[v as usize]).collect();
         }
         // Where the curve that rules was divided.

@@ -301,11 +301,8 @@ impl Polar {
         let y = if self.clockwise { -p.y } else { p.y };
         let angle = libm::atan2(y, p.x);
         // Angles are measured from the middle of a sector, that is where they jump least.
-        let angle = if self.disc {
-            if angle < 0.0 { angle + TAU } else { angle }
-        } else {
-            angle + 0.5 * self.turn.total()
-        };
+        let angle =
+            if self.disc { if angle < 0.0 { angle + TAU } else { angle } } else { angle + 0.5 * self.turn.total() };
         (p.length(), angle)
     }
 
@@ -331,8 +328,7 @@ impl Polar {
         let outwards = if self.edge.last { -1.0 } else { 1.0 } / self.scale;
         let s = surface.at(uv, if near { 2 } else { 1 });
         let radial = s.d[self.edge.axis] * outwards;
-        let around =
-            if near { s.dd[1] * (outwards * slope) } else { s.d[1 - self.edge.axis] * (slope / distance) };
+        let around = if near { s.dd[1] * (outwards * slope) } else { s.d[1 - self.edge.axis] * (slope / distance) };
         let phi = if self.disc { angle } else { angle - 0.5 * self.turn.total() };
         let (sin, cos) = libm::sincos(phi);
         let (j_x, j_y) = (radial * cos - around * sin, radial * sin + around * cos);
@@ -448,7 +444,11 @@ impl Turn {
         for _ in 0..60 {
             let (found, slope) = self.in_piece(k, angle);
             let off = found - value;
-            if off > 0.0 { high = angle } else { low = angle }
+            if off > 0.0 {
+                high = angle
+            } else {
+                low = angle
+            }
             let next = angle - off / slope;
             let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
             if (next - angle).abs() <= 1e-16 * total {

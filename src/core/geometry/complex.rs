@@ -13,9 +13,7 @@ use super::assembly::{join_ends, loop_name, placed};
 use super::atlas::Atlas;
 use super::chart::{Chart, singular_edges};
 use super::curve::Curve;
-use super::domain::{
-    CurveId, CurveKind, CurveShape, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial,
-};
+use super::domain::{CurveId, CurveKind, CurveShape, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial};
 use super::image::Image;
 use super::lifting::{Lift, Piece};
 use super::primitive::SurfaceShape;
@@ -25,6 +23,10 @@ use crate::core::fault::Fault;
 
 /// Ends of curves in space nearer than this part of the size of all are one vertex.
 const SAME_VERTEX: f64 = 1e-9;
+
+/// What the names of the parts of a face end in that is divided between its poles.
+const LOWER_HALF: &str = ", lower half";
+const UPPER_HALF: &str = ", upper half";
 
 /// A surface of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,11 +168,12 @@ fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Faul
 }
 
 /// The whole of a surface as a face: its own edges as curves (called "face: v0" and so on by the edge's parameter), seams
-/// twice in the loop; between two poles it is divided in the middle.
+/// twice in the loop. Between two poles it is divided in the middle; from an apex that is no pole run two more lines besides the
+/// seam, since fewer than three edges at a node inside a mesh are too few.
 fn whole(face: &FaceSpec, surface: &Arc<NurbsSurface>, curves: &mut Vec<Named>, parts: &mut Vec<Part>) {
     let domain = surface.domain();
     let (closed, degenerate) = (surface.closed(), surface.degenerate());
-    let mut add = |name: &str, from: DVec2, to: DVec2| {
+    let mut add = |name: String, from: DVec2, to: DVec2| {
         let name = format!("{}: {name}", face.name);
         if !curves.iter().any(|c| c.name == name) {
             let trim = Curve::new(&CurveShape::Segment { from, to }).expect("an edge has a length");
@@ -184,62 +187,66 @@ fn whole(face: &FaceSpec, surface: &Arc<NurbsSurface>, curves: &mut Vec<Named>, 
         }
         name
     };
-    let letter = ["u", "v"];
+    let singular = |edge: Edge| EDGES.iter().zip(degenerate).any(|(e, is)| *e == edge && is);
+    let place = |axis: usize, value: f64, along: f64| {
+        if axis == 0 { DVec2::new(value, along) } else { DVec2::new(along, value) }
+    };
     // The axis whose two edges are both singular, if there is one: the surface is divided in its middle.
-    let poles = [0, 1].into_iter().find(|&axis| {
-        EDGES.iter().zip(degenerate).filter(|(edge, is)| edge.axis == axis && *is).count() == 2
-    });
-    let halves: Vec<([[f64; 2]; 2], String, Option<Edge>)> = match poles {
-        None => vec![(domain, String::new(), singular_edges(surface).first().copied())],
+    let poles = [0, 1].into_iter().find(|&axis| [false, true].into_iter().all(|last| singular(Edge { axis, last })));
+    // Each part: what it covers, its name, and about which singular edge its chart is drawn.
+    let halves: Vec<([[f64; 2]; 2], &str, Option<Edge>)> = match poles {
+        None => vec![(domain, "", singular_edges(surface).first().copied())],
         Some(axis) => {
             let [first, last] = domain[axis];
             let middle = 0.5 * (first + last);
-            [(first, middle, false), (middle, last, true)]
-                .into_iter()
-                .map(|(a, b, last)| {
-                    let mut half = domain;
-                    half[axis] = [a, b];
-                    (half, format!(", {} half", if last { "upper" } else { "lower" }), Some(Edge { axis, last }))
-                })
-                .collect()
+            let half = |range: [f64; 2]| {
+                let mut half = domain;
+                half[axis] = range;
+                half
+            };
+            vec![
+                (half([first, middle]), LOWER_HALF, Some(Edge { axis, last: false })),
+                (half([middle, last]), UPPER_HALF, Some(Edge { axis, last: true })),
+            ]
         }
     };
     for (half, suffix, about) in halves {
         let disc = about.is_some_and(|edge| Chart::about(Arc::clone(surface), edge).is_disc());
-        let mut outer = Vec::new();
-        for edge in EDGES {
-            let Edge { axis, last } = edge;
-            let value = half[axis][usize::from(last)];
-            let outermost = value == domain[axis][usize::from(last)];
-            let singular = outermost && EDGES.iter().zip(degenerate).any(|(e, is)| *e == edge && is);
-            // The sides of a disc are one another.
-            if singular || (disc && about.is_some_and(|about| about.axis != axis)) {
-                continue;
-            }
-            let [a, b] = half[1 - axis];
-            let at = |along: f64| if axis == 0 { DVec2::new(value, along) } else { DVec2::new(along, value) };
-            let name = match (outermost, closed[axis]) {
-                // The last edge of a closed axis is its first: the seam, which stands twice in the loop.
-                (true, true) => format!("{}0{suffix}", letter[axis]),
-                (true, false) => format!("{}{}{suffix}", letter[axis], u8::from(last)),
-                (false, _) => format!("{} middle", letter[axis]),
-            };
-            // The seam's first place is its own; the edge of half a surface is not that of the other half.
-            let value_of_name = if outermost && closed[axis] { domain[axis][0] } else { value };
-            let place = |along: f64| {
-                if axis == 0 { DVec2::new(value_of_name, along) } else { DVec2::new(along, value_of_name) }
-            };
-            let _ = at;
-            let name_of_edge = if outermost && poles.is_none() {
-                name.trim_end_matches(suffix.as_str()).to_owned()
-            } else {
-                name
-            };
-            outer.push(add(&name_of_edge, place(a), place(b)));
-        }
         let mut spec = face.clone();
         spec.name = format!("{}{suffix}", face.name);
-        spec.outer = outer;
+        // From an apex that is no pole lines run at the thirds of what closes around it.
+        let thirds = about.filter(|about| closed[1 - about.axis] && !disc).map(|about| about.axis);
+        for edge in EDGES {
+            let Edge { axis, last } = edge;
+            let letter = ["u", "v"][axis];
+            let value = half[axis][usize::from(last)];
+            let outermost = value == domain[axis][usize::from(last)];
+            // The sides of a disc are one another.
+            if (outermost && singular(edge)) || (disc && about.is_some_and(|about| about.axis != axis)) {
+                continue;
+            }
+            let (name, value) = match (outermost, closed[axis]) {
+                (false, _) => (format!("{letter} middle"), value),
+                // The last edge of a closed axis is its first: the seam, which stands twice in the loop.
+                (true, true) => (format!("{letter}0{suffix}"), domain[axis][0]),
+                (true, false) => (format!("{letter}{}{suffix}", u8::from(last)), value),
+            };
+            let [a, b] = half[1 - axis];
+            if thirds != Some(axis) {
+                spec.outer.push(add(name, place(axis, value, a), place(axis, value, b)));
+                continue;
+            }
+            let at = |third: u8| if third == 3 { b } else { a + (b - a) * f64::from(third) / 3.0 };
+            for third in 1..=3 {
+                let (from, to) = (place(axis, value, at(third - 1)), place(axis, value, at(third)));
+                spec.outer.push(add(format!("{name}, {third}/3"), from, to));
+            }
+            for third in 1..=2 {
+                let [a, b] = half[axis];
+                let (from, to) = (place(axis, a, at(third)), place(axis, b, at(third)));
+                spec.repeated.push(add(format!("{} {third}/3{suffix}", ["u", "v"][1 - axis]), from, to));
+            }
+        }
         parts.push(Part { spec, surface: Arc::clone(surface), about, natural: true });
     }
 }
@@ -374,7 +381,7 @@ fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[Named]) ->
 /// Where a whole surface was divided into halves, each hole and line belongs to the half in which it lies.
 fn share_holes(parts: &mut [Part], lifts: &mut [Lifted]) -> Result<(), Fault> {
     for (part, lifted) in parts.iter_mut().zip(lifts.iter_mut()) {
-        let halved = part.natural && (part.spec.name.ends_with(" half"));
+        let halved = part.natural && [LOWER_HALF, UPPER_HALF].iter().any(|half| part.spec.name.ends_with(half));
         if !halved {
             continue;
         }
@@ -393,8 +400,7 @@ fn share_holes(parts: &mut [Part], lifts: &mut [Lifted]) -> Result<(), Fault> {
             }
             any_in
         };
-        let kept: Vec<bool> =
-            lifted.loops.iter().enumerate().map(|(i, pieces)| i == 0 || keep(pieces)).collect();
+        let kept: Vec<bool> = lifted.loops.iter().enumerate().map(|(i, pieces)| i == 0 || keep(pieces)).collect();
         let mut number = 0;
         part.spec.holes.retain(|_| {
             number += 1;
@@ -408,8 +414,9 @@ fn share_holes(parts: &mut [Part], lifts: &mut [Lifted]) -> Result<(), Fault> {
         lifted.cracks.retain(|piece| keep(std::slice::from_ref(piece)));
         lifted.repeated.retain(|piece| keep(std::slice::from_ref(piece)));
         if let Some(name) = crossing {
-            let fault = Fault::new(format!("A hole or line crosses the line at which the surface is divided (\"{name}\")"))
-                .remedy("Turn the surface's axis, so that the line between its poles lies elsewhere");
+            let fault =
+                Fault::new(format!("A hole or line crosses the line at which the surface is divided (\"{name}\")"))
+                    .remedy("Turn the surface's axis, so that the line between its poles lies elsewhere");
             return Err(placed(fault, &part.spec.place));
         }
     }
@@ -417,12 +424,7 @@ fn share_holes(parts: &mut [Part], lifts: &mut [Lifted]) -> Result<(), Fault> {
 }
 
 /// Puts the lifted faces side by side and makes the domain of them.
-fn assemble(
-    curves: &[Named],
-    vertices: &[DVec3],
-    parts: &[Part],
-    lifts: Vec<Lifted>,
-) -> Result<Domain, Fault> {
+fn assemble(curves: &[Named], vertices: &[DVec3], parts: &[Part], lifts: Vec<Lifted>) -> Result<Domain, Fault> {
     let bounds: Vec<[DVec2; 2]> = lifts
         .iter()
         .map(|lifted| {
@@ -491,8 +493,9 @@ fn assemble(
             let known = &mut vertex_of[*own as usize];
             if *known != u32::MAX && *known != in_space {
                 let [a, b] = [*known, in_space].map(|v| told_xyz(vertices[v as usize]));
-                let fault = Fault::new(format!("The ends of curves at {a} and {b} come to one place of a face's chart"))
-                    .remedy("Let them meet, or move them apart");
+                let fault =
+                    Fault::new(format!("The ends of curves at {a} and {b} come to one place of a face's chart"))
+                        .remedy("Let them meet, or move them apart");
                 return Err(placed(fault, &curve.place));
             }
             *known = in_space;
@@ -511,12 +514,7 @@ fn assemble(
 }
 
 /// An image of a curve in a chart on some sheet; see [`Lift`].
-pub(super) fn image_on(
-    chart: &Arc<Chart>,
-    named: &Named,
-    move_by: DVec2,
-    face: &str,
-) -> Result<Image, Fault> {
+pub(super) fn image_on(chart: &Arc<Chart>, named: &Named, move_by: DVec2, face: &str) -> Result<Image, Fault> {
     if let Some((surface, trim)) = named.curve.trim()
         && Arc::ptr_eq(surface, chart.surface())
     {

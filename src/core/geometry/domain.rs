@@ -445,7 +445,9 @@ impl Domain {
     /// Points of a fine polyline of the curve of this name.
     pub fn curve_polyline(&self, name: &str) -> Option<Line> {
         match &self.spatial {
-            Some(spatial) => spatial.polylines.iter().find(|(known, _)| known == name).map(|(_, line)| Line::Space(line.clone())),
+            Some(spatial) => {
+                spatial.polylines.iter().find(|(known, _)| known == name).map(|(_, line)| Line::Space(line.clone()))
+            }
             None => Some(Line::Plane(self.curve(name)?.fine.iter().map(|&(_, p)| p).collect())),
         }
     }

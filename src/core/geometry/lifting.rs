@@ -92,12 +92,14 @@ impl<'a> Lift<'a> {
     fn within(&self, curve: usize, image: Image) -> Result<Image, Fault> {
         let surface = self.chart.surface();
         let domain = surface.domain();
+        // A sector ends at its seam; the parametric plane and a disc go on round.
+        let goes_round = self.chart.keeps_lines() || self.chart.is_disc();
         let outside = image.uvs().find(|uv| {
             (0..2).any(|axis| {
                 let [first, last] = domain[axis];
                 let margin = 1e-6 * (last - first);
                 let t = [uv.x, uv.y][axis];
-                !surface.closed()[axis] && !(t >= first - margin && t <= last + margin)
+                !(goes_round && surface.closed()[axis]) && !(t >= first - margin && t <= last + margin)
             })
         });
         match outside {
@@ -105,9 +107,12 @@ impl<'a> Lift<'a> {
             Some(uv) => {
                 let [[u0, u1], [v0, v1]] = domain;
                 let named = &self.curves[curve];
-                Err(Fault::new(format!("The curve \"{}\" leaves the surface of the face \"{}\"", named.name, self.face))
-                    .at(format!("at {}", told_uv(uv)))
-                    .remedy(format!("The surface goes from {u0} to {u1} in u and from {v0} to {v1} in v")))
+                Err(Fault::new(format!(
+                    "The curve \"{}\" leaves the surface of the face \"{}\"",
+                    named.name, self.face
+                ))
+                .at(format!("at {}", told_uv(uv)))
+                .remedy(format!("The surface goes from {u0} to {u1} in u and from {v0} to {v1} in v")))
             }
         }
     }
@@ -124,37 +129,43 @@ impl<'a> Lift<'a> {
         }
         for (i, c) in list.iter().enumerate() {
             // What is wrong with a curve itself is told before what is wrong with the loop.
-            self.image(*c, 0)?;
+            let any = (1..self.moves.len()).fold(self.image(*c, 0), |found, sheet| found.or(self.image(*c, sheet)));
+            any.or_else(|_| self.image(*c, 0))?;
             if list[..i].iter().filter(|d| *d == c).count() > 1 {
                 let name = &self.curves[*c].name;
                 return Err(Fault::new(format!("The {what} names the curve \"{name}\" three times"))
                     .remedy("A seam stands in its loop twice"));
             }
         }
-        let mut chain = Chain {
-            list,
-            used: vec![false; list.len()],
-            steps: vec![(0, 0, true)],
-            longest: (0, DVec2::ZERO),
-            patience: PATIENCE,
-        };
-        chain.used[0] = true;
-        let first = self.image(list[0], 0)?;
-        let (start, end) = (first.point(0.0), first.point(1.0));
-        if self.extend(&mut chain, start, end) {
-            return chain
-                .steps
-                .iter()
-                .map(|&(i, sheet, forward)| {
+        let mut longest = (0, DVec2::ZERO);
+        for sheet in 0..self.moves.len() {
+            let Ok(first) = self.image(list[0], sheet) else { continue };
+            let mut chain = Chain {
+                list,
+                used: vec![false; list.len()],
+                steps: vec![(0, sheet, true)],
+                longest,
+                patience: PATIENCE,
+            };
+            chain.used[0] = true;
+            if self.extend(&mut chain, first.point(0.0), first.point(1.0)) {
+                let piece = |&(i, sheet, forward): &(usize, usize, bool)| {
                     Ok(Piece { curve: list[i], image: self.image(list[i], sheet)?, forward })
-                })
-                .collect();
+                };
+                return chain.steps.iter().map(piece).collect();
+            }
+            longest = chain.longest;
+            // On the other sheets of the parametric plane it would be the same.
+            if self.chart.keeps_lines() {
+                break;
+            }
         }
-        let uv = self.chart.uv(chain.longest.1);
-        let on = self.chart.at(chain.longest.1).xyz;
+        let uv = self.chart.uv(longest.1);
+        let on = self.chart.at(longest.1).xyz;
         let names: Vec<String> = list.iter().map(|c| format!("\"{}\"", self.curves[*c].name)).collect();
-        let fault = Fault::new(format!("The {what} does not close on its surface: no chain of all of {}", names.join(", ")))
-            .at(format!("it breaks off at {} ({})", super::space_curve::told_xyz(on), told_uv(uv)));
+        let fault =
+            Fault::new(format!("The {what} does not close on its surface: no chain of all of {}", names.join(", ")))
+                .at(format!("it breaks off at {} ({})", super::space_curve::told_xyz(on), told_uv(uv)));
         Err(fault.remedy(if self.moves.len() > 1 {
             "Let the ends meet; a loop that goes round a closed surface needs a seam, which it names twice"
         } else {

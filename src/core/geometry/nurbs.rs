@@ -213,12 +213,8 @@ impl Vector for DVec3 {
 /// Points that are not finite; weights that are not positive and finite or not as many as the points.
 pub fn weighted<P: Vector>(points: &[P], weights: &[f64]) -> Result<Vec<(P, f64)>, Fault> {
     if !weights.is_empty() && weights.len() != points.len() {
-        return Err(Fault::new(format!(
-            "A NURBS with {} control points has {} weights",
-            points.len(),
-            weights.len()
-        ))
-        .remedy("Give one weight for each point, or none"));
+        return Err(Fault::new(format!("A NURBS with {} control points has {} weights", points.len(), weights.len()))
+            .remedy("Give one weight for each point, or none"));
     }
     if let Some(i) = points.iter().position(|p| !p.is_finite()) {
         return Err(Fault::new(format!("Control point {} is not finite", i + 1)));

@@ -145,8 +145,7 @@ pub fn revolution(profile: &NurbsCurve<DVec3>, frame: &Frame, angles: [f64; 2]) 
         for &(p, weight) in profile.weighted_points() {
             // In the frame of the profile: along the axis, and across it towards start and beside it.
             let p = p / weight - frame.centre;
-            let (height, x, y) =
-                (p.dot(frame.axis), p.dot(frame.start), p.dot(frame.axis.cross(frame.start)));
+            let (height, x, y) = (p.dot(frame.axis), p.dot(frame.start), p.dot(frame.axis.cross(frame.start)));
             points.push(frame.centre + frame.axis * height + (towards * x + across * y) / w);
             weights.push(w * weight);
         }
@@ -164,8 +163,7 @@ fn profile(
     weights: &[f64],
     points: &[[f64; 2]],
 ) -> Result<NurbsCurve<DVec3>, Fault> {
-    let points: Vec<DVec3> =
-        points.iter().map(|[x, z]| frame.centre + frame.start * *x + frame.axis * *z).collect();
+    let points: Vec<DVec3> = points.iter().map(|[x, z]| frame.centre + frame.start * *x + frame.axis * *z).collect();
     NurbsCurve::new(degree, knots, weights, &points)
 }
 

@@ -83,10 +83,7 @@ impl SpaceCurve {
     /// # Errors
     /// Numbers that are not finite, no length, an arc of no or more than a full turn, what [`NurbsCurve::new`] and
     /// [`Curve::new`] refuse, a surface that is not there.
-    pub fn new(
-        shape: &SpaceShape,
-        surface: &dyn Fn(&str) -> Option<Arc<NurbsSurface>>,
-    ) -> Result<SpaceCurve, Fault> {
+    pub fn new(shape: &SpaceShape, surface: &dyn Fn(&str) -> Option<Arc<NurbsSurface>>) -> Result<SpaceCurve, Fault> {
         let zero = || Fault::new("It has zero length");
         let path = match shape {
             SpaceShape::Segment { from, to } => {

@@ -84,7 +84,10 @@ impl NurbsSurface {
             Basis::new(degrees[1], knots_v, columns).map_err(about("v"))?,
         ];
         if let Some(p) = points.iter().find(|p| !(p.is_finite() && p.abs().max_element() <= LARGEST)) {
-            return Err(Fault::new(format!("The control point ({}, {}, {}) is not finite or beyond 1e100", p.x, p.y, p.z)));
+            return Err(Fault::new(format!(
+                "The control point ({}, {}, {}) is not finite or beyond 1e100",
+                p.x, p.y, p.z
+            )));
         }
         let weighted: Vec<DVec4> = weighted(points, weights)?.into_iter().map(|(p, w)| p.extend(w)).collect();
         let low = points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
@@ -94,15 +97,8 @@ impl NurbsSurface {
             return Err(Fault::new("The surface has no size: all its control points are at one place"));
         }
         let polynomial = weighted.iter().all(|p| p.w == 1.0);
-        let mut surface = NurbsSurface {
-            bases,
-            weighted,
-            columns,
-            polynomial,
-            size,
-            closed: [false; 2],
-            degenerate: [false; 4],
-        };
+        let mut surface =
+            NurbsSurface { bases, weighted, columns, polynomial, size, closed: [false; 2], degenerate: [false; 4] };
         surface.closed = [0, 1].map(|axis| surface.edges_agree(axis));
         surface.degenerate = EDGES.map(|edge| surface.is_point(edge));
         if surface.degenerate[0] && surface.degenerate[2] && surface.edges_agree(1)
@@ -178,7 +174,8 @@ impl NurbsSurface {
     fn edges_agree(&self, axis: usize) -> bool {
         let [first, last] = [false, true].map(|last| self.along(Edge { axis, last }));
         let near = |(a, b): (&DVec4, &DVec4)| {
-            (a.truncate() - b.truncate()).length() <= SAME * self.size && (a.w / b.w - first[0].w / last[0].w).abs() <= SAME
+            (a.truncate() - b.truncate()).length() <= SAME * self.size
+                && (a.w / b.w - first[0].w / last[0].w).abs() <= SAME
         };
         self.is_clamped(axis) && first.iter().zip(&last).all(near)
     }

@@ -20,6 +20,10 @@ cases![
     "example1",
     "example2",
     "example2-half",
+    "example3",
+    "example4",
+    "example5",
+    "example6",
     "square-linear",
     "polar-1",
     "polar-2",
@@ -30,6 +34,12 @@ cases![
     "two-faces",
     "gear",
     "airfoil",
+    "sphere",
+    "cone",
+    "torus",
+    "saddle",
+    "wing",
+    "branching",
 ];
 
 cases![

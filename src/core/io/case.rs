@@ -194,7 +194,8 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         None => Ok(()),
         Some(value) => {
             let key = value.key();
-            let named = if ["surface", "curve", "face"].contains(&key) { format!("every [[{key}]]") } else { key.to_owned() };
+            let named =
+                if ["surface", "curve", "face"].contains(&key) { format!("every [[{key}]]") } else { key.to_owned() };
             let fault = value.fault(format!("The case has a {own} and a {key}"));
             Err(fault.remedy(format!("Leave out either {own} or {named}")))
         }
@@ -227,9 +228,13 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
 
 fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) -> Result<(), Fault> {
     match domain {
-        DomainSource::Curves { .. } | DomainSource::Surfaces(_) | DomainSource::Elements { .. } if fields.is_empty() => Err(table
-            .fault("The case has no metric")
-            .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1")),
+        DomainSource::Curves { .. } | DomainSource::Surfaces(_) | DomainSource::Elements { .. }
+            if fields.is_empty() =>
+        {
+            Err(table
+                .fault("The case has no metric")
+                .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1"))
+        }
         DomainSource::Mesh { sol: Some(_), .. } if !fields.is_empty() => {
             Err(table.fault("The case has sol and [[metric]]").remedy("Leave one of them out"))
         }

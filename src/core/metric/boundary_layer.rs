@@ -63,10 +63,8 @@ enum Curves {
 
 impl Curves {
     fn new(lines: &[Line]) -> Result<Curves, Fault> {
-        let plane: Option<Vec<Vec<DVec2>>> = lines
-            .iter()
-            .map(|line| if let Line::Plane(points) = line { Some(points.clone()) } else { None })
-            .collect();
+        let plane: Option<Vec<Vec<DVec2>>> =
+            lines.iter().map(|line| if let Line::Plane(points) = line { Some(points.clone()) } else { None }).collect();
         match plane {
             Some(lines) => Near::new(&lines).map(Curves::Plane),
             None => Near::new(&lines.iter().map(Line::in_space).collect::<Vec<_>>()).map(Curves::Space),

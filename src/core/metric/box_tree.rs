@@ -8,7 +8,9 @@ use std::ops::{Add, Mul, Sub};
 use glam::{DVec2, DVec3};
 
 /// A point of the plane or of space, as the tree needs it.
-pub(super) trait Spot: Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {
+pub(super) trait Spot:
+    Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
+{
     const NOWHERE: [Self; 2];
     fn least(self, other: Self) -> Self;
     fn greatest(self, other: Self) -> Self;

@@ -30,7 +30,9 @@ impl Curvature {
             }
         }
         if far < least || far > LARGEST_ANISOTROPY * least {
-            return Err(Fault::new(format!("far = {far} is less than least = {least}, or beyond {LARGEST_ANISOTROPY:e} times it")));
+            return Err(Fault::new(format!(
+                "far = {far} is less than least = {least}, or beyond {LARGEST_ANISOTROPY:e} times it"
+            )));
         }
         Ok(Curvature { factor: 2.0 * (chord * (2.0 - chord)).sqrt(), least, far })
     }
@@ -72,7 +74,9 @@ mod tests {
 
     #[test]
     fn what_is_no_part_of_a_radius_or_no_size_is_refused() {
-        for (chord, least, far) in [(0.0, 0.1, 1.0), (1.5, 0.1, 1.0), (f64::NAN, 0.1, 1.0), (0.1, 0.0, 1.0), (0.1, 2.0, 1.0)] {
+        for (chord, least, far) in
+            [(0.0, 0.1, 1.0), (1.5, 0.1, 1.0), (f64::NAN, 0.1, 1.0), (0.1, 0.0, 1.0), (0.1, 2.0, 1.0)]
+        {
             assert!(Curvature::new(chord, least, far).is_err());
         }
     }

@@ -225,9 +225,7 @@ impl Field {
             Kind::BoundaryLayer(layer, origin) => {
                 return layer.intersect(others, place.uv, place.xyz).ok_or_else(|| nowhere(place, origin));
             }
-            Kind::Distance(field, origin) => {
-                field.metric(place.uv, place.xyz).ok_or_else(|| nowhere(place, origin))?
-            }
+            Kind::Distance(field, origin) => field.metric(place.uv, place.xyz).ok_or_else(|| nowhere(place, origin))?,
             Kind::Curvature(field) => field.metric(place.bend.as_ref()),
         };
         Ok(others.map_or(m, |others| Metric3::intersect(&others, &m)))

@@ -60,12 +60,10 @@ fn primitives_agree_with_their_closed_forms_and_their_curvatures() {
         let ball = sphere(&frame, 2.0, [0.0, 360.0], [-90.0, 90.0]).unwrap();
         let ring = torus(&frame, 3.0, 0.5, [20.0, 380.0], [0.0, 360.0]).unwrap();
         let funnel = cone(&frame, [2.0, 0.0], 1.5, [-30.0, 300.0]).unwrap();
-        assert_eq!([cylinder.closed(), ball.closed(), ring.closed(), funnel.closed()], [
-            [true, false],
-            [true, false],
-            [true, true],
-            [false, false]
-        ]);
+        assert_eq!(
+            [cylinder.closed(), ball.closed(), ring.closed(), funnel.closed()],
+            [[true, false], [true, false], [true, true], [false, false]]
+        );
         assert_eq!(cylinder.degenerate(), [false; 4]);
         assert_eq!(ball.degenerate(), [true, false, true, false]);
         assert_eq!(funnel.degenerate(), [false, false, true, false]);

@@ -19,7 +19,12 @@ pub(super) fn complex(document: &Table<'_>) -> Result<ComplexSpec, Fault> {
     let mut curves = Vec::new();
     for table in document.tables("curve")? {
         let segments = table.get("segments").map(|v| v.count(1, 100_000_000)).transpose()?;
-        curves.push(SpaceCurveSpec { name: name(&table)?, shape: curve(&table, &surfaces)?, segments, place: table.place() });
+        curves.push(SpaceCurveSpec {
+            name: name(&table)?,
+            shape: curve(&table, &surfaces)?,
+            segments,
+            place: table.place(),
+        });
     }
     let names: Vec<&str> = curves.iter().map(|c: &SpaceCurveSpec| c.name.as_str()).collect();
     let mut faces = Vec::new();
@@ -168,7 +173,9 @@ fn net(table: &Table<'_>) -> Result<(Vec<DVec3>, usize, Vec<f64>), Fault> {
         Some(value) => {
             let rows: Vec<Vec<f64>> = value.list()?.iter().map(Value::numbers).collect::<Result<_, _>>()?;
             if rows.iter().any(|row| row.len() != columns) {
-                return Err(value.fault("weights has not a number for each point").remedy("Give rows as those of points"));
+                return Err(value
+                    .fault("weights has not a number for each point")
+                    .remedy("Give rows as those of points"));
             }
             rows.concat()
         }
