@@ -9,6 +9,7 @@ use crate::core::convert::converter::{Converter, Counts};
 use crate::core::convert::phase::Base;
 use crate::core::convert::walk::{Stop, Tell, Told, walk_editing};
 use crate::core::fault::Fault;
+use crate::core::geometry::place::number;
 use crate::core::io::case::Case;
 use crate::core::io::export::Export;
 use crate::core::io::mesh_file::MeshFile;
@@ -16,7 +17,6 @@ use crate::core::io::report::{CaseTold, LastResort, Program, Report};
 use crate::core::io::statistics::Statistics;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::soundness::{Allow, examine};
-use crate::core::metric::field::Place;
 use crate::core::progress::{Stage, Watch};
 use crate::core::run::run::Run;
 use crate::render::picture::Picture;
@@ -53,8 +53,7 @@ pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles
     watch.tell(Stage::Check, 0, 0);
     let mut export = Export::of(&mesh, &regions);
     let statistics = Statistics::measure(export.measured(), &sizing)?;
-    let places = export.file.points.iter().map(|p| Place::in_plane(p.truncate()));
-    export.file.metric = Some(places.map(|place| sizing.metric3(&place)).collect::<Result<_, _>>()?);
+    export.file.metric = Some(export.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
     Ok(Triangles { file: export.file, statistics, repairs })
 }
 
@@ -105,7 +104,8 @@ pub(super) fn convert(
     let of = if at.is_some() { Export::of_state } else { Export::of };
     let export = of(&converted.mesh, &converted.regions);
     // On the way there are triangles; both sides of a crack lie at the same place.
-    let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, ..Allow::default() });
+    let branching = converted.mesh.ground().is_some();
+    let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, branching });
     let resort = converted.last_resort.quads();
     let report = Report {
         program: Program::this(),
@@ -158,7 +158,20 @@ fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     if let Err(what) = mesh.check() {
         return Some(Fault::new(format!("The mesh is not sound: {what}")));
     }
-    examine(file).verdict(allow).err()
+    if let Err(fault) = examine(file).verdict(allow) {
+        return Some(fault);
+    }
+    let folded = if allow.triangles { Vec::new() } else { mesh.folded() };
+    let first = mesh.corners(*folded.first()?).next()?;
+    let [x, y, z] = mesh.xyz(first).to_array().map(number);
+    let what = match folded.len() {
+        1 => "1 quadrilateral folds over its surface".to_owned(),
+        n => format!("{n} quadrilaterals fold over their surface"),
+    };
+    Some(
+        Fault::new(format!("The mesh is too coarse for its surface: {what} (the first at {x}, {y}, {z})"))
+            .remedy("Ask for smaller sizes there, for example by a metric of kind \"curvature\""),
+    )
 }
 
 fn events(converted: &Converted) -> BTreeMap<String, u64> {

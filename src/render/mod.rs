@@ -4,6 +4,7 @@ pub mod palette;
 pub mod colour_map;
 pub mod camera;
 pub mod picture;
+pub mod orthographic;
 pub mod scene;
 pub mod pick;
 pub mod vector;

@@ -1,7 +1,9 @@
 //! What is to be seen: areas and lines with a role, in the coordinates of the mesh. Deliberately absent: colours, widths,
 //! pixels (`palette` and the writers know them).
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
+
+use super::orthographic::{self, View};
 
 use crate::core::convert::parameters::Parameters;
 use crate::core::convert::phase::Base;
@@ -86,10 +88,24 @@ struct Side {
 }
 
 impl Picture {
-    /// The picture of a mesh, seen from +z: elements by kind, edges once, the boundary and lines inside over them.
+    /// The picture of a mesh: elements by kind, edges once, the boundary and lines inside over them. A mesh in a plane z =
+    /// constant is seen from +z, one in space as `orthographic` has it.
     ///
     /// An edge is of the boundary where one element has it or where the mesh has a line there.
     pub fn of_mesh(mesh: &MeshFile) -> Picture {
+        if orthographic::is_flat(mesh) {
+            return Picture::as_it_lies(mesh).0;
+        }
+        let view = View::usual();
+        let (mut picture, edges) = Picture::as_it_lies(&orthographic::flattened(mesh, &view));
+        let ends: Vec<[DVec3; 2]> = edges.iter().map(|e| e.map(|n| mesh.points[n as usize])).collect();
+        orthographic::turn_over(&mut picture);
+        orthographic::hide(&mut picture, &ends, mesh, &view);
+        picture
+    }
+
+    /// The picture of a mesh in the plane, and the nodes of each line.
+    fn as_it_lies(mesh: &MeshFile) -> (Picture, Vec<[u32; 2]>) {
         let at = |n: u32| mesh.points[n as usize].truncate();
         let mut picture = Picture::default();
         let mut sides = Vec::with_capacity(mesh.triangles.len() * 3 + mesh.quads.len() * 4 + mesh.lines.len());
@@ -116,26 +132,37 @@ impl Picture {
             mesh.lines.iter().enumerate().filter(|(i, _)| front.binary_search(i).is_err()).map(|(_, l)| line(l)),
         );
         sides.sort_by_key(|side| side.edge);
+        let mut edges = Vec::new();
         for same in sides.chunk_by(|a, b| a.edge == b.edge) {
             let highest = same.iter().map(|s| s.role).max().expect("a chunk is never empty");
             let role = if same.len() == 1 { Role::Boundary } else { highest };
             let room = same.iter().map(|s| s.room).fold(f64::INFINITY, f64::min);
             picture.lines.push(Line { role, ends: same[0].edge.map(at), room });
+            edges.push(same[0].edge);
         }
-        picture
+        (picture, edges)
     }
 
     /// The picture of a conversion on the way: the mesh, over it the front by the classes of table 1, and the base segment
     /// where there is one.
     pub fn of_state(mesh: &Mesh, parameters: &Parameters, base: Option<&Base>) -> Picture {
-        let mut picture = Picture::of_mesh(&Export::of(mesh, &[]).file);
+        let file = Export::of(mesh, &[]).file;
+        let mut picture = Picture::of_mesh(&file);
         let base = base.and_then(|base| mesh.front_between(base.a, base.b));
+        let view = mesh.ground().map(|_| View::usual());
+        let (mut front, mut space) = (Picture::default(), Vec::new());
         for h in mesh.front() {
             let segment = Segment::measure(mesh, h, parameters);
             let role = if base == Some(h) { Role::Base } else { Role::Front(segment.class) };
-            let ends = [mesh.uv(segment.a), mesh.uv(segment.b)];
-            picture.lines.push(Line { role, ends, room: f64::INFINITY });
+            let in_space = [segment.a, segment.b].map(|n| mesh.xyz(n));
+            let ends = in_space.map(|p| view.map_or(p.truncate(), |view| view.place(p)));
+            front.lines.push(Line { role, ends, room: f64::INFINITY });
+            space.push(in_space);
         }
+        if let Some(view) = &view {
+            orthographic::hide(&mut front, &space, &file, view);
+        }
+        picture.lines.append(&mut front.lines);
         picture
     }
 
@@ -180,7 +207,13 @@ mod tests {
     fn a_state_shows_every_front_segment_once_by_its_class_and_the_base_on_top() {
         let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
         let point = (0..4).map(PointId).collect();
-        let set = TriangleSet { uv, point, triangles: vec![[0, 1, 2], [0, 2, 3]], region: vec![0; 2] };
+        let set = TriangleSet {
+            uv,
+            point,
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            region: vec![0; 2],
+            ..TriangleSet::default()
+        };
         let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4]);
         let base = Base { a: NodeId(0), b: NodeId(1), theta: [1.5; 2], length: 1.0, level: 0 };
         let picture = Picture::of_state(&mesh, &Parameters::default(), Some(&base));

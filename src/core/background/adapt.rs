@@ -13,7 +13,7 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::quality::{length_over, quality_over};
 use crate::core::metric::field::MetricSource;
-use crate::core::metric::measure::triangle_quality;
+use crate::core::metric::measure::{length_exact, triangle_quality};
 use crate::core::metric::tensor::Metric2;
 use crate::core::progress::{Stage, Watch};
 
@@ -175,6 +175,12 @@ impl Adapter<'_> {
     /// Length of a straight line by Simpson's rule, with the metric at its middle.
     fn sampled_length(&self, from: NodeId, to: NodeId) -> Result<f64, Fault> {
         let d = self.mesh.uv(to) - self.mesh.uv(from);
+        if self.mesh.ground().is_some() {
+            // On a surface the size may change many times along an edge of the first triangles, which are as large as faces.
+            let p = self.mesh.uv(from);
+            return Ok(length_exact(self.source, p, 0.5 * (p + self.mesh.uv(to)))?
+                + length_exact(self.source, 0.5 * (p + self.mesh.uv(to)), self.mesh.uv(to))?);
+        }
         let middle = self.metric(self.mesh.uv(from) + 0.5 * d)?;
         let end = |n: NodeId| self.mesh.metric_ref(n).norm2(d).sqrt();
         Ok((end(from) + 4.0 * middle.norm2(d).sqrt() + end(to)) / 6.0)

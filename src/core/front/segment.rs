@@ -20,7 +20,7 @@ pub struct Segment {
     pub h_value: f64,
     /// Length in the metric.
     pub length_metric: f64,
-    /// Length in the plane.
+    /// Length as it is: in the plane, or in space.
     pub length_physical: f64,
     /// Frontal angles at A and B, radians.
     pub theta: [f64; 2],
@@ -45,9 +45,9 @@ impl Segment {
             h,
             a,
             b,
-            h_value: 0.5 * (mesh.metric_ref(a).min_size() + mesh.metric_ref(b).min_size()),
+            h_value: 0.5 * (mesh.smallest_size(a) + mesh.smallest_size(b)),
             length_metric: mesh.distance(a, b),
-            length_physical: mesh.uv(a).distance(mesh.uv(b)),
+            length_physical: mesh.physical_distance(a, b),
             theta,
             class,
             level: front_level(mesh, h),

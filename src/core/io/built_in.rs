@@ -18,6 +18,12 @@ cases![
     CASES,
     "",
     "example1",
+    "example2",
+    "example2-half",
+    "example3",
+    "example4",
+    "example5",
+    "example6",
     "square-linear",
     "polar-1",
     "polar-2",
@@ -28,6 +34,12 @@ cases![
     "two-faces",
     "gear",
     "airfoil",
+    "sphere",
+    "cone",
+    "torus",
+    "saddle",
+    "wing",
+    "branching",
 ];
 
 cases![

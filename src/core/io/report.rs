@@ -329,7 +329,7 @@ mod tests {
             .to_vec();
         let points: Vec<_> = (0..7).map(PointId).collect();
         let quads = [[0, 1, 2, 3], [0, 3, 4, 5], [0, 5, 6, 1]];
-        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads };
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
         Report {
             program: Program { name: "quadfront".to_owned(), version: "0.0.0".to_owned() },
             case: CaseTold { name: "three".to_owned(), title: "Three quadrilaterals".to_owned(), text: String::new() },

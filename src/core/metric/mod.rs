@@ -6,6 +6,7 @@ pub mod measure;
 pub mod formula;
 mod box_tree;
 mod boundary_layer;
+mod curvature;
 mod table;
 pub mod field;
 pub mod survey;

@@ -16,7 +16,7 @@ const LONGEST_WALK: usize = 400;
 /// The mesh, the logarithms at its nodes, and what finds a triangle.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
-    tree: BoxTree,
+    tree: BoxTree<DVec2>,
     /// The triangle of each of the tree's things.
     triangle: Vec<u32>,
     /// Corners of the triangles, anticlockwise.

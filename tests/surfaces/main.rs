@@ -1,0 +1,198 @@
+//! Promise: faces on curved surfaces become sound quadrilateral meshes that conform across shared curves, follow the metric in
+//! space, lie on their surfaces, and do not depend on the order of the faces.
+#![allow(clippy::unwrap_used)]
+
+mod faults;
+mod random;
+
+use std::path::Path;
+
+use glam::DVec3;
+use quadfront::core::convert::conversion::{Converted, convert};
+use quadfront::core::front::segment::Segment;
+use quadfront::core::io::built_in;
+use quadfront::core::io::case::Case;
+use quadfront::core::io::export::Export;
+use quadfront::core::io::mesh_file::MeshFile;
+use quadfront::core::io::statistics::Statistics;
+use quadfront::core::mesh::soundness::{Allow, Defect, Soundness, examine};
+use quadfront::core::progress::Nobody;
+
+/// A converted case with everything that is held against it.
+pub struct Made {
+    pub converted: Converted,
+    pub export: Export,
+    pub sound: Soundness,
+}
+
+pub fn make(case: &Case) -> Made {
+    let converted = convert(case, &mut Nobody).unwrap();
+    let export = Export::of(&converted.mesh, &converted.regions);
+    let sound = examine(&export.file);
+    Made { converted, export, sound }
+}
+
+impl Made {
+    /// All quadrilaterals, conforming, convex in the plane by exact predicates, and on the surface's side at every corner.
+    pub fn assert_sound(&self, name: &str) {
+        let allow = Allow { seams: true, branching: true, ..Allow::default() };
+        self.converted.mesh.check().unwrap();
+        self.sound.verdict(allow).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+        assert_eq!(self.converted.mesh.folded(), [], "{name}");
+        assert_eq!(self.sound.triangles, 0, "{name}");
+    }
+
+    fn statistics(&self) -> Statistics {
+        Statistics::measure(self.export.measured(), &self.converted.sizing).unwrap()
+    }
+}
+
+pub fn built_in(name: &str, set: &[(&str, &str)]) -> Case {
+    let mut case = built_in::named(name).unwrap().unwrap();
+    for (key, value) in set {
+        case.parameters.set(key, value).unwrap();
+    }
+    case
+}
+
+pub fn parsed(text: &str) -> Case {
+    Case::parse(text, "test", "test.toml", Path::new("")).unwrap()
+}
+
+#[test]
+fn example_2_has_the_papers_counts_lengths_and_angles_in_both_readings() {
+    for name in ["example2", "example2-half"] {
+        for (scale, wanted) in [("1", 274.0), ("0.8", 387.0), ("0.64", 602.0)] {
+            let made = make(&built_in(name, &[("size_scale", scale)]));
+            assert_eq!(made.converted.mesh.folded(), [], "{name} {scale}");
+            let found = made.statistics();
+            let count = found.quads as f64;
+            assert!((count / wanted - 1.0).abs() < 0.2, "{name} {scale}: {count} quadrilaterals");
+            let mean = found.lengths.mean;
+            assert!((0.9..=1.22).contains(&mean), "{name} {scale}: length {mean}");
+            let angles = found.metric_angles;
+            assert!(angles.min >= 30.0 && angles.max <= 160.0, "{name} {scale}: {} {}", angles.min, angles.max);
+            assert!(angles.share_60_120 >= 0.9, "{name} {scale}: {}", angles.share_60_120);
+        }
+    }
+}
+
+#[test]
+fn whole_surfaces_are_sound_and_have_their_own_topology() {
+    // Sphere and torus close; a cone has one rim.
+    for (name, euler, boundary) in [("sphere", 2, 0), ("torus", 0, 0), ("cone", 1, 1), ("saddle", 1, 1), ("wing", 1, 1)]
+    {
+        let made = make(&built_in(name, &[]));
+        made.assert_sound(name);
+        assert_eq!((made.sound.euler, made.sound.boundary_loops), (euler, boundary), "{name}");
+        assert_eq!(made.sound.components, 1, "{name}");
+    }
+}
+
+#[test]
+fn three_faces_share_the_nodes_of_the_line_from_which_they_branch() {
+    let made = make(&built_in("branching", &[]));
+    made.assert_sound("branching");
+    assert_eq!(made.sound.count(Defect::SeamNode), 0);
+    let on_line = |p: &DVec3| p.x == 0.0 && p.z == 0.0;
+    let file = &made.export.file;
+    let nodes = file.points.iter().filter(|p| on_line(p)).count();
+    assert!(nodes > 10);
+    assert_eq!(made.sound.count(Defect::BranchingEdge), nodes as u64 - 1);
+}
+
+#[test]
+fn the_area_of_meshes_converges_to_the_closed_form_with_second_order() {
+    use std::f64::consts::PI;
+    for (name, text, area) in [
+        ("sphere", "kind = \"sphere\"\nradius = 1", 4.0 * PI),
+        ("cylinder", "kind = \"cylinder\"\nradius = 1\nheight = 2", 4.0 * PI),
+        ("cone", "kind = \"cone\"\nradius = 1\nheight = 1.5", PI * libm::hypot(1.0, 1.5)),
+        ("torus", "kind = \"torus\"\nradius = 2\ntube = 0.7", 4.0 * PI * PI * 1.4),
+    ] {
+        let error = |h: f64| {
+            let case = parsed(&format!(
+                "version = 1\n[[surface]]\nname = \"s\"\n{text}\n[[face]]\nname = \"f\"\nsurface = \"s\"\n\
+                 [[metric]]\nkind = \"uniform\"\nh = {h}\n"
+            ));
+            let made = make(&case);
+            made.assert_sound(name);
+            (1.0 - made.sound.area / area).abs()
+        };
+        let (coarse, fine) = (error(0.4), error(0.1));
+        // A quarter of the size: a sixteenth of the error, about.
+        assert!(fine < coarse / 9.0 && fine < 3e-3, "{name}: {coarse} {fine}");
+    }
+}
+
+/// Points and quadrilaterals by place, whatever their numbers.
+fn by_place(file: &MeshFile) -> Vec<[[u64; 3]; 4]> {
+    let bits = |n: u32| file.points[n as usize].to_array().map(f64::to_bits);
+    let mut quads: Vec<_> = file
+        .quads
+        .iter()
+        .map(|q| {
+            let mut corners = q.map(bits);
+            let first = (0..4).min_by_key(|&k| corners[k]).unwrap();
+            corners.rotate_left(first);
+            corners
+        })
+        .collect();
+    quads.sort_unstable();
+    quads
+}
+
+#[test]
+fn the_mesh_does_not_depend_on_the_order_of_the_faces_and_surfaces() {
+    let case = built_in("branching", &[]);
+    let text = case.text.clone();
+    let parts: Vec<&str> = text.split("\n\n").collect();
+    let is = |part: &&&str, what: &str| part.contains(&format!("[[{what}]]"));
+    let all = |what: &str, turn: usize| {
+        let mut some: Vec<&str> = parts.iter().filter(|p| is(p, what)).copied().collect();
+        some.rotate_left(turn);
+        some.join("\n\n")
+    };
+    let rest = parts.iter().filter(|p| !is(p, "surface") && !is(p, "face")).copied().collect::<Vec<_>>().join("\n\n");
+    let first = by_place(&make(&case).export.file);
+    for turn in 1..3 {
+        let turned = parsed(&format!("{rest}\n\n{}\n\n{}", all("face", turn), all("surface", turn)));
+        assert_eq!(by_place(&make(&turned).export.file), first);
+    }
+}
+
+#[test]
+fn the_h_value_is_that_of_space_whatever_the_parameters() {
+    // Sizes of 0.2 and 0.5 on a plane that its parameters stretch and shear.
+    let case = parsed(
+        "version = 1\n[[surface]]\nname = \"s\"\nkind = \"bezier\"\n\
+         points = [[[0, 0, 1], [0.1, 2, 1]], [[7, 0.5, 1], [7.1, 2.5, 1]]]\n\
+         [[face]]\nname = \"f\"\nsurface = \"s\"\n\
+         [[metric]]\nkind = \"formula\"\nh1 = 0.2\nh2 = 0.5\ng1 = [3, 1]\ng2 = [-1, 3]\n",
+    );
+    let made = quadfront::core::convert::conversion::background(&case, &mut Nobody).unwrap();
+    let mut seen = 0;
+    for h in made.mesh.front() {
+        let segment = Segment::measure(&made.mesh, h, &case.parameters);
+        assert!((segment.h_value - 0.2).abs() < 1e-12, "{}", segment.h_value);
+        let [a, b] = [segment.a, segment.b].map(|n| made.mesh.xyz(n));
+        assert!((segment.length_physical - a.distance(b)).abs() < 1e-15);
+        seen += 1;
+    }
+    assert!(seen > 20);
+}
+
+#[test]
+fn examples_3_to_6_keep_the_papers_share_of_quadrilaterals_and_are_sound() {
+    for (name, triangles) in [("example3", 4570.0), ("example4", 1096.0), ("example5", 1800.0), ("example6", 6962.0)] {
+        let made = make(&built_in(name, &[]));
+        made.assert_sound(name);
+        let before = made.converted.triangles as f64;
+        assert!((before / triangles - 1.0).abs() < 0.15, "{name}: {before} triangles");
+        let share = made.sound.quads as f64 / before;
+        assert!((0.42..=0.66).contains(&share), "{name}: {share}");
+        let front = made.converted.counts.formed + made.converted.counts.closed;
+        let resort = made.converted.last_resort.quads() as f64;
+        assert!(resort <= 0.02 * (front as f64 + resort), "{name}: {resort} by the last resort");
+    }
+}
