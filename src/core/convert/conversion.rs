@@ -11,8 +11,11 @@ use super::last_resort::Outcome;
 use super::layers;
 use crate::core::background::adapt::{Adapted, adapt};
 use crate::core::background::discretise::DividedDomain;
-use crate::core::background::import::{implied_metric, import};
+use crate::core::background::import::{implied_metric, import, is_plane};
 use crate::core::background::triangulate::divide_and_triangulate;
+use crate::core::discrete::features::ANGLE;
+use crate::core::discrete::sound::{Sound, sound};
+use crate::core::discrete::surface::{implied_sizes, surface};
 use crate::core::fault::Fault;
 use crate::core::geometry::complex;
 use crate::core::geometry::domain::Domain;
@@ -82,9 +85,9 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     }
     let made = match &case.domain {
         DomainSource::Curves { curves, faces } => {
-            from_domain(case, &|| Domain::build(curves.clone(), faces.clone()), watch)?
+            from_domain(case, Domain::build(curves.clone(), faces.clone())?, None, watch)?
         }
-        DomainSource::Surfaces(spec) => from_domain(case, &|| complex::build(spec), watch)?,
+        DomainSource::Surfaces(spec) => from_domain(case, complex::build(spec)?, None, watch)?,
         DomainSource::Elements { points, triangles, quads } => from_elements(case, points, triangles, quads)?,
         DomainSource::Mesh { path, sol } => from_mesh(case, path, sol.as_deref(), watch)?,
     };
@@ -120,18 +123,16 @@ pub fn convert_by(
 }
 
 /// The background mesh of a domain of curves, in the plane or on surfaces; where the case bounds the gradation, a first mesh
-/// carries the table of the bounded metric for the second.
-fn from_domain(
-    case: &Case,
-    build: &dyn Fn() -> Result<Domain, Fault>,
-    watch: &mut dyn Watch,
-) -> Result<Background, Fault> {
+/// carries the table of the bounded metric for the second. Where the case has no fields the domain's own holds.
+fn from_domain(case: &Case, domain: Domain, own: Option<Field>, watch: &mut dyn Watch) -> Result<Background, Fault> {
     watch.tell(Stage::Divide, 0, 0);
-    let domain = build()?;
     let atlas = domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
     let mut fields = Vec::new();
     for spec in &case.fields {
         fields.push(Field::compile(spec, &|name| domain.curve_polyline(name))?);
+    }
+    if fields.is_empty() {
+        fields.extend(own);
     }
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
@@ -154,6 +155,10 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
     watch.tell(Stage::Read, 0, 0);
     let file = read_mesh(path, sol)?;
     let place = path.display().to_string();
+    if !is_plane(&file) {
+        return from_surface(case, &file, watch)
+            .map_err(|fault| if fault.place.is_empty() { fault.at(place) } else { fault });
+    }
     let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
     let set = &imported.set;
     let mut fields = Vec::new();
@@ -186,6 +191,19 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
         mesh = meshed(&sizing)?;
     }
     Ok(Background { mesh, sizing, regions: imported.regions, adapted: Adapted::default(), repairs: imported.repairs })
+}
+
+/// A mesh in space: a surface without CAD, meshed anew. Sizes are those of the case's fields; where there are none those given at its
+/// points, or those that its triangles have.
+fn from_surface(case: &Case, file: &MeshFile, watch: &mut dyn Watch) -> Result<Background, Fault> {
+    let Sound { mesh, regions, repairs } = sound(file)?;
+    let surface = surface(&mesh, &regions, ANGLE)?;
+    let sizes = match &file.metric {
+        Some(given) => surface.table(given)?,
+        None => surface.table(&implied_sizes(&mesh))?,
+    };
+    let made = from_domain(case, surface.domain, Some(sizes), watch)?;
+    Ok(Background { repairs, ..made })
 }
 
 /// A small mesh that the case itself holds, as it is: nodes keep its numbers, and its quadrilaterals stand already.

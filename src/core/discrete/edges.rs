@@ -75,6 +75,11 @@ impl Edges {
         Edge { ends: self.ends[edge], sides: &self.sides[sides] }
     }
 
+    /// The place of the edge between two points.
+    pub fn between(&self, [a, b]: [u32; 2]) -> Option<usize> {
+        self.ends.binary_search(&[a.min(b), a.max(b)]).ok()
+    }
+
     /// The place of the edge on which a side lies.
     pub fn of_side(&self, corner: Corner) -> usize {
         self.of_side[corner as usize] as usize

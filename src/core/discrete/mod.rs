@@ -4,10 +4,12 @@
 //! Deliberately absent: reading files (`core/io`), sizes (`core/metric`).
 
 pub mod edges;
+pub mod sound;
 pub mod features;
 pub mod chart;
 pub mod sparse;
 pub mod tutte;
 pub mod rigid;
+pub mod surface;
 #[cfg(test)]
 mod fixtures;

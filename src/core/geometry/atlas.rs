@@ -3,13 +3,14 @@
 
 use glam::{DVec2, DVec3};
 
-use super::chart::{Chart, ChartPoint};
+use super::chart::ChartPoint;
+use super::ground::Ground;
 use super::surface::SurfacePoint;
 
 /// Charts with their places.
 #[derive(Clone, Debug, Default)]
 pub struct Atlas {
-    charts: Vec<std::sync::Arc<Chart>>,
+    charts: Vec<Ground>,
     /// What is added to each chart's own coordinates.
     offsets: Vec<DVec2>,
     /// Where, along x, each chart but the first begins.
@@ -18,7 +19,7 @@ pub struct Atlas {
 
 impl Atlas {
     /// Sets charts side by side, by the least and greatest coordinates of the face in each.
-    pub fn new(charts: Vec<std::sync::Arc<Chart>>, bounds: &[[DVec2; 2]]) -> Atlas {
+    pub fn new(charts: Vec<Ground>, bounds: &[[DVec2; 2]]) -> Atlas {
         let (mut offsets, mut begins) = (Vec::new(), Vec::new());
         let mut end: Option<f64> = None;
         let widest = bounds.iter().map(|[low, high]| (*high - *low).max_element()).fold(0.0, f64::max);
@@ -44,7 +45,7 @@ impl Atlas {
     }
 
     /// The charts.
-    pub fn charts(&self) -> &[std::sync::Arc<Chart>] {
+    pub fn charts(&self) -> &[Ground] {
         &self.charts
     }
 

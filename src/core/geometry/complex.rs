@@ -14,6 +14,7 @@ use super::atlas::Atlas;
 use super::chart::{Chart, singular_edges};
 use super::curve::Curve;
 use super::domain::{CurveId, CurveKind, CurveShape, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial};
+use super::ground::Ground;
 use super::image::Image;
 use super::lifting::{Lift, Piece};
 use super::primitive::SurfaceShape;
@@ -73,11 +74,11 @@ pub struct ComplexSpec {
 }
 
 /// A named curve in space.
-pub(super) struct Named {
+pub(in crate::core) struct Named {
     pub name: String,
     pub curve: Arc<SpaceCurve>,
-    segments: Option<u32>,
-    place: String,
+    pub segments: Option<u32>,
+    pub place: String,
     /// Vertices in space at its start and end.
     pub ends: [u32; 2],
 }
@@ -143,7 +144,8 @@ pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
         lifts.push(lift(part, &curves)?);
     }
     share_holes(&mut parts, &mut lifts)?;
-    assemble(&curves, &vertices, &parts, lifts)
+    let specs: Vec<FaceSpec> = parts.into_iter().map(|part| part.spec).collect();
+    assemble(&curves, &vertices, &specs, lifts)
 }
 
 fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Fault> {
@@ -293,12 +295,12 @@ fn join_in_space(curves: &mut [Named]) -> Vec<DVec3> {
 }
 
 /// A face in its chart: the images of its curves, chained.
-struct Lifted {
-    chart: Arc<Chart>,
+pub(in crate::core) struct Lifted {
+    pub ground: Ground,
     /// Outer loop, holes.
-    loops: Vec<Vec<Piece>>,
-    cracks: Vec<Piece>,
-    repeated: Vec<Piece>,
+    pub loops: Vec<Vec<Piece>>,
+    pub cracks: Vec<Piece>,
+    pub repeated: Vec<Piece>,
 }
 
 /// Finds the chart of a face and the images of its curves there.
@@ -353,7 +355,7 @@ fn lift(part: &Part, curves: &[Named]) -> Result<Lifted, Fault> {
                 .collect()
         };
         let (cracks, repeated) = (lines(&spec.cracks)?, lines(&spec.repeated)?);
-        return Ok(Lifted { chart, loops, cracks, repeated });
+        return Ok(Lifted { ground: Ground::Chart(chart), loops, cracks, repeated });
     }
     Err(placed(refusal.unwrap_or_else(|| Fault::new(format!("The face \"{}\" has no chart", spec.name))), &spec.place))
 }
@@ -424,7 +426,12 @@ fn share_holes(parts: &mut [Part], lifts: &mut [Lifted]) -> Result<(), Fault> {
 }
 
 /// Puts the lifted faces side by side and makes the domain of them.
-fn assemble(curves: &[Named], vertices: &[DVec3], parts: &[Part], lifts: Vec<Lifted>) -> Result<Domain, Fault> {
+pub(in crate::core) fn assemble(
+    curves: &[Named],
+    vertices: &[DVec3],
+    specs: &[FaceSpec],
+    lifts: Vec<Lifted>,
+) -> Result<Domain, Fault> {
     let bounds: Vec<[DVec2; 2]> = lifts
         .iter()
         .map(|lifted| {
@@ -432,7 +439,7 @@ fn assemble(curves: &[Named], vertices: &[DVec3], parts: &[Part], lifts: Vec<Lif
             places.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
         })
         .collect();
-    let atlas = Arc::new(Atlas::new(lifts.iter().map(|l| Arc::clone(&l.chart)).collect(), &bounds));
+    let atlas = Arc::new(Atlas::new(lifts.iter().map(|l| l.ground.clone()).collect(), &bounds));
     // Every piece by curve, then by face, so that the images of one curve stand together.
     let mut pieces: Vec<(usize, usize, Option<(usize, usize)>, CurveKind, Piece)> = Vec::new();
     for (f, lifted) in lifts.into_iter().enumerate() {
@@ -445,7 +452,7 @@ fn assemble(curves: &[Named], vertices: &[DVec3], parts: &[Part], lifts: Vec<Lif
         pieces.extend(lifted.repeated.into_iter().map(|p| (p.curve, f, None, CurveKind::Repeated, p)));
     }
     pieces.sort_by_key(|p| (p.0, p.1, p.2));
-    let mut chains: Vec<Vec<Vec<DirectedCurve>>> = vec![Vec::new(); parts.len()];
+    let mut chains: Vec<Vec<Vec<DirectedCurve>>> = vec![Vec::new(); specs.len()];
     let mut places: Vec<(usize, usize, usize, DirectedCurve)> = Vec::new();
     let mut domain_curves: Vec<DomainCurve> = Vec::new();
     let mut space: Vec<Arc<SpaceCurve>> = Vec::new();
@@ -501,8 +508,7 @@ fn assemble(curves: &[Named], vertices: &[DVec3], parts: &[Part], lifts: Vec<Lif
             *known = in_space;
         }
     }
-    let specs: Vec<FaceSpec> = parts.iter().map(|part| part.spec.clone()).collect();
-    let mut domain = Domain::assemble(domain_curves, plane, chains, &specs, extent)?;
+    let mut domain = Domain::assemble(domain_curves, plane, chains, specs, extent)?;
     domain.spatial = Some(Arc::new(Spatial {
         atlas,
         vertices: vertices.to_vec(),

@@ -7,6 +7,8 @@ pub mod surface;
 pub mod primitive;
 pub mod space_curve;
 pub mod chart;
+pub mod facets;
+pub mod ground;
 pub mod atlas;
 pub mod image;
 pub mod place;

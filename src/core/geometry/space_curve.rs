@@ -70,11 +70,28 @@ pub struct SpaceCurve {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Path {
-    Segment { from: DVec3, to: DVec3 },
-    Arc { frame: Frame, radius: f64, angles: [f64; 2] },
-    Polyline { points: Vec<DVec3> },
+    Segment {
+        from: DVec3,
+        to: DVec3,
+    },
+    Arc {
+        frame: Frame,
+        radius: f64,
+        angles: [f64; 2],
+    },
+    Polyline {
+        points: Vec<DVec3>,
+    },
+    /// Sides of triangles, with the places of the corners among them.
+    Sides {
+        points: Vec<DVec3>,
+        corners: Vec<u32>,
+    },
     Nurbs(Box<NurbsCurve<DVec3>>),
-    On { surface: Arc<NurbsSurface>, trim: Box<Curve> },
+    On {
+        surface: Arc<NurbsSurface>,
+        trim: Box<Curve>,
+    },
 }
 
 impl SpaceCurve {
@@ -154,6 +171,12 @@ impl SpaceCurve {
         curve
     }
 
+    /// A chain of sides of triangles, of which the points of the given places are kept as nodes, besides the first and last.
+    pub fn of_sides(points: Vec<DVec3>, corners: Vec<u32>) -> SpaceCurve {
+        let closed = points.first() == points.last();
+        SpaceCurve { path: Path::Sides { points, corners }, closed }
+    }
+
     /// The surface in whose parametric plane it is given, and its course there.
     pub fn trim(&self) -> Option<(&Arc<NurbsSurface>, &Curve)> {
         match &self.path {
@@ -174,7 +197,7 @@ impl SpaceCurve {
                 let derivative = (across * cos - frame.start * sin) * (radius * (to - from).to_radians());
                 (frame.centre + (frame.start * cos + across * sin) * *radius, derivative)
             }
-            Path::Polyline { points } => {
+            Path::Polyline { points } | Path::Sides { points, .. } => {
                 let n = points.len() - 1;
                 let (i, s) = piece(n, t);
                 (lerp(points[i], points[i + 1], s), (points[i + 1] - points[i]) * n as f64)
@@ -208,13 +231,13 @@ impl SpaceCurve {
         match &self.path {
             Path::Segment { .. } | Path::Polyline { .. } => true,
             Path::Nurbs(nurbs) => nurbs.basis().degree() == 1,
-            Path::Arc { .. } | Path::On { .. } => false,
+            Path::Arc { .. } | Path::On { .. } | Path::Sides { .. } => false,
         }
     }
 
     /// Whether its ends are numbers that were given, and not computed.
     pub fn ends_given(&self) -> bool {
-        matches!(self.path, Path::Segment { .. } | Path::Polyline { .. })
+        matches!(self.path, Path::Segment { .. } | Path::Polyline { .. } | Path::Sides { .. })
     }
 
     /// Parameters strictly inside at which the direction jumps, ascending: they are kept as nodes.
@@ -224,6 +247,9 @@ impl SpaceCurve {
             Path::Polyline { points } => {
                 let n = points.len() - 1;
                 (1..n).map(|i| i as f64 / n as f64).collect()
+            }
+            Path::Sides { points, corners } => {
+                corners.iter().map(|&i| f64::from(i) / (points.len() - 1) as f64).collect()
             }
             Path::Nurbs(nurbs) => {
                 let (first, last) = nurbs.basis().domain();
@@ -248,6 +274,10 @@ impl SpaceCurve {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => {}
             Path::Polyline { .. } => breaks.extend(self.corners()),
+            Path::Sides { points, .. } => {
+                let n = points.len() - 1;
+                breaks.extend((1..n).map(|i| i as f64 / n as f64));
+            }
             Path::Nurbs(nurbs) => {
                 let (first, last) = nurbs.basis().domain();
                 breaks.extend(nurbs.basis().inner_knots().iter().map(|(k, _)| (k - first) / (last - first)));
@@ -262,7 +292,7 @@ impl SpaceCurve {
 
     /// Points along it, from end to end, so dense that its course is seen: for distances and sizes.
     pub fn polyline(&self) -> Vec<DVec3> {
-        let parts = if self.straight() { 1 } else { 64 };
+        let parts = if self.straight() || matches!(self.path, Path::Sides { .. }) { 1 } else { 64 };
         let mut points = vec![self.point(0.0)];
         for w in self.breaks().windows(2) {
             points.extend((1..=parts).map(|i| self.point(w[0] + (w[1] - w[0]) * f64::from(i) / f64::from(parts))));
@@ -281,7 +311,7 @@ impl SpaceCurve {
         };
         match &self.path {
             Path::Segment { from, to } => line(&[*from, *to]),
-            Path::Polyline { points } => line(points),
+            Path::Polyline { points } | Path::Sides { points, .. } => line(points),
             Path::Arc { frame, radius, angles: [from, to] } if from < to => arc(frame, *radius, [*from, *to]).ok(),
             Path::Arc { frame, radius, angles: [from, to] } => {
                 // Clockwise: anticlockwise about the axis turned over, from the same direction.

@@ -7,6 +7,7 @@ pub mod formula;
 mod box_tree;
 mod boundary_layer;
 mod curvature;
+pub mod plane_triangles;
 mod table;
 pub mod field;
 pub mod survey;
