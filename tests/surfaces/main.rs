@@ -119,7 +119,7 @@ fn the_area_of_meshes_converges_to_the_closed_form_with_second_order() {
             made.assert_sound(name);
             (1.0 - made.sound.area / area).abs()
         };
-        let (coarse, fine) = (error(0.4), error(0.1));
+        let (coarse, fine) = (error(0.25), error(0.08));
         // A quarter of the size: a sixteenth of the error, about.
         assert!(fine < coarse / 9.0 && fine < 3e-3, "{name}: {coarse} {fine}");
     }
