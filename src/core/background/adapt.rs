@@ -216,7 +216,7 @@ impl Adapter<'_> {
         // is much too long, but beside the boundary.
         let inside = |h: HalfEdgeId| mesh.half_edges(h.element()).all(|h| mesh.twin(h).is_some());
         let forced = mesh.ground().is_some() && f.length > MUCH_TOO_LONG && inside(f.h) && inside(twin);
-        if !forced && !(fit(f.h) && fit(twin)) {
+        if !(forced || fit(f.h) && fit(twin)) {
             return Ok(None);
         }
         if mesh.element_count() + 2 > self.most_elements {

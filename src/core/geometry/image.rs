@@ -114,7 +114,7 @@ impl Image {
     /// The place at `t`.
     pub fn point(&self, t: f64) -> DVec2 {
         let own = match &self.course {
-            Course::Trim { trim, move_by } => self.chart.from_uv(trim.point(t) + *move_by),
+            Course::Trim { trim, move_by } => self.chart.of_uv(trim.point(t) + *move_by),
             Course::Projected => {
                 let k = self.table.partition_point(|entry| entry.0 <= t).clamp(1, self.table.len() - 1);
                 let (a, b) = (self.table[k - 1], self.table[k]);

@@ -12,7 +12,6 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::nurbs::{Basis, BasisValues, weighted};
 use crate::core::fault::Fault;
-use crate::core::metric::tensor::Metric2;
 
 /// Control points beyond this are refused, so that no square of one overflows.
 const LARGEST: f64 = 1e100;
@@ -420,13 +419,6 @@ pub struct Bend {
 }
 
 impl SurfacePoint {
-    /// The first fundamental form `J^T J`.
-    #[inline]
-    pub fn first_form(&self) -> Metric2 {
-        let [a, b] = self.d;
-        Metric2 { uu: a.dot(a), uv: a.dot(b), vv: b.dot(b) }
-    }
-
     /// The unit normal; zero at a singular point.
     #[inline]
     pub fn normal(&self) -> DVec3 {
