@@ -115,6 +115,7 @@ pub(super) fn convert(
         regions: converted.regions.len(),
         valid: flaw.is_none(),
         mesh: Statistics::measure(export.measured(), &converted.sizing)?,
+        on_surfaces: converted.mesh.ground().is_some(),
         last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
         repairs: converted.repairs.clone(),
         events: events(&converted),

@@ -38,7 +38,7 @@ fn patch() -> impl Strategy<Value = String> {
 fn random_patches_with_random_trims_become_sound_meshes() {
     let hole = (0.3..0.7f64, 0.3..0.7f64, 0.08..0.25f64, prop::bool::ANY);
     let sizes = (0.12..0.5f64, 0.2..1.0f64, -1.0..1.0f64);
-    run(24, &(patch(), hole, sizes), |(surface, (u, v, r, cut), (h, ratio, turn))| {
+    run(16, &(patch(), hole, sizes), |(surface, (u, v, r, cut), (h, ratio, turn))| {
         let trims = if cut {
             format!(
                 "[[curve]]\nname = \"hole\"\nkind = \"circle\"\non = \"s\"\ncentre = [{u}, {v}]\nradius = {r}\n\
@@ -63,7 +63,7 @@ fn random_patches_with_random_trims_become_sound_meshes() {
 #[test]
 fn random_fans_of_planes_share_their_line_whatever_their_number() {
     let planes = prop::collection::vec((0.0..360.0f64, 0.5..2.0f64), 1..6);
-    run(24, &(planes, 0.15..0.4f64), |(planes, h)| {
+    run(16, &(planes, 0.15..0.4f64), |(planes, h)| {
         let mut text =
             "version = 1\n[[curve]]\nname = \"line\"\nkind = \"segment\"\nfrom = [0, 0, 0]\nto = [0, 0, 1]\n"
                 .to_owned();

@@ -486,8 +486,8 @@ impl Worker {
 
 /// A row of the table as the renderer wants it.
 fn segment(row: &Row) -> Segment {
-    let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, .. } = *row;
-    Segment { h, a, b, h_value, length_metric, length_physical, theta, class, level }
+    let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, face, .. } = *row;
+    Segment { h, a, b, h_value, length_metric, length_physical, theta, class, level, face }
 }
 
 /// What a session is opened with.

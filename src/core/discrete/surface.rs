@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::chart::{Bound, Chart, charts};
-use super::edges::{Edges, Triangles};
-use super::features::features;
+use super::edges::{Edge, Edges, Triangles};
+use super::features::{ANGLE, features};
 use crate::core::fault::Fault;
 use crate::core::geometry::complex::{Lifted, Named, assemble};
 use crate::core::geometry::domain::{Domain, FaceSpec};
@@ -17,7 +17,13 @@ use crate::core::geometry::image::Image;
 use crate::core::geometry::lifting::Piece;
 use crate::core::geometry::space_curve::SpaceCurve;
 use crate::core::metric::field::Field;
+use crate::core::metric::gradation::bound_gradation;
 use crate::core::metric::tensor::Metric3;
+
+/// An element turns by no more than this where its size is not given (radians).
+const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
+/// Growth of such sizes from one element to the next (spec 3).
+const GRADATION: f64 = 1.3;
 
 /// A surface laid into the plane.
 #[derive(Debug)]
@@ -116,20 +122,39 @@ impl Surface {
     }
 }
 
-/// The sizes that the triangles have: at each point the mean length of its edges, alike in all directions.
+/// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the mean
+/// length of the edges there, but no larger than what turns by 30 degrees, and growing by 1.3 at most from one element to the next.
 pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
-    let mut sums = vec![(0.0, 0.0); mesh.points.len()];
     let edges = Edges::of(&mesh.triangles);
+    let mut sums = vec![(0.0, 0.0); mesh.points.len()];
+    let mut most = vec![f64::INFINITY; mesh.points.len()];
+    let features = features(mesh, &edges, ANGLE);
     for edge in 0..edges.len() {
-        let [a, b] = edges.get(edge).ends;
-        let long = mesh.points[a as usize].distance(mesh.points[b as usize]);
-        for end in [a, b] {
+        let Edge { ends, sides } = edges.get(edge);
+        let [a, b] = ends.map(|end| mesh.points[end as usize]);
+        let long = a.distance(b);
+        for end in ends {
             let (sum, count) = &mut sums[end as usize];
             *sum += long;
             *count += 1.0;
         }
+        if let (None, &[one, other]) = (features[edge], sides) {
+            let [n, m] = [one, other].map(|side| mesh.area_vector(side as usize / 3));
+            let turn = libm::atan2(n.cross(m).length(), n.dot(m));
+            // Half of each triangle's height over the edge: the way on which the surface turns there.
+            let way = 0.5 * (n.length() + m.length()) / long.max(f64::MIN_POSITIVE);
+            let corners = [one, other].map(|side| mesh.triangles[side as usize / 3]);
+            for node in corners.as_flattened() {
+                let bound = &mut most[*node as usize];
+                *bound = bound.min(way * MOST_TURN / turn.max(f64::MIN_POSITIVE));
+            }
+        }
     }
-    sums.into_iter().map(|(sum, count)| Metric3::isotropic(if sum > 0.0 { sum / count } else { 1.0 })).collect()
+    let size = |((sum, count), most): (&(f64, f64), &f64)| if *count > 0.0 { (sum / count).min(*most) } else { 1.0 };
+    let mut sizes: Vec<Metric3> = sums.iter().zip(&most).map(size).map(Metric3::isotropic).collect();
+    let ends: Vec<[u32; 2]> = (0..edges.len()).map(|edge| edges.get(edge).ends).collect();
+    bound_gradation(&mesh.points, &ends, &mut sizes, GRADATION);
+    sizes
 }
 
 /// The sides of a chart's border, loop by loop, each with its first local node.
@@ -270,7 +295,6 @@ fn pieces(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::discrete::features::ANGLE;
     use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
 
     #[test]

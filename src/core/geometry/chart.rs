@@ -73,7 +73,7 @@ impl ChartPoint {
         Metric2 { uu: a.dot(a), uv: a.dot(b), vv: b.dot(b) }
     }
 
-    /// The unit normal.
+    /// The unit normal, on the side of `r_u x r_v`.
     #[inline]
     pub fn normal(&self) -> DVec3 {
         self.j[0].cross(self.j[1]).normalize_or_zero()
@@ -159,10 +159,10 @@ impl Chart {
     }
 
     /// The coordinates in the chart of u and v.
-    pub fn from_uv(&self, uv: DVec2) -> DVec2 {
+    pub fn of_uv(&self, uv: DVec2) -> DVec2 {
         match &self.map {
             Map::Sheet { from, scale } => (uv - *from) * *scale,
-            Map::Polar(polar) => polar.from_uv(uv),
+            Map::Polar(polar) => polar.of_uv(uv),
         }
     }
 
@@ -199,7 +199,7 @@ impl Chart {
                 let least = 1e-4 * self.surface.size();
                 let length = p.length();
                 if length < least {
-                    let out = if length > 0.0 { p / length } else { polar.from_polar(1.0, 0.5 * polar.turn.total()) };
+                    let out = if length > 0.0 { p / length } else { polar.of_polar(1.0, 0.5 * polar.turn.total()) };
                     self.uv(out * least)
                 } else {
                     self.uv(p)
@@ -207,11 +207,6 @@ impl Chart {
             }
         };
         self.surface.at(uv, 2)
-    }
-
-    /// The unit normal, on the side that all of the face has to itself (`r_u x r_v`).
-    pub fn normal(&self, p: DVec2) -> DVec3 {
-        self.at(p).normal()
     }
 
     /// The place in the chart of the point on the surface that is nearest to `xyz`, by Gauss-Newton from a guess, with the
@@ -226,7 +221,7 @@ impl Chart {
             let g = at.first_form();
             let b = DVec2::new(at.j[0].dot(r), at.j[1].dot(r));
             let det = g.det();
-            if !(det > 0.0) {
+            if det <= 0.0 || det.is_nan() {
                 break;
             }
             let step = DVec2::new(g.vv * b.x - g.uv * b.y, g.uu * b.y - g.uv * b.x) / det;
@@ -272,7 +267,7 @@ impl Chart {
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best: Option<(DVec2, f64)> = None;
         for (_, uv) in starts.into_iter().take(8) {
-            let found = self.project(xyz, self.from_uv(uv));
+            let found = self.project(xyz, self.of_uv(uv));
             if found.1 <= 1e-11 * self.surface.size() {
                 return found;
             }
@@ -306,17 +301,17 @@ impl Polar {
         (p.length(), angle)
     }
 
-    fn from_polar(&self, distance: f64, angle: f64) -> DVec2 {
+    fn of_polar(&self, distance: f64, angle: f64) -> DVec2 {
         let angle = if self.disc { angle } else { angle - 0.5 * self.turn.total() };
         let (sin, cos) = libm::sincos(angle);
         DVec2::new(cos, if self.clockwise { -sin } else { sin }) * distance
     }
 
-    fn from_uv(&self, uv: DVec2) -> DVec2 {
+    fn of_uv(&self, uv: DVec2) -> DVec2 {
         let (along, away) = if self.edge.axis == 0 { (uv.y, uv.x) } else { (uv.x, uv.y) };
         let distance = if self.edge.last { self.apex - away } else { away - self.apex } * self.scale;
         let angle = self.turn.angle_of(along, self.disc);
-        self.from_polar(distance, angle)
+        self.of_polar(distance, angle)
     }
 
     fn at(&self, surface: &NurbsSurface, p: DVec2) -> ChartPoint {
@@ -508,7 +503,7 @@ mod tests {
                 let own = chart.surface().at(at.uv, 1);
                 assert!(at.xyz.distance(own.p) < 1e-14);
                 assert!(at.normal().dot(own.normal()) > 1.0 - 1e-9, "{k} {p}");
-                assert!(chart.from_uv(at.uv).distance(p) < 1e-12 || !disc && k == 4, "{k} {p}");
+                assert!(chart.of_uv(at.uv).distance(p) < 1e-12 || !disc && k == 4, "{k} {p}");
             }
         }
     }
@@ -542,7 +537,7 @@ mod tests {
                 let xyz = chart.at(p).xyz;
                 let (q, off) = chart.locate(xyz);
                 assert!(off < 1e-12 && chart.at(q).xyz.distance(xyz) < 1e-12, "{p} {q} {off}");
-                let (_, off) = chart.locate(xyz + chart.normal(p) * 0.1);
+                let (_, off) = chart.locate(xyz + chart.at(p).normal() * 0.1);
                 assert!((off - 0.1).abs() < 1e-6, "{off}");
             }
         }

@@ -2,7 +2,8 @@
 //! every face that it bounds, and all charts lie side by side in the plane of an [`Atlas`]. What comes out is a [`Domain`] of
 //! that plane, which knows what its curves and vertices are in space.
 //!
-//! Here: which chart a face gets, and the whole surface as a face. How images are chained to loops is in `lifting`.
+//! Here: which chart a face gets, and how all are set side by side. How images are chained to loops is in `lifting`, a surface
+//! that is a face as a whole in `whole_surface`.
 
 use std::sync::Arc;
 
@@ -13,21 +14,18 @@ use super::assembly::{join_ends, loop_name, placed};
 use super::atlas::Atlas;
 use super::chart::{Chart, singular_edges};
 use super::curve::Curve;
-use super::domain::{CurveId, CurveKind, CurveShape, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial};
+use super::domain::{CurveId, CurveKind, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial};
 use super::ground::Ground;
 use super::image::Image;
 use super::lifting::{Lift, Piece};
 use super::primitive::SurfaceShape;
 use super::space_curve::{SpaceCurve, SpaceShape, told_xyz};
-use super::surface::{EDGES, Edge, NurbsSurface};
+use super::surface::{Edge, NurbsSurface};
+use super::whole_surface::whole;
 use crate::core::fault::Fault;
 
 /// Ends of curves in space nearer than this part of the size of all are one vertex.
 const SAME_VERTEX: f64 = 1e-9;
-
-/// What the names of the parts of a face end in that is divided between its poles.
-const LOWER_HALF: &str = ", lower half";
-const UPPER_HALF: &str = ", upper half";
 
 /// A surface of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,13 +82,15 @@ pub(in crate::core) struct Named {
 }
 
 /// A face, or a part of one that is too much for one chart.
-struct Part {
-    spec: FaceSpec,
-    surface: Arc<NurbsSurface>,
+pub(super) struct Part {
+    pub spec: FaceSpec,
+    pub surface: Arc<NurbsSurface>,
     /// The singular edge about which its chart is to be drawn; `None`: that is to be found.
-    about: Option<Edge>,
-    /// The outer loop is the surface's own edge.
-    natural: bool,
+    pub about: Option<Edge>,
+    /// Whether it is the surface as a whole: the outer loop is the surface's own edge.
+    pub whole: bool,
+    /// Of one of two halves between poles: the axis between them, and the range of this half along it.
+    pub half: Option<(usize, [f64; 2])>,
 }
 
 /// Builds the domain of faces on surfaces. Faces stand in it by name.
@@ -135,15 +135,15 @@ pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
         if face.face.outer.is_empty() {
             whole(&face.face, &surface, &mut curves, &mut parts);
         } else {
-            parts.push(Part { spec: face.face.clone(), surface, about: None, natural: false });
+            parts.push(Part { spec: face.face.clone(), surface, about: None, whole: false, half: None });
         }
     }
     let vertices = join_in_space(&mut curves);
     let mut lifts = Vec::new();
     for part in &mut parts {
+        keep_own(part, &curves)?;
         lifts.push(lift(part, &curves)?);
     }
-    share_holes(&mut parts, &mut lifts)?;
     let specs: Vec<FaceSpec> = parts.into_iter().map(|part| part.spec).collect();
     assemble(&curves, &vertices, &specs, lifts)
 }
@@ -167,90 +167,6 @@ fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Faul
         surfaces.push((given.name.clone(), Arc::new(surface)));
     }
     Ok(surfaces)
-}
-
-/// The whole of a surface as a face: its own edges as curves (called "face: v0" and so on by the edge's parameter), seams
-/// twice in the loop. Between two poles it is divided in the middle; from an apex that is no pole run two more lines besides the
-/// seam, since fewer than three edges at a node inside a mesh are too few.
-fn whole(face: &FaceSpec, surface: &Arc<NurbsSurface>, curves: &mut Vec<Named>, parts: &mut Vec<Part>) {
-    let domain = surface.domain();
-    let (closed, degenerate) = (surface.closed(), surface.degenerate());
-    let mut add = |name: String, from: DVec2, to: DVec2| {
-        let name = format!("{}: {name}", face.name);
-        if !curves.iter().any(|c| c.name == name) {
-            let trim = Curve::new(&CurveShape::Segment { from, to }).expect("an edge has a length");
-            curves.push(Named {
-                name: name.clone(),
-                curve: Arc::new(SpaceCurve::on(Arc::clone(surface), trim)),
-                segments: None,
-                place: face.place.clone(),
-                ends: [0; 2],
-            });
-        }
-        name
-    };
-    let singular = |edge: Edge| EDGES.iter().zip(degenerate).any(|(e, is)| *e == edge && is);
-    let place = |axis: usize, value: f64, along: f64| {
-        if axis == 0 { DVec2::new(value, along) } else { DVec2::new(along, value) }
-    };
-    // The axis whose two edges are both singular, if there is one: the surface is divided in its middle.
-    let poles = [0, 1].into_iter().find(|&axis| [false, true].into_iter().all(|last| singular(Edge { axis, last })));
-    // Each part: what it covers, its name, and about which singular edge its chart is drawn.
-    let halves: Vec<([[f64; 2]; 2], &str, Option<Edge>)> = match poles {
-        None => vec![(domain, "", singular_edges(surface).first().copied())],
-        Some(axis) => {
-            let [first, last] = domain[axis];
-            let middle = 0.5 * (first + last);
-            let half = |range: [f64; 2]| {
-                let mut half = domain;
-                half[axis] = range;
-                half
-            };
-            vec![
-                (half([first, middle]), LOWER_HALF, Some(Edge { axis, last: false })),
-                (half([middle, last]), UPPER_HALF, Some(Edge { axis, last: true })),
-            ]
-        }
-    };
-    for (half, suffix, about) in halves {
-        let disc = about.is_some_and(|edge| Chart::about(Arc::clone(surface), edge).is_disc());
-        let mut spec = face.clone();
-        spec.name = format!("{}{suffix}", face.name);
-        // From an apex that is no pole lines run at the thirds of what closes around it.
-        let thirds = about.filter(|about| closed[1 - about.axis] && !disc).map(|about| about.axis);
-        for edge in EDGES {
-            let Edge { axis, last } = edge;
-            let letter = ["u", "v"][axis];
-            let value = half[axis][usize::from(last)];
-            let outermost = value == domain[axis][usize::from(last)];
-            // The sides of a disc are one another.
-            if (outermost && singular(edge)) || (disc && about.is_some_and(|about| about.axis != axis)) {
-                continue;
-            }
-            let (name, value) = match (outermost, closed[axis]) {
-                (false, _) => (format!("{letter} middle"), value),
-                // The last edge of a closed axis is its first: the seam, which stands twice in the loop.
-                (true, true) => (format!("{letter}0{suffix}"), domain[axis][0]),
-                (true, false) => (format!("{letter}{}{suffix}", u8::from(last)), value),
-            };
-            let [a, b] = half[1 - axis];
-            if thirds != Some(axis) {
-                spec.outer.push(add(name, place(axis, value, a), place(axis, value, b)));
-                continue;
-            }
-            let at = |third: u8| if third == 3 { b } else { a + (b - a) * f64::from(third) / 3.0 };
-            for third in 1..=3 {
-                let (from, to) = (place(axis, value, at(third - 1)), place(axis, value, at(third)));
-                spec.outer.push(add(format!("{name}, {third}/3"), from, to));
-            }
-            for third in 1..=2 {
-                let [a, b] = half[axis];
-                let (from, to) = (place(axis, a, at(third)), place(axis, b, at(third)));
-                spec.repeated.push(add(format!("{} {third}/3{suffix}", ["u", "v"][1 - axis]), from, to));
-            }
-        }
-        parts.push(Part { spec, surface: Arc::clone(surface), about, natural: true });
-    }
 }
 
 /// Joins ends of curves in space into vertices; ends that were given as numbers come first, theirs is the place.
@@ -324,7 +240,7 @@ fn lift(part: &Part, curves: &[Named]) -> Result<Lifted, Fault> {
     let outer = numbers(&spec.outer)?;
     let charts = match part.about {
         Some(edge) => vec![Chart::about(Arc::clone(&part.surface), edge)],
-        None if part.natural => vec![Chart::sheet(Arc::clone(&part.surface))],
+        None if part.whole => vec![Chart::sheet(Arc::clone(&part.surface))],
         None => charts_for(&part.surface, &outer, curves),
     };
     let mut refusal: Option<Fault> = None;
@@ -339,7 +255,7 @@ fn lift(part: &Part, curves: &[Named]) -> Result<Lifted, Fault> {
                 continue;
             }
         };
-        let around = lift.polygon(&outer);
+        let around = Lift::polygon(&outer);
         let mut loops = vec![outer];
         for (i, hole) in spec.holes.iter().enumerate() {
             let chained = lift.chain(&numbers(hole)?, &loop_name(spec, i + 1)).map_err(|f| placed(f, &spec.place))?;
@@ -380,50 +296,40 @@ fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[Named]) ->
     charts
 }
 
-/// Where a whole surface was divided into halves, each hole and line belongs to the half in which it lies.
-fn share_holes(parts: &mut [Part], lifts: &mut [Lifted]) -> Result<(), Fault> {
-    for (part, lifted) in parts.iter_mut().zip(lifts.iter_mut()) {
-        let halved = part.natural && [LOWER_HALF, UPPER_HALF].iter().any(|half| part.spec.name.ends_with(half));
-        if !halved {
-            continue;
+/// Where a whole surface was divided between its poles, each hole and line belongs to the half in which it lies.
+fn keep_own(part: &mut Part, curves: &[Named]) -> Result<(), Fault> {
+    let Some((axis, [first, last])) = part.half else { return Ok(()) };
+    let chart = Chart::sheet(Arc::clone(&part.surface));
+    let margin = 1e-9 * (last - first);
+    let mut crossing: Option<String> = None;
+    let mut is_own = |names: &[String]| {
+        let named = names.iter().filter_map(|name| curves.iter().find(|c| c.name == *name));
+        let points: Vec<DVec3> = named.flat_map(|c| c.curve.polyline()).collect();
+        let along = points.iter().map(|p| chart.uv(chart.locate(*p).0)[axis]);
+        let (mut inside, mut outside) = (false, false);
+        for t in along {
+            inside |= t > first + margin && t < last - margin;
+            outside |= t < first - margin || t > last + margin;
         }
-        let around = Lift::polygon_of(&lifted.loops[0]);
-        let inside = |piece: &Piece| {
-            let places: Vec<DVec2> = piece.image.places().collect();
-            let within = places.iter().filter(|p| Lift::holds(&around, **p)).count();
-            (within > 0, within < places.len())
-        };
-        let mut crossing: Option<String> = None;
-        let mut keep = |pieces: &[Piece]| {
-            let judged: Vec<(bool, bool)> = pieces.iter().map(inside).collect();
-            let (any_in, any_out) = (judged.iter().any(|j| j.0), judged.iter().any(|j| j.1));
-            if any_in && any_out {
-                crossing = Some(part.spec.name.clone());
-            }
-            any_in
-        };
-        let kept: Vec<bool> = lifted.loops.iter().enumerate().map(|(i, pieces)| i == 0 || keep(pieces)).collect();
-        let mut number = 0;
-        part.spec.holes.retain(|_| {
-            number += 1;
-            kept[number]
-        });
-        let mut number = 0;
-        lifted.loops.retain(|_| {
-            number += 1;
-            kept[number - 1]
-        });
-        lifted.cracks.retain(|piece| keep(std::slice::from_ref(piece)));
-        lifted.repeated.retain(|piece| keep(std::slice::from_ref(piece)));
-        if let Some(name) = crossing {
-            let fault =
-                Fault::new(format!("A hole or line crosses the line at which the surface is divided (\"{name}\")"))
-                    .remedy("Turn the surface's axis, so that the line between its poles lies elsewhere");
-            return Err(placed(fault, &part.spec.place));
+        if inside && outside {
+            crossing = names.first().cloned();
         }
-    }
-    Ok(())
+        inside || !outside
+    };
+    let mut spec = part.spec.clone();
+    spec.holes.retain(|hole| is_own(hole));
+    spec.cracks.retain(|line| is_own(std::slice::from_ref(line)));
+    spec.repeated.retain(|line| is_own(std::slice::from_ref(line)));
+    part.spec = spec;
+    let Some(name) = crossing else { return Ok(()) };
+    let fault =
+        Fault::new(format!("The curve \"{name}\" crosses the line at which its surface is divided between its poles"))
+            .remedy("Turn the surface's axis, so that this line lies elsewhere, or give the face an outer loop");
+    Err(placed(fault, &part.spec.place))
 }
+
+/// An image in the order of all: its curve, its face, its place in a loop (the loop and the number in it), what it is.
+type Placed = (usize, usize, Option<(usize, usize)>, CurveKind, Piece);
 
 /// Puts the lifted faces side by side and makes the domain of them.
 pub(in crate::core) fn assemble(
@@ -441,7 +347,7 @@ pub(in crate::core) fn assemble(
         .collect();
     let atlas = Arc::new(Atlas::new(lifts.iter().map(|l| l.ground.clone()).collect(), &bounds));
     // Every piece by curve, then by face, so that the images of one curve stand together.
-    let mut pieces: Vec<(usize, usize, Option<(usize, usize)>, CurveKind, Piece)> = Vec::new();
+    let mut pieces: Vec<Placed> = Vec::new();
     for (f, lifted) in lifts.into_iter().enumerate() {
         for (i, chain) in lifted.loops.into_iter().enumerate() {
             for (k, piece) in chain.into_iter().enumerate() {
@@ -537,6 +443,6 @@ pub(super) fn image_on(chart: &Arc<Chart>, named: &Named, move_by: DVec2, face: 
     if off > super::image::ON_SURFACE * chart.surface().size() {
         return Err(refuse(off, named.curve.point(0.0)));
     }
-    let guess = if move_by == DVec2::ZERO { start } else { chart.from_uv(chart.uv(start) + move_by) };
+    let guess = if move_by == DVec2::ZERO { start } else { chart.of_uv(chart.uv(start) + move_by) };
     Image::projected(chart, &named.curve, guess).map_err(|off| refuse(off.distance, off.at))
 }

@@ -132,7 +132,7 @@ impl Image {
     /// The place at `t`.
     pub fn point(&self, t: f64) -> DVec2 {
         let own = match &self.course {
-            Course::Trim { chart, trim, move_by } => chart.from_uv(trim.point(t) + *move_by),
+            Course::Trim { chart, trim, move_by } => chart.of_uv(trim.point(t) + *move_by),
             course => {
                 let k = self.table.partition_point(|entry| entry.0 <= t).clamp(1, self.table.len() - 1);
                 let (a, b) = (self.table[k - 1], self.table[k]);

@@ -78,7 +78,7 @@ impl<'a> Lift<'a> {
         let by = self.moves[sheet];
         let made = if sheet > 0 && self.chart.keeps_lines() {
             // The sheets of the parametric plane are moved copies of each other.
-            let shift = self.chart.from_uv(by) - self.chart.from_uv(DVec2::ZERO);
+            let shift = self.chart.of_uv(by) - self.chart.of_uv(DVec2::ZERO);
             self.image(curve, 0).map(|image| image.moved(shift))
         } else {
             image_on(self.chart, &self.curves[curve], by, self.face)
@@ -99,7 +99,7 @@ impl<'a> Lift<'a> {
                 let [first, last] = domain[axis];
                 let margin = 1e-6 * (last - first);
                 let t = [uv.x, uv.y][axis];
-                !(goes_round && surface.closed()[axis]) && !(t >= first - margin && t <= last + margin)
+                !(goes_round && surface.closed()[axis] || t >= first - margin && t <= last + margin)
             })
         });
         match outside {
@@ -223,7 +223,7 @@ impl<'a> Lift<'a> {
             return pieces;
         }
         let probe: Vec<DVec2> = pieces.iter().flat_map(|piece| piece.image.places()).collect();
-        let shift = |by: &DVec2| self.chart.from_uv(*by) - self.chart.from_uv(DVec2::ZERO);
+        let shift = |by: &DVec2| self.chart.of_uv(*by) - self.chart.of_uv(DVec2::ZERO);
         let inside = |by: &&DVec2| probe.iter().filter(|p| Self::holds(around, **p + shift(by))).count();
         // All of it where that can be; the first of the best.
         let best = self.moves.iter().rev().max_by_key(inside).map_or(DVec2::ZERO, shift);
@@ -231,12 +231,7 @@ impl<'a> Lift<'a> {
     }
 
     /// The polygon of a loop, in its order.
-    pub fn polygon(&self, pieces: &[Piece]) -> Vec<DVec2> {
-        Self::polygon_of(pieces)
-    }
-
-    /// See [`Lift::polygon`].
-    pub fn polygon_of(pieces: &[Piece]) -> Vec<DVec2> {
+    pub fn polygon(pieces: &[Piece]) -> Vec<DVec2> {
         let mut points = Vec::new();
         for piece in pieces {
             let mut places: Vec<DVec2> = piece.image.places().collect();

@@ -18,6 +18,7 @@ pub mod inside;
 pub mod assembly;
 pub mod domain;
 pub mod lifting;
+mod whole_surface;
 pub mod complex;
 #[cfg(test)]
 pub(crate) mod fixtures;

@@ -248,7 +248,8 @@ pub fn torus(
 /// Sides that are zero or parallel.
 pub fn plane(corner: DVec3, sides: [DVec3; 2]) -> Result<NurbsSurface, Fault> {
     let lengths = sides.map(DVec3::length);
-    if !(sides[0].cross(sides[1]).length() > 1e-9 * lengths[0] * lengths[1]) {
+    let spanned = sides[0].cross(sides[1]).length();
+    if spanned <= 1e-9 * lengths[0] * lengths[1] || spanned.is_nan() {
         return Err(Fault::new("The sides u and v of the plane are zero or parallel")
             .remedy("Give two directions that span the plane, as long as it is to reach"));
     }

@@ -112,7 +112,7 @@ impl SpaceCurve {
             }
             SpaceShape::Arc { frame, radius, angles } => {
                 let turn = (angles[1] - angles[0]).abs();
-                if !(turn > 0.0 && turn <= 360.0) || !(*radius > 0.0 && *radius <= LARGEST) {
+                if !(turn > 0.0 && turn <= 360.0 && *radius > 0.0 && *radius <= LARGEST) {
                     return Err(Fault::new(format!(
                         "An arc of radius {radius} from {} to {} degrees is no arc",
                         angles[0], angles[1]
@@ -155,7 +155,7 @@ impl SpaceCurve {
         let mut curve = SpaceCurve { path, closed: false };
         let (first, last) = (curve.point(0.0), curve.point(1.0));
         let size = curve.polyline().iter().map(|p| p.distance(first)).fold(0.0, f64::max);
-        if !(size > 0.0) {
+        if size == 0.0 {
             return Err(zero());
         }
         curve.closed = first.distance(last) <= 1e-12 * size;

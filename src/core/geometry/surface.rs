@@ -1,6 +1,10 @@
 //! NURBS surfaces (eq. 1) after Piegl & Tiller, "The NURBS Book": points with first and second derivatives (A3.6 on
 //! homogeneous control points, A4.4 for the quotient), the normal, the first fundamental form and the principal curvatures.
 //!
+//! Where a metric is asked for, a surface is evaluated, so that most of the time on surfaces goes here. Of low degrees, which
+//! nearly all have, each polynomial piece is therefore kept as its Taylor series about its middle, taken by A3.6 once: exact but
+//! for rounding, and several times as quick.
+//!
 //! Deliberately absent: how a surface is laid out in the plane in which it is meshed (see `chart`), and where it ends (see
 //! `complex`).
 
@@ -8,13 +12,15 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::nurbs::{Basis, BasisValues, weighted};
 use crate::core::fault::Fault;
-use crate::core::metric::tensor::Metric2;
 
 /// Control points beyond this are refused, so that no square of one overflows.
 const LARGEST: f64 = 1e100;
 
 /// Control points nearer than this part of the surface's size are at one place.
 const SAME: f64 = 1e-12;
+
+/// The highest degree of which the pieces are kept as series: beyond it, they would lose digits.
+const SERIES: usize = 5;
 
 /// A point of a surface with its derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,8 +61,114 @@ pub struct NurbsSurface {
     /// Whether all weights are equal, so that there is nothing to divide by.
     polynomial: bool,
     size: f64,
+    domain: [[f64; 2]; 2],
     closed: [bool; 2],
     degenerate: [bool; 4],
+    series: Option<Series>,
+}
+
+/// The polynomial pieces as series about their middles, in coordinates that run from -1 to 1 over each.
+#[derive(Clone, Debug, PartialEq)]
+struct Series {
+    /// Where the pieces begin and end, along u and v.
+    breaks: [Vec<f64>; 2],
+    /// Coefficients of `s^k t^l` at `k * (q + 1) + l`, piece after piece, those of one piece of u together.
+    coefficients: Vec<DVec4>,
+    /// Degrees.
+    degrees: [usize; 2],
+}
+
+impl Series {
+    fn of(surface: &NurbsSurface) -> Option<Series> {
+        let degrees = [0, 1].map(|axis| surface.bases[axis].degree());
+        if degrees.iter().any(|degree| *degree > SERIES) {
+            return None;
+        }
+        let breaks = [0, 1].map(|axis| surface.breaks(axis));
+        let [p, q] = degrees;
+        let mut coefficients = Vec::new();
+        // Basis functions and their derivatives at the middle of a piece, over the factorials and by half its width.
+        let expanded = |axis: usize, w: &[f64]| {
+            let (middle, half) = (0.5 * (w[0] + w[1]), 0.5 * (w[1] - w[0]));
+            let span = surface.bases[axis].span(middle);
+            let mut ders = surface.bases[axis].derivatives(span, middle, degrees[axis]);
+            let mut factor = 1.0;
+            for (k, values) in ders.iter_mut().enumerate() {
+                factor *= if k == 0 { 1.0 } else { half / k as f64 };
+                values.iter_mut().for_each(|v| *v *= factor);
+            }
+            (span - degrees[axis], ders)
+        };
+        for w_u in breaks[0].windows(2) {
+            let (first_i, n_u) = expanded(0, w_u);
+            for w_v in breaks[1].windows(2) {
+                let (first_j, n_v) = expanded(1, w_v);
+                for along_u in &n_u {
+                    for along_v in &n_v {
+                        let mut sum = DVec4::ZERO;
+                        for i in 0..=p {
+                            for j in 0..=q {
+                                let point = surface.weighted[(first_i + i) * surface.columns + first_j + j];
+                                sum += point * (along_u[i] * along_v[j]);
+                            }
+                        }
+                        coefficients.push(sum);
+                    }
+                }
+            }
+        }
+        Some(Series { breaks, coefficients, degrees })
+    }
+
+    /// The piece that holds a parameter, the local coordinate there and its derivative by the parameter.
+    #[inline]
+    fn piece(&self, axis: usize, t: f64) -> (usize, f64, f64) {
+        let breaks = &self.breaks[axis];
+        let last = breaks.len() - 2;
+        let mut i = 0;
+        while i < last && t >= breaks[i + 1] {
+            i += 1;
+        }
+        let (a, b) = (breaks[i], breaks[i + 1]);
+        let rate = 2.0 / (b - a);
+        (i, (t - 0.5 * (a + b)) * rate, rate)
+    }
+
+    /// Homogeneous point and its derivatives: `[k][l]` by u and v, for `k + l` up to `order`.
+    #[inline]
+    fn at(&self, [u, v]: [f64; 2], order: usize) -> [[DVec4; 3]; 3] {
+        let [p, q] = self.degrees;
+        let ((i, s, rate_u), (j, t, rate_v)) = (self.piece(0, u), self.piece(1, v));
+        let start = (i * (self.breaks[1].len() - 1) + j) * (p + 1) * (q + 1);
+        let coefficients = &self.coefficients[start..start + (p + 1) * (q + 1)];
+        // Horner along v inside, along u outside; each with its derivatives.
+        let (mut f, mut f_s, mut f_ss) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
+        let (mut f_t, mut f_st, mut f_tt) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
+        for row in coefficients.rchunks_exact(q + 1) {
+            let (mut g, mut g_t, mut g_tt) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
+            for &c in row.iter().rev() {
+                if order > 1 {
+                    g_tt = g_tt * t + g_t;
+                }
+                g_t = g_t * t + g;
+                g = g * t + c;
+            }
+            if order > 1 {
+                f_ss = f_ss * s + f_s;
+                f_st = f_st * s + f_t;
+                f_tt = f_tt * s + g_tt * 2.0;
+            }
+            f_s = f_s * s + f;
+            f = f * s + g;
+            f_t = f_t * s + g_t;
+        }
+        let none = DVec4::ZERO;
+        [
+            [f, f_t * rate_v, f_tt * (rate_v * rate_v)],
+            [f_s * rate_u, f_st * (rate_u * rate_v), none],
+            [f_ss * (2.0 * rate_u * rate_u), none, none],
+        ]
+    }
 }
 
 impl NurbsSurface {
@@ -97,8 +209,21 @@ impl NurbsSurface {
             return Err(Fault::new("The surface has no size: all its control points are at one place"));
         }
         let polynomial = weighted.iter().all(|p| p.w == 1.0);
-        let mut surface =
-            NurbsSurface { bases, weighted, columns, polynomial, size, closed: [false; 2], degenerate: [false; 4] };
+        let mut surface = NurbsSurface {
+            bases,
+            weighted,
+            columns,
+            polynomial,
+            size,
+            domain: [[0.0; 2]; 2],
+            closed: [false; 2],
+            degenerate: [false; 4],
+            series: None,
+        };
+        surface.domain = [0, 1].map(|axis| {
+            let (first, last) = surface.bases[axis].domain();
+            [first, last]
+        });
         surface.closed = [0, 1].map(|axis| surface.edges_agree(axis));
         surface.degenerate = EDGES.map(|edge| surface.is_point(edge));
         if surface.degenerate[0] && surface.degenerate[2] && surface.edges_agree(1)
@@ -107,6 +232,7 @@ impl NurbsSurface {
             return Err(Fault::new("The surface begins and ends in the same point")
                 .remedy("Divide it, so that each part has one singular point at most at either end"));
         }
+        surface.series = Series::of(&surface);
         Ok(surface)
     }
 
@@ -116,11 +242,9 @@ impl NurbsSurface {
     }
 
     /// First and last u, first and last v.
+    #[inline]
     pub fn domain(&self) -> [[f64; 2]; 2] {
-        [0, 1].map(|axis| {
-            let (first, last) = self.bases[axis].domain();
-            [first, last]
-        })
+        self.domain
     }
 
     /// Whether it closes in u, and in v: last and first edge are the same.
@@ -219,7 +343,16 @@ impl NurbsSurface {
     }
 
     /// Point and derivatives inside the knots.
-    fn within(&self, [u, v]: [f64; 2], order: usize) -> SurfacePoint {
+    #[inline]
+    fn within(&self, uv: [f64; 2], order: usize) -> SurfacePoint {
+        match &self.series {
+            Some(series) => self.divided(&series.at(uv, order), order),
+            None => self.divided(&self.by_basis(uv, order), order),
+        }
+    }
+
+    /// Homogeneous point and derivatives by the basis functions.
+    fn by_basis(&self, [u, v]: [f64; 2], order: usize) -> [[DVec4; 3]; 3] {
         let spans = [self.bases[0].span(u), self.bases[1].span(v)];
         let n_u = self.bases[0].derivatives(spans[0], u, order);
         let n_v = self.bases[1].derivatives(spans[1], v, order);
@@ -237,13 +370,18 @@ impl NurbsSurface {
             }
             add_column(&mut sums, &column, &n_v, j, order);
         }
+        sums
+    }
+
+    /// The point and derivatives of the quotient (A4.4).
+    #[inline]
+    fn divided(&self, sums: &[[DVec4; 3]; 3], order: usize) -> SurfacePoint {
         let at = |k: usize, l: usize| (sums[k][l].truncate(), sums[k][l].w);
         let (s, w) = at(0, 0);
         if self.polynomial {
             let dd = if order > 1 { [at(2, 0).0, at(1, 1).0, at(0, 2).0] } else { [DVec3::ZERO; 3] };
             return SurfacePoint { p: s, d: [at(1, 0).0, at(0, 1).0], dd };
         }
-        // A4.4: the derivatives of a quotient.
         let p = s / w;
         let ((a_u, w_u), (a_v, w_v)) = (at(1, 0), at(0, 1));
         let (d_u, d_v) = ((a_u - p * w_u) / w, (a_v - p * w_v) / w);
@@ -281,13 +419,6 @@ pub struct Bend {
 }
 
 impl SurfacePoint {
-    /// The first fundamental form `J^T J`.
-    #[inline]
-    pub fn first_form(&self) -> Metric2 {
-        let [a, b] = self.d;
-        Metric2 { uu: a.dot(a), uv: a.dot(b), vv: b.dot(b) }
-    }
-
     /// The unit normal; zero at a singular point.
     #[inline]
     pub fn normal(&self) -> DVec3 {

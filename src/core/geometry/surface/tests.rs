@@ -171,6 +171,32 @@ fn a_bicubic_bezier_patch_agrees_with_its_bernstein_form() {
 }
 
 #[test]
+fn series_agree_with_the_basis_functions_for_all_degrees_that_use_them() {
+    for degree in 1..=SERIES + 1 {
+        let count = degree + 3;
+        let mut knots = vec![0.0; degree + 1];
+        knots.extend([0.3, 0.35]);
+        knots.extend(vec![2.0; degree + 1]);
+        let (mut points, mut weights) = (Vec::new(), Vec::new());
+        for i in 0..count {
+            for j in 0..count {
+                points.push(DVec3::new(i as f64, j as f64, ((i * 7 + j * 5) % 4) as f64));
+                weights.push(1.0 + 0.3 * ((i + 2 * j) % 3) as f64);
+            }
+        }
+        let surface = NurbsSurface::new([degree; 2], [knots.clone(), knots], &weights, &points, count).unwrap();
+        assert_eq!(surface.series.is_some(), degree <= SERIES);
+        for uv in places(&surface, 23) {
+            let (a, b) = (surface.at(uv, 2), surface.divided(&surface.by_basis([uv.x, uv.y], 2), 2));
+            let near = |a: DVec3, b: DVec3, scale: f64| a.distance(b) < 1e-13 * scale * (1.0 + b.length());
+            assert!(near(a.p, b.p, 10.0), "{degree} {uv}");
+            assert!((0..2).all(|k| near(a.d[k], b.d[k], 100.0)), "{degree} {uv}");
+            assert!((0..3).all(|k| near(a.dd[k], b.dd[k], 1e4)), "{degree} {uv} {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
 fn bad_surfaces_are_refused_with_what_is_wrong() {
     let square = [DVec3::ZERO, DVec3::Y, DVec3::X, DVec3::new(1.0, 1.0, 0.0)];
     let line = vec![0.0, 0.0, 1.0, 1.0];
