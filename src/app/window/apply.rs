@@ -238,9 +238,9 @@ impl State {
 
     /// Writes the state at hand as vectors and, drawn from those, as pixels.
     fn export(&mut self) {
-        let Some((moment, opened)) = self.moment.clone().zip(self.opened.clone()) else { return };
-        let stem = format!("{}-step-{}", opened.case.name, moment.step);
-        match files::export(&moment, &opened, &stem) {
+        let Some((moment, run)) = self.moment.clone().zip(self.run()) else { return };
+        let stem = format!("{}-step-{}", run.case.name, moment.step);
+        match files::export(&moment, &run, &stem) {
             Ok(names) => self.notice(format!("The figure was saved as {names}.")),
             Err(fault) => self.complain(&fault),
         }

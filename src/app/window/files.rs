@@ -7,12 +7,16 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::ColorImage;
 
-use super::session::{Moment, Opened, Source, Wake};
-use crate::app::convert;
+use super::session::{Moment, Source, Wake};
+use crate::app::figure::{Figure, FigureOptions};
+use crate::app::work::Frame;
+use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::{built_in, save};
-use crate::render::picture::Picture;
-use crate::render::vector::{self, svg};
+use crate::core::run::run::Run;
+use crate::core::run::shown::{ShownState, fingerprint};
+use crate::render::look::Layers;
+use crate::render::picture::{Picture, Seen};
 
 /// A dialog that has not answered for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -98,18 +102,23 @@ pub fn free_path(stem: &str, extension: &str) -> PathBuf {
 ///
 /// # Errors
 /// What the system says.
-pub fn export(moment: &Moment, opened: &Opened, stem: &str) -> Result<String, Fault> {
-    let picture = Picture {
-        title: opened.case.title.clone(),
-        description: format!("{}, at step={}", convert::describe(&opened.case), moment.step),
-        ..Picture::of_state(&moment.mesh, &moment.parameters, moment.phase.base())
-    };
-    let vectors = svg::write(&picture, svg::COLUMN);
-    let pixels = vector::png::write(&vectors, convert::PRINT, &picture.description)?;
+pub fn export(moment: &Moment, run: &Run, stem: &str) -> Result<String, Fault> {
+    let options = FigureOptions::default();
+    let frame = frame(moment, options.look(false).layers);
+    let figure = Figure::of_run(run, &[frame], &options, true)?;
+    let pixels = figure.png()?;
     let names = ["svg", "png"].map(|extension| free_path(stem, extension));
-    save::save(&names[0], |out| out.write_all(vectors.as_bytes()))?;
+    save::save(&names[0], |out| out.write_all(figure.svg.as_bytes()))?;
     save::save(&names[1], |out| out.write_all(&pixels))?;
     Ok(format!("{} and {}", names[0].display(), names[1].display()))
+}
+
+/// The state at hand as a frame of a figure.
+fn frame(moment: &Moment, layers: Layers) -> Frame {
+    let Moment { mesh, parameters, phase, changed, step, .. } = moment;
+    let shown = ShownState { step: *step, at: Some(Stop::Step(*step)), state: fingerprint(mesh, phase) };
+    let seen = Seen { mesh, parameters, phase, changed };
+    Frame { picture: Picture::of_state(&seen, layers), shown, statistics: None }
 }
 
 /// Writes a picture of the window as PNG.

@@ -335,6 +335,7 @@ impl State {
     /// The run with everything that a person has changed.
     pub fn run(&self) -> Option<Run> {
         let mut run = self.opened.as_ref()?.run.clone();
+        run.shown = None;
         run.set_edits(self.kept.edits.clone());
         let name = |step: u64| run.bookmarks.iter().find(|mark| mark.step == step).map(|mark| mark.name.clone());
         let marks = self.kept.bookmarks.iter();

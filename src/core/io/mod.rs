@@ -18,3 +18,4 @@ pub mod statistics;
 pub mod export;
 pub mod report;
 pub mod run_file;
+pub mod figure;
