@@ -392,15 +392,15 @@ pub(super) fn make(
 /// What is to be told where a state is not the one that a figure shows.
 pub(super) fn difference(name: &str, shown: &Shown, frames: &[Frame]) -> Option<String> {
     let other = shown.states.iter().zip(frames).find(|(then, now)| then.state != now.shown.state)?;
-    Some(another_state(name, other.0.step))
+    Some(another_state(name, other.0.step).to_string())
 }
 
 /// That a state is not the one that a figure shows.
-pub(super) fn another_state(name: &str, step: u64) -> String {
+pub(super) fn another_state(name: &str, step: u64) -> Fault {
     let version = env!("CARGO_PKG_VERSION");
-    format!(
-        "{name}: with what is set now, quadfront {version} reaches another state at step {step} than the figure shows."
-    )
+    Fault::new(format!("quadfront {version} reaches another state at step {step} than the figure shows"))
+        .at(name)
+        .remedy("It was drawn by another version, or with other parameters")
 }
 
 #[cfg(test)]

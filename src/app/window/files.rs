@@ -2,22 +2,19 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use eframe::egui::ColorImage;
 
-use super::session::{Moment, Source, Wake};
-use crate::app::figure::{Figure, FigureOptions};
-use crate::app::work::Frame;
-use crate::core::convert::walk::Stop;
+use super::session::{Source, Wake};
+use crate::app::input;
 use crate::core::fault::Fault;
 use crate::core::io::{built_in, save};
-use crate::core::run::run::Run;
-use crate::core::run::shown::{ShownState, fingerprint};
-use crate::render::look::Layers;
-use crate::render::picture::{Picture, Seen};
 
+/// How often a file is looked at that may change.
+const LOOK: Duration = Duration::from_millis(700);
 /// A dialog that has not answered for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// An answer that comes sooner is no person's.
@@ -26,7 +23,7 @@ const HASTE: Duration = Duration::from_millis(250);
 impl Source {
     /// What a name stands for: a built-in case, or else a file.
     pub fn named(name: &str) -> Source {
-        match built_in::CASES.iter().any(|case| case.0 == name) {
+        match built_in::all().any(|case| case.0 == name) {
             true => Source::BuiltIn(name.to_owned()),
             false => Source::File(PathBuf::from(name)),
         }
@@ -65,8 +62,8 @@ impl Dialog {
         let (tell, answer) = channel();
         std::thread::spawn(move || {
             let dialog = rfd::FileDialog::new()
-                .set_title("Open a case or a mesh")
-                .add_filter("Cases and meshes", &["toml", "msh", "mesh", "vtu", "obj", "inp"]);
+                .set_title("Open a case, a mesh or a figure")
+                .add_filter("Cases, meshes, figures", &["toml", "msh", "mesh", "vtu", "obj", "inp", "svg", "png"]);
             // Nobody listens where the window has given it up.
             let _ = tell.send(dialog.pick_file());
             wake();
@@ -98,27 +95,52 @@ pub fn free_path(stem: &str, extension: &str) -> PathBuf {
     path
 }
 
-/// Writes a state as a figure, as vectors and as pixels drawn from those; their names, for people.
-///
-/// # Errors
-/// What the system says.
-pub fn export(moment: &Moment, run: &Run, stem: &str) -> Result<String, Fault> {
-    let options = FigureOptions::default();
-    let frame = frame(moment, options.look(false).layers);
-    let figure = Figure::of_run(run, &[frame], &options, true)?;
-    let pixels = figure.png()?;
-    let names = ["svg", "png"].map(|extension| free_path(stem, extension));
-    save::save(&names[0], |out| out.write_all(figure.svg.as_bytes()))?;
-    save::save(&names[1], |out| out.write_all(&pixels))?;
-    Ok(format!("{} and {}", names[0].display(), names[1].display()))
+/// Looks now and then whether a file is as it was, on a thread of its own.
+pub struct Watcher {
+    news: Receiver<Result<String, Fault>>,
+    gone: Arc<AtomicBool>,
 }
 
-/// The state at hand as a frame of a figure.
-fn frame(moment: &Moment, layers: Layers) -> Frame {
-    let Moment { mesh, parameters, phase, changed, step, .. } = moment;
-    let shown = ShownState { step: *step, at: Some(Stop::Step(*step)), state: fingerprint(mesh, phase) };
-    let seen = Seen { mesh, parameters, phase, changed };
-    Frame { picture: Picture::of_state(&seen, layers), shown, statistics: None }
+impl Watcher {
+    /// A watcher of a file; `wake` is called when there are news.
+    pub fn of(path: PathBuf, wake: Wake) -> Watcher {
+        let (tell, news) = channel();
+        let gone = Arc::new(AtomicBool::new(false));
+        let given_up = gone.clone();
+        let state = move |path: &Path| std::fs::metadata(path).and_then(|meta| Ok((meta.modified()?, meta.len()))).ok();
+        let mut before = state(&path);
+        std::thread::spawn(move || {
+            while !given_up.load(Ordering::Relaxed) {
+                std::thread::sleep(LOOK);
+                let now = state(&path);
+                if now == before {
+                    continue;
+                }
+                before = now;
+                // What cannot be read is told, and that nothing is lost by it.
+                let read = input::run_of(&path).map(|_| path.display().to_string()).map_err(|fault| {
+                    let remedy = if fault.remedy.is_empty() { String::new() } else { format!("{}. ", fault.remedy) };
+                    fault.remedy(format!("{remedy}The window keeps what it has"))
+                });
+                if tell.send(read).is_err() {
+                    return;
+                }
+                wake();
+            }
+        });
+        Watcher { news, gone }
+    }
+
+    /// What is new: the name of the file that has changed, or what is wrong with it now.
+    pub fn news(&self) -> Option<Result<String, Fault>> {
+        self.news.try_iter().last()
+    }
+}
+
+impl Drop for Watcher {
+    fn drop(&mut self) {
+        self.gone.store(true, Ordering::Relaxed);
+    }
 }
 
 /// Writes a picture of the window as PNG.
@@ -143,6 +165,7 @@ mod tests {
     #[test]
     fn a_name_is_a_built_in_case_or_else_a_file() {
         assert_eq!(Source::named("example1"), Source::BuiltIn("example1".to_owned()));
+        assert_eq!(Source::named("figure-14"), Source::BuiltIn("figure-14".to_owned()));
         assert_eq!(Source::named("plate.toml"), Source::File(PathBuf::from("plate.toml")));
     }
 }

@@ -12,6 +12,9 @@ pub mod parameters;
 pub mod layers;
 pub mod plots;
 pub mod messages;
+pub mod offer;
+pub mod notes;
+pub mod figure;
 pub mod over;
 
 use eframe::egui::{self, Align, Button, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo};
