@@ -45,6 +45,11 @@ pub fn heading(ui: &mut Ui, title: &str, source: &str, palette: &Palette) {
     });
 }
 
+/// The frame of a small window over the view.
+pub fn floating(palette: &Palette) -> Frame {
+    Frame::NONE.fill(ink(palette.panel)).stroke((1.0, ink(palette.hint))).corner_radius(4.0).inner_margin(12)
+}
+
 /// The inside of a panel.
 pub fn inset() -> Frame {
     Frame::NONE.inner_margin(Margin::symmetric(14, 8))

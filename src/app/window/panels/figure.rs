@@ -22,7 +22,9 @@ pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, p
         .collapsible(false)
         .resizable(false)
         .default_width(330.0)
-        .anchor(Align2::CENTER_CENTER, Vec2::new(0.0, -40.0))
+        .frame(super::floating(palette))
+        .pivot(Align2::CENTER_CENTER)
+        .default_pos(context.content_rect().center() - Vec2::new(0.0, 60.0))
         .show(context, |ui| form(ui, state, commands, palette));
     state.figures.shown = open;
 }
@@ -53,7 +55,7 @@ fn form(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &P
         }
         head(ui, "size");
         let usual = if figures.is_strip() { "174mm" } else { "84mm" };
-        field(ui, &mut figures.size, "Size of the figure", &format!("{usual}, 84x60mm or 1920x1080"));
+        field(ui, &mut figures.size, "Size of the figure", &format!("{usual}, or 1920x1080"));
         ui.end_row();
         head(ui, "dots an inch");
         let dots = ui.add(DragValue::new(&mut figures.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
@@ -87,7 +89,8 @@ fn form(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &P
             for (k, layer) in Layer::ALL.into_iter().enumerate() {
                 let mut on = figures.has(layer);
                 // Layers of the view have the same names elsewhere.
-                let response = ui.checkbox(&mut on, layer.name());
+                let name = if layer == Layer::H { "H-values" } else { layer.name() };
+                let response = ui.checkbox(&mut on, name);
                 response.widget_info(|| {
                     WidgetInfo::selected(egui::Role::CheckBox, true, on, format!("{} in the figure", layer.name()))
                 });

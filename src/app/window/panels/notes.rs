@@ -6,7 +6,7 @@ use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::render::palette::Palette;
 
-/// Shows the notes over the view, at its lower left.
+/// Shows the notes, where they are wanted.
 pub fn show(context: &Context, state: &mut State, palette: &Palette) {
     let Some(case) = state.opened.as_ref().map(|opened| &opened.case).filter(|_| state.notes) else { return };
     let mut open = true;
@@ -14,10 +14,13 @@ pub fn show(context: &Context, state: &mut State, palette: &Palette) {
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width(360.0)
-        .anchor(Align2::LEFT_BOTTOM, Vec2::new(360.0, -232.0))
+        .default_width(304.0)
+        .frame(super::floating(palette))
+        // Over the left column, where it covers nothing of the mesh; from there it can be moved.
+        .pivot(Align2::LEFT_BOTTOM)
+        .default_pos(context.content_rect().left_bottom() + Vec2::new(8.0, -224.0))
         .show(context, |ui| {
-            ui.set_width(360.0);
+            ui.set_width(304.0);
             ui.label(RichText::new(&case.title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
             ui.add_space(4.0);
             ScrollArea::vertical().max_height(220.0).show(ui, |ui| {

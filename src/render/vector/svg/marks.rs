@@ -15,6 +15,8 @@ const WEDGE: f64 = 2.2;
 /// Radius of arcs, and the legs that one needs.
 const ARC: f64 = 6.0;
 const LEGS: f64 = 12.0;
+/// A corner is narrow whose half angle has a smaller tangent: 60 degrees.
+const NARROW: f64 = 0.577;
 /// An ellipse is drawn where its minor half axis is so long.
 const MINOR: f64 = 0.8;
 
@@ -132,7 +134,12 @@ impl<'a> Marks<'a> {
         let d = (*middle - p).try_normalize().unwrap_or(DVec2::NEG_Y);
         let half = DVec2::new(0.5 * width(text, NOTE_SIZE) + 0.3, 0.36 * NOTE_SIZE + 0.2);
         let reach = (half.x * d.x.abs()) + (half.y * d.y.abs());
-        if self.put(*middle + d * (reach + 0.8), half, text, NOTE_SIZE) || always {
+        // In a narrow corner the value stands where it has room between the legs.
+        let across = (half.x * d.y.abs()) + (half.y * d.x.abs());
+        let opening = libm::tan(0.5 * legs[0].angle_to(legs[1]).abs()).max(1e-3);
+        let narrow = if opening < NARROW { (across / opening + reach).min(0.9 * room) } else { 0.0 };
+        let away = ((*middle - p).length() + reach + 0.8).max(narrow);
+        if self.put(p + d * away, half, text, NOTE_SIZE) || always {
             let mut path = Path::default();
             path.walk(points.into_iter(), false);
             self.page.path(&path, &format!("fill=\"none\" stroke=\"{NOTE}\" stroke-width=\"0.4\""));
