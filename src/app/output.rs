@@ -85,6 +85,14 @@ impl MeshTarget {
                 return Err(Fault::new("The format is not known").at("standard output").remedy("Write --format msh"));
             }
         };
+        if !format.is_written() {
+            let known: Vec<String> = Format::written().map(|format| format!(".{}", format.extension())).collect();
+            return Err(Fault::new(format!(
+                "The format .{} is read and not written: it has no quadrilaterals",
+                format.extension()
+            ))
+            .remedy(format!("Write one of {}", known.join(", "))));
+        }
         if destination.msh2 && format != Format::Msh {
             return Err(Fault::new("--msh2 is for .msh").remedy("Leave it out, or write a .msh"));
         }
@@ -107,7 +115,7 @@ impl MeshTarget {
     /// Why the metric is not written with the mesh, where it is not.
     pub fn lacks_metric(&self) -> Option<String> {
         match (&self.target, self.format) {
-            (_, Format::Obj | Format::Inp) => {
+            (_, Format::Obj | Format::Inp | Format::Ply) => {
                 Some(format!("The metric is not written: .{} has no place for it.\n", self.format.extension()))
             }
             (Target::StandardOutput, Format::Medit) => {

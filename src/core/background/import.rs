@@ -1,9 +1,10 @@
 //! An existing triangle mesh as background: checked, repaired where nothing is lost by it, and cut apart between regions.
 //!
-//! What is refused: curved meshes, quadrilaterals, triangles without room, edges of three triangles, overlaps, and parts
+//! What is refused: curved meshes, meshes of quadrilaterals alone, triangles without room, edges of three triangles, overlaps, and parts
 //! with an odd number of triangles. Nodes at the same place are kept apart as the file has them: they are the two sides
 //! of a crack. Deliberately absent: reading files (`core/io`).
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use glam::DVec2;
@@ -51,11 +52,28 @@ impl Imported {
 /// # Errors
 /// All that the module's doc says, with the numbers of the triangles (from 1, in the order of the file) and places.
 pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
-    let mut import = Import::checked(file)?;
+    let (cut, file) = cut_to_triangles(file);
+    let mut import = Import::checked(&file)?;
+    tell(
+        &mut import.repairs,
+        cut,
+        "quadrilateral or polygon was cut into triangles",
+        "quadrilaterals and polygons were cut into triangles",
+    );
     import.orient_and_drop_duplicates()?;
     import.check_edges()?;
     import.even_parts(split_odd)?;
     Ok(import.finish())
+}
+
+/// A mesh of triangles and larger elements with these cut; one of quadrilaterals alone stays, and is refused: it is what a
+/// conversion ends with.
+fn cut_to_triangles(file: &MeshFile) -> (usize, Cow<'_, MeshFile>) {
+    if file.polygons.is_empty() && (file.triangles.is_empty() || file.quads.is_empty()) {
+        return (0, Cow::Borrowed(file));
+    }
+    let (file, cut) = file.clone().triangulated();
+    (cut, Cow::Owned(file))
 }
 
 struct Import<'a> {
@@ -76,12 +94,8 @@ impl<'a> Import<'a> {
     fn checked(file: &'a MeshFile) -> Result<Self, Fault> {
         let (n, quads) = (file.triangles.len(), file.quads.len());
         if quads > 0 {
-            let what = if n == 0 {
-                format!("The mesh has quadrilaterals already: all of its {quads} elements")
-            } else {
-                format!("{quads} of its {} elements are quadrilaterals", n + quads)
-            };
-            return Err(Fault::new(what).remedy("Give a mesh of triangles only"));
+            return Err(Fault::new(format!("The mesh has quadrilaterals already: all of its {quads} elements"))
+                .remedy("Give a mesh of triangles"));
         }
         if n == 0 {
             let skipped: Vec<String> = file.skipped.iter().map(|(kind, n)| format!("{n} {kind}")).collect();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::mesh_file::MeshFile;
 use super::save::{load, save};
-use super::{inp, medit, msh, obj, vtu};
+use super::{gltf, inp, medit, msh, obj, ply, stl, vtu};
 use crate::core::fault::Fault;
 
 /// The formats of meshes, read and written.
@@ -21,6 +21,14 @@ pub enum Format {
     Obj,
     /// Abaqus, `.inp`.
     Inp,
+    /// Stanford, `.ply`.
+    Ply,
+    /// Stereolithography, `.stl`; read only, since it has no quadrilaterals.
+    Stl,
+    /// Khronos, `.gltf`; read only, likewise.
+    Gltf,
+    /// The same in one binary file, `.glb`.
+    Glb,
 }
 
 /// How to write.
@@ -31,8 +39,28 @@ pub struct WriteOptions {
 }
 
 impl Format {
-    /// All formats.
-    pub const ALL: [Format; 5] = [Format::Msh, Format::Medit, Format::Vtu, Format::Obj, Format::Inp];
+    /// All formats; those that are written come first.
+    pub const ALL: [Format; 9] = [
+        Format::Msh,
+        Format::Medit,
+        Format::Vtu,
+        Format::Obj,
+        Format::Inp,
+        Format::Ply,
+        Format::Stl,
+        Format::Gltf,
+        Format::Glb,
+    ];
+
+    /// The formats that are written: those that have quadrilaterals.
+    pub fn written() -> impl Iterator<Item = Format> {
+        Format::ALL.into_iter().filter(|format| format.is_written())
+    }
+
+    /// Whether it is written, and not only read.
+    pub fn is_written(self) -> bool {
+        !matches!(self, Format::Stl | Format::Gltf | Format::Glb)
+    }
 
     /// The extension of its files, without the dot.
     pub fn extension(self) -> &'static str {
@@ -42,6 +70,10 @@ impl Format {
             Format::Vtu => "vtu",
             Format::Obj => "obj",
             Format::Inp => "inp",
+            Format::Ply => "ply",
+            Format::Stl => "stl",
+            Format::Gltf => "gltf",
+            Format::Glb => "glb",
         }
     }
 
@@ -78,7 +110,7 @@ impl Format {
 /// One fault with file, line and remedy for whatever is wrong.
 pub fn read_mesh(path: &Path, sol: Option<&Path>) -> Result<MeshFile, Fault> {
     let format = Format::from_path(path)?;
-    let mut mesh = read_bytes(&path.display().to_string(), &load(path)?, format)?;
+    let mut mesh = read_in(&path.display().to_string(), &load(path)?, format, path.parent())?;
     let beside = path.with_extension("sol");
     let sol = sol.or_else(|| (format == Format::Medit && beside.is_file()).then_some(beside.as_path()));
     if let Some(sol) = sol {
@@ -93,6 +125,11 @@ pub fn read_mesh(path: &Path, sol: Option<&Path>) -> Result<MeshFile, Fault> {
 /// # Errors
 /// One fault with name, line and remedy for whatever is wrong.
 pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
+    read_in(name, bytes, format, None)
+}
+
+/// As [`read_bytes`], with the folder in which files lie that the mesh names.
+fn read_in(name: &str, bytes: &[u8], format: Format, folder: Option<&Path>) -> Result<MeshFile, Fault> {
     if bytes.trim_ascii().is_empty() {
         return Err(Fault::new("The file is empty").at(name).remedy("Write it again"));
     }
@@ -102,6 +139,9 @@ pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<MeshFile, 
         Format::Vtu => vtu::read(name, bytes),
         Format::Obj => obj::read(name, bytes),
         Format::Inp => inp::read(name, bytes),
+        Format::Ply => ply::read(name, bytes),
+        Format::Stl => stl::read(name, bytes),
+        Format::Gltf | Format::Glb => gltf::read(name, bytes, folder),
     }
 }
 
@@ -116,6 +156,8 @@ pub fn write_to(out: &mut dyn Write, format: Format, mesh: &MeshFile, options: W
         Format::Vtu => vtu::write(out, mesh),
         Format::Obj => obj::write(out, mesh),
         Format::Inp => inp::write(out, mesh),
+        Format::Ply => ply::write(out, mesh),
+        Format::Stl | Format::Gltf | Format::Glb => Err(io::Error::other("it has no quadrilaterals")),
     }
 }
 

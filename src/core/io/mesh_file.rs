@@ -39,12 +39,16 @@ pub struct MeshFile {
     pub triangles: Vec<[u32; 3]>,
     /// Quadrilaterals, likewise.
     pub quads: Vec<[u32; 4]>,
+    /// Polygons of five corners and more, likewise.
+    pub polygons: Vec<Vec<u32>>,
     /// Tag of the group of each line; empty, or as long as `lines`.
     pub line_tags: Vec<u32>,
     /// Tag of the group of each triangle; empty, or as long as `triangles`.
     pub triangle_tags: Vec<u32>,
     /// Tag of the group of each quadrilateral; empty, or as long as `quads`.
     pub quad_tags: Vec<u32>,
+    /// Tag of the group of each polygon; empty, or as long as `polygons`.
+    pub polygon_tags: Vec<u32>,
     /// Names of the groups.
     pub groups: Vec<Group>,
     /// The metric at each point, where the file has one.

@@ -1,27 +1,27 @@
-//! Wavefront OBJ: vertices and faces. Deliberately absent: everything else (texture coordinates, normals, materials,
-//! lines, groups) is passed over.
+//! Wavefront OBJ: vertices, faces, and their groups or objects. Deliberately absent: everything else (texture coordinates, normals,
+//! materials, lines) is passed over.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use glam::DVec3;
 
-use super::mesh_file::MeshFile;
+use super::mesh_file::{Group, MeshFile, tag_of};
 use super::save::Shortest;
 use super::scan::{Scanner, parse_integer, parse_real, shown};
 use crate::core::fault::Fault;
 
-/// Reads vertices, triangles and quadrilaterals; polygons with more corners are counted as skipped.
+/// Reads vertices, triangles, quadrilaterals and polygons.
 ///
 /// # Errors
 /// A fault with the line for a malformed vertex or face and for a face whose vertex does not exist.
 pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes);
     let mut mesh = MeshFile::default();
-    let mut polygons: BTreeMap<usize, usize> = BTreeMap::new();
     let mut corners: Vec<u32> = Vec::new();
     // A face may stand before its vertices: the largest vertex and where it stands are checked at the end.
     let mut largest = (0, 0);
+    let mut names = Names::default();
     while let Some(line) = s.line() {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         match words.next() {
@@ -47,13 +47,25 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
                     }
                     corners.push(vertex);
                 }
+                let tag = names.tag(&mut mesh);
                 match corners[..] {
-                    [a, b, c] => mesh.triangles.push([a, b, c]),
-                    [a, b, c, d] => mesh.quads.push([a, b, c, d]),
+                    [a, b, c] => {
+                        mesh.triangles.push([a, b, c]);
+                        mesh.triangle_tags.push(tag);
+                    }
+                    [a, b, c, d] => {
+                        mesh.quads.push([a, b, c, d]);
+                        mesh.quad_tags.push(tag);
+                    }
                     [] | [_] | [_, _] => return Err(s.fault("A face has fewer than three vertices")),
-                    _ => *polygons.entry(corners.len()).or_default() += 1,
+                    _ => {
+                        mesh.polygons.push(corners.clone());
+                        mesh.polygon_tags.push(tag);
+                    }
                 }
             }
+            // A group within an object is the finer of the two; a face in several groups is in the first.
+            Some(b"g" | b"o") => names.next = words.next().map(|name| String::from_utf8_lossy(name).into_owned()),
             _ => {}
         }
     }
@@ -61,8 +73,35 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
         let what = format!("A face has the vertex {}, and there are {}", largest.0, mesh.points.len());
         return Err(s.fault_at(largest.1, what));
     }
-    mesh.skipped = polygons.into_iter().map(|(sides, count)| (format!("polygon with {sides} sides"), count)).collect();
+    if mesh.groups.is_empty() {
+        mesh.triangle_tags.clear();
+        mesh.quad_tags.clear();
+        mesh.polygon_tags.clear();
+    }
     Ok(mesh)
+}
+
+/// The groups that have faces, by the order of their first ones.
+#[derive(Default)]
+struct Names {
+    tags: BTreeMap<String, u32>,
+    /// The group of the faces that follow, until the first of them is read.
+    next: Option<String>,
+    now: u32,
+}
+
+impl Names {
+    /// The tag of a face; a group that had none comes to the mesh's groups.
+    fn tag(&mut self, mesh: &mut MeshFile) -> u32 {
+        if let Some(name) = self.next.take() {
+            let new = self.tags.len() as u32 + 1;
+            self.now = *self.tags.entry(name.clone()).or_insert(new);
+            if self.now == new {
+                mesh.groups.push(Group { dimension: 2, tag: new, name });
+            }
+        }
+        self.now
+    }
 }
 
 /// The zero-based vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative ones count back from the last vertex so far.
@@ -72,7 +111,7 @@ fn corner(word: &[u8], so_far: usize) -> Option<u32> {
     u32::try_from(index).ok().filter(|&index| index < u32::MAX)
 }
 
-/// Writes points, triangles and quadrilaterals.
+/// Writes points, triangles and quadrilaterals, in groups where they have names.
 ///
 /// # Errors
 /// What `out` says.
@@ -80,8 +119,17 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     for p in &mesh.points {
         writeln!(out, "v {} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
     }
-    let faces = mesh.triangles.iter().map(|t| &t[..]).chain(mesh.quads.iter().map(|q| &q[..]));
-    for face in faces {
+    let triangles = mesh.triangles.iter().enumerate().map(|(i, t)| (&t[..], tag_of(&mesh.triangle_tags, i)));
+    let quads = mesh.quads.iter().enumerate().map(|(i, q)| (&q[..], tag_of(&mesh.quad_tags, i)));
+    let mut group = None;
+    for (face, tag) in triangles.chain(quads) {
+        let name = mesh.group_name(2, tag);
+        if name.is_some() && name != group {
+            // White space would part it into several groups.
+            let name: String = name.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join("_");
+            writeln!(out, "g {name}")?;
+            group = mesh.group_name(2, tag);
+        }
         write!(out, "f")?;
         for &corner in face {
             write!(out, " {}", u64::from(corner) + 1)?;

@@ -182,6 +182,7 @@ fn basics(mesh: &MeshFile, faces: &Faces, found: &mut Found) {
     for (_, count) in &mesh.skipped {
         found.note_many(Defect::OtherElements, *count as u64);
     }
+    found.note_many(Defect::OtherElements, mesh.polygons.len() as u64);
     found.note_many(Defect::Triangles, mesh.triangles.len() as u64);
 }
 

@@ -60,10 +60,27 @@ fn clockwise_duplicate_and_orphan_things_are_repaired_and_reported() {
 }
 
 #[test]
-fn quadrilaterals_are_refused() {
+fn quadrilaterals_and_polygons_among_triangles_are_cut_and_told() {
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0], [2.0, 1.0], [1.5, 2.0]];
+    let mut file = MeshFile {
+        points: square.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec(),
+        triangles: vec![[2, 5, 6]],
+        quads: vec![[1, 4, 5, 2]],
+        polygons: vec![vec![0, 1, 2, 6, 3]],
+        ..MeshFile::default()
+    };
+    let imported = import(&file, false).unwrap();
+    assert_eq!(imported.set.triangles.len(), 6);
+    assert_eq!(imported.repairs, ["2 quadrilaterals and polygons were cut into triangles"]);
+    file.triangles.clear();
+    file.quads.clear();
+    assert!(import(&file, true).is_ok());
+}
+
+#[test]
+fn a_mesh_of_quadrilaterals_alone_is_refused() {
     let mut file = star();
     file.quads = vec![[0, 1, 2, 3]; 12];
-    assert!(refusal(&file).contains("12 of its 16 elements are quadrilaterals"));
     file.triangles.clear();
     assert!(refusal(&file).contains("quadrilaterals already: all of its 12"));
     file.quads.clear();

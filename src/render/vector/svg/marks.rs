@@ -15,8 +15,8 @@ const WEDGE: f64 = 2.2;
 /// Radius of arcs, and the legs that one needs.
 const ARC: f64 = 6.0;
 const LEGS: f64 = 12.0;
-/// A corner is narrow whose half angle has a smaller tangent: 60 degrees.
-const NARROW: f64 = 0.577;
+/// A corner with a smaller angle is narrow.
+const NARROW: f64 = std::f64::consts::FRAC_PI_3;
 /// An ellipse is drawn where its minor half axis is so long.
 const MINOR: f64 = 0.8;
 
@@ -136,8 +136,10 @@ impl<'a> Marks<'a> {
         let reach = (half.x * d.x.abs()) + (half.y * d.y.abs());
         // In a narrow corner the value stands where it has room between the legs.
         let across = (half.x * d.y.abs()) + (half.y * d.x.abs());
-        let opening = libm::tan(0.5 * legs[0].angle_to(legs[1]).abs()).max(1e-3);
-        let narrow = if opening < NARROW { (across / opening + reach).min(0.9 * room) } else { 0.0 };
+        // Anticlockwise in the mesh is clockwise on the page.
+        let turn = libm::atan2(-legs[0].perp_dot(legs[1]), legs[0].dot(legs[1]));
+        let is_narrow = (0.0..NARROW).contains(&turn);
+        let narrow = if is_narrow { (across / libm::tan(0.5 * turn).max(1e-3) + reach).min(0.9 * room) } else { 0.0 };
         let away = ((*middle - p).length() + reach + 0.8).max(narrow);
         if self.put(p + d * away, half, text, NOTE_SIZE) || always {
             let mut path = Path::default();
