@@ -146,7 +146,7 @@ impl App {
         let image = self.taken.lock().ok().and_then(|mut taken| taken.take());
         if let Some(image) = image {
             let path = free_path("quadfront-window", "png");
-            match write_png(&path, &image) {
+            match write_png(&path, &image, self.state.carried()) {
                 Ok(()) => self.state.notice(format!("The window was saved as {}.", path.display())),
                 Err(fault) => self.state.complain(&fault),
             }

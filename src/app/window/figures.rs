@@ -12,10 +12,10 @@ use crate::app::work::{self, Frame};
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::export::Export;
-use crate::core::io::save;
+use crate::core::io::{run_file, save};
 use crate::core::progress::Nobody;
 use crate::core::run::run::Run;
-use crate::core::run::shown::{ShownState, fingerprint};
+use crate::core::run::shown::{Shown, ShownState, fingerprint};
 use crate::render::look::{Ink, Layer, Layers, Part};
 use crate::render::picture::{Picture, Seen};
 
@@ -233,6 +233,13 @@ impl State {
         self.figures.making.push(told);
     }
 
+    /// The text of the run at the state at hand, as figures carry it; none where a mesh that it starts from is gone.
+    pub fn carried(&self) -> Option<String> {
+        let (moment, mut run) = (self.moment.as_ref()?, self.run()?);
+        run.shown = Some(Shown { states: vec![shown(moment)], drawn: Vec::new() });
+        run_file::embedded(&run).ok()
+    }
+
     /// Hears of the figures that were being made.
     pub fn hear_figures(&mut self) {
         let mut told = Vec::new();
@@ -252,16 +259,22 @@ impl State {
     }
 }
 
+/// The state at hand, as a figure says which it is.
+fn shown(moment: &Moment) -> ShownState {
+    let state = fingerprint(&moment.mesh, &moment.phase);
+    ShownState { step: moment.step, at: Some(Stop::Step(moment.step)), state }
+}
+
 /// The figure of the state at hand.
 fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &FigureOptions) -> Result<Figure, Fault> {
-    let Moment { mesh, parameters, phase, changed, step, .. } = moment.as_ref();
-    let shown = ShownState { step: *step, at: Some(Stop::Step(*step)), state: fingerprint(mesh, phase) };
+    let Moment { mesh, parameters, phase, changed, .. } = moment.as_ref();
     let seen = Seen { mesh, parameters, phase, changed };
     let statistics = match options.plot {
         Some(_) => Some(work::statistics(&Export::of(mesh, &[]), &opened.background.sizing)?),
         None => None,
     };
-    let frame = Frame { picture: Picture::of_state(&seen, options.look(false).layers), shown, statistics };
+    let frame =
+        Frame { picture: Picture::of_state(&seen, options.look(false).layers), shown: shown(moment), statistics };
     Figure::of_run(run, &[frame], options, true)
 }
 

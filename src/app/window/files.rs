@@ -11,6 +11,7 @@ use eframe::egui::ColorImage;
 use super::session::{Source, Wake};
 use crate::app::input;
 use crate::core::fault::Fault;
+use crate::core::io::figure::KEYWORD;
 use crate::core::io::{built_in, save};
 
 /// How often a file is looked at that may change.
@@ -143,16 +144,19 @@ impl Drop for Watcher {
     }
 }
 
-/// Writes a picture of the window as PNG.
+/// Writes a picture of the window as PNG, with the text of the run that it shows.
 ///
 /// # Errors
 /// What the system says.
-pub fn write_png(path: &Path, image: &Arc<ColorImage>) -> Result<(), Fault> {
+pub fn write_png(path: &Path, image: &Arc<ColorImage>, run: Option<String>) -> Result<(), Fault> {
     let bytes: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
     save::save(path, |out| {
         let mut encoder = png::Encoder::new(out, image.size[0] as u32, image.size[1] as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
+        if let Some(run) = run {
+            encoder.add_itxt_chunk(KEYWORD.to_owned(), run).map_err(std::io::Error::other)?;
+        }
         let mut writer = encoder.write_header().map_err(std::io::Error::other)?;
         writer.write_image_data(&bytes).map_err(std::io::Error::other)
     })
