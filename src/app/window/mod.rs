@@ -9,6 +9,8 @@ mod theme;
 mod session;
 mod command;
 mod files;
+mod autosave;
+mod figures;
 mod state;
 mod apply;
 mod viewport;
@@ -50,7 +52,11 @@ pub fn open(source: Source) -> Result<ExitCode, Fault> {
         persist_window: false,
         ..eframe::NativeOptions::default()
     };
-    let shown = eframe::run_native("quadfront", options, Box::new(|cc| Ok(Box::new(App::new(cc, Some(source))))));
+    let shown = eframe::run_native(
+        "quadfront",
+        options,
+        Box::new(|cc| Ok(Box::new(App::new(cc, Some(source)).keeping(autosave::folder())))),
+    );
     shown.map_err(|error| {
         Fault::new(format!("The window cannot be opened: {}", error.to_string().trim_end_matches('.'))).remedy(
             "It needs a display and a graphics driver; on Debian: apt-get install libvulkan1 mesa-vulkan-drivers. \

@@ -256,6 +256,10 @@ fn aim(state: &mut State, moment: &Moment, size: DVec2) -> Camera {
                 state.fitted = false;
             }
         }
+        Some(Look::Kept(kept)) => {
+            camera.take_up(&kept, size);
+            state.fitted = false;
+        }
         Some(Look::At(what)) => {
             if let Some(p) = middle(moment, what) {
                 let scale = camera.scale;

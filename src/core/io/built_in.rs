@@ -49,6 +49,8 @@ cases![
     "figure-6",
     "figure-7",
     "figure-8",
+    "figure-12",
+    "figure-13",
     "figure-14",
     "figure-16",
     "figure-17",

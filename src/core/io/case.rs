@@ -160,7 +160,7 @@ impl Case {
     pub fn of_mesh(path: PathBuf, sol: Option<PathBuf>) -> Case {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Case {
-            title: format!("Mesh {}", path.display()),
+            title: format!("Mesh {}", path.file_name().unwrap_or_default().to_string_lossy()),
             name,
             notes: String::new(),
             parameters: Parameters::default(),
