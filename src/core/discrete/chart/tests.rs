@@ -81,7 +81,7 @@ fn a_fold_that_ends_inside_slits_its_chart() {
     for p in &mut mesh.points {
         p.z = (0.5 - p.x).max(0.0) * (p.y - 0.5).abs() * 2.0;
     }
-    let found = sound(&mesh, 0.9, Bound::default());
+    let found = sound(&mesh, 0.9, Bound { shape: 50.0, area: 1e4 });
     assert_eq!(found.len(), 1);
     let twice = found[0].points.len() - mesh.points.len();
     assert!((1..=4).contains(&twice), "{twice}");
