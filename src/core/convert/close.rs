@@ -3,7 +3,7 @@
 
 use smallvec::SmallVec;
 
-use super::component::Component;
+use super::component::{Component, small_component};
 use super::converter::Converter;
 use super::event::Event;
 use super::settle::{Nodes, settle, worst_quality};
@@ -18,6 +18,9 @@ const GOOD: f64 = 0.35;
 
 /// Longer loops are left to the last resort.
 const MOST_SEGMENTS: usize = 10;
+
+/// So are those with more triangles.
+const MOST_TRIANGLES: usize = 64;
 
 /// One way to close a loop: elements over it, and perhaps an edge of them rotated with a neighbour.
 #[derive(Clone, Debug)]
@@ -45,6 +48,18 @@ impl Mend {
 }
 
 impl Converter<'_> {
+    /// Closes the live component beside a front segment, where it has a single short loop.
+    pub(super) fn close_beside(&mut self, h: HalfEdgeId) -> Option<(u64, Event)> {
+        // The walk is short; looking for the triangles is dearer.
+        let mut walk = h;
+        let is_short = (0..MOST_SEGMENTS).any(|_| {
+            walk = self.mesh.front_after(walk);
+            walk == h
+        });
+        let component = is_short.then(|| small_component(&self.mesh, h.element(), MOST_TRIANGLES)).flatten()?;
+        self.close(&component)
+    }
+
     /// Closes a component with a single short loop at the best of all ways. Returns the number of
     /// quadrilaterals made.
     pub(super) fn close(&mut self, component: &Component) -> Option<(u64, Event)> {
@@ -149,7 +164,7 @@ impl Converter<'_> {
 /// The nodes of a component's single loop, anticlockwise; `None` where it is too long, has several loops,
 /// or touches itself.
 fn ring(mesh: &Mesh, component: &Component) -> Option<SmallVec<[NodeId; MOST_SEGMENTS]>> {
-    if component.boundary > MOST_SEGMENTS || component.triangles.len() > 64 {
+    if component.boundary > MOST_SEGMENTS || component.triangles.len() > MOST_TRIANGLES {
         return None;
     }
     let start = component.triangles.iter().flat_map(|&e| mesh.half_edges(e)).find(|&h| mesh.is_front(h))?;
