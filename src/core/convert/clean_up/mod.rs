@@ -26,14 +26,15 @@ use region::Region;
 const LEAST_QUALITY: f64 = 0.2;
 /// The energy must fall by this much: differences below it are noise of the relaxation.
 const LEAST_GAIN: f64 = 1e-2;
-/// Candidates tried at one node, best valence gain first.
+/// Candidates tried at one node, best valence gain first: as single changes or firsts of pairs, and as firsts of triples.
 const MOST_TRIALS: usize = 16;
+const MOST_OF_TRIPLES: usize = 24;
 /// An element below this quality is poor: around it the structure may become worse where the mesh becomes better.
 const POOR: f64 = 0.4;
 /// All changes of a sequence but the last may raise the sum of squared excesses by this much, and the energy by no more than
-/// `MOST_RISE`.
+/// `MOST_RISE` in pairs and in triples.
 const MOST_WORSE: i32 = 2;
-const MOST_RISE: f64 = 5.0;
+const MOST_RISE: [f64; 2] = [5.0, 6.0];
 /// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are: those
 /// seldom give back more (for one trial in a hundred).
 const HOPELESS: f64 = 1.5;
@@ -44,7 +45,7 @@ const LATER_TRIALS: [usize; 2] = [4, 3];
 const PAIR_TRIALS: usize = 30_000;
 const ELEMENTS_A_PAIR_TRIAL: usize = 20;
 /// Trials of triples, for every mesh whose pairs were searched to the end.
-const TRIPLE_TRIALS: usize = 30_000;
+const TRIPLE_TRIALS: usize = 40_000;
 
 /// What the clean-up did, by operation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,6 +87,16 @@ impl Reach {
             Reach::Pairs => 2,
             Reach::Triples => 3,
         }
+    }
+
+    /// First changes tried at a node.
+    fn firsts(self) -> usize {
+        if self == Reach::Triples { MOST_OF_TRIPLES } else { MOST_TRIALS }
+    }
+
+    /// How much energy changes may cost for a while.
+    fn most_rise(self) -> f64 {
+        MOST_RISE[usize::from(self == Reach::Triples)]
     }
 }
 
@@ -276,10 +287,10 @@ impl<'a> CleanUp<'a> {
     /// Tries sequences of changes around one irregular node: first changes that cost little energy, cheapest first, each with
     /// those that make up for what it did to the valences.
     fn sequence(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
-        let mut first: SmallVec<[(f64, Ranked); MOST_TRIALS]> = SmallVec::new();
-        for ranked in self.valences.candidates(mesh, node, MOST_WORSE, MOST_TRIALS) {
+        let mut first: SmallVec<[(f64, Ranked); MOST_OF_TRIPLES]> = SmallVec::new();
+        for ranked in self.valences.candidates(mesh, node, MOST_WORSE, self.reach.firsts()) {
             let mark = mesh.mark();
-            if let Some(trial) = self.attempt(mesh, ranked.1, MOST_RISE) {
+            if let Some(trial) = self.attempt(mesh, ranked.1, self.reach.most_rise()) {
                 if trial.is_good() {
                     return Some(self.keep(trial));
                 }
@@ -290,7 +301,7 @@ impl<'a> CleanUp<'a> {
         first.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (_, (gain, candidate)) in first {
             let mark = mesh.mark();
-            if let Some(trial) = self.attempt(mesh, candidate, MOST_RISE)
+            if let Some(trial) = self.attempt(mesh, candidate, self.reach.most_rise())
                 && let Some(all) = self.go_on(mesh, gain, &trial)
             {
                 return Some(self.keep(all));
@@ -304,7 +315,7 @@ impl<'a> CleanUp<'a> {
     /// Goes on with a sequence whose changes so far have this valence gain, until all of it is good.
     fn go_on(&mut self, mesh: &mut Mesh, gain: i32, so_far: &Trial) -> Option<Trial> {
         let is_last = so_far.steps.len() + 1 == self.reach.longest();
-        let (worse, most) = if is_last { (0, HOPELESS) } else { (MOST_WORSE, MOST_RISE) };
+        let (worse, most) = if is_last { (0, HOPELESS) } else { (MOST_WORSE, self.reach.most_rise()) };
         let trials = LATER_TRIALS[so_far.steps.len() - 1];
         let mut found: SmallVec<[Ranked; 32]> = SmallVec::new();
         for &node in so_far.touched.iter().filter(|&&n| self.valences.excess(mesh, n) != 0) {
