@@ -24,14 +24,13 @@ impl Converter<'_> {
     /// since the mark.
     pub(super) fn begin_local(&self, element: ElementId, mark: Mark) -> Phase {
         if self.parameters.enhancement {
-            Phase::Enhance { element, mark, edges: SmallVec::new(), budget: ENHANCEMENTS }
+            Phase::Enhance { element, mark, edges: self.edges_around(element), budget: ENHANCEMENTS }
         } else {
             Phase::Smooth { element, mark }
         }
     }
 
-    /// One enhancement (4.3.6), in the paper's order: (i) nodes are removed, then (ii) edges swapped, and where one was, (i)
-    /// follows again. Smoothing in the same step where there is none. No edges to look at: it stands at (i).
+    /// One enhancement (4.3.6); smoothing in the same step where there is none.
     pub(super) fn step_enhance(
         &mut self,
         element: ElementId,
@@ -44,13 +43,6 @@ impl Converter<'_> {
             budget => Phase::Enhance { element, mark, edges, budget },
         };
         if self.parameters.enhancement {
-            let is_at_nodes = edges.is_empty();
-            if is_at_nodes {
-                if let Some(event) = self.remove_a_node(element) {
-                    return Ok((next(edges), event));
-                }
-                edges = self.edges_around(element);
-            }
             while let Some(h) = edges.pop() {
                 if let Some((event, around)) = self.enhance_edge(h) {
                     self.counts.enhanced += 1;
@@ -58,8 +50,9 @@ impl Converter<'_> {
                     return Ok((next(edges), event));
                 }
             }
-            if !is_at_nodes && let Some(event) = self.remove_a_node(element) {
-                return Ok((next(edges), event));
+            if let Some(event) = self.remove_a_node(element) {
+                self.counts.removed += 1;
+                return Ok((next(self.edges_around(element)), event));
             }
         }
         self.step_smooth(element, mark)
@@ -141,7 +134,6 @@ impl Converter<'_> {
             let around: SmallVec<[NodeId; 12]> = self.mesh.neighbours(corner).collect();
             for node in around {
                 if !self.mesh.is_fixed(node) && self.mesh.delete_node(node).is_ok() {
-                    self.counts.removed += 1;
                     return Some(Event::NodeRemoved { node, purpose: Purpose::Enhancement });
                 }
             }

@@ -111,7 +111,7 @@ pub enum Phase {
         element: ElementId,
         /// What the queue has not seen begins here.
         mark: Mark,
-        /// Edges still to be looked at; none where nodes come next.
+        /// Edges still to be looked at.
         edges: SmallVec<[HalfEdgeId; 24]>,
         /// Swaps left.
         budget: u8,
