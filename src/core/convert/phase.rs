@@ -47,6 +47,8 @@ pub enum Part {
     CleanUp,
     /// Clean-up of the structure by pairs of changes, where single ones do not help.
     CleanUpByPairs,
+    /// Clean-up by triples of changes.
+    CleanUpByTriples,
     /// Smoothing of the final structure.
     LastSmoothing,
 }
