@@ -278,7 +278,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("clean_up_pair", cleaned_up.pairs),
         ("clean_up_refused", cleaned_up.refused),
         ("clean_up_rotation", cleaned_up.rotations),
-        ("clean_up_triple", cleaned_up.triples),
+        ("clean_up_sequence", cleaned_up.longer),
         ("last_resort_division", resort.divided),
         ("last_resort_merge", resort.merged),
         ("last_resort_recut", resort.recut),

@@ -40,8 +40,8 @@ pub(super) struct PartMarks([Option<ListMark>; 5]);
 
 impl Finishing<'_> {
     fn lists(&self) -> [Option<&Worklist>; 5] {
-        let [singles, pairs, triples] = self.clean_up.each_ref().map(|part| part.as_ref().map(CleanUp::list));
-        [self.first_smoothing.as_ref(), singles, pairs, triples, self.last_smoothing.as_ref()]
+        let [singles, pairs, longer] = self.clean_up.each_ref().map(|part| part.as_ref().map(CleanUp::list));
+        [self.first_smoothing.as_ref(), singles, pairs, longer, self.last_smoothing.as_ref()]
     }
 
     /// Whether the budget of the pairs has ended before every node was looked at.
@@ -73,14 +73,14 @@ impl Finishing<'_> {
     }
 
     /// Takes back everything that was done after the mark; `cleaned_up` is what the clean-up had done then.
-    pub fn take_back(&mut self, PartMarks([first, singles, pairs, triples, last]): PartMarks, cleaned_up: CleanedUp) {
+    pub fn take_back(&mut self, PartMarks([first, singles, pairs, longer, last]): PartMarks, cleaned_up: CleanedUp) {
         let list = |list: &mut Option<Worklist>, mark: Option<ListMark>| match (list.as_mut(), mark) {
             (Some(list), Some(mark)) => list.take_back(mark),
             _ => *list = None,
         };
         list(&mut self.first_smoothing, first);
         list(&mut self.last_smoothing, last);
-        for (part, mark) in self.clean_up.iter_mut().zip([singles, pairs, triples]) {
+        for (part, mark) in self.clean_up.iter_mut().zip([singles, pairs, longer]) {
             match (part.as_mut(), mark) {
                 (Some(part), Some(mark)) => part.take_back(mark, cleaned_up),
                 _ => *part = None,
@@ -91,7 +91,7 @@ impl Finishing<'_> {
     /// Appends what the next steps depend on.
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         self.lists().into_iter().flatten().for_each(|list| list.write_state(bytes));
-        // What pairs and triples have left of their trials.
+        // What pairs and longer sequences have left of their trials.
         let trials = self.clean_up.iter().flatten().map(|part| part.done().trials).max().unwrap_or(0);
         bytes.extend_from_slice(&(trials as u64).to_le_bytes());
     }
@@ -106,7 +106,7 @@ impl Converter<'_> {
                 Part::FirstSmoothing | Part::LastSmoothing => self.sweep(part),
                 Part::CleanUp => self.clean_up(Reach::Singles),
                 Part::CleanUpByPairs => self.clean_up(Reach::Pairs),
-                Part::CleanUpByTriples => self.clean_up(Reach::Triples),
+                Part::CleanUpBySequences => self.clean_up(Reach::Longer),
             };
             if let Some(event) = event {
                 return (Phase::PostProcess { part }, event);
@@ -115,8 +115,8 @@ impl Converter<'_> {
                 Part::FirstSmoothing => part = Part::CleanUp,
                 Part::CleanUp => part = Part::CleanUpByPairs,
                 Part::CleanUpByPairs if self.finishing.pairs_are_cut_short() => part = Part::LastSmoothing,
-                Part::CleanUpByPairs => part = Part::CleanUpByTriples,
-                Part::CleanUpByTriples => part = Part::LastSmoothing,
+                Part::CleanUpByPairs => part = Part::CleanUpBySequences,
+                Part::CleanUpBySequences => part = Part::LastSmoothing,
                 Part::LastSmoothing => return (Phase::Done, Event::PostProcessed),
             }
         }

@@ -47,8 +47,8 @@ pub enum Part {
     CleanUp,
     /// Clean-up of the structure by pairs of changes, where single ones do not help.
     CleanUpByPairs,
-    /// Clean-up by triples of changes.
-    CleanUpByTriples,
+    /// Clean-up by sequences of up to four changes.
+    CleanUpBySequences,
     /// Smoothing of the final structure.
     LastSmoothing,
 }

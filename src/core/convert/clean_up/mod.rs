@@ -26,26 +26,26 @@ use region::Region;
 const LEAST_QUALITY: f64 = 0.2;
 /// The energy must fall by this much: differences below it are noise of the relaxation.
 const LEAST_GAIN: f64 = 1e-2;
-/// Candidates tried at one node, best valence gain first: as single changes or firsts of pairs, and as firsts of triples.
+/// Candidates tried at one node, best valence gain first: as single changes or firsts of pairs, and as firsts of longer sequences.
 const MOST_TRIALS: usize = 16;
-const MOST_OF_TRIPLES: usize = 24;
+const MOST_OF_LONGER: usize = 24;
 /// An element below this quality is poor: around it the structure may become worse where the mesh becomes better.
 const POOR: f64 = 0.4;
 /// All changes of a sequence but the last may raise the sum of squared excesses by this much, and the energy by no more than
-/// `MOST_RISE` in pairs and in triples.
+/// `MOST_RISE` in pairs and in longer sequences.
 const MOST_WORSE: i32 = 2;
 const MOST_RISE: [f64; 2] = [5.0, 6.0];
 /// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are: those
 /// seldom give back more (for one trial in a hundred).
 const HOPELESS: f64 = 1.5;
-/// Changes tried second, and third, after each way to get there.
-const LATER_TRIALS: [usize; 2] = [4, 3];
+/// Changes tried second, third and fourth, after each way to get there.
+const LATER_TRIALS: [usize; 3] = [4, 3, 3];
 /// Trials of pairs: so many for every mesh, and one more for so many elements. Small meshes are searched to the end, and the
 /// time of large ones stays linear.
 const PAIR_TRIALS: usize = 30_000;
 const ELEMENTS_A_PAIR_TRIAL: usize = 20;
-/// Trials of triples, for every mesh whose pairs were searched to the end.
-const TRIPLE_TRIALS: usize = 40_000;
+/// Trials of longer sequences, for every mesh whose pairs were searched to the end.
+const LONGER_TRIALS: usize = 40_000;
 
 /// What the clean-up did, by operation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,8 +60,8 @@ pub struct CleanedUp {
     pub doublets: usize,
     /// Sequences of two changes that were kept only together.
     pub pairs: usize,
-    /// Sequences of three.
-    pub triples: usize,
+    /// Sequences of three and of four.
+    pub longer: usize,
     /// Changes tried, each as often as it was.
     pub trials: usize,
     /// Trials taken back.
@@ -75,8 +75,8 @@ pub(super) enum Reach {
     Singles,
     /// Pairs of changes too, at the worst nodes first.
     Pairs,
-    /// And triples.
-    Triples,
+    /// And sequences of up to four.
+    Longer,
 }
 
 impl Reach {
@@ -85,23 +85,23 @@ impl Reach {
         match self {
             Reach::Singles => 1,
             Reach::Pairs => 2,
-            Reach::Triples => 3,
+            Reach::Longer => 4,
         }
     }
 
     /// First changes tried at a node.
     fn firsts(self) -> usize {
-        if self == Reach::Triples { MOST_OF_TRIPLES } else { MOST_TRIALS }
+        if self == Reach::Longer { MOST_OF_LONGER } else { MOST_TRIALS }
     }
 
     /// How much energy changes may cost for a while.
     fn most_rise(self) -> f64 {
-        MOST_RISE[usize::from(self == Reach::Triples)]
+        MOST_RISE[usize::from(self == Reach::Longer)]
     }
 }
 
 /// Changes made one after the other.
-type Steps = SmallVec<[(Candidate, Cleaning); 3]>;
+type Steps = SmallVec<[(Candidate, Cleaning); 4]>;
 
 /// What a trial that stands in the mesh has come to.
 struct Trial {
@@ -172,7 +172,7 @@ impl<'a> CleanUp<'a> {
         let most_trials = match reach {
             Reach::Singles => usize::MAX,
             Reach::Pairs => done.trials + PAIR_TRIALS + mesh.element_count() / ELEMENTS_A_PAIR_TRIAL,
-            Reach::Triples => done.trials + TRIPLE_TRIALS,
+            Reach::Longer => done.trials + LONGER_TRIALS,
         };
         let mut work = CleanUp {
             source,
@@ -187,7 +187,7 @@ impl<'a> CleanUp<'a> {
         };
         match reach {
             Reach::Singles => mesh.nodes().for_each(|node| work.enqueue(mesh, node)),
-            Reach::Pairs | Reach::Triples => work.enqueue_worst_first(mesh),
+            Reach::Pairs | Reach::Longer => work.enqueue_worst_first(mesh),
         }
         work
     }
@@ -202,7 +202,7 @@ impl<'a> CleanUp<'a> {
             }
             let kept = match self.reach {
                 Reach::Singles => self.single(mesh, node),
-                Reach::Pairs | Reach::Triples => self.sequence(mesh, node),
+                Reach::Pairs | Reach::Longer => self.sequence(mesh, node),
             };
             if !keep_journal {
                 mesh.commit();
@@ -287,7 +287,7 @@ impl<'a> CleanUp<'a> {
     /// Tries sequences of changes around one irregular node: first changes that cost little energy, cheapest first, each with
     /// those that make up for what it did to the valences.
     fn sequence(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
-        let mut first: SmallVec<[(f64, Ranked); MOST_OF_TRIPLES]> = SmallVec::new();
+        let mut first: SmallVec<[(f64, Ranked); MOST_OF_LONGER]> = SmallVec::new();
         for ranked in self.valences.candidates(mesh, node, MOST_WORSE, self.reach.firsts()) {
             let mark = mesh.mark();
             if let Some(trial) = self.attempt(mesh, ranked.1, self.reach.most_rise()) {
@@ -376,8 +376,8 @@ impl<'a> CleanUp<'a> {
             }
         }
         self.done.pairs += usize::from(trial.steps.len() == 2);
-        self.done.triples += usize::from(trial.steps.len() == 3);
-        let then = [1, 2].map(|k| trial.steps.get(k).map(|step| step.1));
+        self.done.longer += usize::from(trial.steps.len() > 2);
+        let then = [1, 2, 3].map(|k| trial.steps.get(k).map(|step| step.1));
         let event = Event::Cleaned { what: trial.steps[0].1, then, energy: trial.energy };
         Kept { touched: trial.touched, event }
     }
