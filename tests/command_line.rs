@@ -212,7 +212,7 @@ fn the_front_is_drawn_alone_and_as_a_strip() {
     let at = draw(&["--at", "nq=20"]);
     assert!(at.contains(front) && at.contains(base) && at.contains("at nq=20</desc>"), "front and base are shown");
     let strip = draw(&["--at", "nq=10,20"]);
-    assert!(strip.contains(">(a) nq=10</text>") && strip.contains(">(b) nq=20</text>"));
+    assert!(strip.contains(">(a) NQ = 10</text>") && strip.contains(">(b) NQ = 20</text>"));
     assert_eq!(strip.matches(base).count(), 2);
     let arguments = ["convert", "example1", "--set", "size_scale=2", "-q", "--at", "nq=20", "--picture", "-"];
     assert_eq!(said(&run(&arguments, folder.path())).1, at);

@@ -1,4 +1,4 @@
-//! Promise: the figures of the paper that show one operation each (5-8, 14, 16-19) are small cases, and come out as the paper draws
+//! Promise: the figures of the paper that show one operation each (5-8, 12-14, 16-19) are small cases, and come out as the paper draws
 //! them. Nodes have the numbers of the case files.
 #![allow(clippy::unwrap_used)]
 
@@ -7,6 +7,7 @@ use quadfront::core::convert::conversion::background;
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::{Event, Purpose};
 use quadfront::core::convert::phase::Phase;
+use quadfront::core::front::segment::Segment;
 use quadfront::core::io::built_in;
 use quadfront::core::mesh::half_edge::Mesh;
 use quadfront::core::mesh::ids::{HalfEdgeId, NodeId};
@@ -285,6 +286,52 @@ fn figure_19_the_front_is_split_at_the_edge_that_leaves_two_even_loops() {
         assert_eq!(around(front(2, 1)), [2, 1, 4, 3], "C, B, E, D");
         assert_eq!(around(front(5, 2)), [5, 2, 6, 8], "F, C and the two nodes beyond");
     });
+}
+
+/// Figure 12: the classes of frontal angles, by the bounds theta_seam, theta_rect and theta_revr.
+#[test]
+fn figure_12_has_a_node_of_every_class_of_frontal_angles() {
+    with_figure("figure-12", |converter| {
+        let parameters = converter.parameters();
+        let bounds = [parameters.theta_seam, parameters.theta_rect, parameters.theta_revr];
+        let class = |theta: f64| bounds.iter().filter(|bound| theta > **bound).count();
+        let mut classes = [[0; 4], [0; 4]];
+        for h in converter.mesh.front() {
+            let segment = Segment::measure(&converter.mesh, h, parameters);
+            for (theta, count) in segment.theta.iter().zip(&mut classes) {
+                count[class(*theta)] += 1;
+            }
+            if segment.a == NodeId(3) {
+                assert!((segment.theta[0].to_degrees() - 20.136).abs() < 1e-3, "{}", segment.theta[0].to_degrees());
+            }
+        }
+        // Every corner is the left one of one segment and the right one of another.
+        assert_eq!(classes, [[1, 4, 3, 2]; 2], "seam, side, between, reverse");
+    });
+}
+
+/// Figure 13: all segments have the same H-value, though some are four times as long as others.
+#[test]
+fn figure_13_has_one_h_value_and_by_length_alone_only_short_segments_are_bases() {
+    let bases = |selection: &str| {
+        let mut lengths = Vec::new();
+        let mut case = built_in::named("figure-13").unwrap().unwrap();
+        case.parameters.set("selection", selection).unwrap();
+        let made = background(&case, &mut Nobody).unwrap();
+        let mut converter = Converter::new(made.mesh.clone(), &made.sizing, case.parameters.clone());
+        for h in converter.mesh.front() {
+            let h_value = Segment::measure(&converter.mesh, h, converter.parameters()).h_value;
+            assert!((h_value - 0.25).abs() < 1e-12, "{h_value}");
+        }
+        while lengths.len() < 6 {
+            if let Event::BaseSelected { a, b, .. } = converter.step().unwrap() {
+                lengths.push(converter.mesh.uv(a).distance(converter.mesh.uv(b)));
+            }
+        }
+        lengths
+    };
+    assert!(bases("shortest").iter().all(|length| (length - 0.25).abs() < 1e-9));
+    assert!(bases("table1").iter().all(|length| (length - 1.0).abs() < 1e-9), "both are as good by eq. 6");
 }
 
 #[test]

@@ -210,6 +210,7 @@ fn two_triangles() -> Mesh {
         point: (0..4).map(PointId).collect(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         region: vec![0; 2],
+        ..TriangleSet::default()
     };
     Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4])
 }
@@ -231,6 +232,7 @@ fn a_swap_that_would_make_a_straight_angle_is_refused() {
         point: (0..4).map(PointId).collect(),
         triangles: vec![[0, 1, 3], [1, 2, 3]],
         region: vec![0; 2],
+        ..TriangleSet::default()
     };
     let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4]);
     let h = mesh.half_edge_between(NodeId(1), NodeId(3)).unwrap();
@@ -258,6 +260,7 @@ fn deleting_a_node_of_four_elements_leaves_the_shorter_diagonal_as_in_fig_8() {
         point: (0..5).map(PointId).collect(),
         triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
         region: vec![0; 4],
+        ..TriangleSet::default()
     };
     let mut mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 5]);
     assert_eq!(mesh.delete_node(NodeId(4)).unwrap().len(), 2);

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::input::{InputFormat, Stops, input_format, mesh_format, pixels, setting, stop, stops};
+use super::figure::FigureOptions;
+use super::input::{InputFormat, Stops, Until, input_format, mesh_format, setting, stops, until};
 use super::output::Target;
-use crate::core::convert::walk::Stop;
 use crate::core::io::format::Format;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
@@ -40,8 +40,9 @@ pub(super) enum Command {
 /// What a mesh is made from.
 #[derive(Args)]
 pub(super) struct Source {
-    /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp), or - for standard input
-    #[arg(value_name = "CASE|MESH")]
+    /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp), a figure that carries its run (.svg
+    /// .png), or - for standard input
+    #[arg(value_name = "CASE|MESH|FIGURE")]
     pub input: String,
     /// What is read where the name does not tell: toml (a case), msh, mesh, vtu, obj, inp
     #[arg(long, value_name = "FORMAT", value_parser = input_format)]
@@ -82,8 +83,8 @@ pub(super) struct Destination {
 
 #[derive(Args)]
 pub(super) struct OpenArguments {
-    /// A built-in case, a case file (.toml) or a mesh
-    #[arg(value_name = "CASE|MESH", default_value = "example1")]
+    /// A built-in case, a case file or a run file (.toml), a mesh, or a figure, which opens at the state that it shows
+    #[arg(value_name = "CASE|MESH|FIGURE", default_value = "example1")]
     pub input: String,
 }
 
@@ -99,9 +100,10 @@ pub(super) struct ConvertArguments {
     /// What each step did, as one JSON object a line, or - for standard output
     #[arg(long, value_name = "FILE.jsonl")]
     pub events: Option<Target>,
-    /// Stop where so many quadrilaterals stand (nq=100) or after so many steps (step=812), and write the mesh as it is then
-    #[arg(long, value_name = "STOP", value_parser = stop)]
-    pub at: Option<Stop>,
+    /// Stop where so many quadrilaterals stand (nq=100) or after so many steps (step=812), and write the mesh as it is then; a
+    /// figure stops where it was drawn, unless this says end
+    #[arg(long, value_name = "STOP", value_parser = until)]
+    pub at: Option<Until>,
 }
 
 #[derive(Args)]
@@ -144,9 +146,8 @@ pub(super) struct RenderArguments {
     /// order, side by side (nq=50,100,150,end)
     #[arg(long, visible_alias = "strip", value_name = "STOPS", value_parser = stops)]
     pub at: Option<Stops>,
-    /// The size of a single picture in pixels (96 an inch), in place of the width of a column
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = pixels)]
-    pub size: Option<[u32; 2]>,
+    #[command(flatten)]
+    pub figure: FigureOptions,
     /// The picture (.svg .png), or - for standard output (SVG)
     #[arg(short, long, value_name = "FILE")]
     pub out: Target,
@@ -186,6 +187,9 @@ mod tests {
             "quadfront render example1 -o example1.svg",
             "quadfront render example1 --at step=812 --size 1920x1080 -o front.png",
             "quadfront render example1 --strip nq=50,100,end -o strip.png",
+            "quadfront render example1 --at nq=100 --plot lengths --ink grey --size 84x60mm --dpi 600 -o lengths.png",
+            "quadfront render a.svg --layers -letters,+h --transparent --part 0.5,-0.5,0.1 -o b.svg",
+            "quadfront convert a.svg --at end -o b.msh",
             "quadfront cases --json",
             "quadfront",
             "quadfront open",

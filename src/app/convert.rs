@@ -3,17 +3,19 @@
 use std::process::ExitCode;
 
 use super::command_line::{BackgroundArguments, ConvertArguments};
-use super::output::{self, MeshTarget, Target, tell};
+use super::figure::{self, Figure, FigureOptions, LayerWords};
+use super::input::Until;
+use super::output::{self, MeshTarget, tell};
 use super::progress::Progress;
 use super::{FALLS_SHORT, complain, input, work};
 use crate::core::convert::parameters::Parameters;
+use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::case::Case;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::io::report::background_summary;
 use crate::core::progress::{Stage, Watch};
-use crate::render::picture::Picture;
-use crate::render::vector::svg;
+use crate::core::run::shown::Shown;
 
 /// Converts, and writes the mesh, the report and the picture that are asked for.
 ///
@@ -26,18 +28,38 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source)?;
-    let mut quads = work::convert_telling(&input.run, arguments.at, arguments.events.as_ref(), &mut progress)?;
+    let shown = input.figure.as_ref().and_then(Shown::state);
+    let at = match (arguments.at, shown) {
+        (Some(Until::Stop(stop)), _) => Some(stop),
+        (Some(Until::End), _) => None,
+        // A figure stands for the state that it shows.
+        (None, shown) => shown.and_then(|shown| shown.at.map(|_| Stop::Step(shown.step))),
+    };
+    let mut quads = work::convert_telling(&input.run, at, arguments.events.as_ref(), &mut progress)
+        .map_err(|fault| if shown.is_some() { fault.at(source.input.clone()) } else { fault })?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &quads.file)?;
     if let Some(target) = &destination.picture {
-        draw(target, &input.run.case, quads.picture(&input.run.case), None)?;
+        let options = FigureOptions::default();
+        let frame = quads.frame(options.look(false).layers);
+        let figure = Figure::of_run(&input.run, &[frame], &options, input.can_be_carried())?;
+        output::write_figure(target, &figure)?;
     }
     quads.report.timing = progress.finish();
     if let Some(target) = &arguments.report {
         target.write(|out| out.write_all(quads.report.json().as_bytes()))?;
     }
+    if let Some(shown) = shown.filter(|shown| arguments.at.is_none() && shown.state != quads.shown.state) {
+        tell(&format!("{}\n", figure::another_state(&source.input, shown.step)), true);
+    }
     if !source.quiet {
         tell(&quads.report.summary(), output_taken);
+        if let Some(at) = at.filter(|_| arguments.at.is_none()) {
+            tell(
+                &format!("This is the state that the figure shows, {at}; --at end converts it to the end.\n"),
+                output_taken,
+            );
+        }
         remind(mesh_target.is_none() && destination.picture.is_none() && arguments.events.is_none(), output_taken);
     }
     let Some(flaw) = &quads.flaw else { return Ok(ExitCode::SUCCESS) };
@@ -58,7 +80,9 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &triangles.file)?;
     if let Some(target) = &destination.picture {
-        draw(target, &input.run.case, Picture::of_mesh(&triangles.file), None)?;
+        let options = FigureOptions { layers: Some(LayerWords::mesh()), ..FigureOptions::default() };
+        let figure = Figure::of_run(&input.run, &[triangles.frame], &options, input.can_be_carried())?;
+        output::write_figure(target, &figure)?;
     }
     let timing = progress.finish();
     if !source.quiet {
@@ -73,26 +97,6 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
 
 fn write(target: Option<&MeshTarget>, mesh: &MeshFile) -> Result<(), Fault> {
     target.map_or(Ok(()), |target| target.write(mesh))
-}
-
-/// Pixels for a point of a figure that is drawn for print: 300 an inch.
-pub(super) const PRINT: f64 = 300.0 / 72.0;
-/// Points of a pixel where a size in pixels is asked for: 96 pixels are an inch.
-const POINTS: f64 = 0.75;
-
-/// Writes a picture of a case, in the width of a column or `size` pixels large; its own title says at which stop it was made,
-/// if at one.
-pub(super) fn draw(target: &Target, case: &Case, picture: Picture, size: Option<[u32; 2]>) -> Result<(), Fault> {
-    let mut description = describe(case);
-    if !picture.title.is_empty() {
-        description = format!("{description}, at {}", picture.title);
-    }
-    let picture = Picture { title: case.title.clone(), description, ..picture };
-    let (svg, scale) = match size {
-        Some(size) => (svg::write_sized(&picture, size.map(|n| f64::from(n) * POINTS)), 1.0 / POINTS),
-        None => (svg::write(&picture, svg::COLUMN), PRINT),
-    };
-    output::write_picture(target, &svg, scale, &picture.description)
 }
 
 /// What made a picture: program, case, and the parameters that differ from the default.

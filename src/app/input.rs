@@ -11,11 +11,13 @@ use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
 use crate::core::io::case::Case;
+use crate::core::io::figure;
 use crate::core::io::format::{self, Format};
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::io::run_file;
 use crate::core::io::save::load;
 use crate::core::run::run::Run;
+use crate::core::run::shown::Shown;
 
 /// How messages call standard input.
 const STANDARD_INPUT: &str = "standard input";
@@ -53,17 +55,29 @@ pub(super) fn setting(text: &str) -> Result<(String, String), String> {
 #[derive(Clone, Debug)]
 pub(super) struct Stops(pub Vec<Option<Stop>>);
 
-/// Reads nq=N or step=N.
-pub(super) fn stop(text: &str) -> Result<Stop, String> {
-    match stops(text)?.0[..] {
-        [Some(stop)] => Ok(stop),
-        _ => Err("write one number, for example nq=100".to_owned()),
+/// How far a conversion goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Until {
+    /// To a stop.
+    Stop(Stop),
+    /// To its end.
+    End,
+}
+
+/// Reads nq=N, step=N or end.
+pub(super) fn until(text: &str) -> Result<Until, String> {
+    match text {
+        "end" => Ok(Until::End),
+        _ => text.parse().map(Until::Stop).map_err(|()| "write nq=100 (quadrilaterals), step=812 or end".to_owned()),
     }
 }
 
 /// Reads nq=N,N,... or step=N,N,..., ascending; the last may be `end`.
 pub(super) fn stops(text: &str) -> Result<Stops, String> {
-    let usage = || "write nq=100 (quadrilaterals) or step=812".to_owned();
+    let usage = || "write nq=100 (quadrilaterals), step=812 or end".to_owned();
+    if text == "end" {
+        return Ok(Stops(vec![None]));
+    }
     let (kind, numbers) = text.split_once('=').ok_or_else(usage)?;
     let kind = match kind {
         "nq" => Stop::Quads,
@@ -81,34 +95,29 @@ pub(super) fn stops(text: &str) -> Result<Stops, String> {
     Ok(Stops(numbers.into_iter().map(|n| Some(kind(n))).chain(to_the_end.then_some(None)).collect()))
 }
 
-/// Reads WIDTHxHEIGHT in pixels.
-pub(super) fn pixels(text: &str) -> Result<[u32; 2], String> {
-    let read = || {
-        let (width, height) = text.split_once('x')?;
-        let side = |text: &str| text.parse::<u32>().ok().filter(|n| (16..=20_000).contains(n));
-        Some([side(width)?, side(height)?])
-    };
-    read().ok_or_else(|| "write WIDTHxHEIGHT in pixels, for example 1920x1080".to_owned())
-}
-
-/// How a stop is written.
-pub(super) fn stop_text(stop: Stop) -> String {
-    match stop {
-        Stop::Quads(quads) => format!("nq={quads}"),
-        Stop::Step(step) => format!("step={step}"),
-    }
-}
-
 /// A run to work on; a mesh that came by standard input lies in a folder that goes with it.
 pub(super) struct Input {
     /// The run. Its case has the parameters that are in force from step 0 on.
     pub run: Run,
-    _folder: Option<TempDir>,
+    /// What is shown of it, where it came with a figure.
+    pub figure: Option<Shown>,
+    folder: Option<TempDir>,
+}
+
+impl Input {
+    fn of(mut run: Run, folder: Option<TempDir>) -> Input {
+        Input { figure: run.shown.take(), run, folder }
+    }
+
+    /// Whether a figure can carry the run: not where its mesh goes with this process.
+    pub fn can_be_carried(&self) -> bool {
+        self.folder.is_none()
+    }
 }
 
 /// The run of the arguments, with what they set.
 pub(super) fn read(source: &Source) -> Result<Input, Fault> {
-    let Input { mut run, _folder } = read_plain(source)?;
+    let Input { mut run, figure, folder } = read_plain(source)?;
     let parameters = &mut run.parameters;
     if source.paper {
         *parameters = parameters.read_as_paper();
@@ -118,10 +127,10 @@ pub(super) fn read(source: &Source) -> Result<Input, Fault> {
     }
     run.case.parameters = parameters.clone();
     run.case.split_odd |= source.split_odd;
-    Ok(Input { run, _folder })
+    Ok(Input { run, figure, folder })
 }
 
-/// The run of a file: a case or a mesh from its beginning, or a run file.
+/// The run of a file: a case or a mesh from its beginning, a run file, or what a figure carries.
 #[cfg(feature = "window")]
 pub(super) fn run_of(path: &Path) -> Result<Run, Fault> {
     let input = path.display().to_string();
@@ -129,12 +138,14 @@ pub(super) fn run_of(path: &Path) -> Result<Run, Fault> {
         return Err(Fault::new("The window opens files").at(input).remedy("Name a case, a mesh or a run file"));
     }
     let source = Source { input, from: None, sol: None, set: Vec::new(), paper: false, split_odd: false, quiet: true };
-    read(&source).map(|input| input.run)
+    let mut input = read(&source)?;
+    input.run.shown = input.figure;
+    Ok(input.run)
 }
 
 fn read_plain(source: &Source) -> Result<Input, Fault> {
     let name = source.input.as_str();
-    let alone = |case| Input { run: Run::of(case), _folder: None };
+    let alone = |case| Input::of(Run::of(case), None);
     let run = match kind(name, source.from)? {
         Kind::BuiltIn => Run::of(built_in::named(name).expect("it was found by its name")?),
         Kind::StandardInput(InputFormat::Case) => {
@@ -147,9 +158,10 @@ fn read_plain(source: &Source) -> Result<Input, Fault> {
             let path = folder.path().join("standard-input").with_extension(format.extension());
             std::fs::write(&path, standard_input()?).map_err(refuse)?;
             let run = Run::of(Case::of_mesh(path, source.sol.clone()));
-            return Ok(Input { run, _folder: Some(folder) });
+            return Ok(Input::of(run, Some(folder)));
         }
         Kind::File(path, InputFormat::Mesh(_)) => return Ok(alone(Case::of_mesh(path, source.sol.clone()))),
+        Kind::Figure(path) => figure::read(&path)?,
         Kind::File(path, InputFormat::Case) => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             case_or_run(&load(&path)?, &stem, name, path.parent().unwrap_or(Path::new("")))?
@@ -160,7 +172,7 @@ fn read_plain(source: &Source) -> Result<Input, Fault> {
             .at(name)
             .remedy("Write mesh = \"...\" and sol = \"...\" in the case, or leave --sol out"));
     }
-    Ok(Input { run, _folder: None })
+    Ok(Input::of(run, None))
 }
 
 /// The run of a TOML file: a case from its beginning, or a run file.
@@ -186,6 +198,7 @@ enum Kind {
     BuiltIn,
     StandardInput(InputFormat),
     File(PathBuf, InputFormat),
+    Figure(PathBuf),
 }
 
 fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
@@ -212,6 +225,9 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
         return Ok(Kind::File(path, InputFormat::Case));
     }
+    if figure::is_figure(&path) {
+        return Ok(Kind::Figure(path));
+    }
     match Format::from_path(&path) {
         Ok(format) => Ok(Kind::File(path, InputFormat::Mesh(format))),
         Err(_) if !path.exists() => {
@@ -224,7 +240,7 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
             })
         }
         Err(mut fault) => {
-            fault.remedy += ", and .toml for cases";
+            fault.remedy += ", .toml for cases, and .svg and .png for figures that carry their run";
             Err(fault)
         }
     }

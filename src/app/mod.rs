@@ -5,6 +5,7 @@ mod input;
 mod output;
 mod progress;
 mod work;
+mod figure;
 mod convert;
 mod check;
 mod cases;

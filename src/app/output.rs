@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::command_line::Destination;
+use super::figure::Figure;
 use crate::core::fault::Fault;
 use crate::core::io::format::{self, Format, WriteOptions};
 use crate::core::io::mesh_file::MeshFile;
@@ -176,18 +177,16 @@ fn image_format(path: &Path) -> Result<Image, Fault> {
     }
 }
 
-/// Writes vectors as they are or, by the name's extension, as pixels: `scale` of them for a point.
-pub(super) fn write_picture(target: &Target, svg: &str, scale: f64, description: &str) -> Result<(), Fault> {
+/// Writes a figure as vectors or, by the name's extension, as pixels.
+pub(super) fn write_figure(target: &Target, figure: &Figure) -> Result<(), Fault> {
     let bytes = match target {
-        Target::StandardOutput => svg.as_bytes().to_vec(),
+        Target::StandardOutput => figure.svg.as_bytes().to_vec(),
         Target::File(path) => match image_format(path)? {
-            Image::Svg => svg.as_bytes().to_vec(),
+            Image::Svg => figure.svg.as_bytes().to_vec(),
             #[cfg(feature = "window")]
-            Image::Png => crate::render::vector::png::write(svg, scale, description)?,
+            Image::Png => figure.png()?,
         },
     };
-    #[cfg(not(feature = "window"))]
-    let _ = (scale, description);
     target.write(|out| out.write_all(&bytes))
 }
 

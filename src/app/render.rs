@@ -1,43 +1,43 @@
-//! `render`: a mesh as it is, the mesh of a case, or a conversion on the way, as a picture.
+//! `render`: a mesh as it is, the mesh of a case, or a conversion on the way, as a figure.
 
 use super::command_line::RenderArguments;
+use super::figure::{self, Figure, Wanted};
+use super::input;
+use super::output::{self, tell};
 use super::progress::Progress;
-use super::{convert, input, output, work};
 use crate::core::fault::Fault;
 use crate::core::progress::{Stage, Watch};
 use crate::render::picture::Picture;
-use crate::render::vector::svg;
 
 /// Draws the input.
 pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
     let source = &arguments.source;
     output::check(&[], Some(&arguments.out))?;
     if arguments.at.is_none()
+        && arguments.figure.plot.is_none()
         && let Some(mesh) = input::read_mesh(&source.input, source.from)?
     {
         let picture = Picture { title: source.input.clone(), ..Picture::of_mesh(&mesh) };
-        let svg = svg::write(&picture, svg::COLUMN);
-        return output::write_picture(&arguments.out, &svg, convert::PRINT, &picture.title);
+        return output::write_figure(&arguments.out, &Figure::of_mesh(&picture, &arguments.figure));
     }
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source)?;
-    let case = &input.run.case;
-    match &arguments.at {
-        None => {
-            let quads = work::convert(&input.run, None, None, &mut progress)?;
-            progress.finish();
-            convert::draw(&arguments.out, case, quads.picture(case), arguments.size)
-        }
-        Some(stops) => {
-            let mut frames = work::frames(&input.run, stops, &mut progress)?;
-            progress.finish();
-            if frames.len() == 1 {
-                return convert::draw(&arguments.out, case, frames.remove(0), arguments.size);
-            }
-            let description = convert::describe(case);
-            let strip = svg::strip(&frames, &case.title, &description, svg::PAGE);
-            output::write_picture(&arguments.out, &strip, convert::PRINT, &description)
-        }
+    let shown = input.figure.as_ref();
+    let options = arguments.figure.or(shown).map_err(|fault| fault.at(source.input.clone()))?;
+    let wanted: Vec<Wanted> = match (&arguments.at, shown) {
+        (Some(stops), _) => stops.0.iter().copied().map(Wanted::at).collect(),
+        (None, Some(shown)) => Wanted::of(shown),
+        (None, None) => vec![Wanted::at(None)],
+    };
+    let (figure, frames) = figure::make(&input.run, &wanted, &options, input.can_be_carried(), &mut progress)
+        // What a figure carries was not written by hand: its faults are the figure's.
+        .map_err(|fault| if shown.is_some() { fault.at(source.input.clone()) } else { fault })?;
+    progress.finish();
+    if let Some(shown) = shown.filter(|_| arguments.at.is_none())
+        && let Some(difference) = figure::difference(&source.input, shown, &frames)
+    {
+        tell(&format!("{difference}\n"), true);
     }
+    output::write_figure(&arguments.out, &figure)
 }

@@ -5,27 +5,37 @@ use std::io;
 
 use crate::core::background::adapt::Adapted;
 use crate::core::convert::conversion::{self, Background, Converted};
-use crate::core::convert::converter::{Converter, Counts};
-use crate::core::convert::phase::Base;
+use crate::core::convert::converter::Counts;
+use crate::core::convert::parameters::Parameters;
+use crate::core::convert::phase::Phase;
 use crate::core::convert::walk::{Stop, Tell, Told, walk_editing};
 use crate::core::fault::Fault;
+use crate::core::geometry::place::number;
 use crate::core::io::case::Case;
 use crate::core::io::export::Export;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::io::report::{CaseTold, LastResort, Program, Report};
-use crate::core::io::statistics::Statistics;
+use crate::core::io::statistics::{Measured, Statistics};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::soundness::{Allow, examine};
-use crate::core::metric::field::Place;
+use crate::core::mesh::touched::Touched;
+use crate::core::metric::field::Sizing;
 use crate::core::progress::{Stage, Watch};
 use crate::core::run::run::Run;
-use crate::render::picture::Picture;
+use crate::core::run::shown::{ShownState, fingerprint};
+use crate::render::look::{Layer, Layers};
+use crate::render::picture::{Picture, Seen};
 
-use super::input::{Stops, stop_text};
+use super::figure::Wanted;
 use super::output::Target;
+
+/// Steps that are kept where the last one's changes are drawn.
+const HISTORY: usize = 256;
 
 /// The triangles that a conversion starts from.
 pub(super) struct Triangles {
+    /// Step 0 as a frame of a figure.
+    pub frame: Frame,
     /// The mesh with its metric, for files.
     pub file: MeshFile,
     /// What it is like.
@@ -37,8 +47,10 @@ pub(super) struct Triangles {
 /// A conversion at its end, or at a stop before it.
 pub(super) struct Quads {
     mesh: Mesh,
-    /// Where it was stopped, and the base segment there, if there is one.
-    stopped: Option<(Stop, Option<Base>)>,
+    /// The state that it is.
+    pub shown: ShownState,
+    phase: Phase,
+    in_force: Parameters,
     /// The mesh, for files.
     pub file: MeshFile,
     /// What is told about it; its timing is still empty.
@@ -51,11 +63,16 @@ pub(super) struct Quads {
 pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
     let Background { mesh, sizing, regions, repairs, .. } = conversion::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
+    let frame = {
+        let (parameters, phase) = (&case.parameters, &Phase::Select);
+        let shown = ShownState { step: 0, at: Some(Stop::Step(0)), state: fingerprint(&mesh, phase) };
+        let seen = Seen { mesh: &mesh, parameters, phase, changed: &[] };
+        Frame { picture: Picture::of_state(&seen, Layers::default()), shown, statistics: None }
+    };
     let mut export = Export::of(&mesh, &regions);
     let statistics = Statistics::measure(export.measured(), &sizing)?;
-    let places = export.file.points.iter().map(|p| Place::in_plane(p.truncate()));
-    export.file.metric = Some(places.map(|place| sizing.metric3(&place)).collect::<Result<_, _>>()?);
-    Ok(Triangles { file: export.file, statistics, repairs })
+    export.file.metric = Some(export.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
+    Ok(Triangles { frame, file: export.file, statistics, repairs })
 }
 
 /// Converts the case of a run and writes each event to `events` as it happens: the file appears when the conversion is done.
@@ -94,18 +111,19 @@ pub(super) fn convert(
     watch: &mut dyn Watch,
 ) -> Result<Quads, Fault> {
     let case = &run.case;
-    let mut stopped = None;
+    let mut end = (Phase::Done, case.parameters.clone());
     let converted = conversion::convert_by(case, watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
         walk_editing(converter, at, watch, tell.take(), &mut |c| run.make_edits(c, c.counts.steps))?;
-        stopped = at.map(|stop| (stop, converter.phase().base().copied()));
+        end = (converter.phase().plain(), converter.parameters().clone());
         Ok(())
     })?;
     watch.tell(Stage::Check, 0, 0);
     let of = if at.is_some() { Export::of_state } else { Export::of };
     let export = of(&converted.mesh, &converted.regions);
     // On the way there are triangles; both sides of a crack lie at the same place.
-    let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, ..Allow::default() });
+    let branching = converted.mesh.ground().is_some();
+    let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, branching });
     let resort = converted.last_resort.quads();
     let report = Report {
         program: Program::this(),
@@ -115,42 +133,85 @@ pub(super) fn convert(
         regions: converted.regions.len(),
         valid: flaw.is_none(),
         mesh: Statistics::measure(export.measured(), &converted.sizing)?,
+        on_surfaces: converted.mesh.ground().is_some(),
         last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
         repairs: converted.repairs.clone(),
         events: events(&converted),
         timing: Vec::new(),
     };
-    Ok(Quads { mesh: converted.mesh, stopped, file: export.file, report, flaw })
+    let (phase, in_force) = end;
+    let state = fingerprint(&converted.mesh, &phase);
+    let shown = ShownState { step: converted.counts.steps, at, state };
+    Ok(Quads { mesh: converted.mesh, shown, phase, in_force, file: export.file, report, flaw })
 }
 
 impl Quads {
-    /// The picture of it, with the front where it was stopped.
-    pub fn picture(&self, case: &Case) -> Picture {
-        match &self.stopped {
-            Some((stop, base)) => {
-                Picture { title: stop_text(*stop), ..Picture::of_state(&self.mesh, &case.parameters, base.as_ref()) }
-            }
-            None => Picture::of_mesh(&self.file),
-        }
+    /// The frame of it, for a figure.
+    pub fn frame(&self, layers: Layers) -> Frame {
+        let seen = Seen { mesh: &self.mesh, parameters: &self.in_force, phase: &self.phase, changed: &[] };
+        Frame { picture: Picture::of_state(&seen, layers), shown: self.shown, statistics: None }
     }
 }
 
-/// The pictures of a run at several stops, each with its stop as title.
-pub(super) fn frames(run: &Run, stops: &Stops, watch: &mut dyn Watch) -> Result<Vec<Picture>, Fault> {
+/// A state of a run, for a figure.
+pub(super) struct Frame {
+    /// What is to be seen.
+    pub picture: Picture,
+    /// Which state it is.
+    pub shown: ShownState,
+    /// What it is like, where that is plotted: its quadrilaterals, where there are any.
+    pub statistics: Option<Statistics>,
+}
+
+/// The states of a run at several stops.
+///
+/// # Errors
+/// As the conversion, and where it ends before a stop.
+pub(super) fn frames(
+    run: &Run,
+    wanted: &[Wanted],
+    layers: Layers,
+    plotted: bool,
+    watch: &mut dyn Watch,
+) -> Result<Vec<Frame>, Fault> {
     let mut frames = Vec::new();
-    conversion::convert_by(&run.case, watch, &mut |converter, watch| {
+    let mut meshes = Vec::new();
+    let watches_changes = layers.has(Layer::Changed);
+    let converted = conversion::convert_by(&run.case, watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
-        for &stop in &stops.0 {
-            walk_editing(converter, stop, watch, None, &mut |c| run.make_edits(c, c.counts.steps))?;
-            frames.push(Picture { title: stop.map_or_else(|| "end".to_owned(), stop_text), ..picture(converter) });
+        if watches_changes {
+            converter.keep_history();
+        }
+        for wanted in wanted {
+            walk_editing(converter, wanted.stop, watch, None, &mut |c| {
+                if c.history_len() > HISTORY {
+                    c.shorten_history(1);
+                }
+                run.make_edits(c, c.counts.steps)
+            })?;
+            let mut changed = Touched::default();
+            converter.note_last_step(&mut changed);
+            let (mesh, phase) = (&converter.mesh, converter.phase());
+            let seen = Seen { mesh, parameters: converter.parameters(), phase, changed: changed.elements() };
+            let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
+            frames.push(Frame { picture: Picture::of_state(&seen, layers), shown, statistics: None });
+            if plotted {
+                meshes.push(Export::of(mesh, &[]));
+            }
         }
         Ok(())
     })?;
+    for (frame, export) in frames.iter_mut().zip(&meshes) {
+        frame.statistics = Some(statistics(export, &converted.sizing)?);
+    }
     Ok(frames)
 }
 
-fn picture(converter: &Converter<'_>) -> Picture {
-    Picture::of_state(&converter.mesh, converter.parameters(), converter.phase().base())
+/// What a state is like: its quadrilaterals, where there are any, and else its triangles.
+pub(super) fn statistics(export: &Export, sizing: &Sizing) -> Result<Statistics, Fault> {
+    let all = export.measured();
+    let of = if all.quads.is_empty() { all } else { Measured { triangles: &[], ..all } };
+    Ok(Statistics::measure(of, sizing)?)
 }
 
 /// Everything that is checked on a mesh: its structure, exact convexity, and the file as others will see it.
@@ -158,7 +219,20 @@ fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     if let Err(what) = mesh.check() {
         return Some(Fault::new(format!("The mesh is not sound: {what}")));
     }
-    examine(file).verdict(allow).err()
+    if let Err(fault) = examine(file).verdict(allow) {
+        return Some(fault);
+    }
+    let folded = if allow.triangles { Vec::new() } else { mesh.folded() };
+    let first = mesh.corners(*folded.first()?).next()?;
+    let [x, y, z] = mesh.xyz(first).to_array().map(number);
+    let what = match folded.len() {
+        1 => "1 quadrilateral folds over its surface".to_owned(),
+        n => format!("{n} quadrilaterals fold over their surface"),
+    };
+    Some(
+        Fault::new(format!("The mesh is too coarse for its surface: {what} (the first at {x}, {y}, {z})"))
+            .remedy("Ask for smaller sizes there, for example by a metric of kind \"curvature\""),
+    )
 }
 
 fn events(converted: &Converted) -> BTreeMap<String, u64> {
@@ -204,6 +278,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("clean_up_pair", cleaned_up.pairs),
         ("clean_up_refused", cleaned_up.refused),
         ("clean_up_rotation", cleaned_up.rotations),
+        ("clean_up_sequence", cleaned_up.longer),
         ("last_resort_division", resort.divided),
         ("last_resort_merge", resort.merged),
         ("last_resort_recut", resort.recut),

@@ -6,6 +6,7 @@ pub mod geometry;
 pub mod metric;
 pub mod journal;
 pub mod mesh;
+pub mod discrete;
 pub mod background;
 pub mod front;
 pub mod convert;

@@ -1,6 +1,7 @@
 //! From the mesh to the screen and back: an orthographic camera in f64, so that a mesh of sizes 1 and 1e-4 can be looked at
 //! from near without jitter. Screens are measured in points, x to the right and y down, from the upper left corner of a view.
 
+use crate::core::run::run;
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat4};
 
 /// The least and greatest number of points for one unit of the mesh, in terms of the whole mesh fitted to the view.
@@ -96,6 +97,23 @@ impl Camera {
     pub fn look_at(&mut self, p: DVec2, scale: f64) {
         self.centre = p.extend(0.0);
         self.scale = scale.clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
+    }
+
+    /// What a run keeps of it, in a view of `size` points.
+    pub fn kept(&self, size: DVec2) -> run::Camera {
+        run::Camera {
+            target: self.centre.to_array(),
+            turn: self.turn.to_array(),
+            height: size.y.max(1.0) / self.scale.max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// Looks as a run has kept it, in a view of `size` points.
+    pub fn take_up(&mut self, kept: &run::Camera, size: DVec2) {
+        self.centre = DVec3::from_array(kept.target);
+        self.turn = DQuat::from_array(kept.turn);
+        self.turn = if self.turn.length() > 1e-9 { self.turn.normalize() } else { DQuat::IDENTITY };
+        self.scale = (size.y.max(1.0) / kept.height).clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
     }
 
     /// The map from positions relative to `anchor` to clip space, for a view of `size` points. Differences of large numbers

@@ -1,9 +1,12 @@
 //! Turns a state of `core` into a picture, and a picture into vectors or pixels. Never changes a state.
 
+pub mod number;
 pub mod palette;
 pub mod colour_map;
 pub mod camera;
+pub mod look;
 pub mod picture;
+pub mod orthographic;
 pub mod scene;
 pub mod pick;
 pub mod vector;

@@ -1,6 +1,7 @@
 //! Colours and strokes: the window's palette, dark and light, and that of figures, which are made for print and independent
 //! of any window.
 
+use super::look::Ink;
 use super::picture::Role;
 
 /// A colour in sRGB with its opacity.
@@ -185,6 +186,8 @@ pub struct Style {
     pub stroke: Option<&'static str>,
     /// Width of lines in points, whatever the scale of the mesh.
     pub width: f64,
+    /// Points drawn and points left out, by turns.
+    pub dash: Option<[f64; 2]>,
 }
 
 /// The width in points of edges that are closer to each other than [`CROWDED`].
@@ -193,21 +196,51 @@ pub const THIN: f64 = 0.12;
 /// Edges of elements whose height is under this many points are drawn thin, so that they do not run together.
 pub const CROWDED: f64 = 0.4;
 
-/// The `figure` palette in colour.
-pub fn figure(role: Role) -> Style {
-    let area = |fill| Style { fill: Some(fill), stroke: None, width: 0.0 };
-    let line = |stroke, width| Style { fill: None, stroke: Some(stroke), width };
+/// What an area is filled with that the last step changed, where there are no colours: the hatching that the writer defines.
+pub const HATCH: &str = "url(#hatch)";
+
+/// The ink of letters and wedges in figures.
+pub const LETTER: &str = "#000000";
+/// The ink of notes, axes, arcs and ellipses in figures.
+pub const NOTE: &str = "#404040";
+
+/// The two series of a histogram in a figure: fill and outline of its bars.
+pub fn bars(ink: Ink) -> [[&'static str; 2]; 2] {
+    match ink {
+        Ink::Grey => [["#808080", "#808080"], ["#FFFFFF", "#404040"]],
+        Ink::Colour => [["#00659C", "#00659C"], ["#FFFFFF", "#7C70DA"]],
+    }
+}
+
+/// The `figure` palette.
+pub fn figure(role: Role, ink: Ink) -> Style {
+    let area = |grey, colour| Style {
+        fill: Some(if ink == Ink::Grey { grey } else { colour }),
+        stroke: None,
+        width: 0.0,
+        dash: None,
+    };
+    let line = |grey, colour, width| Style {
+        fill: None,
+        stroke: Some(if ink == Ink::Grey { grey } else { colour }),
+        width,
+        dash: None,
+    };
     match role {
-        Role::LiveTriangle => area("#FFFFFF"),
-        Role::DeadQuad => area("#DBE4EC"),
-        Role::LiveEdge => line("#9A9A9A", 0.25),
-        Role::DeadEdge => line("#6F8496", 0.35),
-        Role::Boundary => line("#20262C", 0.8),
-        Role::Front(4) => line("#6E7A87", 0.9),
-        Role::Front(3) => line("#7C70DA", 1.1),
-        Role::Front(2) => line("#00659C", 1.1),
-        Role::Front(_) => line("#002B45", 1.2),
-        Role::Base => line("#AD4E00", 1.8),
+        Role::LiveTriangle => area("#FFFFFF", "#FFFFFF"),
+        Role::DeadQuad => area("#E4E4E4", "#DBE4EC"),
+        Role::Changed => area(HATCH, "#A6DCCB"),
+        Role::LiveEdge => line("#9A9A9A", "#9A9A9A", 0.25),
+        Role::DeadEdge => line("#6B6B6B", "#6F8496", 0.35),
+        Role::ChangedEdge => line("#404040", "#00806A", 0.6),
+        Role::Boundary => line("#000000", "#20262C", 0.8),
+        Role::Front(4) => line("#808080", "#6E7A87", 0.9),
+        Role::Front(3) => line("#404040", "#7C70DA", 1.1),
+        Role::Front(2) => line("#404040", "#00659C", 1.1),
+        Role::Front(_) => line("#000000", "#002B45", 1.2),
+        Role::Side => line("#000000", "#C77812", 1.2),
+        Role::Top => Style { dash: Some([3.0, 2.0]), ..line("#000000", "#C77812", 0.9) },
+        Role::Base => line("#000000", "#AD4E00", 1.8),
     }
 }
 

@@ -1,14 +1,24 @@
 //! What is to be seen: areas and lines with a role, in the coordinates of the mesh. Deliberately absent: colours, widths,
 //! pixels (`palette` and the writers know them).
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
+use super::orthographic::{self, View};
+
+use super::look::{Layer, Layers};
+use super::number;
+use super::scene::Decision;
 use crate::core::convert::parameters::Parameters;
-use crate::core::convert::phase::Base;
+use crate::core::convert::phase::Phase;
+use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
 use crate::core::io::export::Export;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::{ElementId, NodeId};
+
+/// Metric ellipses are drawn at this share of unit length.
+const ELLIPSE: f64 = 0.25;
 
 /// What an area or a line is; writers draw in the order of [`Role::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -17,30 +27,42 @@ pub enum Role {
     LiveTriangle,
     /// A quadrilateral of the result.
     DeadQuad,
+    /// An element that the last step changed, over what it is.
+    Changed,
     /// An edge between live triangles.
     LiveEdge,
     /// An edge of a quadrilateral.
     DeadEdge,
+    /// An edge of what the last step changed.
+    ChangedEdge,
     /// An edge of the boundary, a crack or a line inside.
     Boundary,
     /// A segment of the merging front, with its class of table 1 (1 to 4).
     Front(u8),
+    /// A side edge of the quadrilateral at hand.
+    Side,
+    /// Its top edge, there or still to be recovered.
+    Top,
     /// The base segment of the quadrilateral at hand.
     Base,
 }
 
 impl Role {
     /// All roles from back to front.
-    pub const ALL: [Role; 10] = [
+    pub const ALL: [Role; 14] = [
         Role::LiveTriangle,
         Role::DeadQuad,
+        Role::Changed,
         Role::LiveEdge,
         Role::DeadEdge,
+        Role::ChangedEdge,
         Role::Boundary,
         Role::Front(4),
         Role::Front(3),
         Role::Front(2),
         Role::Front(1),
+        Role::Side,
+        Role::Top,
         Role::Base,
     ];
 }
@@ -65,7 +87,55 @@ pub struct Line {
     pub room: f64,
 }
 
-/// A picture: areas, then lines over them.
+/// A mark of constant size on the page; what has no room there is left out.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// A letter at a point.
+    Letter {
+        /// The point.
+        at: DVec2,
+        /// The point that it keeps away from.
+        from: DVec2,
+        /// The letter.
+        letter: char,
+    },
+    /// A wedge in a corner of the front: the directions of its legs, anticlockwise.
+    Wedge {
+        /// The corner.
+        at: DVec2,
+        /// Its legs.
+        legs: [DVec2; 2],
+    },
+    /// An arc in a corner of the front, with its angle.
+    Arc {
+        /// The corner.
+        at: DVec2,
+        /// Its legs.
+        legs: [DVec2; 2],
+        /// The angle in words.
+        text: String,
+        /// Whether it is drawn however short the legs are.
+        always: bool,
+    },
+    /// A text beside a line, on its right side where there is room.
+    Beside {
+        /// The line.
+        ends: [DVec2; 2],
+        /// The text.
+        text: String,
+    },
+    /// A node.
+    Node(DVec2),
+    /// An ellipse by its half axes.
+    Ellipse {
+        /// Its middle.
+        at: DVec2,
+        /// Its half axes.
+        axes: [DVec2; 2],
+    },
+}
+
+/// A picture: areas, lines over them, marks over all.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// One line on what it shows.
@@ -76,20 +146,49 @@ pub struct Picture {
     pub areas: Vec<Area>,
     /// Lines, each edge once.
     pub lines: Vec<Line>,
+    /// Marks; of those that would cover each other the first stays.
+    pub marks: Vec<Mark>,
+}
+
+/// A state of a conversion, as far as it is to be seen.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// The parameters in force.
+    pub parameters: &'a Parameters,
+    /// Where the converter stands.
+    pub phase: &'a Phase,
+    /// What the last step changed.
+    pub changed: &'a [ElementId],
 }
 
 /// One side of an element on its way to a line.
-struct Side {
+struct Edge {
     edge: [u32; 2],
     role: Role,
     room: f64,
 }
 
 impl Picture {
-    /// The picture of a mesh, seen from +z: elements by kind, edges once, the boundary and lines inside over them.
+    /// The picture of a mesh: elements by kind, edges once, the boundary and lines inside over them. A mesh in a plane z =
+    /// constant is seen from +z, one in space as `orthographic` has it.
     ///
     /// An edge is of the boundary where one element has it or where the mesh has a line there.
     pub fn of_mesh(mesh: &MeshFile) -> Picture {
+        if orthographic::is_flat(mesh) {
+            return Picture::as_it_lies(mesh).0;
+        }
+        let view = View::usual();
+        let (mut picture, edges) = Picture::as_it_lies(&orthographic::flattened(mesh, &view));
+        let ends: Vec<[DVec3; 2]> = edges.iter().map(|e| e.map(|n| mesh.points[n as usize])).collect();
+        orthographic::turn_over(&mut picture);
+        orthographic::hide(&mut picture, &ends, mesh, &view);
+        picture
+    }
+
+    /// The picture of a mesh in the plane, and the nodes of each line.
+    fn as_it_lies(mesh: &MeshFile) -> (Picture, Vec<[u32; 2]>) {
         let at = |n: u32| mesh.points[n as usize].truncate();
         let mut picture = Picture::default();
         let mut sides = Vec::with_capacity(mesh.triangles.len() * 3 + mesh.quads.len() * 4 + mesh.lines.len());
@@ -103,40 +202,148 @@ impl Picture {
                 let others = nodes.iter().filter(|n| **n != a && **n != b);
                 // A quadrilateral's two other corners may stand at different heights; the mean tells how crowded it is.
                 let room = others.map(|n| height(*n)).sum::<f64>() / (nodes.len() - 2) as f64;
-                sides.push(Side { edge: [a.min(b), a.max(b)], role: edge_role, room });
+                sides.push(Edge { edge: [a.min(b), a.max(b)], role: edge_role, room });
             }
         };
         mesh.triangles.iter().for_each(|t| element(t, Role::LiveTriangle, Role::LiveEdge));
         mesh.quads.iter().for_each(|q| element(q, Role::DeadQuad, Role::DeadEdge));
         let line =
-            |l: &[u32; 2]| Side { edge: [l[0].min(l[1]), l[0].max(l[1])], role: Role::Boundary, room: f64::INFINITY };
+            |l: &[u32; 2]| Edge { edge: [l[0].min(l[1]), l[0].max(l[1])], role: Role::Boundary, room: f64::INFINITY };
         // The front of a state is no line of the mesh, and its classes are not in the file.
         let front: Vec<usize> = mesh.front_lines().collect();
         sides.extend(
             mesh.lines.iter().enumerate().filter(|(i, _)| front.binary_search(i).is_err()).map(|(_, l)| line(l)),
         );
         sides.sort_by_key(|side| side.edge);
+        let mut edges = Vec::new();
         for same in sides.chunk_by(|a, b| a.edge == b.edge) {
             let highest = same.iter().map(|s| s.role).max().expect("a chunk is never empty");
             let role = if same.len() == 1 { Role::Boundary } else { highest };
             let room = same.iter().map(|s| s.room).fold(f64::INFINITY, f64::min);
             picture.lines.push(Line { role, ends: same[0].edge.map(at), room });
+            edges.push(same[0].edge);
         }
+        (picture, edges)
+    }
+
+    /// The picture of a conversion on surfaces: the mesh, over it the front by the classes of table 1 and the base segment. Marks are
+    /// drawn in planar domains only.
+    fn of_state_in_space(seen: &Seen<'_>, layers: Layers) -> Picture {
+        let Seen { mesh, parameters, phase, .. } = *seen;
+        let file = Export::of(mesh, &[]).file;
+        let mut picture = Picture::of_mesh(&file);
+        let base = Decision::of(phase).base.and_then(|[a, b]| mesh.front_between(a, b));
+        // Seen like the mesh itself.
+        let view = if orthographic::is_flat(&file) { None } else { Some(View::usual()) };
+        let (mut front, mut space) = (Picture::default(), Vec::new());
+        for h in mesh.front() {
+            let segment = Segment::measure(mesh, h, parameters);
+            let is_base = base == Some(h) && layers.has(Layer::Decision);
+            let role = if is_base { Role::Base } else { Role::Front(segment.class) };
+            let in_space = [segment.a, segment.b].map(|n| mesh.xyz(n));
+            let ends = in_space.map(|p| view.map_or(p.truncate(), |view| view.place(p)));
+            front.lines.push(Line { role, ends, room: f64::INFINITY });
+            space.push(in_space);
+        }
+        if let Some(view) = &view {
+            orthographic::hide(&mut front, &space, &file, view);
+        }
+        picture.lines.append(&mut front.lines);
         picture
     }
 
-    /// The picture of a conversion on the way: the mesh, over it the front by the classes of table 1, and the base segment
-    /// where there is one.
-    pub fn of_state(mesh: &Mesh, parameters: &Parameters, base: Option<&Base>) -> Picture {
-        let mut picture = Picture::of_mesh(&Export::of(mesh, &[]).file);
-        let base = base.and_then(|base| mesh.front_between(base.a, base.b));
-        for h in mesh.front() {
-            let segment = Segment::measure(mesh, h, parameters);
-            let role = if base == Some(h) { Role::Base } else { Role::Front(segment.class) };
-            let ends = [mesh.uv(segment.a), mesh.uv(segment.b)];
-            picture.lines.push(Line { role, ends, room: f64::INFINITY });
+    /// The picture of a conversion at some step: the mesh, over it the front by the classes of table 1, the quadrilateral in
+    /// the making, and the marks that are asked for.
+    pub fn of_state(seen: &Seen<'_>, layers: Layers) -> Picture {
+        let Seen { mesh, parameters, phase, changed } = *seen;
+        if mesh.ground().is_some() {
+            return Picture::of_state_in_space(seen, layers);
         }
+        let mut picture = Picture::of_mesh(&Export::of(mesh, &[]).file);
+        if layers.has(Layer::Changed) {
+            changed.iter().filter(|e| mesh.has_element(**e)).for_each(|e| picture.add_changed(mesh, *e));
+        }
+        let decision = Decision::of(phase);
+        let base = decision.base.and_then(|[a, b]| mesh.front_between(a, b));
+        let segments: Vec<Segment> = mesh.front().map(|h| Segment::measure(mesh, h, parameters)).collect();
+        for segment in &segments {
+            let is_base = base == Some(segment.h) && layers.has(Layer::Decision);
+            let role = if is_base { Role::Base } else { Role::Front(segment.class) };
+            picture.add_line(mesh, role, [segment.a, segment.b]);
+        }
+        if let Some([a, b]) = decision.base {
+            let [c, d] = decision.tops;
+            let sides = [c.map(|c| [a, c]), d.map(|d| [b, d])];
+            sides.into_iter().flatten().for_each(|ends| picture.add_line(mesh, Role::Side, ends));
+            if let (Some(c), Some(d)) = (c, d) {
+                picture.add_line(mesh, Role::Top, [c, d]);
+            }
+        }
+        picture.add_marks(mesh, parameters, &decision, &segments, layers);
         picture
+    }
+
+    fn add_line(&mut self, mesh: &Mesh, role: Role, ends: [NodeId; 2]) {
+        if ends.iter().all(|n| mesh.has_node(*n)) {
+            self.lines.push(Line { role, ends: ends.map(|n| mesh.uv(n)), room: f64::INFINITY });
+        }
+    }
+
+    fn add_changed(&mut self, mesh: &Mesh, e: ElementId) {
+        let nodes: Vec<NodeId> = mesh.half_edges(e).map(|h| mesh.origin(h)).collect();
+        let corner = |k: usize| mesh.uv(nodes[k.min(nodes.len() - 1)]);
+        self.areas.push(Area { role: Role::Changed, corners: [corner(0), corner(1), corner(2), corner(3)] });
+        for (k, &a) in nodes.iter().enumerate() {
+            self.add_line(mesh, Role::ChangedEdge, [a, nodes[(k + 1) % nodes.len()]]);
+        }
+    }
+
+    /// Marks in the order in which they find their room.
+    fn add_marks(
+        &mut self,
+        mesh: &Mesh,
+        parameters: &Parameters,
+        decision: &Decision,
+        segments: &[Segment],
+        layers: Layers,
+    ) {
+        if layers.has(Layer::Ellipses) {
+            for node in mesh.nodes() {
+                let ([small, large], [along, across]) = mesh.metric(node).eigen();
+                let axes = [along * (ELLIPSE / small.sqrt()), across * (ELLIPSE / large.sqrt())];
+                self.marks.push(Mark::Ellipse { at: mesh.uv(node), axes });
+            }
+        }
+        if layers.has(Layer::Nodes) {
+            self.marks.extend(mesh.nodes().map(|node| Mark::Node(mesh.uv(node))));
+        }
+        let letters: Vec<_> = decision.letters().filter(|letter| mesh.has_node(letter.0)).collect();
+        if layers.has(Layer::Letters) && !letters.is_empty() {
+            let from = letters.iter().map(|l| mesh.uv(l.0)).sum::<DVec2>() / letters.len() as f64;
+            let mark = |&(node, letter): &(NodeId, char)| Mark::Letter { at: mesh.uv(node), from, letter };
+            self.marks.extend(letters.iter().map(mark));
+        }
+        for segment in segments {
+            for side in Side::BOTH {
+                let (at, legs) = corner(mesh, segment, side);
+                let theta = segment.theta[side.index()];
+                // Every corner of the front is the left one of one segment.
+                let of_base = decision.base == Some([segment.a, segment.b]);
+                let at_base = decision.base.is_some_and(|base| base.contains(&segment.a));
+                if layers.has(Layer::Angles) && (of_base || side == Side::Left && !at_base) {
+                    let text = format!("{}°", number::degrees(theta));
+                    self.marks.push(Mark::Arc { at, legs, text, always: of_base });
+                } else if layers.has(Layer::Wedges) && theta < parameters.theta_rect {
+                    self.marks.push(Mark::Wedge { at, legs });
+                }
+            }
+        }
+        if layers.has(Layer::H) {
+            self.marks.extend(segments.iter().map(|segment| Mark::Beside {
+                ends: [mesh.uv(segment.a), mesh.uv(segment.b)],
+                text: format!("{} · {}", segment.class, number::size(segment.h_value)),
+            }));
+        }
     }
 
     /// The least and greatest coordinates of what is shown; `None` for an empty picture.
@@ -147,12 +354,24 @@ impl Picture {
     }
 }
 
+/// A corner of the front: its place and its legs, anticlockwise.
+fn corner(mesh: &Mesh, segment: &Segment, side: Side) -> (DVec2, [DVec2; 2]) {
+    let (at, from, to) = match side {
+        Side::Left => (segment.a, segment.b, mesh.origin(mesh.front_before(segment.h))),
+        Side::Right => (segment.b, mesh.target(mesh.front_after(segment.h)), segment.a),
+    };
+    let p = mesh.uv(at);
+    (p, [mesh.uv(from) - p, mesh.uv(to) - p])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::mesh::ids::{NodeId, PointId};
+    use crate::core::convert::phase::Base;
+    use crate::core::mesh::ids::PointId;
     use crate::core::mesh::triangle_set::TriangleSet;
     use crate::core::metric::tensor::Metric2;
+    use crate::render::look::Ink;
     use glam::DVec3;
 
     /// Two triangles beside a quadrilateral, with a line between them.
@@ -180,15 +399,33 @@ mod tests {
     fn a_state_shows_every_front_segment_once_by_its_class_and_the_base_on_top() {
         let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
         let point = (0..4).map(PointId).collect();
-        let set = TriangleSet { uv, point, triangles: vec![[0, 1, 2], [0, 2, 3]], region: vec![0; 2] };
+        let set = TriangleSet {
+            uv,
+            point,
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            region: vec![0; 2],
+            ..TriangleSet::default()
+        };
         let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4]);
         let base = Base { a: NodeId(0), b: NodeId(1), theta: [1.5; 2], length: 1.0, level: 0 };
-        let picture = Picture::of_state(&mesh, &Parameters::default(), Some(&base));
+        let phase = Phase::Defer { base };
+        let parameters = Parameters::default();
+        let changed = [ElementId(0), ElementId(9)];
+        let seen = Seen { mesh: &mesh, parameters: &parameters, phase: &phase, changed: &changed };
+        let mut layers = Layers::usual(Ink::Grey, false);
+        layers.set(Layer::Changed, true);
+        layers.set(Layer::H, true);
+        let picture = Picture::of_state(&seen, layers);
         let count = |role| picture.lines.iter().filter(|l| l.role == role).count();
         assert_eq!(
             (count(Role::Front(1)), count(Role::Base), count(Role::LiveEdge), count(Role::Boundary)),
             (3, 1, 1, 4)
         );
+        assert_eq!(count(Role::ChangedEdge), 3, "what is not there any more is not drawn");
+        let marks = |is: fn(&Mark) -> bool| picture.marks.iter().filter(|mark| is(mark)).count();
+        assert_eq!(marks(|mark| matches!(mark, Mark::Letter { .. })), 2);
+        assert_eq!(marks(|mark| matches!(mark, Mark::Wedge { .. })), 8);
+        assert_eq!(marks(|mark| matches!(mark, Mark::Beside { .. })), 4);
         let place = |role| Role::ALL.iter().position(|r| *r == role);
         assert!(place(Role::Base) > place(Role::Front(1)) && place(Role::Front(1)) > place(Role::Boundary));
     }

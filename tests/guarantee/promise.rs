@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use quadfront::core::convert::conversion::{background, convert_by};
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::phase::Phase;
@@ -140,27 +140,47 @@ fn areas(mesh: &Mesh) -> BTreeMap<u32, f64> {
 }
 
 /// The mesh as a file would have it is sound: conforming, nothing overlaps, nothing hangs. Points on both sides of a crack
-/// are apart at the same place, and faces that meet in a point only pinch it, both by right.
+/// are apart at the same place, and faces that meet in a point only pinch it, both by right. On surfaces each chart is
+/// held against that in the plane, and their points in space joined; there edges branch by right, and a mesh may be too coarse
+/// for its surface.
 fn sound(mesh: &Mesh) -> Result<(), String> {
+    let in_space = mesh.ground().is_some();
+    let by_right = [Defect::SeamNode, Defect::PinchedNode];
+    if in_space {
+        only(&file(mesh, &|n| mesh.uv(n).extend(0.0), false), &by_right)?;
+        return only(
+            &file(mesh, &|n| mesh.xyz(n), true),
+            &[by_right[0], by_right[1], Defect::BranchingEdge, Defect::NotConvex],
+        );
+    }
+    only(&file(mesh, &|n| mesh.uv(n).extend(0.0), true), &by_right)
+}
+
+/// The quadrilaterals by points, copies of a point `joined` or each by itself.
+fn file(mesh: &Mesh, place: &dyn Fn(NodeId) -> DVec3, joined: bool) -> MeshFile {
     let mut number = vec![u32::MAX; mesh.node_slots()];
-    let fixed = mesh.nodes().filter_map(|n| mesh.point(n)).map(|p| p.0 + 1).max().unwrap_or(0);
-    let mut points = vec![glam::DVec3::ZERO; fixed as usize];
+    let fixed = mesh.nodes().filter_map(|n| mesh.point(n)).map(|p| p.0 + 1).max().filter(|_| joined).unwrap_or(0);
+    let mut points = vec![DVec3::ZERO; fixed as usize];
     for n in mesh.nodes() {
-        number[n.index()] = match mesh.point(n) {
+        number[n.index()] = match mesh.point(n).filter(|_| joined) {
             Some(p) => {
-                points[p.0 as usize] = mesh.uv(n).extend(0.0);
+                points[p.0 as usize] = place(n);
                 p.0
             }
             None => {
-                points.push(mesh.uv(n).extend(0.0));
+                points.push(place(n));
                 points.len() as u32 - 1
             }
         };
     }
     let quads = mesh.elements().map(|e| mesh.quad(e).map(|n| number[n.index()])).collect();
-    let soundness = examine(&MeshFile { points, quads, ..MeshFile::default() });
-    let by_right = [Defect::SeamNode, Defect::PinchedNode];
-    match soundness.findings.iter().find(|found| !by_right.contains(&found.defect)) {
+    let quad_tags = mesh.elements().map(|e| mesh.region(e) + 1).collect();
+    MeshFile { points, quads, quad_tags, ..MeshFile::default() }
+}
+
+/// Nothing is wrong with the mesh but what may be.
+fn only(mesh: &MeshFile, by_right: &[Defect]) -> Result<(), String> {
+    match examine(mesh).findings.iter().find(|found| !by_right.contains(&found.defect)) {
         Some(found) => Err(format!("{found}")),
         None => Ok(()),
     }

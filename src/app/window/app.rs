@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, Context, Frame, Key, Modifiers, Panel, Ui, ViewportCommand};
 use eframe::{CreationContext, wgpu};
 
+use super::autosave::Autosave;
 use super::command::{Command, keys};
-use super::files::{Answer, free_path, write_png};
+use super::files::{Answer, Watcher, free_path, write_png};
 use super::graphics::{self, Lost};
 use super::layout::Layout;
 use super::panels;
@@ -102,6 +103,32 @@ impl App {
     pub fn cleared(mut self) -> App {
         self.is_cleared = true;
         self
+    }
+
+    /// The same, which keeps its run in a folder while it is worked on and offers what was left there.
+    #[must_use]
+    pub fn keeping(mut self, folder: Option<PathBuf>) -> App {
+        self.state.autosave = folder.map(|folder| Autosave::new(folder, self.state.wake.clone()));
+        self
+    }
+
+    /// Keeps the run, and hears of files: those that change and those that are written.
+    fn files(&mut self, context: &Context) {
+        if let Some(mut autosave) = self.state.autosave.take() {
+            let (opened, source) = (self.state.opened.clone(), self.state.source.clone());
+            let (faults, again) = autosave.look(opened.as_ref(), source.as_ref(), || self.state.run());
+            faults.iter().for_each(|fault| self.state.complain(fault));
+            if let Some(again) = again {
+                context.request_repaint_after(again);
+            }
+            self.state.autosave = Some(autosave);
+        }
+        self.state.hear_figures();
+        match self.state.watcher.as_ref().and_then(Watcher::news) {
+            Some(Ok(name)) => self.state.notice(format!("{name} has changed: Ctrl+R opens it again.")),
+            Some(Err(fault)) => self.state.complain(&fault),
+            None => {}
+        }
     }
 
     /// Does what a person asks for.
@@ -236,7 +263,7 @@ impl App {
         let image = self.taken.lock().ok().and_then(|mut taken| taken.take());
         if let Some(image) = image {
             let path = free_path("quadfront-window", "png");
-            match write_png(&path, &image) {
+            match write_png(&path, &image, self.state.carried()) {
                 Ok(()) => self.state.notice(format!("The window was saved as {}.", path.display())),
                 Err(fault) => self.state.complain(&fault),
             }
@@ -263,6 +290,7 @@ impl eframe::App for App {
         }
         self.play(&context);
         self.state.hear_soon();
+        self.files(&context);
         self.screenshots(&context);
         let palette = theme::palette(context.theme() == egui::Theme::Dark);
         let (state, commands) = (&mut self.state, &mut self.commands);
@@ -283,10 +311,13 @@ impl eframe::App for App {
         if !squashed {
             state.bottom = time.response.rect.height();
         }
+        panels::offer::show(ui, state, commands, palette);
         panels::messages::show(ui, state, palette);
         egui::CentralPanel::default().frame(plain).show(ui, |ui| {
             self.layout.show(ui, state, &mut self.views, commands, palette);
         });
+        panels::notes::show(&context, state, palette);
+        panels::figure::show(&context, state, commands, palette);
         panels::over::show(&context, state, commands, palette);
         if let Some((_, since)) = &self.state.notice {
             match NOTICE.checked_sub(since.elapsed()) {

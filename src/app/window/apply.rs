@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::command::Command;
+use super::figures::Formats;
 use super::files;
 use super::measure::Measuring;
 use super::session::{Goal, Source};
@@ -90,7 +91,25 @@ impl State {
             Command::Palette => self.show(Over::Palette),
             Command::Help => self.show(Over::Help),
             Command::Screenshot => self.screenshot = true,
-            Command::Export => self.export(),
+            Command::Export => self.save_figure(Formats::Both),
+            Command::Figures => self.figures.shown = !self.figures.shown,
+            Command::SaveFigure(formats) => self.save_figure(formats),
+            Command::Reopen => {
+                if let Some(source) = self.source.clone() {
+                    self.open(source);
+                }
+            }
+            Command::Notes => self.notes = !self.notes,
+            Command::OpenKept => {
+                if let Some(source) = self.autosave.as_mut().and_then(|autosave| autosave.take()) {
+                    self.open(source);
+                }
+            }
+            Command::DiscardKept => {
+                if let Some(autosave) = &mut self.autosave {
+                    autosave.discard();
+                }
+            }
             Command::SaveRun => drop(self.save_run()),
             Command::Undo => self.take_back(true),
             Command::Redo => self.take_back(false),
@@ -262,22 +281,15 @@ impl State {
         self.open(Source::named(&text));
     }
 
-    /// Writes the state at hand as vectors and, drawn from those, as pixels.
-    fn export(&mut self) {
-        let Some((moment, opened)) = self.moment.clone().zip(self.opened.clone()) else { return };
-        let stem = format!("{}-step-{}", opened.case.name, moment.step);
-        match files::export(&moment, &opened, &stem) {
-            Ok(names) => self.notice(format!("The figure was saved as {names}.")),
-            Err(fault) => self.complain(&fault),
-        }
-    }
-
     /// Saves the run in the working folder, under a name that is free; tells where.
     pub fn save_run(&mut self) -> Option<PathBuf> {
         let run = self.run()?;
         let path = files::free_path(&format!("{}-run", run.case.name), "toml");
         match run_file::write(&path, &run) {
             Ok(()) => {
+                if let Some(autosave) = &mut self.autosave {
+                    autosave.saved(&run);
+                }
                 self.notice(format!("The run was saved as {}.", path.display()));
                 Some(path)
             }

@@ -2,6 +2,7 @@
 
 use eframe::egui::{Key, Modifiers};
 
+use super::figures::Formats;
 use super::session::{Goal, Source};
 use crate::core::io::built_in;
 use crate::core::mesh::ids::{ElementId, NodeId};
@@ -66,8 +67,20 @@ pub enum Command {
     GoTo,
     /// Save the window as a picture.
     Screenshot,
-    /// Save the state as a figure.
+    /// Save the state as a figure, as the panel for figures has it.
     Export,
+    /// Show the panel for figures.
+    Figures,
+    /// Save what the panel for figures has.
+    SaveFigure(Formats),
+    /// Open the file once more.
+    Reopen,
+    /// Show what the case is about.
+    Notes,
+    /// Open the run that was left behind.
+    OpenKept,
+    /// Throw the run away that was left behind.
+    DiscardKept,
     /// Save the run: the case with everything that was changed.
     SaveRun,
     /// Take back what a person did last.
@@ -129,6 +142,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL_SHIFT, Key::Z, Command::Redo),
         (CTRL_SHIFT, Key::S, Command::Screenshot),
         (CTRL_SHIFT, Key::L, Command::ToggleTheme),
+        (CTRL_SHIFT, Key::E, Command::Figures),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
         (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
@@ -142,6 +156,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::S, Command::SaveRun),
         (CTRL, Key::E, Command::Export),
         (CTRL, Key::B, Command::Bookmark),
+        (CTRL, Key::R, Command::Reopen),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
         (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
         (NONE, Key::F5, Command::ToBreakpoint(true)),
@@ -194,6 +209,12 @@ impl Command {
             Command::GoTo => "Go to a step or NQ…".into(),
             Command::Screenshot => "Save a picture of the window".into(),
             Command::Export => "Save a figure of this state".into(),
+            Command::Figures => "Figures: size, ink, layers, strips…".into(),
+            Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
+            Command::Reopen => "Open the file again".into(),
+            Command::Notes => "Notes on this case".into(),
+            Command::OpenKept => "Open the run that was not closed".into(),
+            Command::DiscardKept => "Discard the run that was not closed".into(),
             Command::SaveRun => "Save the run".into(),
             Command::Undo => "Undo".into(),
             Command::Redo => "Redo".into(),
@@ -230,11 +251,18 @@ impl Command {
     /// All that need nothing else to be said.
     pub fn all() -> Vec<Command> {
         let mut all: Vec<Command> = keys().into_iter().map(|k| k.2).collect();
-        all.extend([Command::Help, Command::OpenDialog, Command::ResetParameters, Command::ResetLayout]);
-        all.extend([Command::ShowTimes, Command::Measure]);
+        all.extend([
+            Command::Help,
+            Command::OpenDialog,
+            Command::ResetParameters,
+            Command::ResetLayout,
+            Command::Notes,
+            Command::ShowTimes,
+            Command::Measure,
+        ]);
         all.extend(ColourBy::ALL.map(Command::ColourBy));
         all.extend(KINDS.iter().flat_map(|k| [true, false].map(|f| Command::Go(Goal::Kind(k, f)))));
-        all.extend(built_in::CASES.iter().map(|case| Command::Open(Source::BuiltIn(case.0.to_owned()))));
+        all.extend(built_in::all().map(|case| Command::Open(Source::BuiltIn(case.0.to_owned()))));
         let mut seen: Vec<String> = Vec::new();
         all.retain(|command| {
             let name = command.name();

@@ -2,18 +2,20 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use eframe::egui::ColorImage;
 
-use super::session::{Moment, Opened, Source, Wake};
-use crate::app::convert;
+use super::session::{Source, Wake};
+use crate::app::input;
 use crate::core::fault::Fault;
+use crate::core::io::figure::KEYWORD;
 use crate::core::io::{built_in, save};
-use crate::render::picture::Picture;
-use crate::render::vector::{self, svg};
 
+/// How often a file is looked at that may change.
+const LOOK: Duration = Duration::from_millis(700);
 /// A dialog that has not answered for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// An answer that comes sooner is no person's.
@@ -22,7 +24,7 @@ const HASTE: Duration = Duration::from_millis(250);
 impl Source {
     /// What a name stands for: a built-in case, or else a file.
     pub fn named(name: &str) -> Source {
-        match built_in::CASES.iter().any(|case| case.0 == name) {
+        match built_in::all().any(|case| case.0 == name) {
             true => Source::BuiltIn(name.to_owned()),
             false => Source::File(PathBuf::from(name)),
         }
@@ -61,8 +63,8 @@ impl Dialog {
         let (tell, answer) = channel();
         std::thread::spawn(move || {
             let dialog = rfd::FileDialog::new()
-                .set_title("Open a case or a mesh")
-                .add_filter("Cases and meshes", &["toml", "msh", "mesh", "vtu", "obj", "inp"]);
+                .set_title("Open a case, a mesh or a figure")
+                .add_filter("Cases, meshes, figures", &["toml", "msh", "mesh", "vtu", "obj", "inp", "svg", "png"]);
             // Nobody listens where the window has given it up.
             let _ = tell.send(dialog.pick_file());
             wake();
@@ -94,34 +96,67 @@ pub fn free_path(stem: &str, extension: &str) -> PathBuf {
     path
 }
 
-/// Writes a state as a figure, as vectors and as pixels drawn from those; their names, for people.
-///
-/// # Errors
-/// What the system says.
-pub fn export(moment: &Moment, opened: &Opened, stem: &str) -> Result<String, Fault> {
-    let picture = Picture {
-        title: opened.case.title.clone(),
-        description: format!("{}, at step={}", convert::describe(&opened.case), moment.step),
-        ..Picture::of_state(&moment.mesh, &moment.parameters, moment.phase.base())
-    };
-    let vectors = svg::write(&picture, svg::COLUMN);
-    let pixels = vector::png::write(&vectors, convert::PRINT, &picture.description)?;
-    let names = ["svg", "png"].map(|extension| free_path(stem, extension));
-    save::save(&names[0], |out| out.write_all(vectors.as_bytes()))?;
-    save::save(&names[1], |out| out.write_all(&pixels))?;
-    Ok(format!("{} and {}", names[0].display(), names[1].display()))
+/// Looks now and then whether a file is as it was, on a thread of its own.
+pub struct Watcher {
+    news: Receiver<Result<String, Fault>>,
+    gone: Arc<AtomicBool>,
 }
 
-/// Writes a picture of the window as PNG.
+impl Watcher {
+    /// A watcher of a file; `wake` is called when there are news.
+    pub fn of(path: PathBuf, wake: Wake) -> Watcher {
+        let (tell, news) = channel();
+        let gone = Arc::new(AtomicBool::new(false));
+        let given_up = gone.clone();
+        let state = move |path: &Path| std::fs::metadata(path).and_then(|meta| Ok((meta.modified()?, meta.len()))).ok();
+        let mut before = state(&path);
+        std::thread::spawn(move || {
+            while !given_up.load(Ordering::Relaxed) {
+                std::thread::sleep(LOOK);
+                let now = state(&path);
+                if now == before {
+                    continue;
+                }
+                before = now;
+                // What cannot be read is told, and that nothing is lost by it.
+                let read = input::run_of(&path).map(|_| path.display().to_string()).map_err(|fault| {
+                    let remedy = if fault.remedy.is_empty() { String::new() } else { format!("{}. ", fault.remedy) };
+                    fault.remedy(format!("{remedy}The window keeps what it has"))
+                });
+                if tell.send(read).is_err() {
+                    return;
+                }
+                wake();
+            }
+        });
+        Watcher { news, gone }
+    }
+
+    /// What is new: the name of the file that has changed, or what is wrong with it now.
+    pub fn news(&self) -> Option<Result<String, Fault>> {
+        self.news.try_iter().last()
+    }
+}
+
+impl Drop for Watcher {
+    fn drop(&mut self) {
+        self.gone.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Writes a picture of the window as PNG, with the text of the run that it shows.
 ///
 /// # Errors
 /// What the system says.
-pub fn write_png(path: &Path, image: &Arc<ColorImage>) -> Result<(), Fault> {
+pub fn write_png(path: &Path, image: &Arc<ColorImage>, run: Option<String>) -> Result<(), Fault> {
     let bytes: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
     save::save(path, |out| {
         let mut encoder = png::Encoder::new(out, image.size[0] as u32, image.size[1] as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
+        if let Some(run) = run {
+            encoder.add_itxt_chunk(KEYWORD.to_owned(), run).map_err(std::io::Error::other)?;
+        }
         let mut writer = encoder.write_header().map_err(std::io::Error::other)?;
         writer.write_image_data(&bytes).map_err(std::io::Error::other)
     })
@@ -134,6 +169,7 @@ mod tests {
     #[test]
     fn a_name_is_a_built_in_case_or_else_a_file() {
         assert_eq!(Source::named("example1"), Source::BuiltIn("example1".to_owned()));
+        assert_eq!(Source::named("figure-14"), Source::BuiltIn("figure-14".to_owned()));
         assert_eq!(Source::named("plate.toml"), Source::File(PathBuf::from("plate.toml")));
     }
 }

@@ -12,6 +12,8 @@ mod command;
 mod files;
 mod settings;
 mod graphics;
+mod autosave;
+mod figures;
 mod state;
 mod apply;
 mod viewport;
@@ -65,7 +67,10 @@ pub fn open(source: Source) -> Result<ExitCode, Fault> {
     let shown = eframe::run_native(
         "quadfront",
         options,
-        Box::new(move |cc| Ok(Box::new(App::kept(cc, Some(source), path, watch).cleared().started(started)))),
+        Box::new(move |cc| {
+            let app = App::kept(cc, Some(source), path, watch).keeping(autosave::folder());
+            Ok(Box::new(app.cleared().started(started)))
+        }),
     );
     shown.map_err(|error| {
         let what = match &error {

@@ -12,6 +12,9 @@ pub mod parameters;
 pub mod layers;
 pub mod plots;
 pub mod messages;
+pub mod offer;
+pub mod notes;
+pub mod figure;
 pub mod over;
 
 use eframe::egui::{self, Align, Button, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo};
@@ -40,6 +43,11 @@ pub fn heading(ui: &mut Ui, title: &str, source: &str, palette: &Palette) {
             ui.label(RichText::new(source).font(theme::regular(theme::HEAD)).color(ink(palette.weak)));
         });
     });
+}
+
+/// The frame of a small window over the view.
+pub fn floating(palette: &Palette) -> Frame {
+    Frame::NONE.fill(ink(palette.panel)).stroke((1.0, ink(palette.hint))).corner_radius(4.0).inner_margin(12)
 }
 
 /// The inside of a panel.

@@ -5,19 +5,24 @@ mod hearing;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::files::Dialog;
+use super::autosave::Autosave;
+use super::figures::Figures;
+use super::files::{Dialog, Watcher};
 use super::measure::{Measuring, Times};
 use super::panels::timeline::Columns;
-use super::session::{Explained, Moment, Opened, Past, Session, Source, Stops, Tracked, Verdict, Wake};
+use super::session::{Explained, Goal, Moment, Opened, Past, Session, Source, Stops, Told, Tracked, Verdict, Wake};
 use glam::DVec2;
 
+use crate::app::figure::another_state;
 use crate::app::input;
+use crate::core::convert::phase::Phase;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
 use crate::core::mesh::ids::NodeId;
 use crate::core::run::breakpoint::Condition;
 use crate::core::run::copies::Since;
-use crate::core::run::run::{Bookmark, Edit, Run};
+use crate::core::run::run::{self, Bookmark, Edit, Run};
+use crate::core::run::shown::{ShownState, fingerprint};
 use crate::core::run::timeline::Sample;
 use crate::core::run::watch::Watched;
 use crate::render::camera::Camera;
@@ -72,6 +77,18 @@ pub struct State {
     pub session: Option<Session>,
     /// What was opened, for messages.
     pub source: Option<Source>,
+    /// What is being opened; what is open stays until that stands.
+    opening: Option<(Source, Session)>,
+    /// Looks whether the file changes.
+    pub watcher: Option<Watcher>,
+    /// The state of a figure that was opened, until it is reached.
+    awaited: Option<ShownState>,
+    /// Keeps the run, where the window was opened by a person.
+    pub autosave: Option<Autosave>,
+    /// Whether the notes on the case are shown.
+    pub notes: bool,
+    /// How figures are made, and those that are being made.
+    pub figures: Figures,
     pub opened: Option<Arc<Opened>>,
     pub moment: Option<Arc<Moment>>,
     /// Whether the invariants hold in it.
@@ -165,6 +182,8 @@ pub struct State {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Look {
     Fit,
+    /// As a run has kept it.
+    Kept(run::Camera),
     Decision,
     At(Outlined),
 }
@@ -186,6 +205,12 @@ impl State {
             wake,
             session: None,
             source: None,
+            opening: None,
+            watcher: None,
+            awaited: None,
+            autosave: None,
+            notes: false,
+            figures: Figures::default(),
             opened: None,
             moment: None,
             verdict: Verdict::Looking,
@@ -243,10 +268,51 @@ impl State {
         }
     }
 
-    /// Opens a case or a mesh in place of what is open.
+    /// Opens a case or a mesh in place of what is open, which stays until the other one stands.
     pub fn open(&mut self, source: Source) {
         let named = source.clone();
-        self.session = Some(Session::open(move || read(&named), self.wake.clone()));
+        let session = Session::open(move || read(&named), self.wake.clone());
+        if self.opening.replace((source, session)).is_none() {
+            self.waiting += 1;
+        }
+        self.since.get_or_insert_with(Instant::now);
+    }
+
+    /// Hears what is being opened: it takes the place of what is open, or is given up with what is wrong.
+    fn hear_opening(&mut self) {
+        while let Some(told) = self.opening.as_ref().and_then(|(_, session)| session.hear().next()) {
+            match told {
+                Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
+                Told::Opened(opened) => {
+                    if let Some((source, session)) = self.opening.take() {
+                        self.begin(source, session, opened);
+                    }
+                }
+                Told::Fault(fault, asks) => {
+                    self.opening = None;
+                    self.complain(&fault);
+                    if let Some(opened) = &self.opened {
+                        self.notice(format!("The window keeps {}.", opened.case.name));
+                    }
+                    if let Some(autosave) = &mut self.autosave {
+                        autosave.failed();
+                    }
+                    self.answered(asks);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// What was opened stands.
+    fn begin(&mut self, source: Source, session: Session, opened: Arc<Opened>) {
+        self.session = Some(session);
+        self.watcher = match &source {
+            Source::File(path) => Some(Watcher::of(path.clone(), self.wake.clone())),
+            Source::BuiltIn(_) => None,
+        };
+        self.notes =
+            matches!(&source, Source::BuiltIn(name) if built_in::FIGURES.iter().any(|figure| figure.0 == name));
         self.source = Some(source);
         (self.opened, self.moment) = (None, None);
         self.track.clear();
@@ -262,7 +328,29 @@ impl State {
         self.hits.clear();
         (self.explained, self.asked, self.timeline) = (None, None, None);
         (self.camera, self.playing, self.hovered) = (None, None, None);
-        self.look = Some(Look::Fit);
+        self.look = Some(opened.run.camera.map_or(Look::Fit, Look::Kept));
+        self.kept.edits = opened.run.edits().to_vec();
+        self.kept.bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
+        self.awaited = opened.run.shown.as_ref().and_then(|shown| shown.state()).copied();
+        if let Some(shown) = self.awaited
+            && let Some(session) = &self.session
+        {
+            session.go(if shown.at.is_some() { Goal::Step(shown.step) } else { Goal::End });
+            self.waiting += 1;
+        }
+        self.opened = Some(opened);
+    }
+
+    /// Where a figure has brought the window to another state than the one that it shows, says so.
+    fn compare(&mut self, moment: &Moment) {
+        let is_there =
+            |shown: &ShownState| shown.step == moment.step || shown.at.is_none() && moment.phase == Phase::Done;
+        let Some(shown) = self.awaited.filter(|_| self.waiting == 0) else { return };
+        self.awaited = None;
+        if !is_there(&shown) || fingerprint(&moment.mesh, &moment.phase) != shown.state {
+            let name = self.source.as_ref().map_or_else(String::new, Source::name);
+            self.complain(&another_state(&name, shown.step));
+        }
     }
 
     /// Whether the session still owes an answer.
@@ -336,11 +424,13 @@ impl State {
     /// The run with everything that a person has changed.
     pub fn run(&self) -> Option<Run> {
         let mut run = self.opened.as_ref()?.run.clone();
+        run.shown = None;
         run.set_edits(self.kept.edits.clone());
         let name = |step: u64| run.bookmarks.iter().find(|mark| mark.step == step).map(|mark| mark.name.clone());
         let marks = self.kept.bookmarks.iter();
         let marks = marks.map(|step| Bookmark { step: *step, name: name(*step).unwrap_or_default() });
         run.bookmarks = marks.collect();
+        run.camera = self.camera.filter(|_| !self.fitted).map(|camera| camera.kept(self.view_size)).or(run.camera);
         Some(run)
     }
 

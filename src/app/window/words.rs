@@ -7,67 +7,7 @@ use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
 use crate::render::scene::Outlined;
 
-/// What stands for a number that is not defined.
-pub const UNDEFINED: &str = "–";
-const THIN_SPACE: char = '\u{2009}';
-const MINUS: char = '\u{2212}';
-
-/// An integer, grouped by thin spaces.
-pub fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut text = String::with_capacity(digits.len() + digits.len() / 3 * 3);
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push(THIN_SPACE);
-        }
-        text.push(digit);
-    }
-    text
-}
-
-/// A number with so many decimals.
-pub fn fixed(x: f64, decimals: usize) -> String {
-    if !x.is_finite() {
-        return UNDEFINED.to_owned();
-    }
-    let text = format!("{x:.decimals$}");
-    let zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
-    if zero { text.replace('-', "") } else { text.replace('-', &MINUS.to_string()) }
-}
-
-/// An angle in radians, told in degrees without its sign.
-pub fn degrees(radians: f64) -> String {
-    fixed(radians.to_degrees(), 1)
-}
-
-/// A size or coordinate: three significant digits at least, four decimals where that is enough; powers only where they must be.
-pub fn size(x: f64) -> String {
-    if !x.is_finite() || x == 0.0 {
-        return if x == 0.0 { "0".to_owned() } else { UNDEFINED.to_owned() };
-    }
-    let magnitude = x.abs();
-    if !(1e-4..1e5).contains(&magnitude) {
-        return format!("{x:.2e}").replace('-', &MINUS.to_string());
-    }
-    let decimals = if magnitude >= 100.0 {
-        1
-    } else if magnitude >= 10.0 {
-        2
-    } else if magnitude >= 1.0 {
-        3
-    } else if magnitude >= 0.01 {
-        4
-    } else {
-        5
-    };
-    fixed(x, decimals)
-}
-
-/// Decimals with which the smallest of some sizes has three digits: the same down a column.
-pub fn decimals(values: impl Iterator<Item = f64>) -> usize {
-    let least = values.map(f64::abs).filter(|v| *v > 0.0 && v.is_finite()).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { (2 - libm::floor(libm::log10(least)) as i32).clamp(0, 6) as usize } else { 4 }
-}
+pub use crate::render::number::{UNDEFINED, decimals, degrees, fixed, grouped, size};
 
 /// A front segment by its nodes.
 pub fn segment(a: NodeId, b: NodeId) -> String {

@@ -27,6 +27,8 @@ const SAMPLED: usize = 20_000;
 const CYCLES: usize = 4;
 /// Where a pass of the refinement makes fewer nodes than one in so many elements, the next looks at their surroundings only.
 const FEW: usize = 16;
+/// Longer than this an edge is divided whatever becomes of its triangles (on surfaces).
+const MUCH_TOO_LONG: f64 = 2.5;
 /// A collapse or a split must not make a triangle worse than this, or than the worst of those it replaces.
 const LEAST_QUALITY: f64 = 0.4;
 /// A division must not make a triangle that is worse than this, unless it is not much worse than the one that it divides:
@@ -172,12 +174,18 @@ impl Adapter<'_> {
         Ok(found)
     }
 
-    /// Length of a straight line by Simpson's rule, with the metric at its middle.
+    /// Length of a straight line by Simpson's rule, with the metric at its middle; on surfaces at its quarters too.
     fn sampled_length(&self, from: NodeId, to: NodeId) -> Result<f64, Fault> {
         let d = self.mesh.uv(to) - self.mesh.uv(from);
         let middle = self.metric(self.mesh.uv(from) + 0.5 * d)?;
         let end = |n: NodeId| self.mesh.metric_ref(n).norm2(d).sqrt();
-        Ok((end(from) + 4.0 * middle.norm2(d).sqrt() + end(to)) / 6.0)
+        let middle = middle.norm2(d).sqrt();
+        if self.mesh.ground().is_none() {
+            return Ok((end(from) + 4.0 * middle + end(to)) / 6.0);
+        }
+        // On a surface the first triangles are as large as its faces, and the size may change many times along an edge.
+        let at = |t: f64| Ok::<f64, Fault>(self.metric(self.mesh.uv(from) + t * d)?.norm2(d).sqrt());
+        Ok((end(from) + end(to) + 4.0 * (at(0.25)? + at(0.75)?) + 2.0 * middle) / 12.0)
     }
 
     /// Divides an edge that still is as it was found and gives the new node, unless the new node would come closer than `least` to the
@@ -204,7 +212,11 @@ impl Adapter<'_> {
             let after = half(a).min(half(b));
             after >= POOR || after >= NOT_MUCH_WORSE * mesh.triangle_quality([a, b, c])
         };
-        if !(fit(f.h) && fit(twin)) {
+        // On a surface, whose first triangles know little of the metric, no poor triangle may stand in the way of an edge that
+        // is much too long, but beside the boundary.
+        let inside = |h: HalfEdgeId| mesh.half_edges(h.element()).all(|h| mesh.twin(h).is_some());
+        let forced = mesh.ground().is_some() && f.length > MUCH_TOO_LONG && inside(f.h) && inside(twin);
+        if !(forced || fit(f.h) && fit(twin)) {
             return Ok(None);
         }
         if mesh.element_count() + 2 > self.most_elements {

@@ -2,7 +2,7 @@
 //! lines. A node becomes one node for each fan of triangles around it; its point is doubled across cracks, and where parts
 //! meet in a point only, since a node of two fans would be no sound mesh.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
 use crate::core::mesh::ids::PointId;
@@ -137,6 +137,37 @@ pub fn cut(uv: &[DVec2], triangles: Vec<[u32; 3]>, region: Vec<u32>, lines: &[([
 }
 
 impl CutMesh {
+    /// Makes one point of all nodes that come from places at one point in space; `joined` names the first place there, `xyz`
+    /// that point. Only the images of one curve on different sides are joined, so that cracks stay open.
+    pub fn join_in_space(&mut self, joined: &[u32], xyz: &[DVec3]) {
+        let points = self.set.point.iter().map(|p| p.index() + 1).max().unwrap_or(0);
+        let mut images = vec![0_u32; joined.len()];
+        joined.iter().for_each(|&first| images[first as usize] += 1);
+        let mut sets = Sets::new(points);
+        let mut point_at: Vec<Option<u32>> = vec![None; joined.len()];
+        for (node, &origin) in self.origin.iter().enumerate() {
+            let first = joined[origin as usize] as usize;
+            if images[first] > 1 {
+                let point = self.set.point[node].0;
+                match point_at[first] {
+                    Some(other) => sets.join(other, point),
+                    None => point_at[first] = Some(point),
+                }
+            }
+        }
+        // Numbered anew in the order of the nodes.
+        let mut new = vec![None; points];
+        self.set.xyz.clear();
+        for (node, &origin) in self.origin.iter().enumerate() {
+            let old = sets.find(self.set.point[node].0) as usize;
+            let number = *new[old].get_or_insert_with(|| {
+                self.set.xyz.push(xyz[origin as usize]);
+                self.set.xyz.len() as u32 - 1
+            });
+            self.set.point[node] = PointId(number);
+        }
+    }
+
     /// The boundary loops, each the nodes in their order with the triangles on the left. Every node has one fan, so
     /// that it starts one side at most.
     pub fn loops(&self) -> Vec<Vec<u32>> {

@@ -1,7 +1,8 @@
 //! Curves divided at equal metric arclength, with even loops (spec 2.9 and step 1 of 3).
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
+use super::cut::Sets;
 use super::length::{Piece, about, give, measure, share_out};
 use super::parity;
 use crate::core::fault::Fault;
@@ -11,20 +12,25 @@ use crate::core::metric::field::MetricSource;
 /// More segments than this on all curves together are refused: the sizes cannot be meant.
 const MOST_SEGMENTS: f64 = 2e7;
 
-/// A divided domain: nodes on curves. Each curve is divided once, whatever number of faces it bounds.
-#[derive(Clone, Debug, PartialEq)]
+/// A divided domain: nodes on curves. Each curve is divided once, whatever number of faces it bounds; on surfaces, all its
+/// images at the same points.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct DividedDomain {
     /// Coordinates of each node: the domain's vertices come first, in their order, then the nodes inside curves.
     pub nodes: Vec<DVec2>,
     /// Nodes of each curve from its start to its end.
     pub chains: Vec<Vec<u32>>,
+    /// On surfaces: the first node at the same point in space, for each node. Empty in the plane.
+    pub joined: Vec<u32>,
+    /// On surfaces: the point in space of each node. Empty in the plane.
+    pub xyz: Vec<DVec3>,
 }
 
 /// Lengths of the curves in the metric, and into how many segments they are to be divided.
 pub struct Division<'a> {
     domain: &'a Domain,
     metric: &'a dyn MetricSource,
-    /// The smooth straight or curved pieces of each curve, between its corners.
+    /// The smooth straight or curved pieces of each curve, between its corners; none for an image that follows another.
     pieces: Vec<Vec<Piece>>,
 }
 
@@ -48,8 +54,12 @@ impl<'a> Division<'a> {
     pub fn measure(domain: &'a Domain, metric: &'a dyn MetricSource) -> Result<Self, Fault> {
         let mut division = Division { domain, metric, pieces: Vec::with_capacity(domain.curves.len()) };
         let mut total = 0.0;
-        for curve in &domain.curves {
-            let mut pieces = measure(curve, metric)?;
+        for (id, curve) in domain.curves.iter().enumerate() {
+            if curve.first.index() != id {
+                division.pieces.push(Vec::new());
+                continue;
+            }
+            let mut pieces = measure(&domain.images(curve.first), metric)?;
             let length: f64 = curve.segments.map_or_else(|| pieces.iter().map(Piece::length).sum(), f64::from);
             total += length;
             if total > MOST_SEGMENTS {
@@ -64,7 +74,7 @@ impl<'a> Division<'a> {
                     for piece in &mut pieces {
                         piece.segments = (piece.length().round() as u32).max(1);
                     }
-                    let closed = curve.ends[0] == curve.ends[1];
+                    let closed = domain.is_closed(curve.first);
                     let few: u32 = pieces.iter().map(|p| p.segments).sum();
                     if closed && few < 3 {
                         give(&mut pieces, 3 - few);
@@ -92,13 +102,20 @@ impl<'a> Division<'a> {
 
     /// The number of segments of a curve.
     pub fn segments(&self, id: CurveId) -> u32 {
-        self.pieces[id.index()].iter().map(|p| p.segments).sum()
+        self.pieces[self.first(id).index()].iter().map(|p| p.segments).sum()
+    }
+
+    /// The curve that rules how this one is divided.
+    fn first(&self, id: CurveId) -> CurveId {
+        self.domain.curves[id.index()].first
     }
 
     /// Gives the curve about half as many segments again, by an even number; `false` where nothing would come of it.
     pub fn refine(&mut self, id: CurveId) -> bool {
-        let curve = &self.domain.curves[id.index()];
-        if curve.segments.is_some() || curve.curve.straight() {
+        let id = self.first(id);
+        if self.domain.curves[id.index()].segments.is_some()
+            || self.domain.images(id).iter().all(|image| image.curve.straight())
+        {
             return false;
         }
         let more = (self.segments(id) / 4 * 2).max(2);
@@ -113,7 +130,7 @@ impl<'a> Division<'a> {
     pub fn even_out(&mut self) -> Result<(), Fault> {
         let walks: Vec<(usize, &Vec<DirectedCurve>)> =
             self.domain.faces.iter().enumerate().flat_map(|(f, face)| face.walks.iter().map(move |w| (f, w))).collect();
-        let rows: Vec<Vec<u32>> = walks.iter().map(|(_, walk)| single_columns(walk)).collect();
+        let rows: Vec<Vec<u32>> = walks.iter().map(|(_, walk)| self.single_columns(walk)).collect();
         let odd: Vec<bool> =
             rows.iter().map(|row| row.iter().map(|&c| self.segments(CurveId(c))).sum::<u32>() % 2 == 1).collect();
         let best: Vec<Option<(f64, usize, u32)>> = (0..self.pieces.len()).map(|c| self.best_toggle(c)).collect();
@@ -130,7 +147,7 @@ impl<'a> Division<'a> {
         let doubled: Vec<bool> = {
             let mut doubled = vec![false; self.pieces.len()];
             for (_, walk) in &walks {
-                let mut ids: Vec<u32> = walk.iter().map(|d| d.curve.0).collect();
+                let mut ids: Vec<u32> = walk.iter().map(|d| self.first(d.curve).0).collect();
                 ids.sort_unstable();
                 ids.chunk_by(|a, b| a == b).filter(|g| g.len() == 2).for_each(|g| doubled[g[0] as usize] = true);
             }
@@ -140,7 +157,10 @@ impl<'a> Division<'a> {
         for (f, steps) in loops.chain(walks) {
             while steps.iter().map(|s| self.segments(s.curve)).sum::<u32>() < 4 {
                 let stretched = |id: CurveId| self.pieces[id.index()].iter().map(Piece::stretched).fold(0.0, f64::max);
-                let free = steps.iter().map(|s| s.curve).filter(|id| self.domain.curves[id.index()].segments.is_none());
+                let free = steps
+                    .iter()
+                    .map(|s| self.first(s.curve))
+                    .filter(|id| self.domain.curves[id.index()].segments.is_none());
                 let Some(id) = free.max_by(|a, b| stretched(*a).total_cmp(&stretched(*b)).then(b.cmp(a))) else {
                     return Err(self.told_loop(f, steps, |name, n| {
                         Fault::new(format!("The {name} has {n} segments; it needs at least 4"))
@@ -157,10 +177,10 @@ impl<'a> Division<'a> {
     /// The cheapest way to change the curve's number by one: relative length error after it, the piece, its new number.
     fn best_toggle(&self, c: usize) -> Option<(f64, usize, u32)> {
         let curve = &self.domain.curves[c];
-        if curve.segments.is_some() {
+        if curve.segments.is_some() || curve.first.index() != c {
             return None;
         }
-        let least = if curve.ends[0] == curve.ends[1] { 3 } else { 1 };
+        let least = if self.domain.is_closed(curve.first) { 3 } else { 1 };
         let may_shrink = self.segments(CurveId(c as u32)) > least;
         let mut best: Option<(f64, usize, u32)> = None;
         for (i, piece) in self.pieces[c].iter().enumerate() {
@@ -194,7 +214,7 @@ impl<'a> Division<'a> {
     }
 
     fn odd_fault(&self, blamed: &[(usize, &Vec<DirectedCurve>)]) -> Fault {
-        let mut fixed: Vec<u32> = blamed.iter().flat_map(|(_, walk)| single_columns(walk)).collect();
+        let mut fixed: Vec<u32> = blamed.iter().flat_map(|(_, walk)| self.single_columns(walk)).collect();
         fixed.sort_unstable();
         let fixed: Vec<CurveId> = fixed
             .chunk_by(|a, b| a == b)
@@ -228,37 +248,65 @@ impl<'a> Division<'a> {
         about(&self.domain.curves[blamed[0].1[0].curve.index()], fault.remedy(remedy))
     }
 
+    /// Columns of a walk in the parity system: its curves but those that it runs twice, ascending.
+    fn single_columns(&self, walk: &[DirectedCurve]) -> Vec<u32> {
+        let mut ids: Vec<u32> = walk.iter().map(|d| self.first(d.curve).0).collect();
+        ids.sort_unstable();
+        ids.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1).map(|g| g[0]).collect()
+    }
+
+    /// The first vertex at the same point of space for each vertex of the plane. Vertices are joined by the curves whose
+    /// images end in them: where faces, or the sides of a cut, have no curve in common, they meet in a place and are apart.
+    fn joined_vertices(&self) -> Vec<u32> {
+        let mut sets = Sets::new(self.domain.vertices.len());
+        for curve in &self.domain.curves {
+            let first = &self.domain.curves[curve.first.index()];
+            sets.join(curve.ends[0], first.ends[0]);
+            sets.join(curve.ends[1], first.ends[1]);
+        }
+        (0..self.domain.vertices.len() as u32).map(|v| sets.find(v)).collect()
+    }
+
     /// The nodes: each piece of each curve at equal metric arclength.
     ///
     /// # Errors
     /// Where the metric fails.
     pub fn nodes(&self) -> Result<DividedDomain, Fault> {
-        let mut nodes = self.domain.vertices.clone();
-        let mut chains = Vec::with_capacity(self.pieces.len());
-        for (curve, pieces) in self.domain.curves.iter().zip(&self.pieces) {
+        let mut divided = DividedDomain { nodes: self.domain.vertices.clone(), ..DividedDomain::default() };
+        if let Some(spatial) = &self.domain.spatial {
+            divided.joined = self.joined_vertices();
+            divided.xyz = spatial.vertex_of.iter().map(|&v| spatial.vertices[v as usize]).collect();
+        }
+        // Where the curve that rules was divided.
+        let mut parameters: Vec<f64> = Vec::new();
+        for (c, curve) in self.domain.curves.iter().enumerate() {
+            let rules = curve.first.index() == c;
+            if rules {
+                parameters.clear();
+                let (pieces, images) = (&self.pieces[c], self.domain.images(curve.first));
+                for (i, piece) in pieces.iter().enumerate() {
+                    parameters.extend(piece.divisions(&images, self.metric)?);
+                    if i + 1 < pieces.len() {
+                        parameters.push(piece.end());
+                    }
+                }
+            }
             let mut chain = vec![curve.ends[0]];
-            let mut append = |t: f64| {
-                chain.push(nodes.len() as u32);
-                nodes.push(curve.curve.point(t));
-            };
-            for (i, piece) in pieces.iter().enumerate() {
-                piece.divisions(curve, self.metric)?.into_iter().for_each(&mut append);
-                if i + 1 < pieces.len() {
-                    append(piece.end());
+            for (k, &t) in parameters.iter().enumerate() {
+                let node = divided.nodes.len() as u32;
+                chain.push(node);
+                divided.nodes.push(curve.curve.point(t));
+                if let Some(spatial) = &self.domain.spatial {
+                    // Images of one curve stand together, the first one first.
+                    divided.joined.push(if rules { node } else { divided.chains[curve.first.index()][k + 1] });
+                    divided.xyz.push(spatial.curves[c].point(t));
                 }
             }
             chain.push(curve.ends[1]);
-            chains.push(chain);
+            divided.chains.push(chain);
         }
-        Ok(DividedDomain { nodes, chains })
+        Ok(divided)
     }
-}
-
-/// Columns of a walk in the parity system: its curves but those that it runs twice, ascending.
-fn single_columns(walk: &[DirectedCurve]) -> Vec<u32> {
-    let mut ids: Vec<u32> = walk.iter().map(|d| d.curve.0).collect();
-    ids.sort_unstable();
-    ids.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1).map(|g| g[0]).collect()
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
 use super::cut::{CutMesh, Sets, Side, cut, sorted_sides};
@@ -64,6 +64,19 @@ pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
     import.check_edges()?;
     import.even_parts(split_odd)?;
     Ok(import.finish())
+}
+
+/// Whether all points of a mesh that elements have lie in one plane of constant z.
+pub fn is_plane(file: &MeshFile) -> bool {
+    let elements = file.triangles.as_flattened().iter().chain(file.quads.as_flattened());
+    let points = elements.chain(file.polygons.iter().flatten()).filter_map(|&k| file.points.get(k as usize));
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for p in points {
+        (low, high) = (low.min(*p), high.max(*p));
+    }
+    let extent = high - low;
+    // Points that are not finite are refused with their numbers later on.
+    !(extent.z > 1e-9 * extent.x.max(extent.y).max(high.z.abs()))
 }
 
 /// A mesh of triangles and larger elements with these cut; one of quadrilaterals alone stays, and is refused: it is what a

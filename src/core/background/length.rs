@@ -42,7 +42,7 @@ impl Piece {
     ///
     /// # Errors
     /// Where the metric fails.
-    pub fn divisions(&self, curve: &DomainCurve, metric: &dyn MetricSource) -> Result<Vec<f64>, Fault> {
+    pub fn divisions(&self, images: &[&DomainCurve], metric: &dyn MetricSource) -> Result<Vec<f64>, Fault> {
         let mut at = 0;
         (1..self.segments)
             .map(|k| {
@@ -50,18 +50,19 @@ impl Piece {
                 while at + 2 < self.table.len() && self.table[at + 1].1 <= target {
                     at += 1;
                 }
-                parameter(curve, metric, [self.table[at], self.table[at + 1]], target, 1e-7 * self.stretched())
+                parameter(images, metric, [self.table[at], self.table[at + 1]], target, 1e-7 * self.stretched())
             })
             .collect()
     }
 }
 
-/// The pieces of a curve between its corners, their tables halved until the quadrature agrees with itself; one segment
+/// The pieces of a curve, given by all its images in the plane (one, but on surfaces), between its corners, their tables halved until the quadrature agrees with itself; one segment
 /// each for now.
 ///
 /// # Errors
 /// Where the metric fails or is so large that the length overflows.
-pub fn measure(curve: &DomainCurve, metric: &dyn MetricSource) -> Result<Vec<Piece>, Fault> {
+pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource) -> Result<Vec<Piece>, Fault> {
+    let curve = images[0];
     let corners = curve.curve.corners();
     let breaks = curve.curve.breaks();
     // So fine at first that no feature of the metric is missed; a polyline of many pieces is that fine by itself.
@@ -77,10 +78,10 @@ pub fn measure(curve: &DomainCurve, metric: &dyn MetricSource) -> Result<Vec<Pie
         while let Some((a, b, known, depth)) = stack.pop() {
             let whole = match known {
                 Some(length) => length,
-                None => gauss(curve, metric, a, b)?,
+                None => gauss(images, metric, a, b)?,
             };
             let middle = 0.5 * (a + b);
-            let (first, second) = (gauss(curve, metric, a, middle)?, gauss(curve, metric, middle, b)?);
+            let (first, second) = (gauss(images, metric, a, middle)?, gauss(images, metric, middle, b)?);
             let both = first + second;
             if (both - whole).abs() <= 1e-6 + 1e-7 * both || depth >= 30 || table.len() > 2_000_000 {
                 let before: f64 = table[table.len() - 1].1;
@@ -127,7 +128,7 @@ pub fn about(curve: &DomainCurve, fault: Fault) -> Fault {
 
 /// The parameter between two entries of a table at which the length is `target`, by Newton within a bracket.
 fn parameter(
-    curve: &DomainCurve,
+    images: &[&DomainCurve],
     metric: &dyn MetricSource,
     [from, to]: [(f64, f64); 2],
     target: f64,
@@ -136,7 +137,7 @@ fn parameter(
     let (mut low, mut high) = (from.0, to.0);
     let mut t = from.0 + (to.0 - from.0) * ((target - from.1) / (to.1 - from.1)).clamp(0.0, 1.0);
     for _ in 0..50 {
-        let off = from.1 + gauss(curve, metric, from.0, t)? - target;
+        let off = from.1 + gauss(images, metric, from.0, t)? - target;
         if off.abs() <= tolerance || high - low <= 4.0 * f64::EPSILON * high.abs() {
             break;
         }
@@ -145,32 +146,37 @@ fn parameter(
         } else {
             low = t;
         }
-        let next = t - off / speed(curve, metric, t)?;
+        let next = t - off / speed(images, metric, t)?;
         t = if next > low && next < high { next } else { 0.5 * (low + high) };
     }
     Ok(t)
 }
 
-/// Metric length of the derivative at `t`.
-fn speed(curve: &DomainCurve, metric: &dyn MetricSource, t: f64) -> Result<f64, Fault> {
-    let (p, d) = curve.curve.at(t);
-    let m = metric.metric(p).map_err(|bad| {
-        let place = format!("on the curve \"{}\" at {}", curve.name, told(bad.place.uv));
-        about(curve, Fault::new(bad.what.clone()).at(place))
-    })?;
-    let square = m.norm2(d);
-    if !square.is_finite() {
-        let fault = Fault::new(format!("The curve \"{}\" is no finite number of target sizes long", curve.name));
-        return Err(about(curve, fault.at(format!("at {}", told(p))).remedy("Ask for larger sizes there")));
+/// Metric length of the derivative at `t`: on every face of the curve the same, but where sizes depend on the surface, of
+/// which the smallest rule.
+fn speed(images: &[&DomainCurve], metric: &dyn MetricSource, t: f64) -> Result<f64, Fault> {
+    let mut fastest = 0.0_f64;
+    for curve in images {
+        let (p, d) = curve.curve.at(t);
+        let m = metric.metric(p).map_err(|bad| {
+            let place = format!("on the curve \"{}\" at {}", curve.name, told(bad.place.uv));
+            about(curve, Fault::new(bad.what.clone()).at(place))
+        })?;
+        let square = m.norm2(d);
+        if !square.is_finite() {
+            let fault = Fault::new(format!("The curve \"{}\" is no finite number of target sizes long", curve.name));
+            return Err(about(curve, fault.at(format!("at {}", told(p))).remedy("Ask for larger sizes there")));
+        }
+        fastest = fastest.max(square.max(0.0).sqrt());
     }
-    Ok(square.max(0.0).sqrt())
+    Ok(fastest)
 }
 
 /// Metric length between two parameters by three-point Gauss quadrature.
-fn gauss(curve: &DomainCurve, metric: &dyn MetricSource, a: f64, b: f64) -> Result<f64, Fault> {
+fn gauss(images: &[&DomainCurve], metric: &dyn MetricSource, a: f64, b: f64) -> Result<f64, Fault> {
     let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
     // sqrt(3/5)
     let off = 0.774_596_669_241_483_4 * half;
-    let ends = speed(curve, metric, middle - off)? + speed(curve, metric, middle + off)?;
-    Ok(half * (5.0 * ends + 8.0 * speed(curve, metric, middle)?) / 9.0)
+    let ends = speed(images, metric, middle - off)? + speed(images, metric, middle + off)?;
+    Ok(half * (5.0 * ends + 8.0 * speed(images, metric, middle)?) / 9.0)
 }

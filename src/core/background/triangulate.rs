@@ -115,7 +115,11 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Cl
         })
         .flat_map(|(kind, chain)| chain.windows(2).map(move |w| ([w[0], w[1]], kind)))
         .collect();
-    Ok(cut(&divided.nodes, kept, region, &lines))
+    let mut mesh = cut(&divided.nodes, kept, region, &lines);
+    if domain.spatial.is_some() {
+        mesh.join_in_space(&divided.joined, &divided.xyz);
+    }
+    Ok(mesh)
 }
 
 /// The Delaunay triangulation of the nodes, and where each is in it. Scaled by a power of two, so that signs are those of

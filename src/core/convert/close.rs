@@ -1,12 +1,13 @@
 //! Closing what is left of small loops (spec 2.7, 10 rule 4): quadrilaterals between the nodes of the loop, formed even where
-//! they are flat, mended by the rotation of an edge with a neighbour or by a smaller one set into them, and relaxed together with the elements around.
+//! they are flat, mended by the rotation of an edge with a neighbour, by their collapse or by a smaller one set into them, and
+//! relaxed together with the elements around.
 
 use smallvec::SmallVec;
 
-use super::component::Component;
+use super::component::{Component, small_component};
 use super::converter::Converter;
 use super::event::Event;
-use super::settle::{Nodes, settle, worst_quality};
+use super::settle::{Nodes, all_convex, put, settle, worst_quality};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::refusals::Operation;
@@ -18,6 +19,9 @@ const GOOD: f64 = 0.35;
 
 /// Longer loops are left to the last resort.
 const MOST_SEGMENTS: usize = 10;
+
+/// So are those with more triangles.
+const MOST_TRIANGLES: usize = 64;
 
 /// One way to close a loop: elements over it, and perhaps an edge of them rotated with a neighbour.
 #[derive(Clone, Debug)]
@@ -31,6 +35,8 @@ struct Way {
 enum Mend {
     /// A side is rotated with the neighbour's, by so many nodes.
     Rotate(usize, u32, usize),
+    /// The node at the start of a side is merged with the opposite one: the element goes, as by two seams.
+    Collapse(usize, u32),
     /// A smaller quadrilateral is set into it: every corner gets an edge of its own, also one between two sides in a line.
     Inset(usize),
 }
@@ -40,11 +46,33 @@ impl Mend {
     fn all(quads: usize) -> impl Iterator<Item = Mend> {
         let rotations =
             (0..quads).flat_map(|q| (0..4).flat_map(move |side| [1, 2].map(|by| Mend::Rotate(q, side, by))));
-        rotations.chain((0..quads).map(Mend::Inset))
+        let collapses = (0..quads).flat_map(|q| (0..4).map(move |side| Mend::Collapse(q, side)));
+        rotations.chain(collapses).chain((0..quads).map(Mend::Inset))
+    }
+
+    /// Quadrilaterals that it makes, less those that it takes.
+    fn more(self) -> isize {
+        match self {
+            Mend::Rotate(..) => 0,
+            Mend::Collapse(..) => -1,
+            Mend::Inset(_) => 4,
+        }
     }
 }
 
 impl Converter<'_> {
+    /// Closes the live component beside a front segment, where it has a single short loop.
+    pub(super) fn close_beside(&mut self, h: HalfEdgeId) -> Option<(u64, Event)> {
+        // The walk is short; looking for the triangles is dearer.
+        let mut walk = h;
+        let is_short = (0..MOST_SEGMENTS).any(|_| {
+            walk = self.mesh.front_after(walk);
+            walk == h
+        });
+        let component = is_short.then(|| small_component(&self.mesh, h.element(), MOST_TRIANGLES)).flatten()?;
+        self.close(&component)
+    }
+
     /// Closes a component with a single short loop at the best of all ways. Returns the number of
     /// quadrilaterals made.
     pub(super) fn close(&mut self, component: &Component) -> Option<(u64, Event)> {
@@ -59,7 +87,7 @@ impl Converter<'_> {
                 if mended && quads.len() > 2 {
                     continue;
                 }
-                let mends: SmallVec<[_; 24]> =
+                let mends: SmallVec<[_; 32]> =
                     if mended { Mend::all(quads.len()).map(Some).collect() } else { SmallVec::from_slice(&[None]) };
                 for mend in mends {
                     if matches!(mend, Some(Mend::Inset(_))) && best.as_ref().is_some_and(|b| b.0 >= LEAST_QUALITY) {
@@ -81,7 +109,7 @@ impl Converter<'_> {
         let (quality, way) = best.filter(|b| b.0 >= LEAST_QUALITY)?;
         let again = self.try_way(component, &ring, &way);
         debug_assert_eq!(again, Some(quality), "the same way leads to the same place");
-        let quads = way.quads.len() + if matches!(way.mend, Some(Mend::Inset(_))) { 4 } else { 0 };
+        let quads = way.quads.len().saturating_add_signed(way.mend.map_or(0, Mend::more));
         Some((quads as u64, Event::Closed { segments: ring.len() as u8, quads: quads as u8, quality }))
     }
 
@@ -103,7 +131,7 @@ impl Converter<'_> {
         self.mesh.permit(Operation::Close, way.quads.as_flattened()).ok()?;
         let made = self.mesh.replace(&component.triangles, &new);
         inside.iter().for_each(|&n| self.mesh.release_node(n));
-        let mut core = Nodes::from_slice(ring);
+        let (mut core, mut around) = (Nodes::from_slice(ring), Nodes::from_slice(ring));
         match way.mend {
             None => {}
             Some(Mend::Rotate(q, side, by)) => {
@@ -115,17 +143,43 @@ impl Converter<'_> {
                 }
                 self.mesh.rotate_edge(h, by).ok()?;
             }
+            Some(Mend::Collapse(q, side)) => {
+                let [gone, kept] = self.collapse(made[q].half_edge(side))?;
+                core.retain(|n| *n != gone);
+                around.retain(|n| *n != gone);
+                core.extend(self.mesh.neighbours(kept).filter(|n| !around.contains(n)));
+            }
             Some(Mend::Inset(q)) => core.extend(self.inset(made[q])?),
         }
-        let all_quads = core.iter().all(|&n| self.mesh.fan(n).all(|h| self.mesh.is_quad(h.element())));
         // Other live parts may touch: their nodes stay.
-        if !all_quads {
-            let mesh = &self.mesh;
-            core.retain(|n| mesh.fan(*n).all(|h| mesh.is_quad(h.element())));
+        let is_buried = |mesh: &Mesh, n: NodeId| mesh.fan(n).all(|h| mesh.is_quad(h.element()));
+        core.retain(|n| is_buried(&self.mesh, *n));
+        let mut is_settled = settle(&mut self.mesh, &*self.source, &core);
+        if !is_settled {
+            // Neighbours must make room.
+            for node in core.clone() {
+                let more: Nodes = self.mesh.neighbours(node).collect();
+                core.extend(more.into_iter().filter(|&n| is_buried(&self.mesh, n)));
+            }
+            core.sort_unstable();
+            core.dedup();
+            is_settled = settle(&mut self.mesh, &*self.source, &core);
         }
-        let around = Nodes::from_slice(ring);
-        (settle(&mut self.mesh, &*self.source, &core) && super::settle::all_convex(&self.mesh, &around))
-            .then(|| worst_quality(&self.mesh, &around))
+        (is_settled && all_convex(&self.mesh, &around)).then(|| worst_quality(&self.mesh, &around))
+    }
+
+    /// Merges the node at the start of a side with the opposite one, half-way between them where both are free. Returns the
+    /// node that is gone and the other.
+    fn collapse(&mut self, h: HalfEdgeId) -> Option<[NodeId; 2]> {
+        let mesh = &self.mesh;
+        let (gone, kept) = (mesh.origin(h), mesh.target(mesh.next(h)));
+        if [gone, kept].iter().any(|&n| mesh.fan(n).any(|h| !mesh.is_quad(h.element()))) {
+            return None;
+        }
+        let middle = 0.5 * (mesh.uv(gone) + mesh.uv(kept));
+        self.mesh.collapse_diamond(h).ok()?;
+        let is_placed = self.mesh.is_fixed(kept) || put(&mut self.mesh, &*self.source, kept, middle);
+        is_placed.then_some([gone, kept])
     }
 
     /// Sets a smaller quadrilateral into one, half-way to its middle; returns the new nodes.
@@ -149,7 +203,7 @@ impl Converter<'_> {
 /// The nodes of a component's single loop, anticlockwise; `None` where it is too long, has several loops,
 /// or touches itself.
 fn ring(mesh: &Mesh, component: &Component) -> Option<SmallVec<[NodeId; MOST_SEGMENTS]>> {
-    if component.boundary > MOST_SEGMENTS || component.triangles.len() > 64 {
+    if component.boundary > MOST_SEGMENTS || component.triangles.len() > MOST_TRIANGLES {
         return None;
     }
     let start = component.triangles.iter().flat_map(|&e| mesh.half_edges(e)).find(|&h| mesh.is_front(h))?;

@@ -57,6 +57,26 @@ pub fn live_components(mesh: &Mesh) -> Vec<Component> {
     components
 }
 
+/// The live component of a triangle, where it has no more than `most` triangles.
+pub(super) fn small_component(mesh: &Mesh, first: ElementId, most: usize) -> Option<Component> {
+    let mut triangles = vec![first];
+    let mut boundary = 0;
+    let mut next = 0;
+    while let Some(&t) = triangles.get(next) {
+        next += 1;
+        for h in mesh.half_edges(t) {
+            match mesh.twin(h).map(HalfEdgeId::element).filter(|&u| mesh.is_triangle(u)) {
+                Some(u) if triangles.contains(&u) => {}
+                Some(_) if triangles.len() == most => return None,
+                Some(u) => triangles.push(u),
+                None => boundary += 1,
+            }
+        }
+    }
+    triangles.sort_unstable();
+    Some(Component { triangles, boundary })
+}
+
 /// The dual graph of some triangles of a mesh: triangle t has sides 3 t, 3 t + 1 and 3 t + 2, its half-edges in order.
 #[derive(Debug)]
 pub(super) struct Dual<'a> {

@@ -1,8 +1,9 @@
 //! From a case to its background mesh, and on to quadrilaterals: the order of the parts, and nothing of their insides.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::converter::{Converter, Counts};
 use super::finish::Finished;
@@ -10,21 +11,25 @@ use super::last_resort::Outcome;
 use super::layers;
 use crate::core::background::adapt::{Adapted, adapt};
 use crate::core::background::discretise::DividedDomain;
-use crate::core::background::import::{implied_metric, import};
+use crate::core::background::import::{implied_metric, import, is_plane};
 use crate::core::background::triangulate::divide_and_triangulate;
+use crate::core::discrete::features::ANGLE;
+use crate::core::discrete::sound::{Sound, sound};
+use crate::core::discrete::surface::{implied_sizes, surface};
 use crate::core::fault::Fault;
-use crate::core::geometry::domain::{CurveSpec, Domain, FaceSpec};
+use crate::core::geometry::complex;
+use crate::core::geometry::domain::Domain;
 use crate::core::geometry::predicates::{convex, firm};
 use crate::core::io::case::{Case, DomainSource};
 use crate::core::io::format::read_mesh;
 use crate::core::io::mesh_file::MeshFile;
-use crate::core::mesh::half_edge::{Mesh, NewElement};
+use crate::core::mesh::half_edge::{Ground, Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::triangle_set::TriangleSet;
-use crate::core::metric::field::{Field, MetricSource, Place, Sizing};
+use crate::core::metric::field::{Field, MetricSource, Sizing};
 use crate::core::metric::gradation::bound_gradation;
 use crate::core::metric::measure::triangle_area;
-use crate::core::metric::tensor::Metric2;
+use crate::core::metric::tensor::{Metric2, Metric3};
 use crate::core::progress::{Stage, Watch};
 
 /// Points at which the metric is looked over before anything is made from it.
@@ -73,13 +78,16 @@ pub struct Converted {
 /// # Errors
 /// Whatever is wrong with the case's geometry, metric or mesh.
 pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
-    let has_curves = matches!(case.domain, DomainSource::Curves { .. });
+    let has_curves = matches!(case.domain, DomainSource::Curves { .. } | DomainSource::Surfaces(_));
     if !has_curves && !case.parameters.layered_loops.is_empty() {
         return Err(Fault::new("layered_loops names curves, and the case has none")
             .remedy("Leave it out: layers then holds for every loop"));
     }
     let made = match &case.domain {
-        DomainSource::Curves { curves, faces } => from_curves(case, curves, faces, watch)?,
+        DomainSource::Curves { curves, faces } => {
+            from_domain(case, Domain::build(curves.clone(), faces.clone())?, None, watch)?
+        }
+        DomainSource::Surfaces(spec) => from_domain(case, complex::build(spec)?, None, watch)?,
         DomainSource::Elements { points, triangles, quads } => from_elements(case, points, triangles, quads)?,
         DomainSource::Mesh { path, sol } => from_mesh(case, path, sol.as_deref(), watch)?,
     };
@@ -114,32 +122,30 @@ pub fn convert_by(
     Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, counts, last_resort, finished })
 }
 
-/// The background mesh of a domain of curves; where the case bounds the gradation, a first mesh carries the table of the
-/// bounded metric for the second.
-fn from_curves(
-    case: &Case,
-    curves: &[CurveSpec],
-    faces: &[FaceSpec],
-    watch: &mut dyn Watch,
-) -> Result<Background, Fault> {
+/// The background mesh of a domain of curves, in the plane or on surfaces; where the case bounds the gradation, a first mesh
+/// carries the table of the bounded metric for the second. Where the case has no fields the domain's own holds.
+fn from_domain(case: &Case, domain: Domain, own: Option<Field>, watch: &mut dyn Watch) -> Result<Background, Fault> {
     watch.tell(Stage::Divide, 0, 0);
-    let domain = Domain::build(curves.to_vec(), faces.to_vec())?;
+    let atlas = domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
     let mut fields = Vec::new();
     for spec in &case.fields {
         fields.push(Field::compile(spec, &|name| domain.curve_polyline(name))?);
     }
-    let mut sizing = Sizing::new(fields, case.parameters.size_scale);
+    if fields.is_empty() {
+        fields.extend(own);
+    }
+    let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
     let layered = layers::layered_curves(&domain, &case.parameters)?;
     let (mut mesh, mut adapted, mut divided) = adapted_mesh(case, &domain, &sizing, watch)?;
     if let Some(beta) = case.gradation {
-        sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0);
+        sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0).on(atlas);
         (mesh, adapted, divided) = adapted_mesh(case, &domain, &sizing, watch)?;
     }
     if let Some(curves) = layered {
         layers::offset_only(&mut mesh, &divided, &curves, case.parameters.layers);
     }
-    let regions = faces.iter().map(|face| face.name.clone()).collect();
+    let regions = domain.faces.iter().map(|face| face.name.clone()).collect();
     Ok(Background { mesh, sizing, regions, adapted, repairs: Vec::new() })
 }
 
@@ -149,6 +155,10 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
     watch.tell(Stage::Read, 0, 0);
     let file = read_mesh(path, sol)?;
     let place = path.display().to_string();
+    if !is_plane(&file) {
+        return from_surface(case, &file, watch)
+            .map_err(|fault| if fault.place.is_empty() { fault.at(place) } else { fault });
+    }
     let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
     let set = &imported.set;
     let mut fields = Vec::new();
@@ -181,6 +191,19 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
         mesh = meshed(&sizing)?;
     }
     Ok(Background { mesh, sizing, regions: imported.regions, adapted: Adapted::default(), repairs: imported.repairs })
+}
+
+/// A mesh in space: a surface without CAD, meshed anew. Sizes are those of the case's fields; where there are none those given at its
+/// points, or those that its triangles have.
+fn from_surface(case: &Case, file: &MeshFile, watch: &mut dyn Watch) -> Result<Background, Fault> {
+    let Sound { mesh, regions, repairs } = sound(file)?;
+    let surface = surface(&mesh, &regions, ANGLE)?;
+    let sizes = match &file.metric {
+        Some(given) => surface.table(given)?,
+        None => surface.table(&implied_sizes(&mesh))?,
+    };
+    let made = from_domain(case, surface.domain, Some(sizes), watch)?;
+    Ok(Background { repairs, ..made })
 }
 
 /// A small mesh that the case itself holds, as it is: nodes keep its numbers, and its quadrilaterals stand already.
@@ -240,7 +263,11 @@ fn adapted_mesh(
     watch.tell(Stage::Adapt, 0, 0);
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (spec 3).
     let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
-    let (mesh, adapted) = adapt(Mesh::from_triangles(&set, metric), sizing, most, watch)?;
+    let mut mesh = Mesh::from_triangles(&set, metric);
+    if let Some(spatial) = &domain.spatial {
+        mesh.set_ground(Arc::new(Ground { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
+    }
+    let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
     Ok((mesh, adapted, divided))
 }
 
@@ -265,13 +292,39 @@ fn refuse_the_endless(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Res
 /// curve would be now that of one side, now that of the other, as rounding has it.
 fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, Fault> {
     let (points, place) = places(mesh);
-    let mut metrics = points.iter().map(|&uv| sizing.metric3(&Place::in_plane(uv))).collect::<Result<Vec<_>, _>>()?;
+    let mut metrics = points.iter().map(|&uv| sizing.metric3_at(uv)).collect::<Result<Vec<_>, _>>()?;
     let edges: Vec<[u32; 2]> =
         mesh.edges().map(|h| [mesh.origin(h), mesh.target(h)].map(|n| place[n.index()])).collect();
-    let in_space: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
-    bound_gradation(&in_space, &edges, &mut metrics, beta);
     let triangles: Vec<[u32; 3]> = mesh.elements().map(|e| mesh.triangle(e).map(|n| place[n.index()])).collect();
-    Field::table(&points, &triangles, metrics)
+    let Some(ground) = mesh.ground() else {
+        let in_space: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
+        bound_gradation(&in_space, &edges, &mut metrics, beta);
+        return Field::table(&points, &triangles, metrics);
+    };
+    // On surfaces, places of different charts may be one point in space; the sizes spread over it from face to face.
+    let mut space_of: Vec<u32> = vec![0; points.len()];
+    let (mut in_space, mut shared): (Vec<DVec3>, Vec<Metric3>) = (Vec::new(), Vec::new());
+    let mut of_point: Vec<Option<u32>> = vec![None; ground.points.len()];
+    for node in mesh.nodes() {
+        let here = place[node.index()] as usize;
+        let known = mesh.point(node).and_then(|p| of_point[p.index()]);
+        let number = known.unwrap_or_else(|| {
+            in_space.push(mesh.xyz(node));
+            shared.push(metrics[here]);
+            in_space.len() as u32 - 1
+        });
+        if known.is_some() {
+            let both = Metric3::intersect(&shared[number as usize], &metrics[here]);
+            shared[number as usize] = both;
+        }
+        if let Some(point) = mesh.point(node) {
+            of_point[point.index()] = Some(number);
+        }
+        space_of[here] = number;
+    }
+    let edges: Vec<[u32; 2]> = edges.iter().map(|e| e.map(|n| space_of[n as usize])).collect();
+    bound_gradation(&in_space, &edges, &mut shared, beta);
+    Field::table(&points, &triangles, space_of.iter().map(|&n| shared[n as usize]).collect())
 }
 
 /// The different places of a mesh's nodes in the order of the first node there, and which of them each node slot has.

@@ -333,8 +333,9 @@ pub enum Event {
         /// How.
         #[serde(flatten)]
         what: Cleaning,
-        /// How after that, where the first change is good only together with a second one.
-        then: Option<Cleaning>,
+        /// What came after it, where the first change is good only together with others.
+        #[serde(serialize_with = "those_there")]
+        then: [Option<Cleaning>; 3],
         /// Energy of everything around, before and after.
         energy: [f64; 2],
     },
@@ -434,6 +435,11 @@ pub(super) fn degrees<S: Serializer>(radians: &f64, serializer: S) -> Result<S::
     radians.to_degrees().serialize(serializer)
 }
 
+/// A list of those that there are.
+fn those_there<S: Serializer>(all: &[Option<Cleaning>; 3], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(all.iter().flatten())
+}
+
 fn degrees_if_any<S: Serializer>(radians: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     radians.map(f64::to_degrees).serialize(serializer)
 }
@@ -460,10 +466,10 @@ mod tests {
         let blocked = r#"{"kind":"rolled_back","attempt":1,"why":{"kind":"top_blocked","value":[7,8]}}"#;
         assert_eq!(json(Why::TopBlocked([node, NodeId(8)])), blocked);
         let what = Cleaning::DiamondCollapsed { gone: node, kept: NodeId(8) };
-        let cleaned = serde_json::to_string(&Event::Cleaned { what, then: None, energy: [2.0, 1.5] }).unwrap();
+        let cleaned = serde_json::to_string(&Event::Cleaned { what, then: [None; 3], energy: [2.0, 1.5] }).unwrap();
         assert_eq!(
             cleaned,
-            r#"{"kind":"cleaned","what":"diamond_collapsed","gone":7,"kept":8,"then":null,"energy":[2.0,1.5]}"#
+            r#"{"kind":"cleaned","what":"diamond_collapsed","gone":7,"kept":8,"then":[],"energy":[2.0,1.5]}"#
         );
     }
 
@@ -507,7 +513,7 @@ mod tests {
             Event::Matched { triangles: 8, unmatched: 2, unmatched_at_all: 0, patches: 4 },
             Event::Patched { means: Means::Merge, triangles: 2, quads: 1, element: ElementId(1) },
             Event::LastResort(Outcome::default()),
-            Event::Cleaned { what: Cleaning::DoubletRemoved { node }, then: None, energy: [2.0, 1.0] },
+            Event::Cleaned { what: Cleaning::DoubletRemoved { node }, then: [None; 3], energy: [2.0, 1.0] },
             Event::Swept { looked: 9, moved: 3 },
             Event::PostProcessed,
             Event::Finished,

@@ -30,18 +30,23 @@ pub struct Finished {
 #[derive(Clone, Default)]
 pub(super) struct Finishing<'a> {
     first_smoothing: Option<Worklist>,
-    clean_up: [Option<CleanUp<'a>>; 2],
+    clean_up: [Option<CleanUp<'a>>; 3],
     last_smoothing: Option<Worklist>,
 }
 
 /// Where the lists of the parts stood; none where a part had not begun.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PartMarks([Option<ListMark>; 4]);
+pub(super) struct PartMarks([Option<ListMark>; 5]);
 
 impl Finishing<'_> {
-    fn lists(&self) -> [Option<&Worklist>; 4] {
-        let [singles, pairs] = self.clean_up.each_ref().map(|part| part.as_ref().map(CleanUp::list));
-        [self.first_smoothing.as_ref(), singles, pairs, self.last_smoothing.as_ref()]
+    fn lists(&self) -> [Option<&Worklist>; 5] {
+        let [singles, pairs, longer] = self.clean_up.each_ref().map(|part| part.as_ref().map(CleanUp::list));
+        [self.first_smoothing.as_ref(), singles, pairs, longer, self.last_smoothing.as_ref()]
+    }
+
+    /// Whether the budget of the pairs has ended before every node was looked at.
+    fn pairs_are_cut_short(&self) -> bool {
+        self.clean_up[Reach::Pairs as usize].as_ref().is_some_and(CleanUp::is_cut_short)
     }
 
     /// Bytes that the parts take.
@@ -68,14 +73,14 @@ impl Finishing<'_> {
     }
 
     /// Takes back everything that was done after the mark; `cleaned_up` is what the clean-up had done then.
-    pub fn take_back(&mut self, PartMarks([first, singles, pairs, last]): PartMarks, cleaned_up: CleanedUp) {
+    pub fn take_back(&mut self, PartMarks([first, singles, pairs, longer, last]): PartMarks, cleaned_up: CleanedUp) {
         let list = |list: &mut Option<Worklist>, mark: Option<ListMark>| match (list.as_mut(), mark) {
             (Some(list), Some(mark)) => list.take_back(mark),
             _ => *list = None,
         };
         list(&mut self.first_smoothing, first);
         list(&mut self.last_smoothing, last);
-        for (part, mark) in self.clean_up.iter_mut().zip([singles, pairs]) {
+        for (part, mark) in self.clean_up.iter_mut().zip([singles, pairs, longer]) {
             match (part.as_mut(), mark) {
                 (Some(part), Some(mark)) => part.take_back(mark, cleaned_up),
                 _ => *part = None,
@@ -86,7 +91,7 @@ impl Finishing<'_> {
     /// Appends what the next steps depend on.
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         self.lists().into_iter().flatten().for_each(|list| list.write_state(bytes));
-        // What the pairs have left of their trials.
+        // What pairs and longer sequences have left of their trials.
         let trials = self.clean_up.iter().flatten().map(|part| part.done().trials).max().unwrap_or(0);
         bytes.extend_from_slice(&(trials as u64).to_le_bytes());
     }
@@ -101,6 +106,7 @@ impl Converter<'_> {
                 Part::FirstSmoothing | Part::LastSmoothing => self.sweep(part),
                 Part::CleanUp => self.clean_up(Reach::Singles),
                 Part::CleanUpByPairs => self.clean_up(Reach::Pairs),
+                Part::CleanUpBySequences => self.clean_up(Reach::Longer),
             };
             if let Some(event) = event {
                 return (Phase::PostProcess { part }, event);
@@ -108,7 +114,9 @@ impl Converter<'_> {
             match part {
                 Part::FirstSmoothing => part = Part::CleanUp,
                 Part::CleanUp => part = Part::CleanUpByPairs,
-                Part::CleanUpByPairs => part = Part::LastSmoothing,
+                Part::CleanUpByPairs if self.finishing.pairs_are_cut_short() => part = Part::LastSmoothing,
+                Part::CleanUpByPairs => part = Part::CleanUpBySequences,
+                Part::CleanUpBySequences => part = Part::LastSmoothing,
                 Part::LastSmoothing => return (Phase::Done, Event::PostProcessed),
             }
         }

@@ -16,17 +16,21 @@ use crate::core::mesh::ids::HalfEdgeId;
 /// # Errors
 /// A name that no curve has.
 pub(super) fn layered_curves(domain: &Domain, parameters: &Parameters) -> Result<Option<Vec<usize>>, Fault> {
-    let number = |name: &String| {
-        domain.curves.iter().position(|curve| curve.name == *name).ok_or_else(|| {
+    // On surfaces a curve has an image on every face, all of its name.
+    let numbers = |name: &String| {
+        let found: Vec<usize> = (0..domain.curves.len()).filter(|&c| domain.curves[c].name == *name).collect();
+        if found.is_empty() {
             let fault =
                 Fault::new(format!("layered_loops names \"{}\", and no curve has this name", name.escape_debug()));
-            match nearest(name, domain.curves.iter().map(|curve| curve.name.as_str())) {
+            return Err(match nearest(name, domain.curves.iter().map(|curve| curve.name.as_str())) {
                 Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
                 None => fault.remedy("Name a curve of each loop"),
-            }
-        })
+            });
+        }
+        Ok(found)
     };
-    let curves: Vec<usize> = parameters.layered_loops.iter().map(number).collect::<Result<_, _>>()?;
+    let curves: Vec<Vec<usize>> = parameters.layered_loops.iter().map(numbers).collect::<Result<_, _>>()?;
+    let curves = curves.concat();
     Ok((parameters.layers > 0 && !curves.is_empty()).then_some(curves))
 }
 

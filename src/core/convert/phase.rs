@@ -47,6 +47,8 @@ pub enum Part {
     CleanUp,
     /// Clean-up of the structure by pairs of changes, where single ones do not help.
     CleanUpByPairs,
+    /// Clean-up by sequences of up to four changes.
+    CleanUpBySequences,
     /// Smoothing of the final structure.
     LastSmoothing,
 }

@@ -1,5 +1,8 @@
 //! A conversion walked step by step, to its end or to a stop, with each event told.
 
+use std::fmt;
+use std::str::FromStr;
+
 use serde::Serialize;
 
 use super::candidates::Candidates;
@@ -16,6 +19,30 @@ pub enum Stop {
     Quads(u64),
     /// After so many steps.
     Step(u64),
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Stop::Quads(quads) => write!(f, "nq={quads}"),
+            Stop::Step(step) => write!(f, "step={step}"),
+        }
+    }
+}
+
+impl FromStr for Stop {
+    type Err = ();
+
+    /// Reads what is written: `nq=100` or `step=812`.
+    fn from_str(text: &str) -> Result<Stop, ()> {
+        let (kind, number) = text.split_once('=').ok_or(())?;
+        let number = number.parse().map_err(|_| ())?;
+        match kind {
+            "nq" => Ok(Stop::Quads(number)),
+            "step" => Ok(Stop::Step(number)),
+            _ => Err(()),
+        }
+    }
 }
 
 impl Stop {

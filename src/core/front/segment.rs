@@ -20,7 +20,7 @@ pub struct Segment {
     pub h_value: f64,
     /// Length in the metric.
     pub length_metric: f64,
-    /// Length in the plane.
+    /// Length as it is: in the plane, or in space.
     pub length_physical: f64,
     /// Frontal angles at A and B, radians.
     pub theta: [f64; 2],
@@ -28,6 +28,8 @@ pub struct Segment {
     pub class: u8,
     /// Rows from the boundary.
     pub level: u16,
+    /// On surfaces its face: faces are converted one after the other (paper 5.4). 0 in the plane, where all are one.
+    pub face: u32,
 }
 
 impl Segment {
@@ -45,12 +47,13 @@ impl Segment {
             h,
             a,
             b,
-            h_value: 0.5 * (mesh.metric_ref(a).min_size() + mesh.metric_ref(b).min_size()),
+            h_value: 0.5 * (mesh.smallest_size(a) + mesh.smallest_size(b)),
             length_metric: mesh.distance(a, b),
-            length_physical: mesh.uv(a).distance(mesh.uv(b)),
+            length_physical: mesh.physical_distance(a, b),
             theta,
             class,
             level: front_level(mesh, h),
+            face: if mesh.ground().is_some() { mesh.region(h.element()) } else { 0 },
         }
     }
 
@@ -61,6 +64,12 @@ impl Segment {
             SelectionWindow::PhysicalLength => self.length_physical,
             SelectionWindow::MetricLengthTimesH => self.length_metric * self.h_value,
         }
+    }
+
+    /// What comes before everything else: the face at hand, and the rows that are offset first (4.3.3, point 3); levels beyond
+    /// those are alike.
+    pub fn layer(&self, parameters: &Parameters) -> u32 {
+        layer(self.face, self.level, parameters)
     }
 
     /// Sum of the frontal angles.
@@ -86,6 +95,11 @@ impl Segment {
         };
         Key([first, self.theta_sum(), 0.0])
     }
+}
+
+/// See [`Segment::layer`].
+pub fn layer(face: u32, level: u16, parameters: &Parameters) -> u32 {
+    face.saturating_mul(parameters.layers + 1).saturating_add(u32::from(level).min(parameters.layers))
 }
 
 /// Rows from the boundary: 0 on it (where rows are offset from other loops only, as many as those), else one more than the

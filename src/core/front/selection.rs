@@ -27,7 +27,7 @@ struct Waiting {
 pub struct Choice {
     /// The base segment.
     pub segment: Segment,
-    /// Smallest H-value on the front (step i).
+    /// Smallest H-value on the front (step i); on surfaces on that of the face at hand.
     pub h_min: f64,
     /// Whether the segment was within c Hmin; else it is the one with the smallest H-value (step iii).
     pub within_reach: bool,
@@ -75,7 +75,7 @@ impl Queue {
     fn push(&mut self, mesh: &Mesh, h: HalfEdgeId, parameters: &Parameters) {
         let segment = Segment::measure(mesh, h, parameters);
         let stamp = self.stamp[h.index()];
-        let layer = f64::from(u32::from(segment.level).min(parameters.layers));
+        let layer = f64::from(segment.layer(parameters));
         let mut put = |heap: usize, key: Key| self.heaps[heap].push(Reverse(Waiting { key, h, stamp }));
         if parameters.selection == Selection::Table1 {
             if segment.class < 4 {
@@ -85,7 +85,7 @@ impl Queue {
             put(3, Key([layer, segment.h_value, segment.theta_sum()]));
         } else {
             let Key([first, second, third]) = segment.key(parameters);
-            // Offsetting goes before everything else; levels beyond the layers are alike to it.
+            // Face by face, and offsetting goes before everything else.
             put(3, Key([layer * 1e9 + first, second, third]));
         }
     }

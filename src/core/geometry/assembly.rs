@@ -113,6 +113,7 @@ pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCur
             sides: [internal; 2],
             kind,
             fine: Vec::new(),
+            first: ids[i],
         });
     }
     let lists = loops_by_spec

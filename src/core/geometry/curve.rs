@@ -1,10 +1,13 @@
-//! Planar curves: segment, circular arc, polyline, NURBS, all with a parameter in [0, 1].
+//! Planar curves: segment, circular arc, polyline, NURBS, and images of curves in space, all with a parameter in [0, 1].
 //!
 //! Deliberately absent: names, and which curves meet where (see `domain`).
+
+use std::sync::Arc;
 
 use glam::DVec2;
 
 use super::domain::CurveShape;
+use super::image::Image;
 use super::nurbs::NurbsCurve;
 use super::place::{number, told};
 use crate::core::fault::Fault;
@@ -37,6 +40,20 @@ enum Path {
         points: Vec<DVec2>,
     },
     Nurbs(NurbsCurve),
+    Image(Pictured),
+}
+
+/// The image of a curve in space in a face's chart; two are equal where they are the same one.
+#[derive(Clone, Debug)]
+struct Pictured {
+    image: Arc<Image>,
+    breaks: Vec<f64>,
+}
+
+impl PartialEq for Pictured {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.image, &other.image)
+    }
 }
 
 impl Curve {
@@ -121,6 +138,14 @@ impl Curve {
         Ok(curve)
     }
 
+    /// The image of a curve in space in a face's chart.
+    pub fn of_image(image: Arc<Image>) -> Curve {
+        let (corners, breaks) = (image.curve().corners(), image.curve().breaks());
+        let mut curve = Curve { path: Path::Image(Pictured { image, breaks }), closed: false, corners };
+        curve.closed = curve.start() == curve.end();
+        curve
+    }
+
     /// The point at `t` in [0, 1].
     pub fn point(&self, t: f64) -> DVec2 {
         match &self.path {
@@ -135,6 +160,7 @@ impl Curve {
                 lerp(points[i], points[i + 1], s)
             }
             Path::Nurbs(nurbs) => nurbs.at(knot_parameter(nurbs, t)).0,
+            Path::Image(pictured) => pictured.image.point(t),
         }
     }
 
@@ -154,6 +180,7 @@ impl Curve {
                 let (first, last) = nurbs.basis().domain();
                 (last - first) * nurbs.at(knot_parameter(nurbs, t)).1
             }
+            Path::Image(pictured) => pictured.image.at(t).1,
         }
     }
 
@@ -165,6 +192,7 @@ impl Curve {
                 let (p, d) = nurbs.at(knot_parameter(nurbs, t));
                 (p, (last - first) * d)
             }
+            Path::Image(pictured) => pictured.image.at(t),
             _ => (self.point(t), self.derivative(t)),
         }
     }
@@ -190,6 +218,7 @@ impl Curve {
             Path::Segment { .. } | Path::Polyline { .. } => true,
             Path::Arc { .. } => false,
             Path::Nurbs(nurbs) => nurbs.basis().degree() == 1,
+            Path::Image(pictured) => pictured.image.straight(),
         }
     }
 
@@ -215,6 +244,7 @@ impl Curve {
                 breaks.retain(|&t| t < 1.0);
                 breaks.dedup();
             }
+            Path::Image(pictured) => return pictured.breaks.clone(),
         }
         breaks.push(1.0);
         breaks
@@ -243,8 +273,11 @@ impl Curve {
                 let n = (turn.abs() / step).ceil().max(1.0);
                 (0..=n as usize).map(|i| i as f64 / n).map(|t| (t, self.point(t))).collect()
             }
-            Path::Nurbs(nurbs) => {
-                let degree = nurbs.basis().degree();
+            Path::Image(pictured) if pictured.image.straight() => {
+                pictured.breaks.iter().map(|&t| (t, self.point(t))).collect()
+            }
+            Path::Nurbs(_) | Path::Image(_) => {
+                let degree = if let Path::Nurbs(nurbs) = &self.path { nurbs.basis().degree() } else { 4 };
                 let (low, high) = self.hull();
                 let tolerance = tolerance.max(1e-9 * (high - low).max_element());
                 let breaks = self.breaks();
@@ -290,6 +323,7 @@ impl Curve {
             Path::Arc { centre, radius, .. } => (*centre - DVec2::splat(*radius), *centre + DVec2::splat(*radius)),
             Path::Polyline { points } => extent(points.iter().copied()),
             Path::Nurbs(nurbs) => extent(nurbs.control_points()),
+            Path::Image(pictured) => extent(pictured.image.places()),
         }
     }
 
@@ -315,6 +349,8 @@ impl Curve {
                 };
                 knots.iter().filter(sharp).map(|(k, _)| (k - first) / (last - first)).collect()
             }
+            // Those of the curve in space.
+            Path::Image(_) => self.corners.clone(),
         }
     }
 }
@@ -332,7 +368,7 @@ fn lerp(a: DVec2, b: DVec2, t: f64) -> DVec2 {
 }
 
 /// Which of `n` equal pieces of [0, 1] holds `t`, and where in it, exactly 0 or 1 at its ends.
-fn piece(n: usize, t: f64) -> (usize, f64) {
+pub(super) fn piece(n: usize, t: f64) -> (usize, f64) {
     let x = t * n as f64;
     let nearest = x.round();
     // A corner's parameter i / n comes back as i.

@@ -1,14 +1,18 @@
 //! Planar domains: outer loops and holes made of named curves, crack lines, repeated lines, several faces sharing curves.
 
-use glam::DVec2;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
 use rstar::RTree;
 
 use super::assembly::{join_ends, loop_name, placed, resolve};
+use super::atlas::Atlas;
 use super::crossing::{self, Limits};
 use super::curve::Curve;
 use super::inside::{self, Chord};
 use super::loops;
 use super::place::told;
+use super::space_curve::SpaceCurve;
 use crate::core::fault::Fault;
 
 /// The shape of a curve as a case gives it; angles in radians.
@@ -132,6 +136,8 @@ pub struct DomainCurve {
     pub kind: CurveKind,
     /// Points of a fine polyline with their parameters, from vertex to vertex.
     pub fine: Vec<(f64, DVec2)>,
+    /// The first image of the same curve in space: that one rules how all are divided. In the plane the curve itself.
+    pub first: CurveId,
 }
 
 impl DomainCurve {
@@ -173,6 +179,40 @@ pub struct DomainFace {
     pub walks: Vec<Vec<DirectedCurve>>,
 }
 
+/// Points along a curve, from its start to its end.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Line {
+    /// In a planar domain.
+    Plane(Vec<DVec2>),
+    /// In space.
+    Space(Vec<DVec3>),
+}
+
+impl Line {
+    /// The points in space.
+    pub fn in_space(&self) -> Vec<DVec3> {
+        match self {
+            Line::Plane(points) => points.iter().map(|p| p.extend(0.0)).collect(),
+            Line::Space(points) => points.clone(),
+        }
+    }
+}
+
+/// What a domain is in space: the plane in which it is meshed is an atlas of its faces' charts.
+#[derive(Clone, Debug)]
+pub struct Spatial {
+    /// The charts.
+    pub atlas: Arc<Atlas>,
+    /// Places of the vertices in space.
+    pub vertices: Vec<DVec3>,
+    /// The vertex in space that each vertex of the plane is an image of.
+    pub vertex_of: Vec<u32>,
+    /// The curve in space that each curve of the plane is an image of.
+    pub curves: Vec<Arc<SpaceCurve>>,
+    /// Points along every named curve, those on no face included: for fields by distance.
+    pub polylines: Vec<(String, Vec<DVec3>)>,
+}
+
 /// Curves and faces that have been found sound: closed loops that neither cross nor touch, but at shared vertices.
 #[derive(Clone, Debug)]
 pub struct Domain {
@@ -184,6 +224,8 @@ pub struct Domain {
     pub faces: Vec<DomainFace>,
     /// Larger side of the bounding box.
     pub size: f64,
+    /// What the domain is in space, where its faces lie on surfaces.
+    pub spatial: Option<Arc<Spatial>>,
     lower: DVec2,
     upper: DVec2,
     chords: RTree<Chord>,
@@ -198,19 +240,8 @@ impl Domain {
     /// face; faces that overlap.
     pub fn build(curves: Vec<CurveSpec>, faces: Vec<FaceSpec>) -> Result<Domain, Fault> {
         let (mut curves, lists) = resolve(&curves, &faces)?;
-        let (lower, upper) = curves
-            .iter()
-            .map(|c| c.curve.bounds())
-            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (l, h)| (low.min(l), high.max(h)));
-        let size = (upper - lower).max_element();
-        let largest = lower.abs().max(upper.abs()).max_element();
-        if size < 1e-90 || size < 1e-9 * largest {
-            return Err(Fault::new(format!("The whole domain is only {size:e} across, at {}", told(lower)))
-                .remedy("Scale it up, and move it towards the origin"));
-        }
-        let tolerance = (1e-9 * size).max(8.0 * f64::EPSILON * largest);
-        let vertices = join_ends(&mut curves, size, tolerance)?;
-        let names: Vec<String> = faces.iter().map(|f| f.name.clone()).collect();
+        let extent = Extent::of(&curves)?;
+        let vertices = join_ends(&mut curves, extent.size, extent.tolerance)?;
         let mut chains = Vec::with_capacity(faces.len());
         for (spec, list) in faces.iter().zip(&lists) {
             let mut chain = Vec::with_capacity(list.len());
@@ -219,6 +250,19 @@ impl Domain {
             }
             chains.push(chain);
         }
+        Domain::assemble(curves, vertices, chains, &faces, extent)
+    }
+
+    /// A domain of curves that meet at `vertices`, chained to the loops of each face.
+    pub(super) fn assemble(
+        mut curves: Vec<DomainCurve>,
+        vertices: Vec<DVec2>,
+        mut chains: Vec<Vec<Vec<DirectedCurve>>>,
+        faces: &[FaceSpec],
+        extent: Extent,
+    ) -> Result<Domain, Fault> {
+        let Extent { lower, upper, size, tolerance } = extent;
+        let names: Vec<String> = faces.iter().map(|f| f.name.clone()).collect();
         let chords = inside::chord_tree(&curves, |id, i| {
             let curve = &curves[id.index()];
             crossing::bulge(curve, curve.fine[i as usize], curve.fine[i as usize + 1]) + tolerance
@@ -253,13 +297,13 @@ impl Domain {
                 }
             }
         }
-        let mut domain = Domain { curves, vertices, faces: Vec::new(), size, lower, upper, chords };
+        let mut domain = Domain { curves, vertices, faces: Vec::new(), size, spatial: None, lower, upper, chords };
         domain.faces = names
             .iter()
             .zip(chains)
             .map(|(name, loops)| DomainFace { name: name.clone(), loops, walks: Vec::new() })
             .collect();
-        domain.check_nesting(&faces)?;
+        domain.check_nesting(faces)?;
         let walks = loops::walks(&domain.curves, &names, &domain.vertices)?;
         for (face, walks) in domain.faces.iter_mut().zip(walks) {
             face.walks = walks;
@@ -398,9 +442,59 @@ impl Domain {
         self.curves.iter().find(|c| c.name == name)
     }
 
-    /// Points of a fine polyline of the curve of this name, from start to end.
-    pub fn curve_polyline(&self, name: &str) -> Option<Vec<DVec2>> {
-        Some(self.curve(name)?.fine.iter().map(|&(_, p)| p).collect())
+    /// Points of a fine polyline of the curve of this name.
+    pub fn curve_polyline(&self, name: &str) -> Option<Line> {
+        match &self.spatial {
+            Some(spatial) => {
+                spatial.polylines.iter().find(|(known, _)| known == name).map(|(_, line)| Line::Space(line.clone()))
+            }
+            None => Some(Line::Plane(self.curve(name)?.fine.iter().map(|&(_, p)| p).collect())),
+        }
+    }
+
+    /// Whether a curve ends where it begins: in space, where its faces lie there.
+    pub fn is_closed(&self, id: CurveId) -> bool {
+        let ends = self.curves[id.index()].ends;
+        match &self.spatial {
+            Some(spatial) => spatial.vertex_of[ends[0] as usize] == spatial.vertex_of[ends[1] as usize],
+            None => ends[0] == ends[1],
+        }
+    }
+
+    /// The images of the curve of which this is the first one, itself included.
+    pub fn images(&self, first: CurveId) -> Vec<&DomainCurve> {
+        if self.spatial.is_none() {
+            return vec![&self.curves[first.index()]];
+        }
+        self.curves.iter().filter(|curve| curve.first == first).collect()
+    }
+}
+
+/// How large a domain is, and which lengths are nothing in it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    pub lower: DVec2,
+    pub upper: DVec2,
+    pub size: f64,
+    pub tolerance: f64,
+}
+
+impl Extent {
+    /// # Errors
+    /// A domain that is too small for double precision where it lies.
+    pub fn of(curves: &[DomainCurve]) -> Result<Extent, Fault> {
+        let (lower, upper) = curves
+            .iter()
+            .map(|c| c.curve.bounds())
+            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (l, h)| (low.min(l), high.max(h)));
+        let size = (upper - lower).max_element();
+        let largest = lower.abs().max(upper.abs()).max_element();
+        if size < 1e-90 || size < 1e-9 * largest {
+            return Err(Fault::new(format!("The whole domain is only {size:e} across, at {}", told(lower)))
+                .remedy("Scale it up, and move it towards the origin"));
+        }
+        let tolerance = (1e-9 * size).max(8.0 * f64::EPSILON * largest);
+        Ok(Extent { lower, upper, size, tolerance })
     }
 }
 

@@ -1,7 +1,10 @@
-//! Rational B-splines after Piegl & Tiller, "The NURBS Book": the basis with its derivatives (A2.1, A2.3) and planar
-//! curves on it (A4.2). The basis stands alone, so that surfaces can be made from two of it.
+//! Rational B-splines after Piegl & Tiller, "The NURBS Book": the basis with its derivatives (A2.1, A2.3) and curves on it
+//! (A4.2), in the plane and in space. The basis stands alone, so that surfaces can be made from two of it.
 
-use glam::DVec2;
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
+
+use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
 use crate::core::fault::Fault;
@@ -80,6 +83,11 @@ impl Basis {
     /// The degree.
     pub fn degree(&self) -> usize {
         self.degree
+    }
+
+    /// The knots.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
     }
 
     /// First and last parameter of the curve.
@@ -170,45 +178,76 @@ impl Basis {
     }
 }
 
-/// A planar rational B-spline curve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NurbsCurve {
-    basis: Basis,
-    /// Control points times their weights, and the weights.
-    weighted: Vec<(DVec2, f64)>,
+/// What control points are: vectors of the plane or of space.
+pub trait Vector:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// Whether all its components are finite.
+    fn is_finite(self) -> bool;
 }
 
-impl NurbsCurve {
+impl Vector for DVec2 {
+    fn is_finite(self) -> bool {
+        DVec2::is_finite(self)
+    }
+}
+
+impl Vector for DVec3 {
+    fn is_finite(self) -> bool {
+        DVec3::is_finite(self)
+    }
+}
+
+/// Control points times their weights, and the weights; only ratios of weights count: scaled so that the largest is 1, no
+/// product overflows.
+///
+/// # Errors
+/// Points that are not finite; weights that are not positive and finite or not as many as the points.
+pub fn weighted<P: Vector>(points: &[P], weights: &[f64]) -> Result<Vec<(P, f64)>, Fault> {
+    if !weights.is_empty() && weights.len() != points.len() {
+        return Err(Fault::new(format!("A NURBS with {} control points has {} weights", points.len(), weights.len()))
+            .remedy("Give one weight for each point, or none"));
+    }
+    if let Some(i) = points.iter().position(|p| !p.is_finite()) {
+        return Err(Fault::new(format!("Control point {} is not finite", i + 1)));
+    }
+    if let Some(i) = weights.iter().position(|w| !(w.is_finite() && *w > 0.0)) {
+        return Err(
+            Fault::new(format!("Weight {} is {}", i + 1, weights[i])).remedy("Weights must be positive and finite")
+        );
+    }
+    let largest = weights.iter().copied().fold(0.0, f64::max);
+    let weight = |i: usize| weights.get(i).map_or(1.0, |w| w / largest);
+    if let Some(i) = (0..points.len()).find(|&i| weight(i) < 1e-100) {
+        return Err(Fault::new(format!("Weight {} is vanishingly small beside the largest", i + 1)));
+    }
+    Ok(points.iter().enumerate().map(|(i, &p)| (p * weight(i), weight(i))).collect())
+}
+
+/// A rational B-spline curve, in the plane unless said otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NurbsCurve<P = DVec2> {
+    basis: Basis,
+    /// Control points times their weights, and the weights.
+    weighted: Vec<(P, f64)>,
+}
+
+impl<P: Vector> NurbsCurve<P> {
     /// A curve; no weights at all means that all are 1.
     ///
     /// # Errors
-    /// What [`Basis::new`] refuses; points that are not finite; weights that are not positive and finite or not as many
-    /// as the points.
-    pub fn new(degree: usize, knots: Vec<f64>, weights: &[f64], points: &[DVec2]) -> Result<Self, Fault> {
+    /// What [`Basis::new`] and [`weighted`] refuse.
+    pub fn new(degree: usize, knots: Vec<f64>, weights: &[f64], points: &[P]) -> Result<Self, Fault> {
         let basis = Basis::new(degree, knots, points.len())?;
-        if !weights.is_empty() && weights.len() != points.len() {
-            return Err(Fault::new(format!(
-                "A NURBS with {} control points has {} weights",
-                points.len(),
-                weights.len()
-            ))
-            .remedy("Give one weight for each point, or none"));
-        }
-        if let Some(i) = points.iter().position(|p| !p.is_finite()) {
-            return Err(Fault::new(format!("Control point {} is not finite", i + 1)));
-        }
-        if let Some(i) = weights.iter().position(|w| !(w.is_finite() && *w > 0.0)) {
-            return Err(
-                Fault::new(format!("Weight {} is {}", i + 1, weights[i])).remedy("Weights must be positive and finite")
-            );
-        }
-        // Only ratios of weights count: scaled so that the largest is 1, no product overflows.
-        let largest = weights.iter().copied().fold(0.0, f64::max);
-        let weight = |i: usize| weights.get(i).map_or(1.0, |w| w / largest);
-        if let Some(i) = (0..points.len()).find(|&i| weight(i) < 1e-100) {
-            return Err(Fault::new(format!("Weight {} is vanishingly small beside the largest", i + 1)));
-        }
-        let weighted = points.iter().enumerate().map(|(i, &p)| (p * weight(i), weight(i))).collect();
+        let weighted = weighted(points, weights)?;
         Ok(NurbsCurve { basis, weighted })
     }
 
@@ -218,29 +257,34 @@ impl NurbsCurve {
     }
 
     /// The control points.
-    pub fn control_points(&self) -> impl Iterator<Item = DVec2> + '_ {
+    pub fn control_points(&self) -> impl Iterator<Item = P> + '_ {
         self.weighted.iter().map(|&(p, w)| p / w)
     }
 
+    /// The control points times their weights, and the weights.
+    pub fn weighted_points(&self) -> &[(P, f64)] {
+        &self.weighted
+    }
+
     /// Point and first derivative at the knot parameter `t` (A4.2); at an inner knot the right-hand derivative.
-    pub fn at(&self, t: f64) -> (DVec2, DVec2) {
+    pub fn at(&self, t: f64) -> (P, P) {
         self.at_in(self.basis.span(t), t)
     }
 
     /// Point and first derivative at `t`, with the polynomial piece of the given span: at a knot this tells the
     /// derivative on the left from the one on the right.
-    pub fn at_in(&self, span: usize, t: f64) -> (DVec2, DVec2) {
+    pub fn at_in(&self, span: usize, t: f64) -> (P, P) {
         let ders = self.basis.derivatives(span, t, 1);
         let first = span - self.basis.degree;
-        let (mut a, mut w, mut da, mut dw) = (DVec2::ZERO, 0.0, DVec2::ZERO, 0.0);
+        let (mut a, mut w, mut da, mut dw) = (P::default(), 0.0, P::default(), 0.0);
         for (j, &(point, weight)) in self.weighted[first..=span].iter().enumerate() {
-            a += ders[0][j] * point;
+            a += point * ders[0][j];
             w += ders[0][j] * weight;
-            da += ders[1][j] * point;
+            da += point * ders[1][j];
             dw += ders[1][j] * weight;
         }
         let p = a / w;
-        (p, (da - dw * p) / w)
+        (p, (da - p * dw) / w)
     }
 }
 

@@ -3,6 +3,7 @@
 //! formula can be evaluated (`metric::formula`).
 
 mod geometry;
+mod surfaces;
 mod elements;
 mod metric;
 
@@ -15,6 +16,7 @@ use super::save::load;
 use super::table::{self, Source, Table};
 use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
+use crate::core::geometry::complex::ComplexSpec;
 use crate::core::geometry::domain::{CurveSpec, FaceSpec};
 use crate::core::metric::field::FieldSpec;
 
@@ -31,6 +33,8 @@ pub enum DomainSource {
         /// All faces, at least one.
         faces: Vec<FaceSpec>,
     },
+    /// Surfaces, curves on them and the faces that they bound.
+    Surfaces(ComplexSpec),
     /// A small background that the case itself holds: the fixtures of the paper's figures.
     Elements {
         /// Coordinates of its points.
@@ -122,6 +126,7 @@ impl Case {
             "parameters",
             "gradation",
             "split_odd",
+            "surface",
             "curve",
             "face",
             "metric",
@@ -131,11 +136,12 @@ impl Case {
         ])?;
         let word = |key| table.get(key).map(|v| v.text()).transpose();
         let domain = domain(&table, folder)?;
-        let curves = match &domain {
-            DomainSource::Curves { curves, .. } => curves.as_slice(),
-            DomainSource::Elements { .. } | DomainSource::Mesh { .. } => &[],
+        let curves: Vec<&str> = match &domain {
+            DomainSource::Curves { curves, .. } => curves.iter().map(|c| c.name.as_str()).collect(),
+            DomainSource::Surfaces(spec) => spec.curves.iter().map(|c| c.name.as_str()).collect(),
+            DomainSource::Elements { .. } | DomainSource::Mesh { .. } => Vec::new(),
         };
-        let fields = metric::fields(&table, curves)?;
+        let fields = metric::fields(&table, &curves)?;
         check_fields(&table, &domain, &fields)?;
         Ok(Case {
             name: name.to_owned(),
@@ -154,7 +160,7 @@ impl Case {
     pub fn of_mesh(path: PathBuf, sol: Option<PathBuf>) -> Case {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Case {
-            title: format!("Mesh {}", path.display()),
+            title: format!("Mesh {}", path.file_name().unwrap_or_default().to_string_lossy()),
             name,
             notes: String::new(),
             parameters: Parameters::default(),
@@ -188,21 +194,29 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         None => Ok(()),
         Some(value) => {
             let key = value.key();
-            let named = if ["curve", "face"].contains(&key) { format!("every [[{key}]]") } else { key.to_owned() };
+            let named =
+                if ["surface", "curve", "face"].contains(&key) { format!("every [[{key}]]") } else { key.to_owned() };
             let fault = value.fault(format!("The case has a {own} and a {key}"));
             Err(fault.remedy(format!("Leave out either {own} or {named}")))
         }
     };
     if let Some(value) = table.get("background") {
-        alone("background", &["curve", "face", "mesh", "sol"])?;
+        alone("background", &["surface", "curve", "face", "mesh", "sol"])?;
         return elements::elements(&value.table()?);
     }
     if let Some(path) = file("mesh")? {
-        alone("mesh", &["curve", "face"])?;
+        alone("mesh", &["surface", "curve", "face"])?;
         return Ok(DomainSource::Mesh { path, sol: file("sol")? });
     }
     if let Some(value) = table.get("sol") {
         return Err(value.fault("sol is given without mesh").remedy("Write mesh = \"...\" too"));
+    }
+    if table.get("surface").is_some() {
+        let complex = surfaces::complex(table)?;
+        if complex.faces.is_empty() {
+            return Err(table.fault("The case has no face").remedy("Add [[face]] with a name and a surface"));
+        }
+        return Ok(DomainSource::Surfaces(complex));
     }
     let curves = geometry::curves(table)?;
     let faces = geometry::faces(table, &curves)?;
@@ -214,9 +228,13 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
 
 fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) -> Result<(), Fault> {
     match domain {
-        DomainSource::Curves { .. } | DomainSource::Elements { .. } if fields.is_empty() => Err(table
-            .fault("The case has no metric")
-            .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1")),
+        DomainSource::Curves { .. } | DomainSource::Surfaces(_) | DomainSource::Elements { .. }
+            if fields.is_empty() =>
+        {
+            Err(table
+                .fault("The case has no metric")
+                .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1"))
+        }
         DomainSource::Mesh { sol: Some(_), .. } if !fields.is_empty() => {
             Err(table.fault("The case has sol and [[metric]]").remedy("Leave one of them out"))
         }

@@ -1,9 +1,12 @@
 //! A mesh of the converter as files and measurements know it: without tombstones, the copies of a node made one point.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::mesh_file::{Data, FRONT, Group, MeshFile};
 use super::statistics::Measured;
+use crate::core::geometry::atlas::Atlas;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, PointId};
 
@@ -31,10 +34,14 @@ pub struct Export {
     pub quads: Vec<[u32; 4]>,
     /// Points, elements, lines along all curves, and their groups.
     pub file: MeshFile,
+    /// The surfaces on which it lies; none in the plane.
+    pub atlas: Option<Arc<Atlas>>,
+    /// A place in the parametric plane of each point.
+    pub chart: Vec<DVec2>,
 }
 
 impl Export {
-    /// The arrays of a planar mesh whose regions have these names; nodes and elements keep their order.
+    /// The arrays of a mesh whose regions have these names; nodes and elements keep their order.
     pub fn of(mesh: &Mesh, regions: &[String]) -> Export {
         Export::with_nodes(mesh, regions).0
     }
@@ -69,7 +76,8 @@ impl Export {
 
     /// The arrays, and the place in them of each node.
     fn with_nodes(mesh: &Mesh, regions: &[String]) -> (Export, Vec<u32>) {
-        let mut export = Export::default();
+        let atlas = mesh.ground().map(|ground| Arc::clone(&ground.atlas));
+        let mut export = Export { atlas, ..Export::default() };
         let mut node_at = vec![NONE; mesh.node_slots()];
         let mut point_at: Vec<u32> = Vec::new();
         for node in mesh.nodes() {
@@ -77,7 +85,8 @@ impl Export {
             node_at[node.index()] = export.uv.len() as u32;
             export.uv.push(uv);
             let mut new_point = || {
-                export.file.points.push(uv.extend(0.0));
+                export.file.points.push(mesh.xyz(node));
+                export.chart.push(uv);
                 export.file.points.len() as u32 - 1
             };
             let point = match mesh.point(node) {
@@ -134,7 +143,13 @@ impl Export {
 
     /// The mesh as it is measured.
     pub fn measured(&self) -> Measured<'_> {
-        Measured { uv: &self.uv, points: &self.points, triangles: &self.triangles, quads: &self.quads }
+        Measured {
+            uv: &self.uv,
+            points: &self.points,
+            triangles: &self.triangles,
+            quads: &self.quads,
+            atlas: self.atlas.as_deref(),
+        }
     }
 }
 
@@ -154,6 +169,7 @@ mod tests {
             point: points.map(PointId).to_vec(),
             triangles: vec![[0, 1, 2], [3, 4, 5]],
             region: vec![0, 1],
+            ..TriangleSet::default()
         };
         let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6]);
         Export::of(&mesh, &["left".to_owned(), "right".to_owned()])
@@ -180,6 +196,7 @@ mod tests {
             point: (0..5).map(PointId).collect(),
             triangles: vec![[0, 1, 2], [0, 2, 3], [1, 4, 2]],
             region: vec![0; 3],
+            ..TriangleSet::default()
         };
         let mut mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 5]);
         let corners = [0, 1, 2, 3].map(NodeId);

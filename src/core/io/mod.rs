@@ -23,3 +23,4 @@ pub mod statistics;
 pub mod export;
 pub mod report;
 pub mod run_file;
+pub mod figure;

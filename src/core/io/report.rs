@@ -31,6 +31,9 @@ pub struct Report {
     pub valid: bool,
     /// What the mesh is like.
     pub mesh: Statistics,
+    /// Whether it lies on surfaces, so that what is seen is in space and not in the plane.
+    #[serde(skip)]
+    pub on_surfaces: bool,
     /// What the last resort had to do.
     pub last_resort: LastResort,
     /// What was mended in a mesh that was given, each in words.
@@ -124,7 +127,7 @@ impl Report {
         );
         row("background", counted(self.background_triangles, "triangle"));
         row("angles, metric", angles(&mesh.metric_angles));
-        row("angles, plane", angles(&mesh.physical_angles));
+        row(if self.on_surfaces { "angles, space" } else { "angles, plane" }, angles(&mesh.physical_angles));
         row("edge length", lengths(mesh));
         row(
             "irregular nodes",
@@ -136,7 +139,15 @@ impl Report {
             ),
         );
         if let (Some(metric), Some(plane)) = (mesh.metric_scaled_jacobian, mesh.physical_scaled_jacobian) {
-            row("scaled Jacobian", format!("{} in the metric; {} in the plane", range(metric), range(plane)));
+            row(
+                "scaled Jacobian",
+                format!(
+                    "{} in the metric; {} in {}",
+                    range(metric),
+                    range(plane),
+                    if self.on_surfaces { "space" } else { "the plane" }
+                ),
+            );
         }
         row(
             "last resort",
@@ -329,7 +340,7 @@ mod tests {
             .to_vec();
         let points: Vec<_> = (0..7).map(PointId).collect();
         let quads = [[0, 1, 2, 3], [0, 3, 4, 5], [0, 5, 6, 1]];
-        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads };
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
         Report {
             program: Program { name: "quadfront".to_owned(), version: "0.0.0".to_owned() },
             case: CaseTold { name: "three".to_owned(), title: "Three quadrilaterals".to_owned(), text: String::new() },
@@ -338,6 +349,7 @@ mod tests {
             regions: 1,
             valid: true,
             mesh: Statistics::measure(mesh, &Growing).unwrap(),
+            on_surfaces: false,
             last_resort: LastResort::of(3, 3),
             repairs: vec!["2 triangles were turned over".to_owned()],
             events: BTreeMap::from([("swap".to_owned(), 2), ("merge".to_owned(), 1)]),

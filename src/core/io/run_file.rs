@@ -24,7 +24,13 @@
 //! target = [0.5, 0.5, 0]
 //! turn = [0, 0, 0, 1]
 //! height = 1.2
+//!
+//! [figure]                       # in the metadata of figures: what they show, and how they were drawn
+//! drawn = ["--ink=grey"]
+//! state = [{ step = 812, at = "nq=100", fingerprint = "9c1f..." }]
 //! ```
+
+mod figure;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -94,7 +100,7 @@ pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
                 .remedy("Use a newer quadfront"));
         }
     }
-    table.only(&["run", "program", "case", "parameters", "edit", "bookmark", "camera"])?;
+    table.only(&["run", "program", "case", "parameters", "edit", "bookmark", "camera", "figure"])?;
     table.get("program").map(|value| value.text()).transpose()?;
     let case = case(&table.need("case", "{ name = \"...\" }")?.table()?, file, folder)?;
     let mut run = Run::of(case);
@@ -117,6 +123,7 @@ pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
     }
     run.bookmarks.sort_by_key(|bookmark| bookmark.step);
     run.camera = table.get("camera").map(|value| camera(&value.table()?)).transpose()?;
+    run.shown = table.get("figure").map(|value| figure::shown(&value.table()?)).transpose()?;
     Ok(run)
 }
 
@@ -335,12 +342,20 @@ fn text(run: &Run, links: &Links, folder: &Path) -> String {
         let (target, turn) = (list(&target), list(&turn));
         line(format_args!("\n[camera]\ntarget = [{target}]\nturn = [{turn}]\nheight = {}\n", Shortest(height)));
     }
+    if let Some(shown) = &run.shown {
+        line(format_args!("\n{}", figure::text(shown)));
+    }
     text
 }
 
 /// The value of a parameter in a file: words in quotes.
 fn parameter(key: &str, value: &str) -> String {
     if key.starts_with("selection") { quoted(value) } else { value.to_owned() }
+}
+
+/// Whether a character can stand as it is in TOML and in XML, where figures carry their run.
+fn is_plain(c: char) -> bool {
+    !c.is_control() && !matches!(c, '\u{FFFE}' | '\u{FFFF}')
 }
 
 /// A text in quotes, on one line.
@@ -350,7 +365,7 @@ fn quoted(text: &str) -> String {
         match c {
             '"' => quoted.push_str("\\\""),
             '\\' => quoted.push_str("\\\\"),
-            c if c.is_control() => {
+            c if !is_plain(c) => {
                 let _ = write!(quoted, "\\u{:04X}", u32::from(c));
             }
             c => quoted.push(c),
@@ -362,7 +377,7 @@ fn quoted(text: &str) -> String {
 
 /// A text over several lines, as it stands where that is possible.
 fn block(text: &str) -> String {
-    let plain = |c: char| c == '\n' || c == '\t' || !c.is_control();
+    let plain = |c: char| c == '\n' || c == '\t' || is_plain(c);
     if text.contains("'''") || text.ends_with('\'') || !text.chars().all(plain) {
         return quoted(text);
     }

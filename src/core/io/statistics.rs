@@ -4,6 +4,7 @@
 use glam::DVec2;
 use serde::Serialize;
 
+use crate::core::geometry::atlas::Atlas;
 use crate::core::mesh::ids::PointId;
 use crate::core::metric::field::{BadMetric, MetricSource};
 use crate::core::metric::measure::{angle, length_exact, quad_quality, triangle_quality};
@@ -29,6 +30,8 @@ pub struct Measured<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Quadrilaterals, anticlockwise.
     pub quads: &'a [[u32; 4]],
+    /// The surfaces on which it lies; none in the plane.
+    pub atlas: Option<&'a Atlas>,
 }
 
 /// Everything that is measured.
@@ -121,20 +124,26 @@ impl Statistics {
     /// Where the source has no metric at a node or along an edge.
     pub fn measure(mesh: Measured<'_>, source: &dyn MetricSource) -> Result<Statistics, Box<BadMetric>> {
         let metrics = mesh.uv.iter().map(|&uv| source.metric(uv)).collect::<Result<Vec<_>, _>>()?;
+        // What is seen at a node: the plane, or the surface's own lengths and angles in its tangent plane.
+        let seen: Vec<Metric2> = match mesh.atlas {
+            None => Vec::new(),
+            Some(atlas) => mesh.uv.iter().map(|&uv| atlas.at(uv).first_form()).collect(),
+        };
+        let seen = |n: u32| seen.get(n as usize).copied().unwrap_or(PLANE);
         let mut tally = Tally::default();
         for triangle in mesh.triangles {
             let p = triangle.map(|n| mesh.uv[n as usize]);
-            tally.angles(&p, &triangle.map(|n| metrics[n as usize]));
+            tally.angles(&p, &triangle.map(|n| metrics[n as usize]), &triangle.map(seen));
             let at_centroid = source.metric((p[0] + p[1] + p[2]) / 3.0)?;
             tally.quality.add(triangle_quality(&at_centroid, p[0], p[1], p[2]));
         }
         for quad in mesh.quads {
             let p = quad.map(|n| mesh.uv[n as usize]);
             let m = quad.map(|n| metrics[n as usize]);
-            tally.angles(&p, &m);
+            tally.angles(&p, &m, &quad.map(seen));
             tally.quality.add(quad_quality(m.each_ref(), p));
             tally.metric_jacobian.add(scaled_jacobian(&p, &m));
-            tally.physical_jacobian.add(scaled_jacobian(&p, &[PLANE; 4]));
+            tally.physical_jacobian.add(scaled_jacobian(&p, &quad.map(seen)));
         }
         let (edges, interior) = edges_and_interior(&mesh);
         let lengths = edges.iter().map(|[a, b]| length_exact(source, mesh.uv[*a as usize], mesh.uv[*b as usize]));
@@ -223,9 +232,9 @@ struct Tally {
 }
 
 impl Tally {
-    fn angles<const N: usize>(&mut self, p: &[DVec2; N], m: &[Metric2; N]) {
+    fn angles<const N: usize>(&mut self, p: &[DVec2; N], m: &[Metric2; N], seen: &[Metric2; N]) {
         self.metric_angles.add(p, m);
-        self.physical_angles.add(p, &[PLANE; N]);
+        self.physical_angles.add(p, seen);
     }
 }
 
@@ -343,7 +352,7 @@ mod tests {
     #[test]
     fn squares_of_unit_size_are_perfect() {
         let (uv, points, quads) = squares(4);
-        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads };
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
         let found = Statistics::measure(mesh, &Constant(Metric2::isotropic(0.25))).unwrap();
         assert_eq!((found.nodes, found.quads, found.edges), (25, 16, 40));
         assert_eq!((found.irregular.interior, found.irregular.irregular), (9, 0));
@@ -359,7 +368,7 @@ mod tests {
     fn a_stretched_metric_is_seen_in_its_angles_and_lengths_and_not_in_those_of_the_plane() {
         let uv = [(0.0, 0.0), (2.0, 0.0), (2.5, 1.0), (0.5, 1.0)].map(|(x, y)| DVec2::new(x, y));
         let points = [0, 1, 2, 3].map(PointId);
-        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &[[0, 1, 2, 3]] };
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &[[0, 1, 2, 3]], atlas: None };
         let sheared = Metric2 { uu: 0.25, uv: -0.125, vv: 1.0625 };
         let found = Statistics::measure(mesh, &Constant(sheared)).unwrap();
         assert!((found.metric_scaled_jacobian.unwrap().min - 1.0).abs() < 1e-12, "a unit square of that metric");
@@ -378,7 +387,7 @@ mod tests {
         let quads = [[0, 1, 2, 3], [4, 5, 6, 7]];
         let measured = |points: [u32; 8]| {
             let points = points.map(PointId);
-            let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads };
+            let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
             let found = Statistics::measure(mesh, &Constant(Metric2::isotropic(1.0))).unwrap();
             (found.nodes, found.edges, found.irregular.interior)
         };
@@ -391,11 +400,11 @@ mod tests {
         let (uv, points, quads) = squares(2);
         let cut: Vec<_> = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
         let source = Constant(Metric2::isotropic(0.5));
-        let all = Measured { uv: &uv, points: &points, triangles: &cut, quads: &[] };
+        let all = Measured { uv: &uv, points: &points, triangles: &cut, quads: &[], atlas: None };
         let found = Statistics::measure(all, &source).unwrap();
         assert_eq!((found.triangles, found.edges, found.irregular.irregular), (8, 16, 0), "six triangles meet inside");
         assert!(found.metric_scaled_jacobian.is_none());
-        let mixed = Measured { uv: &uv, points: &points, triangles: &cut[..2], quads: &quads[1..] };
+        let mixed = Measured { uv: &uv, points: &points, triangles: &cut[..2], quads: &quads[1..], atlas: None };
         let found = Statistics::measure(mixed, &source).unwrap();
         assert_eq!((found.triangles, found.quads, found.edges), (2, 3, 13));
         assert_eq!(found.irregular.irregular, 1, "three quadrilaterals and two triangles are more than a turn");

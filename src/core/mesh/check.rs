@@ -60,6 +60,25 @@ impl Mesh {
         Ok(())
     }
 
+    /// The elements on surfaces that have a corner, between straight sides in space, whose normal does not agree with that of
+    /// the surface there: they fold over it, which a mesh too coarse for its curvature does. None in the plane.
+    pub fn folded(&self) -> Vec<ElementId> {
+        let Some(ground) = self.ground() else { return Vec::new() };
+        let folds = |e: &ElementId| {
+            let nodes: Vec<NodeId> = self.corners(*e).collect();
+            let xyz: Vec<_> = nodes.iter().map(|&n| self.xyz(n)).collect();
+            let count = nodes.len();
+            let middle = nodes.iter().map(|&n| self.uv(n)).sum::<glam::DVec2>() / count as f64;
+            (0..count).any(|k| {
+                let (next, previous) = (xyz[(k + 1) % count] - xyz[k], xyz[(k + count - 1) % count] - xyz[k]);
+                // At an apex there are many normals: that from a little within the element is meant.
+                let within = self.uv(nodes[k]).lerp(middle, 1e-3);
+                next.cross(previous).dot(ground.atlas.at(within).normal()) <= 0.0
+            })
+        };
+        self.elements().filter(folds).collect()
+    }
+
     /// Checks one element: its half-edges and twins agree, its nodes differ, it is strictly positive.
     ///
     /// # Errors

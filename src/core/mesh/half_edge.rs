@@ -14,12 +14,15 @@ mod taking_back;
 pub use difference::{Difference, FreeLists};
 pub use taking_back::Undone;
 
-use glam::DVec2;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
 
 use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
 use super::order::{grouped, hilbert_order};
 use super::refusals::Refusals;
 use super::triangle_set::TriangleSet;
+use crate::core::geometry::atlas::Atlas;
 use crate::core::journal::Journal;
 use crate::core::metric::tensor::Metric2;
 
@@ -50,6 +53,17 @@ pub struct Mesh {
     free_elements: Vec<ElementId>,
     journal: Journal,
     pub(super) refusals: Option<Refusals>,
+    /// The surfaces on which it lies; none in the plane.
+    ground: Option<Arc<Ground>>,
+}
+
+/// The surfaces on which a mesh lies, and where its points on curves are in space: the same for all faces that share them.
+#[derive(Debug)]
+pub struct Ground {
+    /// The charts of all faces.
+    pub atlas: Arc<Atlas>,
+    /// The place of each point of a fixed node.
+    pub points: Vec<DVec3>,
 }
 
 /// An element to be made: its nodes anticlockwise (three or four) and its region.
@@ -125,6 +139,7 @@ impl Mesh {
             free_elements: Vec::new(),
             journal: Journal::default(),
             refusals: None,
+            ground: None,
         };
         let mut by_side: Vec<(u64, u32)> = Vec::with_capacity(3 * elements);
         for (element, nodes) in set.triangles.iter().enumerate() {
@@ -393,6 +408,50 @@ impl Mesh {
         (p != NONE).then_some(PointId(p))
     }
 
+    // ---- surfaces ----
+
+    /// Lays the mesh on surfaces.
+    pub fn set_ground(&mut self, ground: Arc<Ground>) {
+        self.ground = Some(ground);
+    }
+
+    /// The surfaces on which it lies; none in the plane.
+    pub fn ground(&self) -> Option<&Arc<Ground>> {
+        self.ground.as_ref()
+    }
+
+    /// The place of a node in space; z is 0 in the plane.
+    pub fn xyz(&self, node: NodeId) -> DVec3 {
+        match (&self.ground, self.point(node)) {
+            (None, _) => self.uv(node).extend(0.0),
+            (Some(ground), Some(point)) => ground.points[point.index()],
+            (Some(ground), None) => ground.atlas.xyz(self.uv(node)),
+        }
+    }
+
+    /// The unit normal of the surface at a node; z in the plane.
+    pub fn normal(&self, node: NodeId) -> DVec3 {
+        self.ground.as_ref().map_or(DVec3::Z, |ground| ground.atlas.at(self.uv(node)).normal())
+    }
+
+    /// The smallest target size at a node, in units of length: on surfaces that of the intrinsic eigenvalues, of M
+    /// against `J^T J` (spec 1, on eq. 6).
+    #[inline]
+    pub fn smallest_size(&self, node: NodeId) -> f64 {
+        match &self.ground {
+            None => self.metric_ref(node).min_size(),
+            Some(ground) => self.metric_ref(node).min_size_against(&ground.atlas.at(self.uv(node)).first_form()),
+        }
+    }
+
+    /// The distance of two nodes in space.
+    pub fn physical_distance(&self, a: NodeId, b: NodeId) -> f64 {
+        match &self.ground {
+            None => self.uv(a).distance(self.uv(b)),
+            Some(_) => self.xyz(a).distance(self.xyz(b)),
+        }
+    }
+
     // ---- order ----
 
     /// The same mesh without tombstones, its nodes and elements along a Hilbert curve: neighbours in the plane become
@@ -443,6 +502,7 @@ impl Mesh {
             first_level: self.first_level_in(&nodes),
             journal,
             refusals: self.refusals,
+            ground: self.ground.clone(),
             ..Mesh::default()
         }
     }
@@ -473,6 +533,7 @@ impl Mesh {
             free_elements: self.free_elements.clone(),
             refusals: self.refusals,
             journal: Journal::default(),
+            ground: self.ground.clone(),
         }
     }
 
@@ -523,6 +584,7 @@ mod tests {
             point: (0..4).map(PointId).collect(),
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             region: vec![0; 2],
+            ..TriangleSet::default()
         };
         for recording in [false, true] {
             let mut mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4]);

@@ -1,6 +1,6 @@
 //! Triangles as plain arrays, cut along everything that may not be changed: what the half-edge mesh is made from.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::ids::PointId;
 
@@ -18,4 +18,6 @@ pub struct TriangleSet {
     pub triangles: Vec<[u32; 3]>,
     /// The face (region) of each triangle.
     pub region: Vec<u32>,
+    /// On surfaces: the place in space of each point. Empty in the plane.
+    pub xyz: Vec<DVec3>,
 }

@@ -1,23 +1,142 @@
-//! A field for boundary layers: small across named curves, growing with the distance from them.
+//! Fields about named curves: boundary layers, small across the curves, and sizes that grow in all directions with the
+//! distance from them.
 
 use glam::{DVec2, DVec3};
 
-use super::box_tree::{BoxTree, share_along};
+use super::box_tree::{BoxTree, Spot, share_along};
 use super::tensor::{LARGEST_ANISOTROPY, Metric3};
 use crate::core::fault::Fault;
+use crate::core::geometry::domain::Line;
 
 /// The size of a field that asks for nothing, as a multiple of the extent of its curves. It matters only where no other
 /// field bounds the sizes.
 const UNBOUNDED: f64 = 1e3;
 
-/// The curves as segments and the sizes about them.
+/// Nearer to a curve than this part of its extent, rounding would turn the direction towards it.
+const ON_CURVE: f64 = 1e-9;
+
+/// Segments of curves, and which of them is nearest.
 #[derive(Clone, Debug)]
-pub(super) struct BoundaryLayer {
-    tree: BoxTree,
+struct Near<P> {
+    tree: BoxTree<P>,
     /// In the tree's order.
-    segments: Vec<[DVec2; 2]>,
+    segments: Vec<[P; 2]>,
     /// Diagonal of the box about all curves.
     extent: f64,
+}
+
+impl<P: Spot> Near<P> {
+    fn new(lines: &[Vec<P>]) -> Result<Near<P>, Fault> {
+        let mut segments = Vec::new();
+        for line in lines {
+            segments.extend(line.windows(2).map(|w| [w[0], w[1]]).filter(|[a, b]| a != b));
+        }
+        let boxes: Vec<_> = segments.iter().map(|[a, b]| (a.least(*b), a.greatest(*b))).collect();
+        let [nowhere, everywhere] = P::NOWHERE;
+        let (low, high) =
+            boxes.iter().fold((nowhere, everywhere), |(low, high), b| (low.least(b.0), high.greatest(b.1)));
+        let extent = (high - low).inner(high - low).sqrt();
+        if !(extent > 0.0 && extent.is_finite()) {
+            return Err(Fault::new("The curves have no length"));
+        }
+        let (tree, order) = BoxTree::new(&boxes);
+        let segments = order.into_iter().map(|i| segments[i as usize]).collect();
+        Ok(Near { tree, segments, extent })
+    }
+
+    /// The nearest segment, the point of it, and the distance; `None` when `p` is not finite.
+    #[inline]
+    fn find(&self, p: P) -> Option<([P; 2], P, f64)> {
+        let foot = |[a, b]: [P; 2]| a.between(b, share_along(p, a, b));
+        let (id, distance2) = self.tree.nearest(p, |id| foot(self.segments[id as usize]).distance2(p))?;
+        let segment = self.segments[id as usize];
+        Some((segment, foot(segment), distance2.sqrt()))
+    }
+}
+
+/// Curves in a planar domain, or in space.
+#[derive(Clone, Debug)]
+enum Curves {
+    Plane(Near<DVec2>),
+    Space(Near<DVec3>),
+}
+
+impl Curves {
+    fn new(lines: &[Line]) -> Result<Curves, Fault> {
+        let plane: Option<Vec<Vec<DVec2>>> =
+            lines.iter().map(|line| if let Line::Plane(points) = line { Some(points.clone()) } else { None }).collect();
+        match plane {
+            Some(lines) => Near::new(&lines).map(Curves::Plane),
+            None => Near::new(&lines.iter().map(Line::in_space).collect::<Vec<_>>()).map(Curves::Space),
+        }
+    }
+
+    fn extent(&self) -> f64 {
+        match self {
+            Curves::Plane(near) => near.extent,
+            Curves::Space(near) => near.extent,
+        }
+    }
+
+    /// The distance of a point.
+    #[inline]
+    fn distance(&self, uv: DVec2, xyz: DVec3) -> Option<f64> {
+        Some(match self {
+            Curves::Plane(near) => near.find(uv)?.2,
+            Curves::Space(near) => near.find(xyz)?.2,
+        })
+    }
+}
+
+/// Refuses sizes that are none, and a growth below 1.
+fn check(sizes: &[(&str, Option<f64>)], growth: f64) -> Result<(), Fault> {
+    for (name, size) in sizes {
+        if let Some(size) = size
+            && !(1e-60..=1e60).contains(size)
+        {
+            return Err(Fault::new(format!("{name} = {size} is no size")).remedy("Give a positive finite number"));
+        }
+    }
+    if growth >= 1.0 && growth.is_finite() {
+        return Ok(());
+    }
+    Err(Fault::new(format!("growth = {growth} is less than 1 or not finite"))
+        .remedy("Give the ratio of a row's height to that of the row before, such as 1.2"))
+}
+
+/// A size that grows with the distance from curves, the same in all directions.
+#[derive(Clone, Debug)]
+pub(super) struct Distance {
+    curves: Curves,
+    first: f64,
+    /// Growth of the size with the distance.
+    slope: f64,
+    far: f64,
+}
+
+impl Distance {
+    /// # Errors
+    /// Sizes that are not positive and finite, a growth below 1, curves without length.
+    pub fn new(lines: &[Line], first: f64, growth: f64, far: f64) -> Result<Distance, Fault> {
+        check(&[("first", Some(first)), ("far", Some(far))], growth)?;
+        if far < first {
+            return Err(Fault::new("far is smaller than first").remedy("far is the largest size that is asked for"));
+        }
+        Ok(Distance { curves: Curves::new(lines)?, first, slope: growth - 1.0, far })
+    }
+
+    /// The metric at a place; `None` where it is not finite.
+    #[inline]
+    pub fn metric(&self, uv: DVec2, xyz: DVec3) -> Option<Metric3> {
+        let distance = self.curves.distance(uv, xyz)?;
+        Some(Metric3::isotropic((self.first + self.slope * distance).min(self.far)))
+    }
+}
+
+/// The curves and the sizes about them.
+#[derive(Clone, Debug)]
+pub(super) struct BoundaryLayer {
+    curves: Curves,
     first: f64,
     /// Growth of the size with the distance.
     slope: f64,
@@ -29,23 +148,13 @@ impl BoundaryLayer {
     /// # Errors
     /// Sizes that are not positive and finite, a growth below 1, no curve, curves without length.
     pub fn new(
-        polylines: &[Vec<DVec2>],
+        lines: &[Line],
         first: f64,
         growth: f64,
         along: Option<f64>,
         far: Option<f64>,
     ) -> Result<BoundaryLayer, Fault> {
-        for (name, size) in [("first", Some(first)), ("along", along), ("far", far)] {
-            if let Some(size) = size
-                && !(1e-60..=1e60).contains(&size)
-            {
-                return Err(Fault::new(format!("{name} = {size} is no size")).remedy("Give a positive finite number"));
-            }
-        }
-        if !(growth >= 1.0 && growth.is_finite()) {
-            return Err(Fault::new(format!("growth = {growth} is less than 1 or not finite"))
-                .remedy("Give the ratio of a row's height to that of the row before, such as 1.2"));
-        }
+        check(&[("first", Some(first)), ("along", along), ("far", far)], growth)?;
         if far.is_some_and(|far| far < first) {
             return Err(Fault::new("far is smaller than first")
                 .remedy("far is the largest size that is asked for across the curves"));
@@ -57,21 +166,9 @@ impl BoundaryLayer {
                 "first = {first} and along = {along} differ by a factor of more than {LARGEST_ANISOTROPY:e}"
             )));
         }
-        let mut segments = Vec::new();
-        for line in polylines {
-            segments.extend(line.windows(2).map(|w| [w[0], w[1]]).filter(|[a, b]| a != b));
-        }
-        let boxes: Vec<_> = segments.iter().map(|[a, b]| (a.min(*b), a.max(*b))).collect();
-        let (low, high) =
-            boxes.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), b| (low.min(b.0), high.max(b.1)));
-        let extent = (high - low).length();
-        if !(extent > 0.0 && extent.is_finite()) {
-            return Err(Fault::new("The curves of a boundary layer have no length"));
-        }
-        let (tree, order) = BoxTree::new(&boxes);
-        let segments = order.into_iter().map(|i| segments[i as usize]).collect();
-        let far = far.unwrap_or(UNBOUNDED * extent.max(first));
-        Ok(BoundaryLayer { tree, segments, extent, first, slope: growth - 1.0, along, far })
+        let curves = Curves::new(lines)?;
+        let far = far.unwrap_or(UNBOUNDED * curves.extent().max(first));
+        Ok(BoundaryLayer { curves, first, slope: growth - 1.0, along, far })
     }
 
     /// Whether it gives a tensor of itself; if not, it only cuts back those of others.
@@ -79,36 +176,56 @@ impl BoundaryLayer {
         self.along.is_some()
     }
 
-    /// The direction across the curves at `p` and the size along it; `None` when `p` is not finite.
+    /// The direction across the curves and the size along it; `None` where the place is not finite. On a curve in space
+    /// all directions across it are meant, and the curve's own is given second.
     ///
     /// The size is `min(first + (growth - 1) distance, far)`: rows that each are `growth` times the one before lie at distances
-    /// that make it so. The direction is the gradient of the distance; on a curve it is the normal of its segment.
+    /// that make it so. The direction is the gradient of the distance; on a curve of the plane it is the normal of its segment.
     #[inline]
-    fn across(&self, p: DVec2) -> Option<(DVec2, f64)> {
-        let foot = |[a, b]: [DVec2; 2]| a.lerp(b, share_along(p, a, b));
-        let (id, distance2) = self.tree.nearest(p, |id| foot(self.segments[id as usize]).distance_squared(p))?;
-        let segment = self.segments[id as usize];
-        let distance = distance2.sqrt();
-        // Nearer than this the foot's rounding would turn the direction.
-        let direction =
-            if distance > 1e-9 * self.extent { p - foot(segment) } else { (segment[1] - segment[0]).perp() };
-        Some((direction / direction.length(), (self.first + self.slope * distance).min(self.far)))
+    fn across(&self, uv: DVec2, xyz: DVec3) -> Option<(DVec3, Option<DVec3>, f64)> {
+        let size = |distance: f64| (self.first + self.slope * distance).min(self.far);
+        match &self.curves {
+            Curves::Plane(near) => {
+                let (segment, foot, distance) = near.find(uv)?;
+                let direction =
+                    if distance > ON_CURVE * near.extent { uv - foot } else { (segment[1] - segment[0]).perp() };
+                Some(((direction / direction.length()).extend(0.0), None, size(distance)))
+            }
+            Curves::Space(near) => {
+                let (segment, foot, distance) = near.find(xyz)?;
+                if distance > ON_CURVE * near.extent {
+                    return Some(((xyz - foot) / (xyz - foot).length(), None, size(distance)));
+                }
+                let along = (segment[1] - segment[0]).normalize();
+                Some((along.any_orthonormal_vector(), Some(along), size(distance)))
+            }
+        }
     }
 
-    /// The field at `p` intersected with what other fields ask for there; `None` when `p` is not finite.
+    /// The field at a place intersected with what other fields ask for there; `None` where the place is not finite.
     #[inline]
-    pub fn intersect(&self, others: Option<Metric3>, p: DVec2) -> Option<Metric3> {
-        let (n, h) = self.across(p)?;
-        let n = n.extend(0.0);
+    pub fn intersect(&self, others: Option<Metric3>, uv: DVec2, xyz: DVec3) -> Option<Metric3> {
+        let (n, on, h) = self.across(uv, xyz)?;
         let Some(along) = self.along else {
             // Alone, it must be bounded somehow, and no further than the tensor can hold.
-            let others = others
-                .unwrap_or_else(|| Metric3::isotropic((UNBOUNDED * self.extent).min(0.1 * LARGEST_ANISOTROPY * h)));
-            return Some(others.intersect_slab(n, h));
+            let others = others.unwrap_or_else(|| {
+                Metric3::isotropic((UNBOUNDED * self.curves.extent()).min(0.1 * LARGEST_ANISOTROPY * h))
+            });
+            let m = others.intersect_slab(n, h);
+            return Some(on.map_or(m, |along| m.intersect_slab(n.cross(along), h)));
         };
         let h = h.min(LARGEST_ANISOTROPY * along);
         let (across, along) = (1.0 / (h * h), 1.0 / (along * along));
-        let m = Metric3::from_eigen([across, along, along], [n, n.truncate().perp().extend(0.0), DVec3::Z]);
+        let m = match (&self.curves, on) {
+            (Curves::Plane(_), _) => {
+                Metric3::from_eigen([across, along, along], [n, n.truncate().perp().extend(0.0), DVec3::Z])
+            }
+            (Curves::Space(_), Some(curve)) => Metric3::from_eigen([across, across, along], [n, n.cross(curve), curve]),
+            (Curves::Space(_), None) => {
+                let (a, b) = n.any_orthonormal_pair();
+                Metric3::from_eigen([across, along, along], [n, a, b])
+            }
+        };
         Some(others.map_or(m, |others| Metric3::intersect(&others, &m)))
     }
 }

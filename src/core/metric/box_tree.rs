@@ -1,43 +1,109 @@
-//! Nearest of many small things in the plane, by a tree of their boxes.
+//! Nearest of many small things in the plane or in space, by a tree of their boxes.
 //!
 //! What a field needs and a general index does not promise: the answer is a pure function of the query (equal distances go
 //! to the lowest number, whatever was asked before), nothing is allocated, and strongly graded sets cost no more than even ones.
 
-use glam::DVec2;
+use std::ops::{Add, Mul, Sub};
+
+use glam::{DVec2, DVec3};
+
+/// A point of the plane or of space, as the tree needs it.
+pub(super) trait Spot:
+    Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
+{
+    const NOWHERE: [Self; 2];
+    fn least(self, other: Self) -> Self;
+    fn greatest(self, other: Self) -> Self;
+    fn inner(self, other: Self) -> f64;
+    fn is_somewhere(self) -> bool;
+    fn between(self, other: Self, share: f64) -> Self;
+    /// How far it is from a box, squared.
+    fn outside2(self, low: Self, high: Self) -> f64;
+    /// The axis along which an extent is longest, the first among equals.
+    fn longest_axis(self) -> usize;
+    fn along(self, axis: usize) -> f64;
+    fn distance2(self, other: Self) -> f64;
+}
+
+macro_rules! spot {
+    ($vector:ty) => {
+        impl Spot for $vector {
+            const NOWHERE: [Self; 2] = [<$vector>::INFINITY, <$vector>::NEG_INFINITY];
+            #[inline]
+            fn least(self, other: Self) -> Self {
+                self.min(other)
+            }
+            #[inline]
+            fn greatest(self, other: Self) -> Self {
+                self.max(other)
+            }
+            #[inline]
+            fn inner(self, other: Self) -> f64 {
+                self.dot(other)
+            }
+            #[inline]
+            fn is_somewhere(self) -> bool {
+                self.is_finite()
+            }
+            #[inline]
+            fn between(self, other: Self, share: f64) -> Self {
+                self.lerp(other, share)
+            }
+            #[inline]
+            fn outside2(self, low: Self, high: Self) -> f64 {
+                (low - self).max(self - high).max(Self::ZERO).length_squared()
+            }
+            fn longest_axis(self) -> usize {
+                let lengths = self.to_array();
+                (0..lengths.len()).fold(0, |best, axis| if lengths[axis] > lengths[best] { axis } else { best })
+            }
+            fn along(self, axis: usize) -> f64 {
+                self[axis]
+            }
+            #[inline]
+            fn distance2(self, other: Self) -> f64 {
+                self.distance_squared(other)
+            }
+        }
+    };
+}
+
+spot!(DVec2);
+spot!(DVec3);
 
 /// Things in one leaf at most.
 const LEAF: usize = 4;
 
 /// A tree over things that are known by their boxes. It renumbers them so that those of one leaf are together.
 #[derive(Clone, Debug)]
-pub(super) struct BoxTree {
-    root: Branch,
+pub(super) struct BoxTree<P> {
+    root: Branch<P>,
     /// Both branches of an inner node side by side: choosing between them takes one look at memory.
-    nodes: Vec<[Branch; 2]>,
+    nodes: Vec<[Branch<P>; 2]>,
 }
 
 /// A box with what is in it.
 #[derive(Clone, Copy, Debug)]
-struct Branch {
-    low: DVec2,
-    high: DVec2,
+struct Branch<P> {
+    low: P,
+    high: P,
     /// A leaf's first thing; the place in `nodes` otherwise.
     at: u32,
     /// Things of a leaf; 0: an inner node.
     count: u32,
 }
 
-impl Branch {
+impl<P: Spot> Branch<P> {
     #[inline]
-    fn distance2(&self, p: DVec2) -> f64 {
-        (self.low - p).max(p - self.high).max(DVec2::ZERO).length_squared()
+    fn distance2(&self, p: P) -> f64 {
+        p.outside2(self.low, self.high)
     }
 }
 
-impl BoxTree {
+impl<P: Spot> BoxTree<P> {
     /// Builds the tree over boxes (lowest and highest corner, finite), at least one. With it comes the order that its numbers
     /// mean: its thing `k` is the box `order[k]`. Cost O(n log n).
-    pub fn new(boxes: &[(DVec2, DVec2)]) -> (BoxTree, Vec<u32>) {
+    pub fn new(boxes: &[(P, P)]) -> (BoxTree<P>, Vec<u32>) {
         assert!(!boxes.is_empty(), "a tree stands over something");
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = Vec::new();
@@ -48,20 +114,20 @@ impl BoxTree {
     /// Some thing not far from `p`: the first of the leaf that is met by always taking the nearer branch. `None` when `p` is
     /// not finite.
     #[inline]
-    pub fn descend(&self, p: DVec2) -> Option<u32> {
+    pub fn descend(&self, p: P) -> Option<u32> {
         let mut branch = &self.root;
         while branch.count == 0 {
             let [left, right] = &self.nodes[branch.at as usize];
             branch = if left.distance2(p) <= right.distance2(p) { left } else { right };
         }
-        p.is_finite().then_some(branch.at)
+        p.is_somewhere().then_some(branch.at)
     }
 
     /// The thing with the least `distance2` from `p` (squared; its box must not be farther), the lowest number among equals,
     /// and that squared distance. `None` when `p` is not finite.
     #[inline]
-    pub fn nearest(&self, p: DVec2, distance2: impl Fn(u32) -> f64) -> Option<(u32, f64)> {
-        if !p.is_finite() {
+    pub fn nearest(&self, p: P, distance2: impl Fn(u32) -> f64) -> Option<(u32, f64)> {
+        if !p.is_somewhere() {
             return None;
         }
         // Halving 2^32 things ends after 32 levels, and each leaves one branch waiting.
@@ -99,20 +165,21 @@ impl BoxTree {
 }
 
 /// The branch over the things `order`, whose first number is `first`.
-fn branch(nodes: &mut Vec<[Branch; 2]>, boxes: &[(DVec2, DVec2)], order: &mut [u32], first: u32) -> Branch {
-    let whole = |(low, high): (DVec2, DVec2), &i: &u32| {
+fn branch<P: Spot>(nodes: &mut Vec<[Branch<P>; 2]>, boxes: &[(P, P)], order: &mut [u32], first: u32) -> Branch<P> {
+    let whole = |(low, high): (P, P), &i: &u32| {
         let b = boxes[i as usize];
-        (low.min(b.0), high.max(b.1))
+        (low.least(b.0), high.greatest(b.1))
     };
-    let (low, high) = order.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), whole);
+    let [nowhere, everywhere] = P::NOWHERE;
+    let (low, high) = order.iter().fold((nowhere, everywhere), whole);
     if order.len() <= LEAF {
         return Branch { low, high, at: first, count: order.len() as u32 };
     }
-    // The median of the doubled centres along the longer side; ids break ties, so that the tree is one only.
-    let along_x = high.x - low.x >= high.y - low.y;
+    // The median of the doubled centres along the longest side; ids break ties, so that the tree is one only.
+    let axis = (high - low).longest_axis();
     let centre = |i: u32| {
         let (low, high) = boxes[i as usize];
-        if along_x { low.x + high.x } else { low.y + high.y }
+        low.along(axis) + high.along(axis)
     };
     let half = order.len() / 2;
     order.select_nth_unstable_by(half, |&i, &j| centre(i).total_cmp(&centre(j)).then(i.cmp(&j)));
@@ -126,10 +193,10 @@ fn branch(nodes: &mut Vec<[Branch; 2]>, boxes: &[(DVec2, DVec2)], order: &mut [u
 
 /// The share of the way from `a` to `b`, in [0, 1], of the point of that segment that is nearest to `p`.
 #[inline]
-pub(super) fn share_along(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+pub(super) fn share_along<P: Spot>(p: P, a: P, b: P) -> f64 {
     let d = b - a;
-    let squared = d.length_squared();
-    if squared > 0.0 { ((p - a).dot(d) / squared).clamp(0.0, 1.0) } else { 0.0 }
+    let squared = d.inner(d);
+    if squared > 0.0 { ((p - a).inner(d) / squared).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Metric fields: what gives a tensor at a place (formula, uniform, table, boundary layer, intersection).
+//! Metric fields: what gives a tensor at a place (formula, uniform, table, about curves, by curvature, intersection), and on
+//! surfaces its pull-back (eq. 3).
 
 mod by_formula;
 
@@ -6,10 +7,14 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::boundary_layer::BoundaryLayer;
+use super::boundary_layer::{BoundaryLayer, Distance};
+use super::curvature::Curvature;
 use super::table::Table;
 use super::tensor::{LARGEST_ANISOTROPY, Metric2, Metric3, check_sizes};
 use crate::core::fault::Fault;
+use crate::core::geometry::atlas::Atlas;
+use crate::core::geometry::domain::Line;
+use crate::core::geometry::surface::Bend;
 use by_formula::FormulaField;
 
 /// A place where a metric is asked for: its point in space and its parametric coordinates (equal in the plane).
@@ -17,8 +22,12 @@ use by_formula::FormulaField;
 pub struct Place {
     /// Point in space.
     pub xyz: DVec3,
-    /// Parametric coordinates.
+    /// Parametric coordinates of its surface.
     pub uv: DVec2,
+    /// Where it lies in the plane in which it is meshed (in planar domains the same as `uv`).
+    pub chart: DVec2,
+    /// The curvature of the surface, where a field asks for it.
+    pub bend: Option<Bend>,
 }
 
 /// A field that yields no metric at some place: what is wrong and where.
@@ -46,7 +55,7 @@ impl Place {
     /// A place in a planar domain, where the parametric coordinates are x and y.
     #[inline]
     pub fn in_plane(uv: DVec2) -> Place {
-        Place { xyz: uv.extend(0.0), uv }
+        Place { xyz: uv.extend(0.0), uv, chart: uv, bend: None }
     }
 }
 
@@ -108,6 +117,30 @@ pub enum FieldSpec {
         /// Where it stands, for messages.
         place: String,
     },
+    /// The same size in all directions: `first` on named curves, growing by `growth` from row to row up to `far`.
+    Distance {
+        /// Names of curves.
+        curves: Vec<String>,
+        /// Size on the curves.
+        first: f64,
+        /// Ratio of a row's height to the one before, at least 1.
+        growth: f64,
+        /// Largest size.
+        far: f64,
+        /// Where it stands, for messages.
+        place: String,
+    },
+    /// Sizes by the curvature of the surface: chords stay within a part of the radius from it (see `curvature`).
+    Curvature {
+        /// Distance of a chord from its arc, as a part of the radius.
+        chord: f64,
+        /// Smallest size that it asks for.
+        least: f64,
+        /// Size where the surface is flat.
+        far: f64,
+        /// Where it stands, for messages.
+        place: String,
+    },
 }
 
 /// One compiled field.
@@ -119,6 +152,8 @@ enum Kind {
     Uniform(Metric3),
     Formula(Box<FormulaField>),
     BoundaryLayer(Box<BoundaryLayer>, String),
+    Distance(Box<Distance>, String),
+    Curvature(Curvature),
     Table(Box<Table>),
 }
 
@@ -131,7 +166,15 @@ impl Field {
     /// # Errors
     /// A size that is no size, a formula that does not compile or leaves too much open, an unknown curve; the place of
     /// the specification goes into the fault.
-    pub fn compile(spec: &FieldSpec, curves: &dyn Fn(&str) -> Option<Vec<DVec2>>) -> Result<Field, Fault> {
+    pub fn compile(spec: &FieldSpec, curves: &dyn Fn(&str) -> Option<Line>) -> Result<Field, Fault> {
+        let lines = |names: &[String], field: &str, place: &String| -> Result<Vec<Line>, Fault> {
+            let line = |name: &String| {
+                curves(name).ok_or_else(|| {
+                    at(Fault::new(format!("The {field} names a curve \"{name}\" that is not there")), place)
+                })
+            };
+            names.iter().map(line).collect()
+        };
         let kind = match spec {
             FieldSpec::Uniform { h } => {
                 check_sizes(&[*h]).map_err(|what| Fault::new(what.replace("h1", "h")))?;
@@ -142,15 +185,17 @@ impl Field {
                 Kind::Formula(Box::new(field.map_err(|fault| at(fault, place))?))
             }
             FieldSpec::BoundaryLayer { curves: names, first, growth, along, far, place } => {
-                let mut polylines = Vec::new();
-                for name in names {
-                    let line = curves(name).ok_or_else(|| {
-                        at(Fault::new(format!("The boundary layer names a curve \"{name}\" that is not there")), place)
-                    })?;
-                    polylines.push(line);
-                }
-                let layer = BoundaryLayer::new(&polylines, *first, *growth, *along, *far);
+                let lines = lines(names, "boundary layer", place)?;
+                let layer = BoundaryLayer::new(&lines, *first, *growth, *along, *far);
                 Kind::BoundaryLayer(Box::new(layer.map_err(|fault| at(fault, place))?), place.clone())
+            }
+            FieldSpec::Distance { curves: names, first, growth, far, place } => {
+                let field = Distance::new(&lines(names, "distance", place)?, *first, *growth, *far);
+                Kind::Distance(Box::new(field.map_err(|fault| at(fault, place))?), place.clone())
+            }
+            FieldSpec::Curvature { chord, least, far, place } => {
+                let field = Curvature::new(*chord, *least, *far);
+                Kind::Curvature(field.map_err(|fault| at(fault, place))?)
             }
         };
         Ok(Field(kind))
@@ -176,10 +221,12 @@ impl Field {
         let m = match &self.0 {
             Kind::Uniform(m) => *m,
             Kind::Formula(field) => field.metric(place)?,
-            Kind::Table(table) => table.metric(place.uv).ok_or_else(|| nowhere(place, ""))?,
+            Kind::Table(table) => table.metric(place.chart).ok_or_else(|| nowhere(place, ""))?,
             Kind::BoundaryLayer(layer, origin) => {
-                return layer.intersect(others, place.uv).ok_or_else(|| nowhere(place, origin));
+                return layer.intersect(others, place.uv, place.xyz).ok_or_else(|| nowhere(place, origin));
             }
+            Kind::Distance(field, origin) => field.metric(place.uv, place.xyz).ok_or_else(|| nowhere(place, origin))?,
+            Kind::Curvature(field) => field.metric(place.bend.as_ref()),
         };
         Ok(others.map_or(m, |others| Metric3::intersect(&others, &m)))
     }
@@ -202,11 +249,16 @@ fn nowhere(place: &Place, origin: &str) -> Box<BadMetric> {
     bad("a metric is asked for where the coordinates are not finite".into(), origin, place)
 }
 
-/// The metric of a case: the intersection of its fields with all sizes multiplied by one factor.
+/// The metric of a case: the intersection of its fields with all sizes multiplied by one factor; on surfaces the pull-back of
+/// that to the plane in which they are meshed.
 #[derive(Clone, Debug)]
 pub struct Sizing {
     fields: Vec<Field>,
     size_scale: f64,
+    /// The surfaces; none in a planar domain.
+    atlas: Option<Arc<Atlas>>,
+    /// Whether a field asks for the curvature.
+    bends: bool,
 }
 
 impl Sizing {
@@ -219,7 +271,19 @@ impl Sizing {
         assert!(size_scale > 0.0 && size_scale.is_finite(), "size_scale is positive");
         // Fields that only cut back others come after them; the sort is stable.
         fields.sort_by_key(|field| !field.is_tensor());
-        Sizing { fields, size_scale }
+        let bends = fields.iter().any(|field| matches!(field.0, Kind::Curvature(..)));
+        Sizing { fields, size_scale, atlas: None, bends }
+    }
+
+    /// The same metric on surfaces.
+    #[must_use]
+    pub fn on(self, atlas: Option<Arc<Atlas>>) -> Sizing {
+        Sizing { atlas, ..self }
+    }
+
+    /// The surfaces; none in a planar domain.
+    pub fn atlas(&self) -> Option<&Arc<Atlas>> {
+        self.atlas.as_ref()
     }
 
     /// The metric M3D of eq. (2) at a place. A pure function: the same place gives the same bits.
@@ -238,6 +302,37 @@ impl Sizing {
         }
         Ok(if self.size_scale == 1.0 { m } else { m.scaled(self.size_scale) })
     }
+
+    /// The metric M3D at a place of the plane in which it is meshed.
+    ///
+    /// # Errors
+    /// As [`Sizing::metric3`].
+    pub fn metric3_at(&self, chart: DVec2) -> Result<Metric3, Box<BadMetric>> {
+        match &self.atlas {
+            None => self.metric3(&Place::in_plane(chart)),
+            Some(atlas) => {
+                let at = atlas.at(chart);
+                self.metric3(&self.place(atlas, chart, at.xyz, at.uv))
+            }
+        }
+    }
+
+    #[inline]
+    fn place(&self, atlas: &Atlas, chart: DVec2, xyz: DVec3, uv: DVec2) -> Place {
+        let bend = if self.bends { atlas.bent(chart).bend() } else { None };
+        Place { xyz, uv, chart, bend }
+    }
+
+    /// Eq. (3): `M = J^T M3D J`.
+    fn on_surface(&self, atlas: &Atlas, chart: DVec2) -> Result<Metric2, Box<BadMetric>> {
+        let at = atlas.at(chart);
+        let place = self.place(atlas, chart, at.xyz, at.uv);
+        let m = self.metric3(&place)?.pull_back(at.j[0], at.j[1]);
+        if m.is_spd() {
+            return Ok(m);
+        }
+        Err(bad("the surface has no tangent plane here, or its derivatives are not finite".into(), "", &place))
+    }
 }
 
 /// Whether double precision still holds all sizes of an intersection.
@@ -246,14 +341,16 @@ fn is_held_well(m: &Metric3) -> bool {
     let (det, trace) = (m.plane().det(), m.xx + m.yy);
     // det / trace^2 is the ratio of the eigenvalues where it is small.
     let plane = det * LARGEST_ANISOTROPY * LARGEST_ANISOTROPY > trace * trace && trace.is_finite();
-    plane && if m.is_planar() { m.zz > 0.0 && m.zz.is_finite() } else { m.is_spd() }
+    if m.is_planar() { plane && m.zz > 0.0 && m.zz.is_finite() } else { m.is_spd() }
 }
 
-/// Planar domains, where the parametric coordinates are x and y.
 impl MetricSource for Sizing {
     #[inline]
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
-        Ok(self.metric3(&Place::in_plane(uv))?.plane())
+        match &self.atlas {
+            None => Ok(self.metric3(&Place::in_plane(uv))?.plane()),
+            Some(atlas) => self.on_surface(atlas, uv),
+        }
     }
 }
 

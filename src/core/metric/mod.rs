@@ -6,6 +6,8 @@ pub mod measure;
 pub mod formula;
 mod box_tree;
 mod boundary_layer;
+mod curvature;
+pub mod plane_triangles;
 mod table;
 pub mod field;
 pub mod survey;

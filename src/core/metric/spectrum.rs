@@ -141,6 +141,16 @@ impl Metric2 {
         1.0 / largest.sqrt()
     }
 
+    /// The smallest size that it asks for in any direction of a surface whose first fundamental form is `g`: by the largest
+    /// eigenvalue of the pair (M, g), which does not depend on the parametrisation.
+    #[inline]
+    pub fn min_size_against(&self, g: &Metric2) -> f64 {
+        let det = g.det();
+        let half_trace = 0.5 * (g.vv * self.uu - 2.0 * g.uv * self.uv + g.uu * self.vv) / det;
+        let largest = half_trace + (half_trace * half_trace - self.det() / det).max(0.0).sqrt();
+        1.0 / largest.sqrt()
+    }
+
     /// The symmetric square root: the map under which lengths in the metric become ordinary lengths.
     #[inline]
     #[must_use]
@@ -358,6 +368,17 @@ mod tests {
     fn small_eigenvalues_of_nearly_diagonal_tensors_are_accurate() {
         let m = Metric2 { uu: 1e12, uv: 1e3, vv: 3.0 };
         assert!((m.eigen().0[0] - (3.0 - 1e-6)).abs() < 1e-14 * 3.0);
+    }
+
+    #[test]
+    fn the_smallest_size_against_a_form_does_not_depend_on_the_parameters() {
+        // Sizes 0.02 and 0.5 in space; parameters sheared and stretched by J, M = J^T M3D J, G = J^T J.
+        let m = Metric2::from_sizes([0.02, 0.5], DVec2::new(0.3, 1.0)).unwrap();
+        let (a, b) = (DVec2::new(40.0, 3.0), DVec2::new(-0.2, 0.07));
+        let pulled = Metric2 { uu: m.norm2(a), uv: m.inner(a, b), vv: m.norm2(b) };
+        let form = Metric2 { uu: a.dot(a), uv: a.dot(b), vv: b.dot(b) };
+        assert!((pulled.min_size_against(&form) - 0.02).abs() < 1e-12);
+        assert!((m.min_size_against(&Metric2::isotropic(1.0)) - m.min_size()).abs() < 1e-15);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 
 use crate::core::convert::converter::Converter;
 use crate::core::convert::parameters::{Parameters, Selection};
-use crate::core::front::segment::{Key, Segment};
+use crate::core::front::segment::{Key, Segment, layer};
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 
 /// One segment of the front.
@@ -32,6 +32,8 @@ pub struct Row {
     pub theta: [f64; 2],
     /// Rows from the boundary.
     pub level: u16,
+    /// On surfaces its face, by number; 0 in the plane.
+    pub face: u32,
     /// Its loop, by the order in which loops are met.
     pub front_loop: u32,
     /// Whether it is put off until something near it changes.
@@ -260,6 +262,7 @@ impl Row {
             length_physical: segment.length_physical,
             theta: segment.theta,
             level: segment.level,
+            face: segment.face,
             front_loop: 0,
             is_put_off,
             window: segment.window(parameters.selection_window),
@@ -267,8 +270,8 @@ impl Row {
     }
 
     fn key(&self, parameters: &Parameters) -> Key {
-        let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, .. } = *self;
-        Segment { h, a, b, class, h_value, length_metric, length_physical, theta, level }.key(parameters)
+        let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, face, .. } = *self;
+        Segment { h, a, b, class, h_value, length_metric, length_physical, theta, level, face }.key(parameters)
     }
 
     fn theta_sum(&self) -> f64 {
@@ -276,7 +279,7 @@ impl Row {
     }
 
     pub(super) fn layer(&self, parameters: &Parameters) -> u32 {
-        u32::from(self.level).min(parameters.layers)
+        layer(self.face, self.level, parameters)
     }
 }
 

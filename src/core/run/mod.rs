@@ -6,6 +6,7 @@
 //! | the run: case, parameters, edits at steps, bookmarks, camera | [`run::Run`] |
 //! | any state of it, bit-identical to running there afresh; stepping forward and back; editing | [`history::History`] |
 //! | states for other threads to look at, brought up to date by what changed | [`copies::Copies`] |
+//! | what a figure shows of it | [`shown::Shown`] |
 //! | running ahead on another thread | [`history::History::lend`], [`recorder::Recorder`], [`history::History::accept`] |
 //! | one event a step, the number of quadrilaterals, where to go next | [`log::Log`], `playback` |
 //! | invariants and figures along the run | [`timeline`] |
@@ -17,6 +18,7 @@
 
 #[expect(clippy::module_inception, reason = "the run is the value that the room is about")]
 pub mod run;
+pub mod shown;
 pub mod front_count;
 pub mod log;
 pub mod timeline;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::shown::Shown;
 use crate::core::convert::conversion::{self, Background};
 use crate::core::convert::converter::Converter;
 use crate::core::convert::parameters::Parameters;
@@ -101,13 +102,15 @@ pub struct Run {
     pub bookmarks: Vec<Bookmark>,
     /// From where it was looked at last.
     pub camera: Option<Camera>,
+    /// What is shown of it, where it comes from a figure.
+    pub shown: Option<Shown>,
 }
 
 impl Run {
     /// The run of a case as it is.
     pub fn of(case: Case) -> Run {
         let parameters = case.parameters.clone();
-        Run { case, parameters, edits: Vec::new(), bookmarks: Vec::new(), camera: None }
+        Run { case, parameters, edits: Vec::new(), bookmarks: Vec::new(), camera: None, shown: None }
     }
 
     /// The edits, by step.

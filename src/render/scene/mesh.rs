@@ -238,6 +238,7 @@ mod tests {
             triangles: vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]],
             region: vec![0; 4],
             uv,
+            ..TriangleSet::default()
         };
         Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6])
     }

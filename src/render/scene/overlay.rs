@@ -275,7 +275,13 @@ mod tests {
     fn square() -> Mesh {
         let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
         let point = (0..4).map(PointId).collect();
-        let set = TriangleSet { uv, point, triangles: vec![[0, 1, 2], [0, 2, 3]], region: vec![0; 2] };
+        let set = TriangleSet {
+            uv,
+            point,
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            region: vec![0; 2],
+            ..TriangleSet::default()
+        };
         Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4])
     }
 

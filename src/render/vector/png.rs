@@ -3,40 +3,71 @@
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
+use super::svg::page::{FAMILY, FONT};
 use crate::core::fault::Fault;
+use crate::core::io::figure::KEYWORD;
 
-/// The font of labels.
-const FONT: &[u8] = include_bytes!("../../../assets/fonts/IBMPlexSans-Regular.ttf");
-/// What a picture may have of pixels on one side.
+/// What a picture may have of pixels on one side, and over all.
 const MOST: u32 = 20_000;
+const MOST_PIXELS: u64 = 200_000_000;
 
-/// Draws an SVG at `scale` pixels a unit of its own, with a text on what it shows in its metadata (iTXt, `Description`).
+/// What a PNG carries beside its pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Carried<'a> {
+    /// What it shows, in words.
+    pub description: &'a str,
+    /// The text of its run.
+    pub run: Option<&'a str>,
+}
+
+/// Draws an SVG at so many dots an inch, transparent where the vectors have no ground. No font of the system is used.
 ///
 /// # Errors
 /// A size that no picture can have.
-pub fn write(svg: &str, scale: f64, description: &str) -> Result<Vec<u8>, Fault> {
+pub fn write(svg: &str, dpi: f64, carried: Carried<'_>) -> Result<Vec<u8>, Fault> {
     let refuse = |error: String| Fault::new(format!("The picture cannot be drawn: {error}"));
-    let mut options = Options { font_family: "IBM Plex Sans".to_owned(), dpi: 72.0, ..Options::default() };
+    let mut options = Options { font_family: FAMILY.to_owned(), dpi: 72.0, ..Options::default() };
     options.fontdb_mut().load_font_data(FONT.to_vec());
     let tree = Tree::from_str(svg, &options).map_err(|error| refuse(error.to_string()))?;
-    let pixels = |length: f32| ((f64::from(length) * scale).round() as u32).max(1);
+    let pixels = |length: f32| ((f64::from(length) * dpi / 72.0).round() as u32).max(1);
     let (width, height) = (pixels(tree.size().width()), pixels(tree.size().height()));
-    if width > MOST || height > MOST {
-        return Err(refuse(format!("{width} x {height} pixels are too many")).remedy("Ask for a smaller size"));
+    if width > MOST || height > MOST || u64::from(width) * u64::from(height) > MOST_PIXELS {
+        let fault = refuse(format!("{width} x {height} pixels are too many"));
+        return Err(fault.remedy("Ask for a smaller size or fewer dots an inch"));
     }
     let mut pixmap = Pixmap::new(width, height).ok_or_else(|| refuse("it has no size".to_owned()))?;
     let to_pixels = Transform::from_scale(width as f32 / tree.size().width(), height as f32 / tree.size().height());
     resvg::render(&tree, to_pixels, &mut pixmap.as_mut());
-    let opaque: Vec<u8> = pixmap.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect();
-    encode(&opaque, [width, height], description).map_err(|error| refuse(error.to_string()))
+    let opaque = pixmap.pixels().iter().all(|p| p.alpha() == u8::MAX);
+    let mut bytes = Vec::with_capacity(pixmap.pixels().len() * if opaque { 3 } else { 4 });
+    for pixel in pixmap.pixels() {
+        let colour = pixel.demultiply();
+        bytes.extend([colour.red(), colour.green(), colour.blue()]);
+        if !opaque {
+            bytes.push(colour.alpha());
+        }
+    }
+    let colour = if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba };
+    encode(&bytes, [width, height], colour, dpi, carried).map_err(|error| refuse(error.to_string()))
 }
 
-fn encode(pixels: &[u8], [width, height]: [u32; 2], description: &str) -> Result<Vec<u8>, png::EncodingError> {
+fn encode(
+    pixels: &[u8],
+    [width, height]: [u32; 2],
+    colour: png::ColorType,
+    dpi: f64,
+    carried: Carried<'_>,
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.add_itxt_chunk("Description".to_owned(), description.to_owned())?;
+    let per_metre = (dpi / 0.0254).round() as u32;
+    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
+    encoder.add_itxt_chunk("Description".to_owned(), carried.description.to_owned())?;
+    if let Some(run) = carried.run {
+        encoder.add_itxt_chunk(KEYWORD.to_owned(), run.to_owned())?;
+    }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(pixels)?;
     writer.finish()?;
@@ -46,22 +77,39 @@ fn encode(pixels: &[u8], [width, height]: [u32; 2], description: &str) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::io::figure::text_in;
+
+    fn decoded(bytes: &[u8]) -> (png::Info<'static>, Vec<u8>) {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        (reader.info().clone(), pixels)
+    }
 
     #[test]
-    fn vectors_and_text_become_pixels_and_the_text_stays_readable() {
+    fn vectors_and_text_become_pixels_and_what_is_carried_stays_readable() {
         let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"40pt\" height=\"20pt\" viewBox=\"0 0 40 20\">\
                    <rect width=\"40\" height=\"20\" fill=\"#FFFFFF\"/><rect width=\"20\" height=\"20\" fill=\"#AD4E00\"/>\
-                   <text x=\"22\" y=\"15\" font-family=\"IBM Plex Sans\" font-size=\"12\" fill=\"#000000\">A</text></svg>";
-        let bytes = write(svg, 2.0, "case one").unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        let info = reader.next_frame(&mut pixels).unwrap();
-        assert_eq!((info.width, info.height), (80, 40));
+                   <text x=\"22\" y=\"15\" font-family=\"Quadfront Figure\" font-size=\"12\" fill=\"#000000\">A</text></svg>";
+        let bytes = write(svg, 144.0, Carried { description: "case one", run: Some("run = 1\nθ") }).unwrap();
+        let (info, pixels) = decoded(&bytes);
+        assert_eq!((info.width, info.height, info.color_type), (80, 40, png::ColorType::Rgb));
         let at = |x: usize, y: usize| &pixels[3 * (80 * y + x)..][..3];
         assert_eq!(at(10, 10), [0xAD, 0x4E, 0x00]);
         assert_eq!(at(78, 2), [255; 3]);
         assert!((44..70).any(|x| (8..32).any(|y| at(x, y)[0] < 64)), "the letter is there");
-        assert_eq!(reader.info().utf8_text[0].get_text().unwrap(), "case one");
-        assert!(write(svg, 1e6, "").is_err());
+        assert_eq!(info.utf8_text[0].get_text().unwrap(), "case one");
+        assert_eq!(info.pixel_dims.map(|dims| dims.xppu), Some(5669));
+        assert_eq!(text_in(&bytes).unwrap(), "run = 1\nθ");
+        assert!(write(svg, 1e6, Carried::default()).is_err());
+    }
+
+    #[test]
+    fn without_a_ground_a_picture_is_transparent() {
+        let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"4pt\" height=\"2pt\" viewBox=\"0 0 4 2\">\
+                   <rect width=\"2\" height=\"2\" fill=\"#AD4E00\"/></svg>";
+        let (info, pixels) = decoded(&write(svg, 72.0, Carried::default()).unwrap());
+        assert_eq!(info.color_type, png::ColorType::Rgba);
+        assert_eq!((&pixels[..4], pixels[15]), (&[0xAD, 0x4E, 0x00, 255][..], 0));
     }
 }

@@ -1,279 +1,215 @@
-//! SVG: real vectors, widths in points, the same bytes for the same picture.
+//! SVG: real vectors, widths in points, text in a font that the file brings along, the same bytes for the same picture.
 
-use std::fmt::Write;
+mod frame;
+mod marks;
+pub(super) mod page;
 
 use glam::DVec2;
 
-use crate::render::palette::{CROWDED, THIN, figure};
+use self::frame::Frame;
+use self::marks::Marks;
+use self::page::{Page, Path};
+use crate::render::look::{Layer, Look, Part};
+use crate::render::palette::{CROWDED, HATCH, THIN, figure};
 use crate::render::picture::{Picture, Role};
 
-/// The width of a figure in one column of a page, in points (84 mm).
-pub const COLUMN: f64 = 238.0;
+/// Points in a millimetre.
+pub const MILLIMETRE: f64 = 72.0 / 25.4;
 
-/// Ground left free around the mesh, in points: half of the widest line, and a little.
-const MARGIN: f64 = 1.0;
+/// The width of a figure in one column of a page, in points.
+pub const COLUMN: f64 = 84.0 * MILLIMETRE;
 
-/// The width of a figure over the whole page, in points (174 mm).
-pub const PAGE: f64 = 493.0;
+/// The width of a figure over the whole page, in points.
+pub const PAGE: f64 = 174.0 * MILLIMETRE;
 
-/// Between the frames of a strip, in points (3 mm).
-const GAP: f64 = 8.5;
+/// Between the frames of a strip, in points.
+const GAP: f64 = 3.0 * MILLIMETRE;
 
-/// Size of labels in points.
-const LABEL: f64 = 7.0;
+/// Size of captions and letters in points.
+pub(super) const LABEL: f64 = 7.0;
+/// Size of notes in points: the least that can be read in print.
+pub(super) const NOTE: f64 = 6.0;
 
-/// The picture as an SVG file `width` points wide on white ground, as high as its equal scales along both axes demand.
-pub fn write(picture: &Picture, width: f64) -> String {
-    let frame = Frame::fit(picture.bounds(), width);
-    let mut svg = head(picture, width, frame.height);
-    draw(&mut svg, picture, &frame);
-    svg.push_str("</svg>\n");
-    svg
+/// Frames side by side, where nothing else is asked for.
+const COLUMNS: usize = 4;
+/// A frame that is narrower than this has no room for caption and scale bar in one row.
+const NARROW: f64 = 95.0;
+
+/// The file that a picture goes into.
+#[derive(Clone, Copy)]
+pub struct Sheet<'a> {
+    /// One line on what it shows.
+    pub title: &'a str,
+    /// More on what it shows.
+    pub description: &'a str,
+    /// The text of the run that it carries.
+    pub run: Option<&'a str>,
+    /// Width in points.
+    pub width: f64,
+    /// Height in points; without it as high as equal scales along both axes demand.
+    pub height: Option<f64>,
+    /// How it looks.
+    pub look: Look,
+    /// Frames of a strip side by side.
+    pub columns: Option<usize>,
 }
 
-/// The picture as an SVG file of exactly `size` points, in the middle of it.
-pub fn write_sized(picture: &Picture, size: [f64; 2]) -> String {
-    let mut frame = Frame::fit(picture.bounds(), size[0]);
-    let inner = size[1] - 2.0 * MARGIN;
-    let extent = picture.bounds().map_or(DVec2::ONE, |b| b[1] - b[0]);
-    if extent.y * frame.scale > inner && extent.y > 0.0 {
-        frame.scale = inner / extent.y;
-        frame.aside = 0.5 * (size[0] - 2.0 * MARGIN - extent.x * frame.scale);
+impl<'a> Sheet<'a> {
+    /// A sheet in the width of a column, with nothing on it.
+    pub fn column(title: &'a str, description: &'a str, look: Look) -> Sheet<'a> {
+        Sheet { title, description, run: None, width: COLUMN, height: None, look, columns: None }
     }
-    frame.above = 0.5 * (inner - extent.y * frame.scale).max(0.0);
-    let mut svg = head(picture, size[0], size[1]);
-    draw(&mut svg, picture, &frame);
-    svg.push_str("</svg>\n");
-    svg
 }
 
-/// Pictures of one thing side by side, `width` points over all, in equal frames of the same scale with a letter and the title of
-/// each below it. Title and description are the file's.
-pub fn strip(pictures: &[Picture], title: &str, description: &str, width: f64) -> String {
-    let count = pictures.len().max(1) as f64;
-    let each = (width - GAP * (count - 1.0)) / count;
+/// One picture as an SVG file.
+pub fn write(picture: &Picture, sheet: &Sheet<'_>) -> String {
+    let look = &sheet.look;
+    // A scale bar has a row of its own below the picture.
+    let below = if look.layers.has(Layer::Scale) { 1.7 * LABEL } else { 0.0 };
+    let frame = Frame::fit(bounds(picture, sheet), sheet.width, sheet.height.map(|h| h - below), look);
+    let mut page = Page::new(sheet, frame.size.y + below, uses_text(std::slice::from_ref(picture), look, false));
+    draw(&mut page, picture, &frame, look, 0);
+    if below > 0.0 {
+        scale_bar(&mut page, &frame, DVec2::new(frame.size.x - 1.0, frame.size.y + 1.0 * LABEL), look);
+    }
+    page.finish()
+}
+
+/// Pictures of one thing side by side in equal frames of the same scale, with a letter and the title of each below it, and one
+/// scale bar for all.
+pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> String {
+    let look = &sheet.look;
+    let count = pictures.len().max(1);
+    let rows = count.div_ceil(sheet.columns.unwrap_or(COLUMNS).clamp(1, count));
+    let columns = count.div_ceil(rows);
+    let each = (sheet.width - GAP * (columns - 1) as f64) / columns as f64;
+    let caption = 1.9 * LABEL;
+    let has_bar = look.layers.has(Layer::Scale);
+    let own_row = if has_bar && each < NARROW && count == rows * columns { 1.5 * LABEL } else { 0.0 };
+    let inner = sheet.height.map(|h| (h - own_row - GAP * (rows - 1) as f64) / rows as f64 - caption);
     let union = |a: [DVec2; 2], b: [DVec2; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    let mut frame = Frame::fit(pictures.iter().filter_map(Picture::bounds).reduce(union), each);
-    let whole = Picture { title: title.to_owned(), description: description.to_owned(), ..Picture::default() };
-    let mut svg = head(&whole, width, frame.height + 1.7 * LABEL);
-    for (picture, letter) in pictures.iter().zip('a'..) {
-        draw(&mut svg, picture, &frame);
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{}\" font-family=\"IBM Plex Sans, Arial, sans-serif\" font-size=\"{LABEL}\" \
-             fill=\"#000000\">({letter}) {}</text>",
-            Short(frame.left + MARGIN),
-            Short(frame.height + 1.2 * LABEL),
-            escaped(&picture.title)
-        );
-        frame.left += each + GAP;
+    let all = match look.part {
+        Some(part) => Some(part_bounds(part, each, inner)),
+        None => pictures.iter().filter_map(Picture::bounds).reduce(union),
+    };
+    let first = Frame::fit(all, each, inner, look);
+    let row = first.size.y + caption;
+    let height = row * rows as f64 + GAP * (rows - 1) as f64 + own_row;
+    let mut page = Page::new(sheet, height, uses_text(pictures, look, true));
+    for (k, picture) in pictures.iter().enumerate() {
+        let left_top = DVec2::new((k % columns) as f64 * (each + GAP), (k / columns) as f64 * (row + GAP));
+        let frame = first.moved(left_top);
+        draw(&mut page, picture, &frame, look, k);
+        let at = left_top + DVec2::new(1.0, first.size.y + 1.25 * LABEL);
+        page.text(at, LABEL, "start", &format!("({}) {}", letter(k), picture.title));
     }
-    svg.push_str("</svg>\n");
-    svg
+    if has_bar {
+        let y = height - caption + 1.25 * LABEL - if own_row > 0.0 { 0.4 * LABEL } else { 0.0 };
+        scale_bar(&mut page, &first, DVec2::new(sheet.width - 1.0, y), look);
+    }
+    page.finish()
 }
 
-/// Where coordinates of the mesh come to lie.
-struct Frame {
-    /// The corner at the top left of the mesh, in its coordinates.
-    corner: DVec2,
-    /// Points for one unit of the mesh.
-    scale: f64,
-    /// Ground left free beside a tall mesh.
-    aside: f64,
-    /// Ground left free above a wide one.
-    above: f64,
-    /// The left edge of the frame.
-    left: f64,
-    height: f64,
+/// a, b, ..., z, aa, ab, ...
+fn letter(k: usize) -> String {
+    let last = char::from(b'a' + (k % 26) as u8);
+    if k < 26 { last.to_string() } else { letter(k / 26 - 1) + &last.to_string() }
 }
 
-impl Frame {
-    fn fit(bounds: Option<[DVec2; 2]>, width: f64) -> Frame {
-        let [low, high] = bounds.unwrap_or([DVec2::ZERO, DVec2::ONE]);
-        let size = high - low;
-        // A tall picture is not magnified beyond measure, and one without any size still has a scale.
-        let span = size.x.max(size.y * 0.1);
-        let scale = (width - 2.0 * MARGIN) / if span > 0.0 { span } else { 1.0 };
-        Frame {
-            corner: DVec2::new(low.x, high.y),
-            scale,
-            aside: 0.5 * (width - 2.0 * MARGIN - size.x * scale),
-            above: 0.0,
-            left: 0.0,
-            height: size.y * scale + 2.0 * MARGIN,
+fn bounds(picture: &Picture, sheet: &Sheet<'_>) -> Option<[DVec2; 2]> {
+    match sheet.look.part {
+        Some(part) => Some(part_bounds(part, sheet.width, sheet.height)),
+        None => picture.bounds(),
+    }
+}
+
+/// A part in the shape of its page; three to four where the page has none.
+fn part_bounds(part: Part, width: f64, height: Option<f64>) -> [DVec2; 2] {
+    let shape = width / height.unwrap_or(0.75 * width).max(1.0);
+    let half = 0.5 * part.height * DVec2::new(shape, 1.0);
+    [part.centre - half, part.centre + half]
+}
+
+/// Whether anything will be written as text.
+fn uses_text(pictures: &[Picture], look: &Look, captions: bool) -> bool {
+    let has = |layer| look.layers.has(layer);
+    captions || has(Layer::Scale) || pictures.iter().any(|p| p.marks.iter().any(marks::is_text))
+}
+
+/// A picture in its frame, clipped to it where it is a part.
+fn draw(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, number: usize) {
+    let clip = look.part.is_some();
+    if clip {
+        page.clip(number, frame.left_top, frame.size);
+    }
+    for role in Role::ALL.into_iter().filter(|role| look.layers.has(Layer::of(*role))) {
+        areas(page, picture, frame, look, role);
+        lines(page, picture, frame, look, role);
+    }
+    Marks::new(page, frame, look).draw(&picture.marks);
+    if clip {
+        page.unclip();
+    }
+}
+
+fn areas(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: Role) {
+    let Some(fill) = figure(role, look.ink).fill else { return };
+    let mut path = Path::default();
+    for area in picture.areas.iter().filter(|a| a.role == role && frame.sees(&a.corners)) {
+        let corners = if area.corners[2] == area.corners[3] { &area.corners[..3] } else { &area.corners[..] };
+        path.walk(corners.iter().map(|p| frame.place(*p)), true);
+    }
+    if fill == HATCH && !path.is_empty() {
+        page.define_hatch();
+    }
+    page.path(&path, &format!("fill=\"{fill}\""));
+}
+
+fn lines(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: Role) {
+    let style = figure(role, look.ink);
+    let Some(stroke) = style.stroke else { return };
+    let (cap, dash) = match style.dash {
+        Some([on, off]) => ("butt", format!(" stroke-dasharray=\"{on} {off}\"")),
+        None => ("round", String::new()),
+    };
+    for (crowded, width) in [(true, THIN.min(style.width)), (false, style.width)] {
+        let mut path = Path::default();
+        // The boundary keeps its width: it is what a reader orients by.
+        let thin = |room: f64| role != Role::Boundary && room * frame.scale < CROWDED;
+        let here = |l: &&crate::render::picture::Line| l.role == role && thin(l.room) == crowded;
+        for line in picture.lines.iter().filter(here).filter(|l| frame.sees(&l.ends)) {
+            path.walk(line.ends.iter().map(|p| frame.place(*p)), false);
         }
-    }
-
-    fn place(&self, p: DVec2) -> (f64, f64) {
-        let right = MARGIN + self.aside + (p.x - self.corner.x) * self.scale;
-        (self.left + right, MARGIN + self.above + (self.corner.y - p.y) * self.scale)
+        let stroke = format!("stroke=\"{stroke}\" stroke-width=\"{width}\" stroke-linecap=\"{cap}\"{dash}");
+        page.path(&path, &format!("fill=\"none\" {stroke}"));
     }
 }
 
-fn head(picture: &Picture, width: f64, height: f64) -> String {
-    let (w, h) = (Short(width), Short(height));
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}pt\" height=\"{h}pt\" viewBox=\"0 0 {w} {h}\">\n\
-         <title>{}</title>\n<desc>{}</desc>\n<rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>\n",
-        escaped(&picture.title),
-        escaped(&picture.description)
-    )
+/// A bar of a round length that ends at `right`, with the length before it.
+fn scale_bar(page: &mut Page, frame: &Frame, right: DVec2, look: &Look) {
+    let wanted = 0.3 * frame.size.x / frame.scale;
+    if !(wanted.is_finite() && wanted > 0.0) {
+        return;
+    }
+    let power = libm::pow(10.0, libm::floor(libm::log10(wanted)));
+    let length = [5.0, 2.0, 1.0].into_iter().map(|k| k * power).find(|l| *l <= wanted).unwrap_or(power);
+    let left = right - DVec2::new(length * frame.scale, 0.0);
+    let middle = DVec2::new(0.0, 0.3 * NOTE);
+    let mut path = Path::default();
+    path.walk([left - middle, right - middle].into_iter(), false);
+    for end in [left, right] {
+        path.walk([-1.5, 1.5].into_iter().map(|y| end - middle + DVec2::new(0.0, y)), false);
+    }
+    let stroke = figure(Role::Boundary, look.ink).stroke.unwrap_or_default();
+    page.path(&path, &format!("fill=\"none\" stroke=\"{stroke}\" stroke-width=\"0.5\""));
+    page.text(left - DVec2::new(2.5, 0.0), NOTE, "end", &length_in_words(length));
 }
 
-fn draw(svg: &mut String, picture: &Picture, frame: &Frame) {
-    for role in Role::ALL {
-        let style = figure(role);
-        if let Some(fill) = style.fill {
-            let mut path = Path::default();
-            for area in picture.areas.iter().filter(|a| a.role == role) {
-                let corners = if area.corners[2] == area.corners[3] { &area.corners[..3] } else { &area.corners[..] };
-                path.walk(corners.iter().map(|p| frame.place(*p)), true);
-            }
-            path.write(svg, &format!("fill=\"{fill}\""));
-        }
-        if let Some(stroke) = style.stroke {
-            for (crowded, stroke_width) in [(true, THIN.min(style.width)), (false, style.width)] {
-                let mut path = Path::default();
-                // The boundary keeps its width: it is what a reader orients by.
-                let thin = |room: f64| role != Role::Boundary && room * frame.scale < CROWDED;
-                for line in picture.lines.iter().filter(|l| l.role == role && thin(l.room) == crowded) {
-                    path.walk(line.ends.iter().map(|p| frame.place(*p)), false);
-                }
-                path.write(
-                    svg,
-                    &format!(
-                        "fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{stroke_width}\" stroke-linecap=\"round\""
-                    ),
-                );
-            }
-        }
-    }
-}
-
-/// Many polygons or lines as one path element: no seams between neighbours, and a short file.
-#[derive(Default)]
-struct Path {
-    data: String,
-}
-
-impl Path {
-    fn walk(&mut self, points: impl Iterator<Item = (f64, f64)>, closed: bool) {
-        for (k, (x, y)) in points.enumerate() {
-            let letter = if k == 0 { 'M' } else { 'L' };
-            // Writing to a String cannot fail.
-            let _ = write!(self.data, "{letter}{} {}", Short(x), Short(y));
-        }
-        self.data.push_str(if closed { "Z\n" } else { "\n" });
-    }
-
-    fn write(&self, svg: &mut String, attributes: &str) {
-        if !self.data.is_empty() {
-            let _ = writeln!(svg, "<path {attributes} d=\"{}\"/>", self.data.trim_end());
-        }
-    }
-}
-
-/// A length in points to a thousandth: finer than any printer, and the same on every machine.
-struct Short(f64);
-
-impl std::fmt::Display for Short {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // Adding zero turns -0 into 0.
-        write!(f, "{}", (self.0 * 1000.0).round() / 1000.0 + 0.0)
-    }
-}
-
-fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            // XML has no other control characters.
-            c if c.is_control() && c != '\n' && c != '\t' => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
+/// A round length as it is written: 0.2, 50, 2e-7.
+fn length_in_words(length: f64) -> String {
+    let text = crate::core::io::save::Shortest(libm::round(length * 1e12) / 1e12).to_string();
+    if length < 1e-9 { format!("{length:e}") } else { text }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::core::io::mesh_file::MeshFile;
-    use glam::DVec3;
-
-    #[test]
-    fn a_small_mesh_is_written_as_paths_by_role() {
-        let points = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
-        let mesh = MeshFile {
-            points: points.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec(),
-            triangles: vec![[1, 2, 5], [1, 5, 4]],
-            quads: vec![[0, 1, 4, 3]],
-            ..MeshFile::default()
-        };
-        let picture = Picture { title: "a < b & c".to_owned(), ..Picture::of_mesh(&mesh) };
-        insta::assert_snapshot!(write(&picture, 202.0));
-    }
-
-    #[test]
-    fn the_frames_of_a_strip_are_equal_and_stand_beside_each_other() {
-        let mesh = MeshFile {
-            points: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
-            triangles: vec![[0, 1, 2]],
-            ..MeshFile::default()
-        };
-        let frame = |title: &str| Picture { title: title.to_owned(), ..Picture::of_mesh(&mesh) };
-        let svg = strip(&[frame("nq=1"), frame("nq=2")], "two", "", 108.5);
-        let starts: Vec<_> =
-            svg.split("<path fill=\"#FFFFFF\" d=\"").skip(1).map(|p| &p[..p.find('L').unwrap()]).collect();
-        assert_eq!(starts, ["M1 49", "M59.5 49"]);
-        assert!(svg.contains(">(a) nq=1</text>") && svg.contains(">(b) nq=2</text>"), "{svg}");
-    }
-
-    #[test]
-    fn a_picture_of_a_given_size_lies_in_the_middle_and_within() {
-        let mesh = MeshFile {
-            points: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
-            triangles: vec![[0, 1, 2]],
-            ..MeshFile::default()
-        };
-        let picture = Picture::of_mesh(&mesh);
-        let wide = write_sized(&picture, [200.0, 102.0]);
-        assert!(wide.contains("viewBox=\"0 0 200 102\"") && wide.contains("M50 101"), "{wide}");
-        let tall = write_sized(&picture, [102.0, 200.0]);
-        assert!(tall.contains("M1 150"), "{tall}");
-    }
-
-    #[test]
-    fn crowded_edges_are_thin_and_none_is_left_out() {
-        let n = 1000;
-        let mut mesh = MeshFile::default();
-        for i in 0..=n {
-            let x = f64::from(i) / f64::from(n);
-            mesh.points.extend([DVec3::new(x, 0.0, 0.0), DVec3::new(x, 1.0, 0.0)]);
-        }
-        mesh.quads = (0..n).map(|i| [0, 2, 3, 1].map(|k| k + 2 * i as u32)).collect();
-        let svg = write(&Picture::of_mesh(&mesh), COLUMN);
-        let thin = svg.split("<path").find(|path| path.contains("stroke-width=\"0.12\"")).unwrap();
-        assert_eq!(thin.matches('M').count(), n as usize - 1);
-        assert!(!svg.contains("stroke-width=\"0.35\""));
-    }
-
-    #[test]
-    fn an_empty_and_a_flat_picture_are_finite() {
-        for picture in [
-            Picture::default(),
-            Picture::of_mesh(&MeshFile {
-                points: vec![DVec3::ZERO; 3],
-                triangles: vec![[0, 1, 2]],
-                ..MeshFile::default()
-            }),
-        ] {
-            let svg = write(&picture, COLUMN);
-            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
-        }
-    }
-}
+mod tests;

@@ -63,11 +63,19 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     ui.menu_button("Case", |ui| {
         item(ui, Command::OpenDialog, commands);
         item(ui, Command::OpenPath, commands);
+        item(ui, Command::Reopen, commands);
         item(ui, Command::SaveRun, commands);
+        item(ui, Command::Notes, commands);
         ui.separator();
+        let open = |name: &str| Command::Open(Source::BuiltIn(name.to_owned()));
         for (name, _) in built_in::CASES.iter().take(40) {
-            item(ui, Command::Open(Source::BuiltIn((*name).to_owned())), commands);
+            item(ui, open(name), commands);
         }
+        ui.menu_button("Figures of the paper", |ui| {
+            for (name, _) in built_in::FIGURES {
+                item(ui, open(name), commands);
+            }
+        });
     });
     ui.menu_button("Parameters", |ui| {
         item(ui, Command::ResetParameters, commands);
@@ -90,6 +98,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     });
     ui.menu_button("Figure", |ui| {
         ui.add_enabled_ui(state.moment.is_some(), |ui| {
+            item(ui, Command::Figures, commands);
             item(ui, Command::Export, commands);
             item(ui, Command::Screenshot, commands);
         });

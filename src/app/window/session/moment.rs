@@ -37,6 +37,8 @@ pub struct Moment {
     pub changes: Changes,
     /// What the last three steps that changed anything changed, the newest first.
     pub changed: [Arc<[ElementId]>; 3],
+    /// What the very last one changed.
+    pub just_changed: Arc<[ElementId]>,
     /// The front in the order in which a selection would take it.
     pub front: Vec<Segment>,
     /// The same segments with their loops, and whether they are put off.
@@ -55,6 +57,6 @@ pub struct Moment {
 
 /// A row of the table as the renderer wants it.
 pub(super) fn segment(row: &Row) -> Segment {
-    let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, .. } = *row;
-    Segment { h, a, b, h_value, length_metric, length_physical, theta, class, level }
+    let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, face, .. } = *row;
+    Segment { h, a, b, h_value, length_metric, length_physical, theta, class, level, face }
 }

@@ -15,6 +15,7 @@ const PATIENCE: Duration = Duration::from_millis(4);
 impl State {
     /// Hears what the session has to tell.
     pub fn hear(&mut self) {
+        self.hear_opening();
         let Some(session) = &self.session else { return };
         let told: Vec<Told> = session.hear().collect();
         told.into_iter().for_each(|told| self.take(told));
@@ -35,11 +36,7 @@ impl State {
     fn take(&mut self, told: Told) {
         match told {
             Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
-            Told::Opened(opened) => {
-                self.kept.edits = opened.run.edits().to_vec();
-                self.kept.bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
-                self.opened = Some(opened);
-            }
+            Told::Opened(opened) => self.opened = Some(opened),
             Told::Moment(moment, asks) => self.arrive(moment, asks),
             Told::Track { from, steps, samples, end } => {
                 self.track.truncate(from as usize);
@@ -69,7 +66,7 @@ impl State {
         }
     }
 
-    fn answered(&mut self, asks: usize) {
+    pub(super) fn answered(&mut self, asks: usize) {
         self.waiting = self.waiting.saturating_sub(asks);
         if self.waiting == 0 {
             (self.progress, self.since) = (None, None);
@@ -84,8 +81,9 @@ impl State {
         self.verdict = moment.verdict.clone();
         self.times.state(moment.took);
         self.lit.clear();
-        self.moment = Some(moment);
+        self.moment = Some(moment.clone());
         self.answered(asks);
+        self.compare(&moment);
         self.over_epoch += 1;
     }
 

@@ -36,6 +36,10 @@ pub(super) fn aim(state: &mut State, moment: &Moment, size: DVec2) -> Camera {
                 state.fitted = false;
             }
         }
+        Some(Look::Kept(kept)) => {
+            camera.take_up(&kept, size);
+            state.fitted = false;
+        }
         Some(Look::At(what)) => {
             if let Some(p) = middle(moment, what) {
                 let scale = camera.scale;

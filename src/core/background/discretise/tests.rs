@@ -188,7 +188,7 @@ fn a_metric_that_fails_is_placed_on_its_curve() {
     impl MetricSource for Bad {
         fn metric(&self, p: DVec2) -> Result<Metric2, Box<BadMetric>> {
             if p.x > 0.5 {
-                let place = Place { xyz: p.extend(0.0), uv: p };
+                let place = Place::in_plane(p);
                 return Err(Box::new(BadMetric { what: "h1 = -1 is not positive".to_owned(), place }));
             }
             Uniform(0.1).metric(p)

@@ -26,21 +26,26 @@ use region::Region;
 const LEAST_QUALITY: f64 = 0.2;
 /// The energy must fall by this much: differences below it are noise of the relaxation.
 const LEAST_GAIN: f64 = 1e-2;
-/// Candidates tried at one node, best valence gain first.
+/// Candidates tried at one node, best valence gain first: as single changes or firsts of pairs, and as firsts of longer sequences.
 const MOST_TRIALS: usize = 16;
+const MOST_OF_LONGER: usize = 24;
 /// An element below this quality is poor: around it the structure may become worse where the mesh becomes better.
 const POOR: f64 = 0.4;
-/// A first change of a pair may raise the sum of squared excesses by this much, and the energy by no more than `MOST_RISE`.
+/// All changes of a sequence but the last may raise the sum of squared excesses by this much, and the energy by no more than
+/// `MOST_RISE` in pairs and in longer sequences.
 const MOST_WORSE: i32 = 2;
-const MOST_RISE: f64 = 4.0;
-/// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are.
-const HOPELESS: f64 = 6.0;
-/// Second changes tried after each first one.
-const SECOND_TRIALS: usize = 4;
+const MOST_RISE: [f64; 2] = [5.0, 6.0];
+/// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are: those
+/// seldom give back more (for one trial in a hundred).
+const HOPELESS: f64 = 1.5;
+/// Changes tried second, third and fourth, after each way to get there.
+const LATER_TRIALS: [usize; 3] = [4, 3, 3];
 /// Trials of pairs: so many for every mesh, and one more for so many elements. Small meshes are searched to the end, and the
 /// time of large ones stays linear.
-const PAIR_TRIALS: usize = 20_000;
+const PAIR_TRIALS: usize = 30_000;
 const ELEMENTS_A_PAIR_TRIAL: usize = 20;
+/// Trials of longer sequences, for every mesh whose pairs were searched to the end.
+const LONGER_TRIALS: usize = 40_000;
 
 /// What the clean-up did, by operation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,8 +58,10 @@ pub struct CleanedUp {
     pub openings: usize,
     /// Doublets removed.
     pub doublets: usize,
-    /// Changes that were kept only together with a second one.
+    /// Sequences of two changes that were kept only together.
     pub pairs: usize,
+    /// Sequences of three and of four.
+    pub longer: usize,
     /// Changes tried, each as often as it was.
     pub trials: usize,
     /// Trials taken back.
@@ -68,7 +75,33 @@ pub(super) enum Reach {
     Singles,
     /// Pairs of changes too, at the worst nodes first.
     Pairs,
+    /// And sequences of up to four.
+    Longer,
 }
+
+impl Reach {
+    /// Changes of the longest sequence that is tried.
+    fn longest(self) -> usize {
+        match self {
+            Reach::Singles => 1,
+            Reach::Pairs => 2,
+            Reach::Longer => 4,
+        }
+    }
+
+    /// First changes tried at a node.
+    fn firsts(self) -> usize {
+        if self == Reach::Longer { MOST_OF_LONGER } else { MOST_TRIALS }
+    }
+
+    /// How much energy changes may cost for a while.
+    fn most_rise(self) -> f64 {
+        MOST_RISE[usize::from(self == Reach::Longer)]
+    }
+}
+
+/// Changes made one after the other.
+type Steps = SmallVec<[(Candidate, Cleaning); 4]>;
 
 /// What a trial that stands in the mesh has come to.
 struct Trial {
@@ -78,7 +111,7 @@ struct Trial {
     quality: [f64; 2],
     /// The nodes around which the mesh has changed.
     touched: Nodes,
-    what: Cleaning,
+    steps: Steps,
 }
 
 /// A trial that was kept.
@@ -88,15 +121,16 @@ struct Kept {
 }
 
 impl Trial {
-    /// The trial that this one and a second after it are together.
-    fn and(&self, second: Trial, mesh: &Mesh) -> Trial {
+    /// The trial that this one and another after it are together.
+    fn and(&self, next: Trial, mesh: &Mesh) -> Trial {
         let mut touched = self.touched.clone();
-        touched.extend(second.touched.iter().copied().filter(|n| !self.touched.contains(n)));
+        touched.extend(next.touched.iter().copied().filter(|n| !self.touched.contains(n)));
         touched.retain(|n| mesh.has_node(*n));
-        // What the second found was the first one's doing, and part of that may lie outside of the second's reach.
-        let after = second.quality[1].min(worst_quality(mesh, &touched));
-        let energy = [self.energy[0], self.energy[1] + second.rise()];
-        Trial { energy, quality: [self.quality[0], after], touched, what: second.what }
+        // What the next one found was this one's doing, and part of that may lie outside of its reach.
+        let after = next.quality[1].min(worst_quality(mesh, &touched));
+        let energy = [self.energy[0], self.energy[1] + next.rise()];
+        let steps = self.steps.iter().chain(&next.steps).copied().collect();
+        Trial { energy, quality: [self.quality[0], after], touched, steps }
     }
 
     fn rise(&self) -> f64 {
@@ -138,6 +172,7 @@ impl<'a> CleanUp<'a> {
         let most_trials = match reach {
             Reach::Singles => usize::MAX,
             Reach::Pairs => done.trials + PAIR_TRIALS + mesh.element_count() / ELEMENTS_A_PAIR_TRIAL,
+            Reach::Longer => done.trials + LONGER_TRIALS,
         };
         let mut work = CleanUp {
             source,
@@ -152,7 +187,7 @@ impl<'a> CleanUp<'a> {
         };
         match reach {
             Reach::Singles => mesh.nodes().for_each(|node| work.enqueue(mesh, node)),
-            Reach::Pairs => work.enqueue_worst_first(mesh),
+            Reach::Pairs | Reach::Longer => work.enqueue_worst_first(mesh),
         }
         work
     }
@@ -167,7 +202,7 @@ impl<'a> CleanUp<'a> {
             }
             let kept = match self.reach {
                 Reach::Singles => self.single(mesh, node),
-                Reach::Pairs => self.single(mesh, node).or_else(|| self.pair(mesh, node)),
+                Reach::Pairs | Reach::Longer => self.sequence(mesh, node),
             };
             if !keep_journal {
                 mesh.commit();
@@ -183,6 +218,11 @@ impl<'a> CleanUp<'a> {
             }
         }
         None
+    }
+
+    /// Whether the budget of trials has ended it before every node was looked at.
+    pub fn is_cut_short(&self) -> bool {
+        self.list.len() > 0
     }
 
     /// What was done so far.
@@ -236,7 +276,7 @@ impl<'a> CleanUp<'a> {
         {
             let mark = mesh.mark();
             if let Some(trial) = self.attempt(mesh, candidate, HOPELESS).filter(Trial::is_good) {
-                return Some(self.keep(candidate, trial));
+                return Some(self.keep(trial));
             }
             self.done.refused += 1;
             mesh.take_back(mark);
@@ -244,15 +284,15 @@ impl<'a> CleanUp<'a> {
         None
     }
 
-    /// Tries pairs of changes around one irregular node: first changes that cost little energy, cheapest first, each with
-    /// the second changes that make up for what it did to the valences.
-    fn pair(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
-        let mut first: SmallVec<[(f64, Ranked); MOST_TRIALS]> = SmallVec::new();
-        for ranked in self.valences.candidates(mesh, node, MOST_WORSE, MOST_TRIALS) {
+    /// Tries sequences of changes around one irregular node: first changes that cost little energy, cheapest first, each with
+    /// those that make up for what it did to the valences.
+    fn sequence(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
+        let mut first: SmallVec<[(f64, Ranked); MOST_OF_LONGER]> = SmallVec::new();
+        for ranked in self.valences.candidates(mesh, node, MOST_WORSE, self.reach.firsts()) {
             let mark = mesh.mark();
-            if let Some(trial) = self.attempt(mesh, ranked.1, MOST_RISE) {
+            if let Some(trial) = self.attempt(mesh, ranked.1, self.reach.most_rise()) {
                 if trial.is_good() {
-                    return Some(self.keep(ranked.1, trial));
+                    return Some(self.keep(trial));
                 }
                 first.push((trial.rise(), ranked));
             }
@@ -261,14 +301,10 @@ impl<'a> CleanUp<'a> {
         first.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (_, (gain, candidate)) in first {
             let mark = mesh.mark();
-            if let Some(trial) = self.attempt(mesh, candidate, MOST_RISE)
-                && let Some((second, both)) = self.second(mesh, gain, &trial)
+            if let Some(trial) = self.attempt(mesh, candidate, self.reach.most_rise())
+                && let Some(all) = self.go_on(mesh, gain, &trial)
             {
-                self.count(candidate);
-                self.count(second);
-                self.done.pairs += 1;
-                let event = Event::Cleaned { what: trial.what, then: Some(both.what), energy: both.energy };
-                return Some(Kept { touched: both.touched, event });
+                return Some(self.keep(all));
             }
             self.done.refused += 1;
             mesh.take_back(mark);
@@ -276,21 +312,27 @@ impl<'a> CleanUp<'a> {
         None
     }
 
-    /// A second change after a first one with this valence gain, such that both together are good.
-    fn second(&mut self, mesh: &mut Mesh, gain: i32, first: &Trial) -> Option<(Candidate, Trial)> {
+    /// Goes on with a sequence whose changes so far have this valence gain, until all of it is good.
+    fn go_on(&mut self, mesh: &mut Mesh, gain: i32, so_far: &Trial) -> Option<Trial> {
+        let is_last = so_far.steps.len() + 1 == self.reach.longest();
+        let (worse, most) = if is_last { (0, HOPELESS) } else { (MOST_WORSE, self.reach.most_rise()) };
+        let trials = LATER_TRIALS[so_far.steps.len() - 1];
         let mut found: SmallVec<[Ranked; 32]> = SmallVec::new();
-        for &node in first.touched.iter().filter(|&&n| self.valences.excess(mesh, n) != 0) {
-            found.extend(self.valences.candidates(mesh, node, -gain, SECOND_TRIALS));
+        for &node in so_far.touched.iter().filter(|&&n| self.valences.excess(mesh, n) != 0) {
+            found.extend(self.valences.candidates(mesh, node, worse - gain, trials));
         }
         found.sort_unstable();
         found.dedup();
-        found.truncate(SECOND_TRIALS);
-        for (_, candidate) in found {
+        found.truncate(trials);
+        for (its_gain, candidate) in found {
             let mark = mesh.mark();
-            if let Some(second) = self.attempt(mesh, candidate, HOPELESS - first.rise()) {
-                let both = first.and(second, mesh);
-                if both.is_good() {
-                    return Some((candidate, both));
+            if let Some(next) = self.attempt(mesh, candidate, most - so_far.rise()) {
+                let all = so_far.and(next, mesh);
+                if all.is_good() {
+                    return Some(all);
+                }
+                if !is_last && let Some(all) = self.go_on(mesh, gain + its_gain, &all) {
+                    return Some(all);
                 }
             }
             self.done.refused += 1;
@@ -320,21 +362,23 @@ impl<'a> CleanUp<'a> {
         }
         let after = self.after.judge(mesh, &self.valences);
         let energy = [before.energy, after.energy];
-        Some(Trial { energy, quality: [before.quality, after.quality], touched: core, what })
+        let steps = SmallVec::from_slice(&[(candidate, what)]);
+        Some(Trial { energy, quality: [before.quality, after.quality], touched: core, steps })
     }
 
-    fn keep(&mut self, candidate: Candidate, trial: Trial) -> Kept {
-        self.count(candidate);
-        let event = Event::Cleaned { what: trial.what, then: None, energy: trial.energy };
-        Kept { touched: trial.touched, event }
-    }
-
-    fn count(&mut self, candidate: Candidate) {
-        match candidate {
-            Candidate::Doublet(_) => self.done.doublets += 1,
-            Candidate::Collapse(_) => self.done.collapses += 1,
-            Candidate::Rotate(..) => self.done.rotations += 1,
-            Candidate::Open(..) => self.done.openings += 1,
+    fn keep(&mut self, trial: Trial) -> Kept {
+        for (candidate, _) in &trial.steps {
+            match candidate {
+                Candidate::Doublet(_) => self.done.doublets += 1,
+                Candidate::Collapse(_) => self.done.collapses += 1,
+                Candidate::Rotate(..) => self.done.rotations += 1,
+                Candidate::Open(..) => self.done.openings += 1,
+            }
         }
+        self.done.pairs += usize::from(trial.steps.len() == 2);
+        self.done.longer += usize::from(trial.steps.len() > 2);
+        let then = [1, 2, 3].map(|k| trial.steps.get(k).map(|step| step.1));
+        let event = Event::Cleaned { what: trial.steps[0].1, then, energy: trial.energy };
+        Kept { touched: trial.touched, event }
     }
 }

@@ -105,10 +105,18 @@ impl Converter<'_> {
         }
     }
 
-    /// Puts a segment off until something near it changes.
+    /// Closes the loop of a segment from which no quadrilateral can be formed, where it is a small one (spec 2.7); else puts
+    /// the segment off until something near it changes.
     pub(super) fn step_defer(&mut self, base: Base) -> (Phase, Event) {
+        let segment = self.base_half_edge(&base);
+        let mark = self.mesh.mark();
+        if let Some((quads, event)) = segment.and_then(|h| self.close_beside(h)) {
+            self.counts.closed += quads;
+            self.refresh(mark);
+            return (Phase::Select, event);
+        }
         self.counts.deferred += 1;
-        if let Some(h) = self.base_half_edge(&base) {
+        if let Some(h) = segment {
             let mut queue = self.take_queue();
             queue.defer(&mut self.mesh, h);
             self.queue = Some(queue);

@@ -142,7 +142,7 @@ impl<'a> Converter<'a> {
     }
 
     /// The ids of what the last step changed, from the history; false where there is none.
-    pub(in crate::core) fn note_last_step(&self, touched: &mut Touched) -> bool {
+    pub fn note_last_step(&self, touched: &mut Touched) -> bool {
         let Some(record) = self.history.as_ref().and_then(|records| records.last()) else { return false };
         match &record.undo {
             Undo::Journal(mark) => touched.note_since(&self.mesh, *mark),

@@ -48,7 +48,7 @@ fn rounds(usual: u32) -> u32 {
 fn mesh_of(uv: Vec<DVec2>, triangles: Vec<[u32; 3]>) -> Mesh {
     let metric = vec![UNIT; uv.len()];
     let (point, region) = ((0..uv.len() as u32).map(PointId).collect(), vec![0; triangles.len()]);
-    Mesh::from_triangles(&TriangleSet { uv, point, triangles, region }, metric)
+    Mesh::from_triangles(&TriangleSet { uv, point, triangles, region, ..TriangleSet::default() }, metric)
 }
 
 /// A grid of `columns` by `rows` squares, inner nodes moved by up to `jitter` sides, cut along random diagonals, then
@@ -327,7 +327,7 @@ fn a_missing_metric_at_a_new_node_is_an_error_and_the_mesh_is_as_it_was() {
     struct Nowhere;
     impl MetricSource for Nowhere {
         fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
-            Err(Box::new(BadMetric { what: "nothing here".into(), place: Place { xyz: uv.extend(0.0), uv } }))
+            Err(Box::new(BadMetric { what: "nothing here".into(), place: Place::in_plane(uv) }))
         }
     }
     let uv = [(0.0, 0.0), (2.0, 0.0), (3.0, 3.0), (1.9, 0.5)].map(|(x, y)| DVec2::new(x, y)).to_vec();

@@ -21,37 +21,43 @@ pub(super) fn curves(document: &Table<'_>) -> Result<Vec<CurveSpec>, Fault> {
 
 /// Reads the faces, whose curves must be there.
 pub(super) fn faces(document: &Table<'_>, curves: &[CurveSpec]) -> Result<Vec<FaceSpec>, Fault> {
+    let names: Vec<&str> = curves.iter().map(|c| c.name.as_str()).collect();
     let mut faces = Vec::new();
     for table in document.tables("face")? {
         table.only(&["name", "outer", "holes", "cracks", "repeated"])?;
-        let name = name(&table)?;
-        let outer = known_curves(&table.need("outer", "[\"south\", \"east\", \"north\", \"west\"]")?, curves)?;
-        let some = |key| table.get(key).map_or(Ok(Vec::new()), |value| known_curves(&value, curves));
-        let holes = match table.get("holes") {
-            None => Vec::new(),
-            Some(value) => {
-                let wrong = |_| value.wrong("a list of lists of names", "holes = [[\"hole\"]]");
-                let list = value.list().map_err(wrong)?;
-                list.iter().map(|hole| known_curves(hole, curves)).collect::<Result<_, _>>()?
-            }
-        };
-        let (cracks, repeated) = (some("cracks")?, some("repeated")?);
-        faces.push(FaceSpec { name, outer, holes, cracks, repeated, place: table.place() });
+        let outer = known_curves(&table.need("outer", "[\"south\", \"east\", \"north\", \"west\"]")?, &names)?;
+        faces.push(face(&table, outer, &names)?);
     }
     Ok(faces)
 }
 
-/// Reads a list of names of curves that must be there.
-pub(super) fn known_curves(value: &Value<'_>, curves: &[CurveSpec]) -> Result<Vec<String>, Fault> {
+/// Reads what a face has besides its outer loop.
+pub(super) fn face(table: &Table<'_>, outer: Vec<String>, names: &[&str]) -> Result<FaceSpec, Fault> {
+    let name = name(table)?;
+    let some = |key| table.get(key).map_or(Ok(Vec::new()), |value| known_curves(&value, names));
+    let holes = match table.get("holes") {
+        None => Vec::new(),
+        Some(value) => {
+            let wrong = |_| value.wrong("a list of lists of names", "holes = [[\"hole\"]]");
+            let list = value.list().map_err(wrong)?;
+            list.iter().map(|hole| known_curves(hole, names)).collect::<Result<_, _>>()?
+        }
+    };
+    let (cracks, repeated) = (some("cracks")?, some("repeated")?);
+    Ok(FaceSpec { name, outer, holes, cracks, repeated, place: table.place() })
+}
+
+/// Reads a list of names of curves that must be there; edges of whole surfaces, such as "ball: v0", are known later.
+pub(super) fn known_curves(value: &Value<'_>, curves: &[&str]) -> Result<Vec<String>, Fault> {
     let names = value.texts()?;
     if names.is_empty() {
         return Err(value
             .fault(format!("{} is empty", value.key()))
             .remedy("Name at least one curve, or leave it out"));
     }
-    for name in &names {
-        if !curves.iter().any(|c| c.name == *name) {
-            let nearest = nearest(name, curves.iter().map(|c| c.name.as_str()));
+    for name in names.iter().filter(|name| !name.contains(": ")) {
+        if !curves.contains(&name.as_str()) {
+            let nearest = nearest(name, curves.iter().copied());
             let fault = value.fault(format!("There is no curve \"{}\"", name.escape_debug()));
             return Err(match nearest {
                 Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
@@ -62,7 +68,7 @@ pub(super) fn known_curves(value: &Value<'_>, curves: &[CurveSpec]) -> Result<Ve
     Ok(names)
 }
 
-fn name(table: &Table<'_>) -> Result<String, Fault> {
+pub(super) fn name(table: &Table<'_>) -> Result<String, Fault> {
     let value = table.need("name", "\"hole\"")?;
     let name = value.text()?;
     if name.is_empty() || name.chars().any(char::is_control) {
@@ -72,7 +78,12 @@ fn name(table: &Table<'_>) -> Result<String, Fault> {
 }
 
 fn shape(table: &Table<'_>) -> Result<CurveShape, Fault> {
-    let keys = |own: &[&'static str]| table.only(&[&["name", "kind", "segments"], own].concat());
+    shape_of(table, &[])
+}
+
+/// Reads a curve of the plane from a table that may have these keys besides.
+pub(super) fn shape_of(table: &Table<'_>, besides: &[&'static str]) -> Result<CurveShape, Fault> {
+    let keys = |own: &[&'static str]| table.only(&[&["name", "kind", "segments"], own, besides].concat());
     let kind = table.need("kind", "\"segment\"")?;
     match kind.text()? {
         "segment" => {

@@ -3,15 +3,14 @@
 use super::geometry::known_curves;
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
-use crate::core::geometry::domain::CurveSpec;
 use crate::core::metric::field::FieldSpec;
 
 /// Reads the metric fields; boundary layers name curves that must be there.
-pub(super) fn fields(document: &Table<'_>, curves: &[CurveSpec]) -> Result<Vec<FieldSpec>, Fault> {
+pub(super) fn fields(document: &Table<'_>, curves: &[&str]) -> Result<Vec<FieldSpec>, Fault> {
     document.tables("metric")?.iter().map(|table| field(table, curves)).collect()
 }
 
-fn field(table: &Table<'_>, curves: &[CurveSpec]) -> Result<FieldSpec, Fault> {
+fn field(table: &Table<'_>, curves: &[&str]) -> Result<FieldSpec, Fault> {
     let kind = table.need("kind", "\"formula\"")?;
     match kind.text()? {
         "uniform" => {
@@ -26,11 +25,7 @@ fn field(table: &Table<'_>, curves: &[CurveSpec]) -> Result<FieldSpec, Fault> {
             table.only(&["kind", "curves", "first", "growth", "along", "far"])?;
             let first_value = table.need("first", "0.001")?;
             let first = first_value.positive()?;
-            let growth_value = table.need("growth", "1.2")?;
-            let growth = growth_value.number()?;
-            if !(1.0..=10.0).contains(&growth) {
-                return Err(growth_value.wrong("a growth from 1 to 10", "growth = 1.2"));
-            }
+            let growth = growth(table)?;
             let far = table.get("far").map(|v| v.positive().map(|far| (v, far))).transpose()?;
             if let Some((value, far)) = &far
                 && *far < first
@@ -48,8 +43,36 @@ fn field(table: &Table<'_>, curves: &[CurveSpec]) -> Result<FieldSpec, Fault> {
                 place: table.place(),
             })
         }
-        _ => Err(kind.wrong("a kind of metric", "\"formula\", \"uniform\" or \"boundary_layer\" after kind =")),
+        "distance" => {
+            table.only(&["kind", "curves", "first", "growth", "far"])?;
+            Ok(FieldSpec::Distance {
+                curves: known_curves(&table.need("curves", "[\"wall\"]")?, curves)?,
+                first: table.need("first", "0.01")?.positive()?,
+                growth: growth(table)?,
+                far: table.need("far", "0.2")?.positive()?,
+                place: table.place(),
+            })
+        }
+        "curvature" => {
+            table.only(&["kind", "chord", "least", "far"])?;
+            Ok(FieldSpec::Curvature {
+                chord: table.need("chord", "0.01")?.positive()?,
+                least: table.need("least", "0.01")?.positive()?,
+                far: table.need("far", "0.5")?.positive()?,
+                place: table.place(),
+            })
+        }
+        _ => Err(kind.wrong(
+            "a kind of metric",
+            "\"formula\", \"uniform\", \"boundary_layer\", \"distance\" or \"curvature\" after kind =",
+        )),
     }
+}
+
+fn growth(table: &Table<'_>) -> Result<f64, Fault> {
+    let value = table.need("growth", "1.2")?;
+    let growth = value.number()?;
+    if (1.0..=10.0).contains(&growth) { Ok(growth) } else { Err(value.wrong("a growth from 1 to 10", "growth = 1.2")) }
 }
 
 fn formula(table: &Table<'_>) -> Result<FieldSpec, Fault> {

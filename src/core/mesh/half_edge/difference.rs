@@ -167,7 +167,9 @@ impl Mesh {
             free_elements,
             journal: _,
             refusals,
+            ground,
         } = other;
+        self.ground.clone_from(ground);
         self.uv.clone_from(uv);
         self.metric.clone_from(metric);
         self.anchor.clone_from(anchor);

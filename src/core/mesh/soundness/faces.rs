@@ -8,15 +8,21 @@ use crate::core::io::mesh_file::MeshFile;
 /// the next one; those of a triangle end at corner 2.
 pub struct Faces<'a> {
     mesh: &'a MeshFile,
+    flat: bool,
 }
 
 impl<'a> Faces<'a> {
     pub fn of(mesh: &'a MeshFile) -> Self {
-        Faces { mesh }
+        Faces { mesh, flat: mesh.points.windows(2).all(|w| w[0].z == w[1].z) }
     }
 
     pub fn len(&self) -> usize {
         self.mesh.triangles.len() + self.mesh.quads.len()
+    }
+
+    /// Whether all nodes have the same z.
+    pub fn is_flat(&self) -> bool {
+        self.flat
     }
 
     pub fn nodes(&self) -> usize {
@@ -34,6 +40,14 @@ impl<'a> Faces<'a> {
             Some(triangle) => triangle,
             None => &self.mesh.quads[element - self.mesh.triangles.len()],
         }
+    }
+
+    /// The group of an element; 0 where the file has none.
+    #[inline]
+    pub fn tag(&self, element: usize) -> u32 {
+        let triangles = self.mesh.triangles.len();
+        let tags = if element < triangles { &self.mesh.triangle_tags } else { &self.mesh.quad_tags };
+        tags.get(if element < triangles { element } else { element - triangles }).copied().unwrap_or(0)
     }
 
     /// The half-edge after this one in its element.

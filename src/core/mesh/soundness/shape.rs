@@ -1,6 +1,10 @@
-//! The shape of each element: area, orientation, convexity.
+//! The shape of each element: area, orientation, convexity. On a surface the corners are held against the normals of the
+//! surface, which a file does not have: a direction with which all corners around the node agree, within the same group,
+//! stands for it, if there is one. A corner that agrees with its own quadrilateral will do too.
 
 use glam::{DVec2, DVec3};
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use super::faces::Faces;
 use super::{Defect, Found, Soundness};
@@ -10,6 +14,8 @@ use crate::core::geometry::predicates::orient;
 const NO_AREA: f64 = 1e-9;
 /// A corner of a curved quadrilateral whose sine is below this is not convex.
 const FLAT: f64 = 1e-12;
+/// How often the normal at a node is turned before its corners are given up.
+const PATIENCE: usize = 200;
 
 /// Notes elements without area, inverted ones and quadrilaterals that are not strictly convex; fills in `planar` and
 /// `area`. Gives back the sense of the mesh in the plane: whether it runs anticlockwise as a whole.
@@ -26,6 +32,7 @@ pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> b
     }
     soundness.planar = height.0 == height.1;
     let anticlockwise = sum >= 0.0;
+    let normals = if soundness.planar { Normals::default() } else { normals(faces) };
     for element in 0..faces.len() {
         let corners = faces.corners(element);
         let double = normal(faces, corners);
@@ -36,7 +43,7 @@ pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> b
         } else if soundness.planar {
             in_plane(faces, corners, anticlockwise)
         } else {
-            on_surface(faces, corners, double / (2.0 * area))
+            on_surface(faces, corners, double / (2.0 * area), &|node| normals[&(node, faces.tag(element))])
         };
         if let Some(defect) = defect {
             found.note(defect, element, faces.point(corners[0]));
@@ -76,13 +83,52 @@ fn in_plane(faces: &Faces, corners: &[u32], anticlockwise: bool) -> Option<Defec
     }
 }
 
-/// By the normal of each corner against that of the quadrilateral.
-fn on_surface(faces: &Faces, corners: &[u32], normal: DVec3) -> Option<Defect> {
+/// Directions with which the corners agree, by node and group.
+type Normals = FxHashMap<(u32, u32), DVec3>;
+
+fn normals(faces: &Faces) -> Normals {
+    let mut corners_at: Vec<(u32, u32, u32)> = Vec::new();
+    for element in 0..faces.len() {
+        for (i, &node) in faces.corners(element).iter().enumerate() {
+            corners_at.push((node, faces.tag(element), (4 * element + i) as u32));
+        }
+    }
+    corners_at.sort_unstable();
+    let mut normals = Normals::default();
+    for group in corners_at.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        let corners: SmallVec<[DVec3; 8]> = group
+            .iter()
+            .map(|&(_, _, h)| corner_normal(faces, faces.corners(h as usize / 4), h as usize % 4).normalize_or_zero())
+            .collect();
+        let mut normal = corners.iter().sum::<DVec3>().normalize_or_zero();
+        // Where the mean will not do, it is turned towards the corner that agrees least (the perceptron's rule, which finds
+        // a direction where there is one).
+        for _ in 0..PATIENCE {
+            let worst = corners.iter().copied().min_by(|a, b| a.dot(normal).total_cmp(&b.dot(normal)));
+            let Some(worst) = worst.filter(|corner| corner.dot(normal) <= 1e-3) else { break };
+            normal = (normal + 0.3 * worst).normalize_or_zero();
+        }
+        normals.insert((group[0].0, group[0].1), normal);
+    }
+    normals
+}
+
+/// The normal between the two sides at a corner, as long as their parallelogram is large.
+fn corner_normal(faces: &Faces, corners: &[u32], i: usize) -> DVec3 {
+    let count = corners.len();
+    let p = |corner: usize| faces.point(corners[corner % count]);
+    (p(i + 1) - p(i)).cross(p(i + count - 1) - p(i))
+}
+
+/// By the normal of each corner against that of the surface there, or of the element itself.
+fn on_surface(faces: &Faces, corners: &[u32], own: DVec3, around: &dyn Fn(u32) -> DVec3) -> Option<Defect> {
     let count = corners.len();
     let p = |corner: usize| faces.point(corners[corner % count]);
     let convex = (0..count).all(|i| {
-        let (next, previous) = (p(i + 1) - p(i), p(i + count - 1) - p(i));
-        next.cross(previous).dot(normal) > FLAT * next.length() * previous.length()
+        let least = FLAT * p(i + 1).distance(p(i)) * p(i + count - 1).distance(p(i));
+        let corner = corner_normal(faces, corners, i);
+        let around = around(corners[i]);
+        corner.dot(own) > least || (corner.dot(around) > least && around.dot(own) > 0.0)
     });
     (!convex).then_some(Defect::NotConvex)
 }

@@ -89,7 +89,14 @@ impl Sides {
                 let (h_next, g_next) = (faces.next(h), faces.next(g));
                 let (a, _) = faces.ends(h);
                 if faces.ends(g).0 == a {
-                    found.note(Defect::OrientationConflict, a as usize, faces.point(a));
+                    // Faces of different groups in space may each have a normal of their own.
+                    if faces.tag(h / 4) == faces.tag(g / 4) || faces.is_flat() {
+                        found.note(Defect::OrientationConflict, a as usize, faces.point(a));
+                    } else {
+                        // The boundary cannot be followed through there by its direction.
+                        let (a, b) = faces.ends(h);
+                        (branching[a as usize], branching[b as usize]) = (true, true);
+                    }
                     self.odd.extend([h, g]);
                     fans.join(h, g);
                     fans.join(h_next, g_next);

@@ -29,8 +29,8 @@ fn wall(along: Option<f64>, far: Option<f64>) -> FieldSpec {
 }
 
 /// A wall along the x axis from 0 to 2.
-fn curves(name: &str) -> Option<Vec<DVec2>> {
-    (name == "wall").then(|| (0..=20).map(|i| DVec2::new(0.1 * f64::from(i), 0.0)).collect())
+fn curves(name: &str) -> Option<Line> {
+    (name == "wall").then(|| Line::Plane((0..=20).map(|i| DVec2::new(0.1 * f64::from(i), 0.0)).collect()))
 }
 
 fn compile(spec: &FieldSpec) -> Field {

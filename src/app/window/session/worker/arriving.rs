@@ -57,6 +57,7 @@ impl Worker {
     pub(super) fn moment(&mut self, step: u64, since: Instant) -> Result<Moment, Fault> {
         let step = step.min(self.history.log().known());
         let candidates = self.walk_with_recent(step)?;
+        let just_changed = self.recent.iter().find(|r| r.0 == step).map_or_else(|| Arc::new([]) as _, |r| r.1.clone());
         let mut recent: Vec<_> = self.recent.iter().filter(|r| r.0 <= step && !r.1.is_empty()).collect();
         recent.sort_unstable_by_key(|r| std::cmp::Reverse(r.0));
         recent.retain(|r| r.0 + RECENT > step);
@@ -91,6 +92,7 @@ impl Worker {
             parameters: state.parameters().clone(),
             changes,
             changed,
+            just_changed,
             front: rows.iter().map(segment).collect(),
             rows,
             loops: table.loops,

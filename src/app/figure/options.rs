@@ -1,0 +1,315 @@
+//! The words in which a person says how a figure is to be made: on the command line, and in the figure itself.
+
+use std::str::FromStr;
+
+use clap::{Args, Parser};
+use glam::DVec2;
+
+use crate::core::fault::Fault;
+use crate::core::run::shown::Shown;
+use crate::render::look::{Ink, Layer, Layers, Look, Part};
+use crate::render::vector::svg::{COLUMN, MILLIMETRE, PAGE, Sheet};
+
+/// Dots an inch of line art in print, and of screens.
+const PRINT: f64 = 300.0;
+const SCREEN: f64 = 96.0;
+
+/// How large a figure is; without a height as high as it must be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::app) enum Size {
+    Millimetres(f64, Option<f64>),
+    Pixels(u32, Option<u32>),
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Size, String> {
+        let usage = "write 84mm, 84x60mm, or pixels such as 1920x1080";
+        let (numbers, is_mm) = match text.strip_suffix("mm") {
+            Some(numbers) => (numbers, true),
+            None => (text, false),
+        };
+        let (width, height) = match numbers.split_once('x') {
+            Some((width, height)) => (width, Some(height)),
+            None => (numbers, None),
+        };
+        if is_mm {
+            let side =
+                |text: &str| text.trim().trim_end_matches("mm").parse().ok().filter(|x| (5.0..=2000.0).contains(x));
+            let sides = side(width).zip(height.map_or(Some(None), |h| side(h).map(Some)));
+            return sides.map(|(w, h)| Size::Millimetres(w, h)).ok_or_else(|| format!("{usage} (5 to 2000 mm)"));
+        }
+        let side = |text: &str| text.trim().parse().ok().filter(|n| (16..=20_000).contains(n));
+        let sides = side(width).zip(height.map_or(Some(None), |h| side(h).map(Some)));
+        sides.map(|(w, h)| Size::Pixels(w, h)).ok_or_else(|| format!("{usage} (16 to 20000 pixels)"))
+    }
+}
+
+impl std::fmt::Display for Size {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Size::Millimetres(width, None) => write!(f, "{width}mm"),
+            Size::Millimetres(width, Some(height)) => write!(f, "{width}x{height}mm"),
+            Size::Pixels(width, None) => write!(f, "{width}"),
+            Size::Pixels(width, Some(height)) => write!(f, "{width}x{height}"),
+        }
+    }
+}
+
+/// What is plotted in place of the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(in crate::app) enum Plot {
+    /// Edge lengths in the metric (fig. 23)
+    Lengths,
+    /// Least and greatest angles of the elements (fig. 24)
+    Angles,
+}
+
+/// The layers of a figure as a person names them: all of them, or changes of what is usual.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::app) struct LayerWords(String);
+
+impl FromStr for LayerWords {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<LayerWords, String> {
+        let words = LayerWords(text.to_owned());
+        words.named().map(|_| words)
+    }
+}
+
+impl LayerWords {
+    /// These layers and no others.
+    #[cfg(any(test, feature = "window"))]
+    pub fn exactly(layers: Layers) -> LayerWords {
+        let names: Vec<_> = Layer::ALL.into_iter().filter(|l| layers.has(*l)).map(Layer::name).collect();
+        LayerWords(if names.is_empty() { "none".to_owned() } else { names.join(",") })
+    }
+
+    /// The mesh alone.
+    pub fn mesh() -> LayerWords {
+        LayerWords([Layer::Live, Layer::Dead, Layer::Boundary].map(Layer::name).join(","))
+    }
+
+    /// Each name with its sign: `None` where it has none.
+    fn named(&self) -> Result<Vec<(Option<bool>, Layer)>, String> {
+        if self.0 == "none" {
+            return Ok(Vec::new());
+        }
+        let one = |word: &str| {
+            let (sign, name) = match word.as_bytes().first() {
+                Some(b'+') => (Some(true), &word[1..]),
+                Some(b'-') => (Some(false), &word[1..]),
+                _ => (None, word),
+            };
+            let found = Layer::ALL.into_iter().find(|layer| layer.name() == name);
+            found.map(|layer| (sign, layer)).ok_or_else(|| {
+                let all = Layer::ALL.map(Layer::name).join(", ");
+                format!("\"{name}\" is none of {all}; write names, or +NAME and -NAME to change what is usual")
+            })
+        };
+        self.0.split(',').map(|word| one(word.trim())).collect()
+    }
+
+    fn over(&self, usual: Layers) -> Layers {
+        let named = self.named().unwrap_or_default();
+        let changes = !named.is_empty() && named.iter().all(|(sign, _)| sign.is_some());
+        let mut layers = if changes { usual } else { Layers::default() };
+        named.iter().for_each(|(sign, layer)| layers.set(*layer, sign.unwrap_or(true)));
+        layers
+    }
+}
+
+/// X,Y,HEIGHT in units of the case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::app) struct PartWords(pub Part);
+
+impl FromStr for PartWords {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<PartWords, String> {
+        let numbers: Option<Vec<f64>> =
+            text.split(',').map(|n| n.trim().parse().ok().filter(|x: &f64| x.is_finite())).collect();
+        match numbers.as_deref() {
+            Some(&[x, y, height]) if height > 0.0 => Ok(PartWords(Part { centre: DVec2::new(x, y), height })),
+            _ => Err("write X,Y,HEIGHT in units of the case, for example 0.5,0.5,0.1".to_owned()),
+        }
+    }
+}
+
+/// The inks by name.
+fn ink(text: &str) -> Result<Ink, String> {
+    match text {
+        "grey" | "gray" => Ok(Ink::Grey),
+        "colour" | "color" => Ok(Ink::Colour),
+        _ => Err("write grey or colour".to_owned()),
+    }
+}
+
+fn dpi(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|x| (10.0..=2400.0).contains(x));
+    number.ok_or_else(|| "write a number from 10 to 2400".to_owned())
+}
+
+/// How a figure is made.
+#[derive(Args, Clone, Debug, Default, PartialEq)]
+pub(in crate::app) struct FigureOptions {
+    /// Width, or width and height: in millimetres (84mm, 84x60mm), or in pixels (1920x1080); without it a column of 84 mm, a
+    /// strip 174 mm
+    #[arg(long, value_name = "SIZE")]
+    pub size: Option<Size>,
+    /// Dots an inch of a PNG, and of a size in pixels: 300, where the size is in pixels 96
+    #[arg(long, value_name = "NUMBER", value_parser = dpi)]
+    pub dpi: Option<f64>,
+    /// grey or colour
+    #[arg(long, value_name = "INK", value_parser = ink)]
+    pub ink: Option<Ink>,
+    /// No white ground
+    #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub transparent: Option<bool>,
+    /// What is drawn: names of live, dead, changed, boundary, front, wedges, decision, letters, nodes, h, angles, ellipses,
+    /// scale; or changes of what is usual (--layers=+h,-letters)
+    #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
+    pub layers: Option<LayerWords>,
+    /// A histogram in place of the mesh
+    #[arg(long, value_name = "WHAT")]
+    pub plot: Option<Plot>,
+    /// Only a part: its middle and its height in units of the case
+    #[arg(long, value_name = "X,Y,HEIGHT", allow_hyphen_values = true)]
+    pub part: Option<PartWords>,
+    /// Frames side by side in a strip: 4, and rows of equal length
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=26))]
+    pub columns: Option<u32>,
+}
+
+/// Reads options alone, as a figure carries them.
+#[derive(Parser)]
+#[command(no_binary_name = true, disable_help_flag = true)]
+struct Words {
+    #[command(flatten)]
+    options: FigureOptions,
+}
+
+impl FigureOptions {
+    /// The options in words, as the command line takes them.
+    pub fn words(&self) -> Vec<String> {
+        let inks = |ink| if ink == Ink::Grey { "grey" } else { "colour" };
+        let plots = |plot| if plot == Plot::Lengths { "lengths" } else { "angles" };
+        let part = |PartWords(part): PartWords| format!("{},{},{}", part.centre.x, part.centre.y, part.height);
+        let words = [
+            self.size.map(|size| format!("--size={size}")),
+            self.dpi.map(|dpi| format!("--dpi={dpi}")),
+            self.ink.map(|ink| format!("--ink={}", inks(ink))),
+            self.transparent.map(|yes| format!("--transparent={yes}")),
+            self.layers.as_ref().map(|layers| format!("--layers={}", layers.0)),
+            self.plot.map(|plot| format!("--plot={}", plots(plot))),
+            self.part.map(|words| format!("--part={}", part(words))),
+            self.columns.map(|columns| format!("--columns={columns}")),
+        ];
+        words.into_iter().flatten().collect()
+    }
+
+    /// Options from their words.
+    ///
+    /// # Errors
+    /// Words that are no options of figures.
+    pub fn from_words(words: &[String]) -> Result<FigureOptions, Fault> {
+        Words::try_parse_from(words).map(|read| read.options).map_err(|error| {
+            let line = error.to_string().lines().next().unwrap_or_default().replace("error: ", "");
+            Fault::new(format!("How the figure was drawn is not understood: {line}"))
+        })
+    }
+
+    /// These options, and where they are silent those of a figure.
+    pub fn or(&self, figure: Option<&Shown>) -> Result<FigureOptions, Fault> {
+        let Some(shown) = figure else { return Ok(self.clone()) };
+        let theirs = FigureOptions::from_words(&shown.drawn)?;
+        let own = self.clone();
+        Ok(FigureOptions {
+            size: own.size.or(theirs.size),
+            dpi: own.dpi.or(theirs.dpi),
+            ink: own.ink.or(theirs.ink),
+            transparent: own.transparent.or(theirs.transparent),
+            layers: own.layers.or(theirs.layers),
+            plot: own.plot.or(theirs.plot),
+            part: own.part.or(theirs.part),
+            columns: own.columns.or(theirs.columns),
+        })
+    }
+
+    /// How the figure looks.
+    pub fn look(&self, strip: bool) -> Look {
+        let ink = self.ink.unwrap_or_default();
+        let usual = Layers::usual(ink, strip);
+        Look {
+            ink,
+            transparent: self.transparent.unwrap_or(false),
+            layers: self.layers.as_ref().map_or(usual, |words| words.over(usual)),
+            part: self.part.map(|words| words.0),
+        }
+    }
+
+    /// Dots an inch.
+    pub fn dots(&self) -> f64 {
+        self.dpi.unwrap_or(if matches!(self.size, Some(Size::Pixels(..))) { SCREEN } else { PRINT })
+    }
+
+    /// The sheet that it is drawn on.
+    pub fn sheet<'a>(&self, strip: bool, title: &'a str, description: &'a str, run: Option<&'a str>) -> Sheet<'a> {
+        let point = 72.0 / self.dots();
+        let (width, height) = match self.size {
+            None => (if strip { PAGE } else { COLUMN }, None),
+            Some(Size::Millimetres(width, height)) => (width * MILLIMETRE, height.map(|h| h * MILLIMETRE)),
+            Some(Size::Pixels(width, height)) => (f64::from(width) * point, height.map(|h| f64::from(h) * point)),
+        };
+        let columns = self.columns.map(|columns| columns as usize);
+        Sheet { title, description, run, width, height, look: self.look(strip), columns }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_read_back_from_their_words() {
+        for line in [
+            "",
+            "--size=84x60mm --dpi=600 --ink=grey --transparent=true --layers=+h,-letters --plot=angles --columns=3",
+            "--size=1920 --ink=colour --transparent=false --layers=none --part=-0.5,1e-7,0.25",
+            "--size=84.5mm --layers=live,front",
+        ] {
+            let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+            let options = FigureOptions::from_words(&words).unwrap();
+            assert_eq!(FigureOptions::from_words(&options.words()).unwrap(), options, "{line}");
+        }
+        for line in ["--size=3mm", "--size=84", "--size=x", "--dpi=0", "--ink=red", "--layers=lives", "a", "--out=b"] {
+            let words = [line.to_owned()];
+            let read = FigureOptions::from_words(&words);
+            assert!(read.is_err() || line == "--size=84", "{line}");
+        }
+    }
+
+    #[test]
+    fn layers_are_named_or_changed() {
+        let usual = Layers::usual(Ink::Colour, false);
+        let over = |text: &str| text.parse::<LayerWords>().unwrap().over(usual);
+        assert!(over("+h").has(Layer::H) && over("+h").has(Layer::Front));
+        assert!(!over("-front").has(Layer::Front) && over("-front").has(Layer::Live));
+        assert!(over("h").has(Layer::H) && !over("h").has(Layer::Front));
+        assert_eq!(LayerWords::exactly(usual).over(Layers::default()), usual);
+    }
+
+    #[test]
+    fn millimetres_and_pixels_become_points() {
+        let size = |text: &str| {
+            let options = FigureOptions { size: Some(text.parse().unwrap()), ..FigureOptions::default() };
+            let sheet = options.sheet(false, "", "", None);
+            (sheet.width, sheet.height, options.dots())
+        };
+        assert_eq!(size("25.4mm"), (72.0, None, 300.0));
+        assert_eq!(size("25.4x50.8mm"), (72.0, Some(144.0), 300.0));
+        assert_eq!(size("96x192"), (72.0, Some(144.0), 96.0));
+    }
+}

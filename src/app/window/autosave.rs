@@ -1,0 +1,343 @@
+//! Runs that are kept while they are worked on: each window has a file of its own in the user's state folder, which grows with
+//! the run and goes when nothing is unsaved. What a crash leaves behind is offered at the next start.
+//!
+//! A window holds a lock beside its file for as long as it lives; the system releases it however the window ends. So two windows
+//! never take each other's runs, and a run whose lock is free was left behind.
+
+mod place;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+pub use place::{Offer, folder};
+use place::{Place, left_behind};
+
+use super::session::{Opened, Source, Wake};
+use crate::core::fault::Fault;
+use crate::core::io::run_file::Keeper;
+use crate::core::run::run::{Bookmark, Camera, Edit, Run};
+
+/// After a failure it is tried again so often.
+const AGAIN: Duration = Duration::from_secs(10);
+/// A camera that moves is kept so often.
+const CAMERA: Duration = Duration::from_secs(2);
+
+enum Ask {
+    Keep(Box<Run>),
+    Forget,
+}
+
+/// The thread that writes, so that the window does not wait for a disk.
+struct Saver {
+    ask: Option<Sender<Ask>>,
+    told: Receiver<Fault>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Saver {
+    fn new(folder: PathBuf, place: Option<Place>, wake: Wake) -> Saver {
+        let (ask, asked) = channel();
+        let (tell, told) = channel();
+        let thread = std::thread::spawn(move || {
+            let mut work = Work { folder, place, keeper: None, pending: None, complained: false };
+            work.serve(&asked, &|fault| {
+                // Nobody listens where the window is being closed.
+                let _ = tell.send(fault);
+                wake();
+            });
+        });
+        Saver { ask: Some(ask), told, thread: Some(thread) }
+    }
+
+    fn ask(&self, ask: Ask) {
+        if let Some(sender) = &self.ask {
+            let _ = sender.send(ask);
+        }
+    }
+}
+
+impl Drop for Saver {
+    fn drop(&mut self) {
+        self.ask = None;
+        // What was asked last is on the disk when the window is gone.
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+struct Work {
+    folder: PathBuf,
+    place: Option<Place>,
+    keeper: Option<Keeper>,
+    /// What could not be written.
+    pending: Option<Box<Run>>,
+    complained: bool,
+}
+
+impl Work {
+    fn serve(&mut self, asked: &Receiver<Ask>, tell: &dyn Fn(Fault)) {
+        loop {
+            let first = match &self.pending {
+                Some(_) => asked.recv_timeout(AGAIN),
+                None => asked.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            };
+            let ask = match first {
+                // Of several only the last one counts.
+                Ok(first) => asked.try_iter().last().unwrap_or(first),
+                Err(RecvTimeoutError::Timeout) => match self.pending.take() {
+                    Some(run) => Ask::Keep(run),
+                    None => continue,
+                },
+                Err(RecvTimeoutError::Disconnected) => return,
+            };
+            match ask {
+                Ask::Forget => {
+                    (self.keeper, self.pending) = (None, None);
+                    if let Some(place) = self.place.take() {
+                        place.remove();
+                    }
+                }
+                Ask::Keep(run) => match self.keep(&run) {
+                    Ok(()) => self.complained = false,
+                    Err(fault) => {
+                        if !std::mem::replace(&mut self.complained, true) {
+                            tell(fault);
+                        }
+                        self.pending = Some(run);
+                    }
+                },
+            }
+        }
+    }
+
+    fn keep(&mut self, run: &Run) -> Result<(), Fault> {
+        let place = match self.place.take() {
+            Some(place) => place,
+            None => Place::new(&self.folder)?,
+        };
+        let place = self.place.insert(place);
+        let keeper = match self.keeper.take() {
+            Some(keeper) => keeper,
+            None => Keeper::new(place.path.clone(), run)?,
+        };
+        let kept = self.keeper.insert(keeper).keep(run);
+        kept.map(drop).map_err(|fault| {
+            let remedy = fault.remedy.clone();
+            let told = Fault { what: format!("The run cannot be kept while you work on it: {}", fault.what), ..fault };
+            told.remedy(format!("{remedy}; it is tried again, and Ctrl+S saves the run elsewhere"))
+        })
+    }
+}
+
+/// What of a run is kept.
+#[derive(Clone, Debug, PartialEq)]
+struct Changes {
+    edits: Vec<Edit>,
+    bookmarks: Vec<Bookmark>,
+}
+
+impl Changes {
+    fn of(run: &Run) -> Changes {
+        Changes { edits: run.edits().to_vec(), bookmarks: run.bookmarks.clone() }
+    }
+
+    fn are_of(&self, run: &Run) -> bool {
+        self.edits == run.edits() && self.bookmarks == run.bookmarks
+    }
+}
+
+/// Keeps the run of a window, and offers what was left behind.
+pub struct Autosave {
+    folder: PathBuf,
+    wake: Wake,
+    saver: Saver,
+    offers: Vec<Offer>,
+    scan: Receiver<Vec<Offer>>,
+    /// The run that is kept, as it was opened.
+    opened: Option<Arc<Opened>>,
+    /// What it was when it was opened or saved last; none for one that was left behind.
+    saved: Option<Changes>,
+    /// What is on the disk, and since when.
+    kept: Option<(Changes, Option<Camera>, Instant)>,
+    /// The offer that is being opened.
+    opening: Option<Offer>,
+}
+
+impl Autosave {
+    /// Keeps runs in a folder; what was left there is looked for beside the window.
+    pub fn new(folder: PathBuf, wake: Wake) -> Autosave {
+        let saver = Saver::new(folder.clone(), None, wake.clone());
+        let scan = scan(folder.clone(), wake.clone());
+        Autosave { folder, wake, saver, offers: Vec::new(), scan, opened: None, saved: None, kept: None, opening: None }
+    }
+
+    /// The run that is offered, and how many more there are.
+    pub fn offer(&self) -> Option<(&Offer, usize)> {
+        self.offers.first().map(|offer| (offer, self.offers.len() - 1))
+    }
+
+    /// Takes the offer: what is to be opened.
+    pub fn take(&mut self) -> Option<Source> {
+        if self.offers.is_empty() {
+            return None;
+        }
+        // One that is still being opened is offered again.
+        let offer = self.offers.remove(0);
+        let source = Source::File(offer.place.path.clone());
+        self.offers.extend(self.opening.replace(offer));
+        Some(source)
+    }
+
+    /// Throws the offer away.
+    pub fn discard(&mut self) {
+        if !self.offers.is_empty() {
+            self.offers.remove(0).place.remove();
+        }
+    }
+
+    /// The run has been saved as it is.
+    pub fn saved(&mut self, run: &Run) {
+        self.saved = Some(Changes::of(run));
+    }
+
+    /// Looks at the window's run; what went wrong, and when to look again.
+    pub fn look(
+        &mut self,
+        opened: Option<&Arc<Opened>>,
+        source: Option<&Source>,
+        run: impl Fn() -> Option<Run>,
+    ) -> (Vec<Fault>, Option<Duration>) {
+        if let Ok(found) = self.scan.try_recv() {
+            self.offers.extend(found);
+        }
+        let faults = self.saver.told.try_iter().collect();
+        let Some(opened) = opened else { return (faults, None) };
+        if self.opened.as_ref().is_none_or(|old| !Arc::ptr_eq(old, opened)) {
+            self.begin(opened, source);
+        }
+        let Some(run) = run() else { return (faults, None) };
+        let unsaved = self.saved.as_ref().is_none_or(|saved| !saved.are_of(&run));
+        if !unsaved {
+            if self.kept.take().is_some() {
+                self.saver.ask(Ask::Forget);
+            }
+            return (faults, None);
+        }
+        if let Some((changes, camera, since)) = &self.kept
+            && changes.are_of(&run)
+        {
+            if *camera == run.camera {
+                return (faults, None);
+            }
+            // Whoever moves the mesh does not write at every frame.
+            if let Some(left) = CAMERA.checked_sub(since.elapsed()).filter(|left| !left.is_zero()) {
+                return (faults, Some(left));
+            }
+        }
+        self.kept = Some((Changes::of(&run), run.camera, Instant::now()));
+        self.saver.ask(Ask::Keep(Box::new(run)));
+        (faults, None)
+    }
+
+    /// The run that was offered cannot be opened: it is offered again.
+    pub fn failed(&mut self) {
+        self.offers.extend(self.opening.take());
+    }
+
+    /// The window has opened another run: that of before stays where it is kept, and is offered where it was not saved.
+    fn begin(&mut self, opened: &Arc<Opened>, source: Option<&Source>) {
+        let is_it = |offer: &Offer| source == Some(&Source::File(offer.place.path.clone()));
+        let adopted = self.opening.take_if(|offer| is_it(offer));
+        let was_unsaved = self.kept.take().is_some();
+        self.saved = if adopted.is_some() { None } else { Some(Changes::of(&opened.run)) };
+        let place = adopted.map(|offer| offer.place);
+        // The old one ends first, and lets go of its lock.
+        drop(std::mem::replace(&mut self.saver, Saver::new(self.folder.clone(), place, self.wake.clone())));
+        if was_unsaved {
+            self.scan = scan(self.folder.clone(), self.wake.clone());
+        }
+        self.opened = Some(opened.clone());
+    }
+}
+
+/// Looks for runs that were left behind, on a thread of its own.
+fn scan(folder: PathBuf, wake: Wake) -> Receiver<Vec<Offer>> {
+    let (tell, told) = channel();
+    std::thread::spawn(move || {
+        // Nobody listens where the window is being closed.
+        let _ = tell.send(left_behind(&folder));
+        wake();
+    });
+    told
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::core::io::built_in;
+    use crate::core::run::run::EditKind;
+
+    fn run(edits: u64) -> Run {
+        let mut run = Run::of(built_in::named("example1").unwrap().unwrap());
+        run.set_edits((0..edits).map(|step| Edit { step, kind: EditKind::parameter("c", "1.5").unwrap() }).collect());
+        run
+    }
+
+    fn saver(folder: &Path) -> Saver {
+        Saver::new(folder.to_path_buf(), None, Arc::new(|| {}))
+    }
+
+    #[test]
+    fn a_run_that_is_held_is_not_offered_and_one_that_was_left_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = saver(folder.path());
+        let second = saver(folder.path());
+        first.ask(Ask::Keep(Box::new(run(3))));
+        second.ask(Ask::Keep(Box::new(run(1))));
+        let begin = Instant::now();
+        while std::fs::read_dir(folder.path()).unwrap().count() < 4 {
+            assert!(begin.elapsed() < Duration::from_secs(20));
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        assert!(left_behind(folder.path()).is_empty(), "both windows live");
+        drop(first);
+        let offers = left_behind(folder.path());
+        assert_eq!(offers.len(), 1);
+        assert_eq!(offers[0].text, "A run of example1 with 3 edits from a moment ago was not closed.");
+        assert!(left_behind(folder.path()).is_empty(), "whoever offers it holds it");
+        drop(offers);
+        second.ask(Ask::Forget);
+        drop(second);
+        assert_eq!(left_behind(folder.path()).len(), 1, "the second one was forgotten");
+    }
+
+    #[test]
+    fn what_is_no_run_is_offered_with_what_is_wrong() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("7-0.toml"), "run = 1\n[case").unwrap();
+        let offers = left_behind(folder.path());
+        assert!(!offers[0].opens && offers[0].text.contains("not TOML"), "{}", offers[0].text);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_that_cannot_be_written_is_told_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        let saver = saver(&file.join("runs"));
+        for edits in 0..3 {
+            saver.ask(Ask::Keep(Box::new(run(edits))));
+            std::thread::sleep(Duration::from_millis(30));
+        }
+        let told = saver.told.recv_timeout(Duration::from_secs(20)).unwrap();
+        assert!(told.what.contains("cannot be kept") && told.remedy.contains("Ctrl+S"), "{told}");
+        assert!(saver.told.recv_timeout(Duration::from_millis(100)).is_err());
+    }
+}

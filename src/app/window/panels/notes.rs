@@ -1,0 +1,35 @@
+//! What a case is about, in its own words: open from the start for the small cases that show a figure of the paper.
+
+use eframe::egui::{Align2, Context, RichText, ScrollArea, Vec2, Window};
+
+use crate::app::window::state::State;
+use crate::app::window::theme::{self, ink};
+use crate::render::palette::Palette;
+
+/// Shows the notes, where they are wanted.
+pub fn show(context: &Context, state: &mut State, palette: &Palette) {
+    let Some(case) = state.opened.as_ref().map(|opened| &opened.case).filter(|_| state.notes) else { return };
+    let mut open = true;
+    Window::new("Notes")
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_width(304.0)
+        .frame(super::floating(palette))
+        // Over the left column, where it covers nothing of the mesh; from there it can be moved.
+        .pivot(Align2::LEFT_BOTTOM)
+        .default_pos(context.content_rect().left_bottom() + Vec2::new(8.0, -224.0))
+        .show(context, |ui| {
+            ui.set_width(304.0);
+            ui.label(RichText::new(&case.title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
+            ui.add_space(4.0);
+            ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
+                // Lines of the file are not lines of the screen.
+                for paragraph in case.notes.split("\n\n") {
+                    let text = paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
+                    ui.label(RichText::new(if text.is_empty() { "This case has no notes." } else { &text }));
+                }
+            });
+        });
+    state.notes = open;
+}

@@ -1,0 +1,30 @@
+//! The run that was left behind, offered; never modal.
+
+use eframe::egui::{Frame, Margin, Panel, RichText, Ui};
+
+use crate::app::window::command::Command;
+use crate::app::window::icons;
+use crate::app::window::state::State;
+use crate::app::window::theme::{self, ink};
+use crate::render::palette::Palette;
+
+/// Shows it under the menus.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some((offer, more)) = state.autosave.as_ref().and_then(|autosave| autosave.offer()) else { return };
+    let frame = Frame::NONE.fill(ink(palette.button)).inner_margin(Margin::symmetric(14, 5));
+    Panel::top("offer").frame(frame).resizable(false).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(icons::RESET).font(theme::regular(theme::ICON)).color(ink(palette.accent)));
+            ui.label(RichText::new(&offer.text).color(ink(palette.strong)));
+            if offer.opens && ui.button("Open it").clicked() {
+                commands.push(Command::OpenKept);
+            }
+            if ui.button("Discard").clicked() {
+                commands.push(Command::DiscardKept);
+            }
+            if more > 0 {
+                ui.label(RichText::new(format!("and {more} more")).color(ink(palette.weak)));
+            }
+        });
+    });
+}

@@ -1,0 +1,412 @@
+//! Charts: parts of a surface of triangles that can be laid into the plane one to one (spec 4).
+//!
+//! The features divide the surface into parts. A part with holes that does not lie flat enough is slit from one border to another
+//! along the shortest way; one that is no disc for another reason, or that the plane would stretch too much, is cut in two
+//! between the two of its triangles that lie farthest apart, until all are good. Where a chart is slit, or a feature ends within
+//! it, it has two nodes at each point.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use glam::{DVec2, DVec3};
+
+use super::edges::{Corner, Edges, Triangles};
+use super::features::Feature;
+use super::{rigid, tutte};
+use crate::core::background::cut::Sets;
+
+/// Triangles and their map to the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    /// Its triangles, ascending, by their place in the surface.
+    pub triangles: Vec<u32>,
+    /// Their corners by place in `points` and `uv`.
+    pub local: Vec<[u32; 3]>,
+    /// The point of the surface at which each node stands: twice the same at a slit.
+    pub points: Vec<u32>,
+    /// How many nodes each border loop has: these come first, loop after loop, the chart to their left.
+    pub loops: Vec<u32>,
+    /// Where each node lies in the plane: as rigidly as possible, or where that is not one to one within a circle.
+    pub uv: Vec<DVec2>,
+    /// How much it is stretched.
+    pub stretch: Stretch,
+}
+
+/// How far a map to the plane is from keeping shapes and areas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// The greatest ratio of the lengths in space that equal lengths of the plane have at one place (1: shapes are kept).
+    pub shape: f64,
+    /// Ratio of the greatest to the least area in space of equal areas of the plane.
+    pub area: f64,
+}
+
+/// How much a chart may be stretched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// Bound for [`Stretch::shape`].
+    pub shape: f64,
+    /// Bound for [`Stretch::area`].
+    pub area: f64,
+}
+
+impl Default for Bound {
+    fn default() -> Self {
+        // Far below what the arithmetic would bear (50 and 1e4, spec 4): the mesh is made in the plane, and follows its metric the
+        // better the less that changes from triangle to triangle.
+        Bound { shape: 4.0, area: 16.0 }
+    }
+}
+
+/// A chart with holes is taken as it is up to here, and slit beyond.
+const WITH_HOLES: Bound = Bound { shape: 2.0, area: 4.0 };
+
+/// Cuts a surface into charts, in the order of their first triangles.
+pub fn charts(mesh: &Triangles, edges: &Edges, features: &[Option<Feature>], bound: Bound) -> Vec<Chart> {
+    let surface = Surface::new(mesh, edges, features);
+    let all = Part::of((0..mesh.triangles.len() as u32).collect());
+    let mut waiting = surface.connected(&all);
+    let mut charts = Vec::new();
+    while let Some(part) = waiting.pop() {
+        match surface.chart(&part, bound) {
+            Next::Taken(chart) => charts.push(*chart),
+            Next::Slit(slits) => waiting.push(Part { slits, ..part }),
+            Next::Cut => {
+                for half in surface.halves(&part) {
+                    waiting.extend(surface.connected(&Part::of(half)));
+                }
+            }
+        }
+    }
+    charts.sort_unstable_by_key(|chart| chart.triangles[0]);
+    charts
+}
+
+impl Bound {
+    fn allows(self, stretch: Stretch) -> bool {
+        stretch.shape <= self.shape && stretch.area <= self.area
+    }
+}
+
+/// What is to become of a part.
+enum Next {
+    /// It is a chart.
+    Taken(Box<Chart>),
+    /// It is to be slit along these sides.
+    Slit(Vec<Corner>),
+    /// It is to be cut in two.
+    Cut,
+}
+
+/// Triangles that hang together, ascending, and the sides (both of an edge) along which they are slit, ascending.
+#[derive(Debug)]
+struct Part {
+    triangles: Vec<u32>,
+    slits: Vec<Corner>,
+}
+
+impl Part {
+    fn of(triangles: Vec<u32>) -> Part {
+        Part { triangles, slits: Vec::new() }
+    }
+}
+
+/// The surface with the triangles beyond each side that no feature parts from it.
+struct Surface<'a> {
+    mesh: &'a Triangles,
+    beyond: Vec<Option<Corner>>,
+    centre: Vec<DVec3>,
+}
+
+impl<'a> Surface<'a> {
+    fn new(mesh: &'a Triangles, edges: &Edges, features: &[Option<Feature>]) -> Self {
+        let mut beyond = vec![None; 3 * mesh.triangles.len()];
+        for (edge, _) in features.iter().enumerate().filter(|(_, feature)| feature.is_none()) {
+            if let [a, b] = *edges.get(edge).sides {
+                beyond[a as usize] = Some(b);
+                beyond[b as usize] = Some(a);
+            }
+        }
+        let centre = (0..mesh.triangles.len()).map(|t| mesh.corners(t).iter().sum::<DVec3>() / 3.0).collect();
+        Surface { mesh, beyond, centre }
+    }
+
+    /// The sides of a triangle.
+    fn sides(triangle: u32) -> [Corner; 3] {
+        [3 * triangle, 3 * triangle + 1, 3 * triangle + 2]
+    }
+
+    /// The pieces into which triangles fall, each ascending; the one with the least triangle comes last.
+    fn connected(&self, part: &Part) -> Vec<Part> {
+        let triangles = &part.triangles;
+        let mut left = vec![true; triangles.len()];
+        let mut pieces = Vec::new();
+        for first in 0..triangles.len() {
+            if !std::mem::replace(&mut left[first], false) {
+                continue;
+            }
+            let mut piece = vec![first as u32];
+            let mut next = 0;
+            while next < piece.len() {
+                for side in Self::sides(triangles[piece[next] as usize]) {
+                    if let Some(at) = self.neighbour(part, side).filter(|&at| left[at]) {
+                        left[at] = false;
+                        piece.push(at as u32);
+                    }
+                }
+                next += 1;
+            }
+            piece.sort_unstable();
+            piece.iter_mut().for_each(|at| *at = triangles[*at as usize]);
+            pieces.push(Part::of(piece));
+        }
+        pieces.reverse();
+        pieces
+    }
+
+    /// The chart of a part, or what else has to be done with it.
+    fn chart(&self, part: &Part, bound: Bound) -> Next {
+        let mut chart = self.nodes(part);
+        let edges = Edges::of(&chart.local);
+        let euler = chart.points.len() as i64 - edges.len() as i64 + chart.local.len() as i64;
+        let holes = chart.loops.len() as i64 - 1;
+        // A single triangle is its own map, whatever its shape.
+        let is_single = part.triangles.len() == 1;
+        if holes < 0 || euler != 1 - holes {
+            return Next::Cut;
+        }
+        let xyz: Vec<DVec3> = chart.points.iter().map(|&p| self.mesh.points[p as usize]).collect();
+        let rigid = rigid::map(&xyz, &chart.local, &chart.loops);
+        let mapped = match rigid {
+            None if holes == 0 => tutte::map(&xyz, &chart.local, chart.loops[0] as usize),
+            found => found,
+        };
+        if let Some(uv) = mapped {
+            chart.stretch = tutte::stretch(&xyz, &chart.local, &uv);
+            chart.uv = uv;
+            let bound = if holes == 0 { bound } else { WITH_HOLES };
+            if is_single || bound.allows(chart.stretch) {
+                return Next::Taken(Box::new(chart));
+            }
+        }
+        if holes > 0 { Next::Slit(self.slit(part, &chart, &edges, &xyz)) } else { Next::Cut }
+    }
+
+    /// The nodes of a part: corners that are held together by its edges.
+    fn nodes(&self, part: &Part) -> Chart {
+        let triangles = &part.triangles;
+        let mut nodes = Sets::new(3 * triangles.len());
+        let mut border_sides: Vec<Corner> = Vec::new();
+        let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
+        for (at, &t) in triangles.iter().enumerate() {
+            for side in Self::sides(t) {
+                let own = 3 * at as u32 + side % 3;
+                match self.neighbour(part, side) {
+                    Some(there) => {
+                        let other = 3 * there as u32 + self.beyond[side as usize].unwrap_or(side) % 3;
+                        nodes.join(own, after(other));
+                        nodes.join(after(own), other);
+                    }
+                    None => border_sides.push(own),
+                }
+            }
+        }
+        let set: Vec<u32> = (0..3 * triangles.len() as u32).map(|corner| nodes.find(corner)).collect();
+        // The border, loop after loop; then the nodes inside, from the border inwards.
+        let mut side_at = vec![u32::MAX; set.len()];
+        border_sides.iter().for_each(|&side| side_at[set[side as usize] as usize] = side);
+        let (mut order, mut loops) = (Vec::new(), Vec::new());
+        let mut number = vec![u32::MAX; set.len()];
+        for &first in &border_sides {
+            let before = order.len();
+            let mut side = first;
+            while number[set[side as usize] as usize] == u32::MAX {
+                number[set[side as usize] as usize] = order.len() as u32;
+                order.push(side);
+                side = side_at[set[after(side) as usize] as usize];
+            }
+            if order.len() > before {
+                loops.push((order.len() - before) as u32);
+            }
+        }
+        if order.is_empty() {
+            number[set[0] as usize] = 0;
+            order.push(0);
+        }
+        let mut corners: Vec<u32> = (0..set.len() as u32).collect();
+        corners.sort_unstable_by_key(|&corner| (set[corner as usize], corner));
+        let mut next = 0;
+        while next < order.len() {
+            let node = set[order[next] as usize];
+            let first = corners.partition_point(|&corner| set[corner as usize] < node);
+            for &corner in corners[first..].iter().take_while(|&&corner| set[corner as usize] == node) {
+                for near in [after(corner), after(after(corner))] {
+                    let number = &mut number[set[near as usize] as usize];
+                    if *number == u32::MAX {
+                        *number = order.len() as u32;
+                        order.push(near);
+                    }
+                }
+            }
+            next += 1;
+        }
+        let point = |corner: u32| self.mesh.triangles[triangles[corner as usize / 3] as usize][corner as usize % 3];
+        Chart {
+            triangles: triangles.clone(),
+            local: (0..triangles.len()).map(|t| [0, 1, 2].map(|k| number[set[3 * t + k] as usize])).collect(),
+            points: order.into_iter().map(point).collect(),
+            loops,
+            uv: Vec::new(),
+            stretch: Stretch { shape: 1.0, area: 1.0 },
+        }
+    }
+
+    /// The sides along which a part is slit already, and those of the shortest way from its first border loop to another one.
+    fn slit(&self, part: &Part, chart: &Chart, edges: &Edges, xyz: &[DVec3]) -> Vec<Corner> {
+        let mut near: Vec<Vec<u32>> = vec![Vec::new(); xyz.len()];
+        let inner = (0..edges.len()).filter(|&edge| edges.get(edge).sides.len() == 2);
+        for edge in inner {
+            edges.get(edge).ends.iter().for_each(|&end| near[end as usize].push(edge as u32));
+        }
+        let (first, border) = (chart.loops[0], chart.loops.iter().sum::<u32>());
+        let mut reached = vec![(f64::INFINITY, u32::MAX); xyz.len()];
+        let mut queue: BinaryHeap<Reverse<(u64, u32)>> = BinaryHeap::new();
+        for node in 0..first {
+            reached[node as usize].0 = 0.0;
+            queue.push(Reverse((0, node)));
+        }
+        let mut end = None;
+        while let Some(Reverse((bits, node))) = queue.pop() {
+            if reached[node as usize].0.to_bits() != bits {
+                continue;
+            }
+            if (first..border).contains(&node) {
+                end = Some(node);
+                break;
+            }
+            for &edge in &near[node as usize] {
+                let [a, b] = edges.get(edge as usize).ends;
+                let other = if a == node { b } else { a };
+                let far = f64::from_bits(bits) + xyz[a as usize].distance(xyz[b as usize]);
+                if far < reached[other as usize].0 {
+                    reached[other as usize] = (far, edge);
+                    queue.push(Reverse((far.to_bits(), other)));
+                }
+            }
+        }
+        let mut slits = part.slits.clone();
+        while let Some(node) = end.take() {
+            let edge = reached[node as usize].1;
+            if edge != u32::MAX {
+                let edge = edges.get(edge as usize);
+                let side = |&corner: &Corner| 3 * part.triangles[corner as usize / 3] + corner % 3;
+                slits.extend(edge.sides.iter().map(side));
+                end = Some(if edge.ends[0] == node { edge.ends[1] } else { edge.ends[0] });
+            }
+        }
+        slits.sort_unstable();
+        slits
+    }
+
+    /// Two parts of a part, divided half-way between two triangles that are far apart.
+    fn halves(&self, part: &Part) -> [Vec<u32>; 2] {
+        let triangles = &part.triangles;
+        let farthest = |from: u32| {
+            let reached = self.reach(part, &[from]);
+            let far = reached.iter().enumerate().max_by(|a, b| a.1.0.total_cmp(&b.1.0).then(b.0.cmp(&a.0)));
+            far.map_or(from, |(at, _)| triangles[at])
+        };
+        let one = farthest(triangles[0]);
+        let mut seeds = [one, farthest(one)];
+        if seeds[0] == seeds[1] {
+            seeds = [triangles[0], triangles[triangles.len() - 1]];
+        }
+        let mut owner: Vec<u8> = self.reach(part, &seeds).iter().map(|reached| reached.1).collect();
+        for _ in 0..2 {
+            // Each from its own middle: the triangle farthest from where the two meet.
+            let meeting = |at: usize| {
+                Self::sides(triangles[at])
+                    .iter()
+                    .any(|&side| self.neighbour(part, side).is_some_and(|n| owner[n] != owner[at]))
+            };
+            let line: Vec<u32> = (0..triangles.len()).filter(|&at| meeting(at)).map(|at| triangles[at]).collect();
+            if line.is_empty() {
+                break;
+            }
+            let depth = self.reach(part, &line);
+            let deepest = |own: u8| {
+                let own = (0..triangles.len()).filter(|&at| owner[at] == own);
+                own.max_by(|&a, &b| depth[a].0.total_cmp(&depth[b].0).then(b.cmp(&a))).map(|at| triangles[at])
+            };
+            let (Some(a), Some(b)) = (deepest(0), deepest(1)) else { break };
+            owner = self.reach(part, &[a, b]).iter().map(|reached| reached.1).collect();
+        }
+        self.shorten(part, &mut owner);
+        let half =
+            |own: u8| triangles.iter().zip(&owner).filter(|(_, o)| (**o == 0) == (own == 0)).map(|(&t, _)| t).collect();
+        [half(0), half(1)]
+    }
+
+    /// Where a triangle of the part lies beyond a side.
+    fn neighbour(&self, part: &Part, side: Corner) -> Option<usize> {
+        let beyond = self.beyond[side as usize]?;
+        let at = part.triangles.binary_search(&(beyond / 3)).ok()?;
+        (part.slits.is_empty() || part.slits.binary_search(&side).is_err()).then_some(at)
+    }
+
+    /// Takes the teeth from the line along which two halves meet: a triangle with two neighbours in the other half goes to it.
+    fn shorten(&self, part: &Part, owner: &mut [u8]) {
+        for _ in 0..3 {
+            let mut moved = false;
+            for at in 0..part.triangles.len() {
+                let beyond = Self::sides(part.triangles[at]).map(|side| self.neighbour(part, side).map(|n| owner[n]));
+                let foreign = beyond.iter().flatten().filter(|&&o| o != owner[at]).count();
+                let own = beyond.iter().flatten().filter(|&&o| o == owner[at]).count();
+                if foreign == 2 && own == 1 {
+                    owner[at] = 1 - owner[at].min(1);
+                    moved = true;
+                }
+            }
+            if !moved {
+                return;
+            }
+        }
+    }
+
+    /// Distance of each triangle of a part from the nearest of some, from centre to centre, and which of them that is (the first
+    /// 255; ties by their order). Triangles that cannot be reached belong to the first.
+    fn reach(&self, part: &Part, seeds: &[u32]) -> Vec<(f64, u8)> {
+        let mut reached = vec![(f64::INFINITY, 0_u8); part.triangles.len()];
+        // Non-negative numbers are ordered as their bits.
+        let mut queue: BinaryHeap<Reverse<(u64, u8, u32)>> = BinaryHeap::new();
+        for (i, seed) in seeds.iter().enumerate() {
+            if let Ok(at) = part.triangles.binary_search(seed) {
+                let owner = i.min(255) as u8;
+                if reached[at].0 > 0.0 {
+                    reached[at] = (0.0, owner);
+                    queue.push(Reverse((0, owner, at as u32)));
+                }
+            }
+        }
+        while let Some(Reverse((bits, owner, at))) = queue.pop() {
+            let at = at as usize;
+            if reached[at] != (f64::from_bits(bits), owner) {
+                continue;
+            }
+            for side in Self::sides(part.triangles[at]) {
+                let Some(next) = self.neighbour(part, side) else { continue };
+                let far = f64::from_bits(bits)
+                    + self.centre[part.triangles[at] as usize].distance(self.centre[part.triangles[next] as usize]);
+                if far < reached[next].0 {
+                    reached[next] = (far, owner);
+                    queue.push(Reverse((far.to_bits(), owner, next as u32)));
+                }
+            }
+        }
+        reached.iter_mut().filter(|r| r.0 == f64::INFINITY).for_each(|r| r.0 = 0.0);
+        reached
+    }
+}
+
+#[cfg(test)]
+mod tests;

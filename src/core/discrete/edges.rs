@@ -1,0 +1,106 @@
+//! Edges of a list of triangles, with the triangles at each: no matter how many, and which way they turn.
+
+use glam::DVec3;
+
+/// Triangles in space by the places of their corners in a list of points; whoever makes one has checked the places.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Triangles {
+    /// Corners.
+    pub points: Vec<DVec3>,
+    /// Triangles, each with its outside on the side from which it is seen anticlockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// The region of each triangle.
+    pub region: Vec<u32>,
+}
+
+/// A side of a triangle: the one that begins at corner `corner % 3` of triangle `corner / 3`.
+pub type Corner = u32;
+
+/// An edge and the sides that lie on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge<'a> {
+    /// Its ends, the smaller one first.
+    pub ends: [u32; 2],
+    /// The sides, by ascending corner.
+    pub sides: &'a [Corner],
+}
+
+/// All edges, by ascending ends.
+#[derive(Clone, Debug, Default)]
+pub struct Edges {
+    ends: Vec<[u32; 2]>,
+    /// Where the sides of each edge begin, and at last their number.
+    start: Vec<u32>,
+    sides: Vec<Corner>,
+    /// The edge of each side.
+    of_side: Vec<u32>,
+}
+
+impl Edges {
+    /// The edges of the triangles.
+    pub fn of(triangles: &[[u32; 3]]) -> Edges {
+        let key = |corner: Corner| {
+            let t = triangles[corner as usize / 3];
+            let [a, b] = [t[corner as usize % 3], t[(corner as usize + 1) % 3]];
+            [a.min(b), a.max(b)]
+        };
+        let mut sides: Vec<Corner> = (0..3 * triangles.len() as u32).collect();
+        sides.sort_unstable_by_key(|&corner| (key(corner), corner));
+        let mut edges = Edges { of_side: vec![0; sides.len()], ..Edges::default() };
+        for (i, &corner) in sides.iter().enumerate() {
+            if edges.ends.last() != Some(&key(corner)) {
+                edges.ends.push(key(corner));
+                edges.start.push(i as u32);
+            }
+            edges.of_side[corner as usize] = edges.ends.len() as u32 - 1;
+        }
+        edges.start.push(sides.len() as u32);
+        edges.sides = sides;
+        edges
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// An edge by its place.
+    pub fn get(&self, edge: usize) -> Edge<'_> {
+        let sides = self.start[edge] as usize..self.start[edge + 1] as usize;
+        Edge { ends: self.ends[edge], sides: &self.sides[sides] }
+    }
+
+    /// The place of the edge between two points.
+    pub fn between(&self, [a, b]: [u32; 2]) -> Option<usize> {
+        self.ends.binary_search(&[a.min(b), a.max(b)]).ok()
+    }
+
+    /// The place of the edge on which a side lies.
+    pub fn of_side(&self, corner: Corner) -> usize {
+        self.of_side[corner as usize] as usize
+    }
+}
+
+impl Triangles {
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|k| self.points[k as usize])
+    }
+
+    /// Twice the area of a triangle along its outer normal.
+    pub fn area_vector(&self, triangle: usize) -> DVec3 {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a)
+    }
+
+    /// Where a side begins and ends.
+    pub fn side(&self, corner: Corner) -> [u32; 2] {
+        let t = self.triangles[corner as usize / 3];
+        [t[corner as usize % 3], t[(corner as usize + 1) % 3]]
+    }
+}

@@ -1,0 +1,87 @@
+//! Feature edges: those that the mesh of quadrilaterals must keep (spec 4). An edge is one where the surface ends (one triangle),
+//! where it branches (three or more), where its regions meet, where it is folded by more than an angle, or where its two
+//! triangles disagree on which side is outside.
+
+use super::edges::{Edge, Edges, Triangles};
+
+/// Why an edge is a feature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Feature {
+    /// One triangle: the surface ends.
+    Boundary,
+    /// Three triangles or more: it branches.
+    Branching,
+    /// Two triangles that turn against each other.
+    Conflict,
+    /// Two regions meet.
+    Region,
+    /// Folded by more than the angle.
+    Fold,
+}
+
+/// The folds that are features where nothing else is said (spec 4).
+pub const ANGLE: f64 = 40.0 / 180.0 * std::f64::consts::PI;
+
+/// What kind of feature each edge is, if it is one; `angle` is the fold (in radians: 0 where the surface is plane) beyond
+/// which an edge is one.
+pub fn features(mesh: &Triangles, edges: &Edges, angle: f64) -> Vec<Option<Feature>> {
+    let least_cosine = libm::cos(angle);
+    (0..edges.len()).map(|edge| feature(mesh, edges.get(edge), least_cosine)).collect()
+}
+
+fn feature(mesh: &Triangles, edge: Edge, least_cosine: f64) -> Option<Feature> {
+    let [a, b] = match *edge.sides {
+        [_] => return Some(Feature::Boundary),
+        [a, b] => [a, b],
+        _ => return Some(Feature::Branching),
+    };
+    if mesh.side(a) == mesh.side(b) {
+        return Some(Feature::Conflict);
+    }
+    let [one, other] = [a, b].map(|corner| corner as usize / 3);
+    if mesh.region[one] != mesh.region[other] {
+        return Some(Feature::Region);
+    }
+    let (n, m) = (mesh.area_vector(one), mesh.area_vector(other));
+    // A triangle without area has no direction, and says nothing of a fold.
+    (n.dot(m) < least_cosine * n.length() * m.length()).then_some(Feature::Fold)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::discrete::fixtures::{cube, three_half_planes};
+
+    #[test]
+    fn a_cube_has_its_twelve_edges_and_no_diagonals() {
+        let mesh = cube(2);
+        let edges = Edges::of(&mesh.triangles);
+        let found = features(&mesh, &edges, ANGLE);
+        assert_eq!(found.iter().filter(|f| **f == Some(Feature::Fold)).count(), 24);
+        assert_eq!(found.iter().flatten().count(), 24);
+        assert_eq!(features(&mesh, &edges, 1.7).iter().flatten().count(), 0);
+    }
+
+    #[test]
+    fn where_half_planes_branch_and_end_is_told_apart() {
+        let mesh = three_half_planes();
+        let edges = Edges::of(&mesh.triangles);
+        let found = features(&mesh, &edges, ANGLE);
+        let count = |kind| found.iter().filter(|f| **f == Some(kind)).count();
+        assert_eq!((count(Feature::Branching), count(Feature::Boundary)), (1, 9));
+    }
+
+    #[test]
+    fn regions_and_triangles_that_turn_against_each_other_are_features() {
+        let mut mesh = cube(1);
+        mesh.region[0] = 1;
+        let count = |mesh: &Triangles, kind| {
+            let edges = Edges::of(&mesh.triangles);
+            features(mesh, &edges, 3.2).iter().filter(|f| **f == Some(kind)).count()
+        };
+        assert_eq!(count(&mesh, Feature::Region), 3);
+        mesh.region[0] = 0;
+        mesh.triangles[0].swap(0, 1);
+        assert_eq!(count(&mesh, Feature::Conflict), 3);
+    }
+}

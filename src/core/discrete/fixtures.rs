@@ -1,0 +1,102 @@
+//! Small surfaces for tests.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::edges::Triangles;
+
+fn whole(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Triangles {
+    let region = vec![0; triangles.len()];
+    Triangles { points, triangles, region }
+}
+
+/// The unit cube, each side divided into `n` by `n` squares of two triangles.
+pub fn cube(n: u32) -> Triangles {
+    let mut points: Vec<DVec3> = Vec::new();
+    let mut triangles = Vec::new();
+    let mut at = |p: DVec3| {
+        points.iter().position(|q| q.distance(p) < 1e-9).unwrap_or_else(|| {
+            points.push(p);
+            points.len() - 1
+        }) as u32
+    };
+    for (o, u, v) in [
+        (DVec3::ZERO, DVec3::Y, DVec3::X),
+        (DVec3::Z, DVec3::X, DVec3::Y),
+        (DVec3::ZERO, DVec3::X, DVec3::Z),
+        (DVec3::Y, DVec3::Z, DVec3::X),
+        (DVec3::ZERO, DVec3::Z, DVec3::Y),
+        (DVec3::X, DVec3::Y, DVec3::Z),
+    ] {
+        for i in 0..n {
+            for j in 0..n {
+                let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)]
+                    .map(|(k, l)| at(o + (u * f64::from(i + k) + v * f64::from(j + l)) / f64::from(n)));
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+    whole(points, triangles)
+}
+
+/// A grid that is closed around (`u`), and closed or open along (`v`): a torus or a tube.
+fn wrapped(nu: u32, nv: u32, closed: bool, at: impl Fn(f64, f64) -> DVec3) -> Triangles {
+    let rows = if closed { nv } else { nv + 1 };
+    let points = (0..rows * nu).map(|k| at(f64::from(k % nu) / f64::from(nu), f64::from(k / nu) / f64::from(nv)));
+    let node = |i: u32, j: u32| (j % rows) * nu + i % nu;
+    let squares = (0..nu * nv).flat_map(|k| {
+        let (i, j) = (k % nu, k / nu);
+        let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    whole(points.collect(), squares.collect())
+}
+
+/// A torus of radii 2 and 1.
+pub fn torus(nu: u32, nv: u32) -> Triangles {
+    wrapped(nu, nv, true, |u, v| {
+        let (u, v) = (TAU * u, TAU * v);
+        let r = 2.0 + libm::cos(v);
+        DVec3::new(r * libm::cos(u), r * libm::sin(u), libm::sin(v))
+    })
+}
+
+/// An open tube of radius 1.
+pub fn tube(nu: u32, nv: u32, length: f64) -> Triangles {
+    wrapped(nu, nv, false, |u, v| DVec3::new(libm::cos(TAU * u), libm::sin(TAU * u), length * v))
+}
+
+/// The unit sphere: a cube blown up.
+pub fn sphere(n: u32) -> Triangles {
+    let mut mesh = cube(n);
+    mesh.points.iter_mut().for_each(|p| *p = (*p - 0.5).normalize());
+    mesh
+}
+
+/// A bumpy plate of `n` by `n` squares over the unit square.
+pub fn plate(n: u32, height: f64) -> Triangles {
+    let points = (0..(n + 1) * (n + 1)).map(|k| {
+        let (x, y) = (f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n));
+        DVec3::new(x, y, height * libm::sin(TAU * x) * libm::sin(TAU * y))
+    });
+    let squares = (0..n * n).flat_map(|k| {
+        let a = (k / n) * (n + 1) + k % n;
+        [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]
+    });
+    whole(points.collect(), squares.collect())
+}
+
+/// Three half planes that meet in a line, two triangles each.
+pub fn three_half_planes() -> Triangles {
+    let mut points = vec![DVec3::ZERO, DVec3::Z];
+    let mut triangles = Vec::new();
+    for k in 0..3_u32 {
+        let angle = TAU * f64::from(k) / 3.0;
+        let out = DVec3::new(libm::cos(angle), libm::sin(angle), 0.0);
+        points.extend([out, out + DVec3::Z]);
+        let (c, d) = (2 + 2 * k, 3 + 2 * k);
+        triangles.extend([[0, c, d], [0, d, 1]]);
+    }
+    whole(points, triangles)
+}

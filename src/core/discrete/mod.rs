@@ -1,0 +1,15 @@
+//! Surfaces that are known as triangles only, without CAD (spec 4): their feature edges, their charts (discs of triangles), and a
+//! one-to-one map of each chart onto a disc of the plane, in which it is meshed.
+//!
+//! Deliberately absent: reading files (`core/io`), sizes (`core/metric`).
+
+pub mod edges;
+pub mod sound;
+pub mod features;
+pub mod chart;
+pub mod sparse;
+pub mod tutte;
+pub mod rigid;
+pub mod surface;
+#[cfg(test)]
+mod fixtures;

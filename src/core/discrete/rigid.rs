@@ -1,0 +1,228 @@
+//! A disc of triangles laid into the plane as rigidly as possible (Liu, Zhang, Xu, Gotsman & Gortler 2008): each triangle is
+//! turned as it lies best, then the nodes follow, again and again. What can be unrolled keeps its lengths to rounding; nothing
+//! promises that the result is one to one, so that it is looked at before it is taken.
+
+use glam::{DVec2, DVec3};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+
+use super::sparse::Means;
+use super::tutte::stands;
+use crate::core::geometry::predicates::orient;
+
+/// Rounds of turning and following.
+const ROUNDS: usize = 40;
+/// Nodes that move by less than this part of the size are at rest.
+const AT_REST: f64 = 1e-4;
+/// The least weight of an edge, as a part of that between equilateral triangles: blunt angles would pull backwards.
+const LEAST_WEIGHT: f64 = 1e-2;
+
+/// Where the nodes lie in the plane; those of the border loops (so many each) come first, with the triangles to their left. `None`
+/// where that is not one to one.
+pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32]) -> Option<Vec<DVec2>> {
+    let flat: Vec<[DVec2; 3]> = triangles.iter().map(|t| flattened(t.map(|k| xyz[k as usize]))).collect();
+    let weights: Vec<[f64; 3]> = flat.iter().map(weights).collect();
+    let mut uv = unrolled(triangles, &flat, xyz.len());
+    let border = loops[0] as usize;
+    let size = (0..border).map(|k| xyz[k].distance(xyz[(k + 1) % border])).sum::<f64>();
+    // One node is held fast, so that the rest know where they are.
+    let n = xyz.len();
+    let mut row: Vec<Vec<(u32, f64)>> = vec![Vec::with_capacity(8); n];
+    for (t, w) in triangles.iter().zip(&weights) {
+        for k in 0..3 {
+            let (a, b, w) = (t[(k + 1) % 3], t[(k + 2) % 3], w[k]);
+            for (from, to) in [(a, b), (b, a)] {
+                match row[from as usize].iter_mut().find(|r| r.0 == to) {
+                    Some(found) => found.1 += w,
+                    None => row[from as usize].push((to, w)),
+                }
+            }
+        }
+    }
+    let sums: Vec<f64> = row.iter().map(|r| r.iter().map(|w| w.1).sum()).collect();
+    let rows = row.into_iter().zip(&sums).skip(1).map(|(row, sum)| {
+        let inside = row.into_iter().filter(|w| w.0 > 0);
+        inside.map(|(node, weight)| (node - 1, weight / sum)).collect()
+    });
+    let solver = Means::new(rows).factored();
+    let origin = uv[0];
+    uv.iter_mut().for_each(|p| *p -= origin);
+    for _ in 0..ROUNDS {
+        let mut right = vec![DVec2::ZERO; n];
+        for ((t, q), w) in triangles.iter().zip(&flat).zip(&weights) {
+            // The turn that brings the triangle nearest to where it lies: from the sums of u.q and u x q over its sides.
+            let mut turn = DVec2::ZERO;
+            for k in 0..3 {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let (own, lies) = (q[j] - q[i], uv[t[j] as usize] - uv[t[i] as usize]);
+                turn += DVec2::new(own.dot(lies), own.perp_dot(lies)) * w[k];
+            }
+            let turn = turn.try_normalize().unwrap_or(DVec2::X);
+            for k in 0..3 {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let side = turn.rotate(q[j] - q[i]) * w[k];
+                right[t[j] as usize] += side;
+                right[t[i] as usize] -= side;
+            }
+        }
+        let side = |axis: usize| -> Option<Vec<f64>> {
+            let b: Vec<f64> = (1..n).map(|i| right[i][axis] / sums[i]).collect();
+            solver.solve(&b, uv[1..].iter().map(|p| p[axis]).collect(), 1e-9 * size)
+        };
+        let (x, y) = (side(0)?, side(1)?);
+        let mut moved = 0.0_f64;
+        for (p, (x, y)) in uv[1..].iter_mut().zip(x.into_iter().zip(y)) {
+            let to = DVec2::new(x, y);
+            moved = moved.max(p.distance_squared(to));
+            *p = to;
+        }
+        if moved <= (AT_REST * size) * (AT_REST * size) {
+            break;
+        }
+    }
+    (stands(triangles, &uv) && is_embedded(&uv, loops)).then_some(uv)
+}
+
+/// A triangle in a plane of its own.
+fn flattened([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
+    let (e, f) = (b - a, c - a);
+    let long = e.length();
+    if long == 0.0 {
+        return [DVec2::ZERO, DVec2::ZERO, DVec2::new(f.length(), 0.0)];
+    }
+    let along = e / long;
+    [DVec2::ZERO, DVec2::new(long, 0.0), DVec2::new(f.dot(along), e.cross(f).length() / long)]
+}
+
+/// Half the cotangents of a triangle's angles, not below a least one: the weights of the sides opposite.
+fn weights(q: &[DVec2; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| {
+        let (e, f) = (q[(k + 1) % 3] - q[k], q[(k + 2) % 3] - q[k]);
+        let cotangent = e.dot(f) / e.perp_dot(f);
+        // That of 60 degrees, for a triangle without area too.
+        let plain = 1.0 / 3.0_f64.sqrt();
+        let bound = if cotangent.is_finite() { cotangent.min(1e2) } else { plain };
+        0.5 * bound.max(LEAST_WEIGHT * plain)
+    })
+}
+
+/// The triangles unrolled one after the other from the first: each node where the triangle that meets it first puts it.
+fn unrolled(triangles: &[[u32; 3]], flat: &[[DVec2; 3]], nodes: usize) -> Vec<DVec2> {
+    let edges = super::edges::Edges::of(triangles);
+    let mut uv = vec![None; nodes];
+    let mut seen = vec![false; triangles.len()];
+    // From the middle of the list outwards as the triangles hang together.
+    let first = triangles.len() / 2;
+    for k in 0..3 {
+        uv[triangles[first][k] as usize] = Some(flat[first][k]);
+    }
+    let mut waiting = std::collections::VecDeque::from([first]);
+    seen[first] = true;
+    while let Some(t) = waiting.pop_front() {
+        for side in 0..3 {
+            for &other in edges.get(edges.of_side((3 * t + side) as u32)).sides {
+                let (o, k) = (other as usize / 3, other as usize % 3);
+                if std::mem::replace(&mut seen[o], true) {
+                    continue;
+                }
+                let [i, j, far] = [k, (k + 1) % 3, (k + 2) % 3];
+                let at = |k: usize| uv[triangles[o][k] as usize].unwrap_or(DVec2::ZERO);
+                let (own, lies) = (flat[o][j] - flat[o][i], at(j) - at(i));
+                let turn = DVec2::new(own.dot(lies), own.perp_dot(lies)).try_normalize().unwrap_or(DVec2::X);
+                let place = at(i) + turn.rotate(flat[o][far] - flat[o][i]);
+                uv[triangles[o][far] as usize].get_or_insert(place);
+                waiting.push_back(o);
+            }
+        }
+    }
+    uv.into_iter().map(|p| p.unwrap_or(DVec2::ZERO)).collect()
+}
+
+/// Whether the border loops bound one region of the plane to their left: none crosses or touches itself or another, and one
+/// alone runs anticlockwise. Then triangles that all lie the right way round cover each place once: the times that they cover a place are
+/// the turns of the loops around it, 1 within the one and 0 in its holes. By exact predicates.
+fn is_embedded(uv: &[DVec2], loops: &[u32]) -> bool {
+    let mut next: Vec<u32> = Vec::new();
+    let mut anticlockwise = 0;
+    for &long in loops {
+        let first = next.len() as u32;
+        next.extend((1..long).map(|k| first + k));
+        next.push(first);
+        let polygon = &uv[first as usize..next.len()];
+        let doubled: f64 = (0..polygon.len())
+            .map(|k| (polygon[k] - polygon[0]).perp_dot(polygon[(k + 1) % polygon.len()] - polygon[0]))
+            .sum();
+        anticlockwise += usize::from(doubled > 0.0);
+    }
+    let side = |k: usize| [uv[k], uv[next[k] as usize]];
+    let boxed = |k: usize| Rectangle::from_corners(side(k)[0].to_array(), side(k)[1].to_array());
+    let tree = RTree::bulk_load((0..next.len()).map(|k| GeomWithData::new(boxed(k), k)).collect());
+    let meet = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
+        let apart = |s: f64, t: f64| (s > 0.0 && t > 0.0) || (s < 0.0 && t < 0.0);
+        !apart(orient(a, b, c), orient(a, b, d)) && !apart(orient(c, d, a), orient(c, d, b))
+    };
+    // Neighbours share a corner; they must not fold back on each other.
+    let folds = |[a, b]: [DVec2; 2], c: DVec2| orient(a, b, c) == 0.0 && (a - b).dot(c - b) >= 0.0;
+    let is_free = |k: usize| {
+        let own = side(k);
+        let near = tree.locate_in_envelope_intersecting(AABB::from_corners(own[0].to_array(), own[1].to_array()));
+        near.map(|found| found.data).all(|l| match l {
+            _ if l == k => true,
+            _ if l == next[k] as usize => !folds(own, side(l)[1]),
+            _ if k == next[l] as usize => !folds(side(l), own[1]),
+            _ => !meet(own, side(l)),
+        })
+    };
+    anticlockwise == 1 && (0..next.len()).all(is_free)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::discrete::edges::Edges;
+    use crate::core::discrete::fixtures::{plate, tube};
+
+    /// A disc of a fixture cut open, with its border first: what charts make of it.
+    fn disc(mesh: &crate::core::discrete::edges::Triangles) -> crate::core::discrete::chart::Chart {
+        let edges = Edges::of(&mesh.triangles);
+        let features = crate::core::discrete::features::features(mesh, &edges, 0.7);
+        crate::core::discrete::chart::charts(mesh, &edges, &features, Default::default()).remove(0)
+    }
+
+    #[test]
+    fn what_can_be_unrolled_keeps_its_lengths() {
+        let mesh = tube(48, 40, 10.0);
+        let chart = disc(&mesh);
+        for t in &chart.local {
+            for k in 0..3 {
+                let (a, b) = (t[k] as usize, t[(k + 1) % 3] as usize);
+                let space = mesh.points[chart.points[a] as usize].distance(mesh.points[chart.points[b] as usize]);
+                assert!((chart.uv[a].distance(chart.uv[b]) / space - 1.0).abs() < 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn a_bumpy_plate_is_hardly_stretched() {
+        let chart = disc(&plate(20, 0.1));
+        assert!(chart.stretch.shape < 2.0 && chart.stretch.area < 2.0, "{:?}", chart.stretch);
+    }
+
+    #[test]
+    fn loops_that_cross_touch_or_fold_back_bound_nothing() {
+        let loops = |all: &[&[[f64; 2]]]| {
+            let uv: Vec<DVec2> = all.concat().into_iter().map(DVec2::from).collect();
+            is_embedded(&uv, &all.iter().map(|l| l.len() as u32).collect::<Vec<_>>())
+        };
+        assert!(loops(&[&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]]));
+        assert!(loops(&[&[[0.0, 0.0], [2.0, 0.0], [1.0, 1e-300], [0.0, 1.0]]]));
+        assert!(!loops(&[&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]]));
+        assert!(!loops(&[&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 0.0], [0.0, 1.0]]]));
+        assert!(!loops(&[&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [0.0, 1.0]]]));
+        assert!(!loops(&[&[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]]), "clockwise");
+        let square: &[[f64; 2]] = &[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+        assert!(loops(&[square, &[[1.0, 1.0], [1.0, 2.0], [2.0, 1.0]]]));
+        assert!(!loops(&[square, &[[0.0, 1.0], [1.0, 2.0], [2.0, 1.0]]]), "it touches");
+        assert!(!loops(&[square, &[[1.0, 1.0], [2.0, 1.0], [1.0, 2.0]]]), "two that are anticlockwise");
+    }
+}

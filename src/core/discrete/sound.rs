@@ -1,0 +1,274 @@
+//! Triangles of a file made fit to be a surface: what can be mended for certain is mended and told; what is no mesh is refused.
+
+use std::collections::BTreeSet;
+
+use super::edges::{Edges, Triangles};
+use crate::core::fault::Fault;
+use crate::core::io::mesh_file::MeshFile;
+
+/// A triangle flatter than this part of its longest side has no plane of its own.
+const FLAT: f64 = 1e-9;
+/// Turning the longest side of a flat triangle may leave another; so often it is tried.
+const ROUNDS: usize = 16;
+
+/// A surface with the names of its regions and what was mended.
+#[derive(Clone, Debug)]
+pub struct Sound {
+    /// The triangles.
+    pub mesh: Triangles,
+    /// Names of the regions by number.
+    pub regions: Vec<String>,
+    /// What was mended, sentences without a full stop.
+    pub repairs: Vec<String>,
+}
+
+/// The triangles of a file: quadrilaterals and polygons cut; triangles with a node twice or without area, and duplicates, taken out; all
+/// turned so that neighbours agree on which side is outside, where that can be.
+///
+/// # Errors
+/// No triangles; points that are not finite or beyond 1e100; points that are not there.
+pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
+    let mut repairs = Vec::new();
+    let mut tell = |n: usize, one: &str, several: &str| match n {
+        0 => {}
+        1 => repairs.push(format!("1 {one}")),
+        n => repairs.push(format!("{n} {several}")),
+    };
+    let (file, cut) = file.clone().triangulated();
+    tell(cut, "quadrilateral or polygon was cut into triangles", "quadrilaterals and polygons were cut into triangles");
+    if file.triangles.is_empty() {
+        return Err(Fault::new("The mesh has no triangles").remedy("Give a mesh of triangles"));
+    }
+    if file.triangles.len() > u32::MAX as usize / 8 {
+        return Err(Fault::new(format!("The mesh has {} triangles, more than can be numbered", file.triangles.len())));
+    }
+    for (i, t) in file.triangles.iter().enumerate() {
+        for &k in t {
+            match file.points.get(k as usize) {
+                None => {
+                    let what =
+                        format!("Triangle {} has the point {}, and there are {}", i + 1, k + 1, file.points.len());
+                    return Err(Fault::new(what));
+                }
+                Some(p) if !p.is_finite() || p.abs().max_element() > 1e100 => {
+                    return Err(Fault::new(format!("Point {} is ({}, {}, {})", k + 1, p.x, p.y, p.z))
+                        .remedy("Coordinates must be finite numbers"));
+                }
+                Some(_) => {}
+            }
+        }
+    }
+    let tag = |i: usize| file.triangle_tags.get(i).copied().unwrap_or(0);
+    let tags: Vec<u32> = (0..file.triangles.len()).map(tag).collect::<BTreeSet<u32>>().into_iter().collect();
+    let name = |&tag: &u32| file.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned);
+    let regions = tags.iter().map(name).collect();
+    let region = (0..file.triangles.len()).map(|i| tags.partition_point(|&t| t < tag(i)) as u32).collect();
+    let mut mesh = Triangles { points: file.points, triangles: file.triangles, region };
+    let doubles = mesh.drop_doubles();
+    tell(doubles, "duplicate triangle was left out", "duplicate triangles were left out");
+    let flat = mesh.turn_flat_ones();
+    tell(flat, "triangle without area was taken out", "triangles without area were taken out");
+    let turned = mesh.orient();
+    tell(
+        turned,
+        "triangle was turned to agree with its neighbours",
+        "triangles were turned to agree with their neighbours",
+    );
+    if mesh.triangles.is_empty() {
+        return Err(Fault::new("No triangle of the mesh has an area"));
+    }
+    Ok(Sound { mesh, regions, repairs })
+}
+
+impl Triangles {
+    fn keep(&mut self, keep: &[bool]) {
+        let mut at = keep.iter();
+        self.triangles.retain(|_| at.next() != Some(&false));
+        let mut at = keep.iter();
+        self.region.retain(|_| at.next() != Some(&false));
+    }
+
+    /// Takes out triangles with the nodes of an earlier one. How many those were.
+    fn drop_doubles(&mut self) -> usize {
+        let key = |t: &[u32; 3]| {
+            let mut t = *t;
+            t.sort_unstable();
+            t
+        };
+        let mut order: Vec<u32> = (0..self.triangles.len() as u32).collect();
+        order.sort_unstable_by_key(|&i| (key(&self.triangles[i as usize]), i));
+        let mut keep = vec![true; order.len()];
+        for w in order.windows(2) {
+            keep[w[1] as usize] = key(&self.triangles[w[0] as usize]) != key(&self.triangles[w[1] as usize]);
+        }
+        self.keep(&keep);
+        keep.iter().filter(|k| !**k).count()
+    }
+
+    /// Whether a triangle has no plane of its own, and the corner opposite to its longest side.
+    fn is_flat(&self, triangle: usize) -> Option<usize> {
+        let t = self.triangles[triangle];
+        let p = self.corners(triangle);
+        let long = |k: usize| p[(k + 1) % 3].distance_squared(p[(k + 2) % 3]);
+        let apex = (0..3).max_by(|&a, &b| long(a).total_cmp(&long(b)).then(b.cmp(&a)))?;
+        let flat = self.area_vector(triangle).length() <= FLAT * long(apex);
+        (flat || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]).then_some(apex)
+    }
+
+    /// Takes out flat triangles: the one beyond the longest side gets the corner that stands on that side. How many those were.
+    fn turn_flat_ones(&mut self) -> usize {
+        let mut taken = 0;
+        for _ in 0..ROUNDS {
+            let flat: Vec<(usize, usize)> =
+                (0..self.triangles.len()).filter_map(|t| Some((t, self.is_flat(t)?))).collect();
+            if flat.is_empty() {
+                break;
+            }
+            let edges = Edges::of(&self.triangles);
+            let mut keep = vec![true; self.triangles.len()];
+            let mut touched = vec![false; self.triangles.len()];
+            for (t, apex) in flat {
+                if touched[t] {
+                    continue;
+                }
+                let nodes = self.triangles[t];
+                let twice = nodes[0] == nodes[1] || nodes[1] == nodes[2] || nodes[2] == nodes[0];
+                let side = (3 * t + (apex + 1) % 3) as u32;
+                let beyond = edges.get(edges.of_side(side)).sides.iter().copied().find(|&other| other != side);
+                if let Some(other) = beyond.filter(|_| !twice) {
+                    let o = other as usize / 3;
+                    if touched[o] || !keep[o] {
+                        continue;
+                    }
+                    let k = other as usize % 3;
+                    let [a, b, far] = [0, 1, 2].map(|i| self.triangles[o][(k + i) % 3]);
+                    if far == nodes[apex] {
+                        // Folded onto itself: both go.
+                        keep[o] = false;
+                    } else {
+                        // The flat one's place goes to the second half.
+                        self.triangles[o] = [a, nodes[apex], far];
+                        self.triangles[t] = [nodes[apex], b, far];
+                        self.region[t] = self.region[o];
+                        (touched[o], touched[t]) = (true, true);
+                        taken += 1;
+                        continue;
+                    }
+                    touched[o] = true;
+                }
+                touched[t] = true;
+                keep[t] = false;
+                taken += 1;
+            }
+            self.keep(&keep);
+        }
+        // What is flat after all that is left out.
+        let keep: Vec<bool> = (0..self.triangles.len()).map(|t| self.is_flat(t).is_none()).collect();
+        self.keep(&keep);
+        taken + keep.iter().filter(|k| !**k).count()
+    }
+
+    /// Turns triangles so that neighbours at edges of two agree, part by part, each as the larger share of it was. How many were
+    /// turned. A part that has but one side (a Moebius strip) keeps edges at which it disagrees.
+    fn orient(&mut self) -> usize {
+        let edges = Edges::of(&self.triangles);
+        let mut turned: Vec<Option<bool>> = vec![None; self.triangles.len()];
+        let mut count = 0;
+        for first in 0..self.triangles.len() {
+            if turned[first].is_some() {
+                continue;
+            }
+            turned[first] = Some(false);
+            let mut part = vec![first];
+            let mut next = 0;
+            while next < part.len() {
+                let t = part[next];
+                next += 1;
+                for side in 3 * t as u32..3 * t as u32 + 3 {
+                    let [a, b] = *edges.get(edges.of_side(side)).sides else { continue };
+                    let other = if a == side { b } else { a } as usize / 3;
+                    if turned[other].is_none() {
+                        let agree = self.side(a) != self.side(b);
+                        turned[other] = turned[t].map(|turned| turned == agree);
+                        part.push(other);
+                    }
+                }
+            }
+            let share = part.iter().filter(|&&t| turned[t] == Some(true)).count();
+            let flip = 2 * share > part.len();
+            for &t in &part {
+                let turn = turned[t] == Some(!flip);
+                turned[t] = Some(turn);
+                if turn {
+                    self.triangles[t].swap(1, 2);
+                    count += 1;
+                }
+            }
+        }
+        count
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::core::discrete::features::{Feature, features};
+    use crate::core::discrete::fixtures::{plate, sphere, torus};
+
+    fn file(mesh: &Triangles) -> MeshFile {
+        MeshFile { points: mesh.points.clone(), triangles: mesh.triangles.clone(), ..MeshFile::default() }
+    }
+
+    #[test]
+    fn neighbours_that_disagree_are_turned_as_the_larger_share_is() {
+        let ball = sphere(5);
+        let mut given = file(&ball);
+        for i in (0..given.triangles.len()).step_by(3) {
+            given.triangles[i].swap(0, 1);
+        }
+        let found = sound(&given).unwrap();
+        assert_eq!(found.repairs, ["100 triangles were turned to agree with their neighbours".to_owned()]);
+        let edges = Edges::of(&found.mesh.triangles);
+        assert!(features(&found.mesh, &edges, 3.2).iter().all(|f| *f != Some(Feature::Conflict)));
+        let outward = (0..found.mesh.triangles.len())
+            .all(|t| found.mesh.area_vector(t).dot(found.mesh.corners(t).iter().sum::<DVec3>()) > 0.0);
+        assert!(outward);
+    }
+
+    #[test]
+    fn flat_triangles_hand_their_corner_to_the_neighbour_beyond_and_leave_no_gap() {
+        // A point on the diagonal of a square belongs to one side only: a flat triangle closes the gap.
+        let mut given = file(&plate(2, 0.0));
+        let [a, _, c] = given.triangles[0];
+        let middle = given.points.len() as u32;
+        let place = (given.points[a as usize] + given.points[c as usize]) * 0.5;
+        given.points.push(place);
+        let [_, b, _] = given.triangles[0];
+        given.triangles[0] = [a, b, middle];
+        given.triangles.push([b, c, middle]);
+        given.triangles.push([a, middle, c]);
+        given.triangles.push([a, a, c]);
+        let found = sound(&given).unwrap();
+        let edges = Edges::of(&found.mesh.triangles);
+        let borders = (0..edges.len()).filter(|&e| edges.get(e).sides.len() == 1).count();
+        assert_eq!((found.mesh.triangles.len(), borders), (10, 8));
+        assert!(found.repairs[0].contains("without area"), "{:?}", found.repairs);
+    }
+
+    #[test]
+    fn duplicates_go_and_what_is_no_mesh_is_refused() {
+        let mut given = file(&torus(6, 5));
+        let n = given.triangles.len();
+        let [a, b, c] = given.triangles[3];
+        given.triangles.push([c, a, b]);
+        assert_eq!(sound(&given).unwrap().mesh.triangles.len(), n);
+        given.triangles.push([0, 1, 999]);
+        assert!(sound(&given).unwrap_err().to_string().contains("point 1000"));
+        given.triangles.pop();
+        given.points[0].y = f64::NAN;
+        assert!(sound(&given).is_err());
+        assert!(sound(&MeshFile::default()).is_err());
+    }
+}

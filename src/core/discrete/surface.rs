@@ -1,0 +1,318 @@
+//! A surface of triangles as a domain: each chart is a face; borders of charts become curves between the points where they meet,
+//! divided once for all faces that share them, as the curves of a case are (spec 2.9, 4).
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::chart::{Bound, Chart, charts};
+use super::edges::{Edge, Edges, Triangles};
+use super::features::{ANGLE, features};
+use crate::core::fault::Fault;
+use crate::core::geometry::complex::{Lifted, Named, assemble};
+use crate::core::geometry::domain::{Domain, FaceSpec};
+use crate::core::geometry::facets::Facets;
+use crate::core::geometry::ground::Ground;
+use crate::core::geometry::image::Image;
+use crate::core::geometry::lifting::Piece;
+use crate::core::geometry::space_curve::SpaceCurve;
+use crate::core::metric::field::Field;
+use crate::core::metric::gradation::bound_gradation;
+use crate::core::metric::tensor::Metric3;
+
+/// An element turns by no more than this where its size is not given (radians).
+const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
+/// Growth of such sizes from one element to the next (spec 3).
+const GRADATION: f64 = 1.3;
+
+/// A surface laid into the plane.
+#[derive(Debug)]
+pub struct Surface {
+    /// Its faces and curves.
+    pub domain: Domain,
+    charts: Vec<Chart>,
+}
+
+/// Sides of triangles from one meeting point to the next, or all around.
+struct Chain {
+    /// Points of the surface, the first again at the end of a closed one.
+    points: Vec<u32>,
+    /// Whether they are features, and not only where the surface is cut for the plane.
+    feature: bool,
+}
+
+/// Where a side of the border lies in the chains.
+#[derive(Clone, Copy)]
+struct Link {
+    chain: u32,
+    at: u32,
+}
+
+/// Divides a surface at its features (folds beyond `angle`, in radians) into charts and makes a domain of them; `regions` are the
+/// names of its regions.
+///
+/// # Errors
+/// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that.
+pub fn surface(mesh: &Triangles, regions: &[String], angle: f64) -> Result<Surface, Fault> {
+    let edges = Edges::of(&mesh.triangles);
+    let features = features(mesh, &edges, angle);
+    let charts = charts(mesh, &edges, &features, Bound::default());
+    let is_feature = |edge: usize| features[edge].is_some();
+    let (chains, links) = chains(mesh, &edges, &charts, &is_feature);
+    let mut vertices = Vec::new();
+    let mut vertex_of = vec![u32::MAX; mesh.points.len()];
+    let mut curves = Vec::with_capacity(chains.len());
+    for (number, chain) in chains.iter().enumerate() {
+        let ends = [chain.points[0], chain.points[chain.points.len() - 1]].map(|point| {
+            let known = &mut vertex_of[point as usize];
+            if *known == u32::MAX {
+                *known = vertices.len() as u32;
+                vertices.push(mesh.points[point as usize]);
+            }
+            *known
+        });
+        let points = chain.points.iter().map(|&p| mesh.points[p as usize]).collect();
+        let corners = if chain.feature { corners(mesh, &chain.points, angle) } else { Vec::new() };
+        curves.push(Named {
+            name: format!("curve {}", number + 1),
+            curve: Arc::new(SpaceCurve::of_sides(points, corners)),
+            segments: None,
+            place: String::new(),
+            ends,
+        });
+    }
+    let (mut specs, mut lifts) = (Vec::new(), Vec::new());
+    let mut parts = vec![0_u32; regions.len()];
+    for chart in &charts {
+        let region = mesh.region[chart.triangles[0] as usize] as usize;
+        parts[region] += 1;
+        let xyz = chart.points.iter().map(|&p| mesh.points[p as usize]).collect();
+        let facets = Arc::new(Facets::new(&chart.uv, xyz, &chart.local)?);
+        let loops = pieces(chart, &facets, &edges, &chains, &links, &curves);
+        let named = |pieces: &Vec<Piece>| pieces.iter().map(|piece| curves[piece.curve].name.clone()).collect();
+        specs.push(FaceSpec {
+            name: format!("{}, part {}", regions[region], parts[region]),
+            outer: named(&loops[0]),
+            holes: loops[1..].iter().map(named).collect(),
+            cracks: Vec::new(),
+            repeated: Vec::new(),
+            place: String::new(),
+        });
+        lifts.push(Lifted { ground: Ground::Facets(facets), loops, cracks: Vec::new(), repeated: Vec::new() });
+    }
+    let domain = assemble(&curves, &vertices, &specs, lifts)?;
+    Ok(Surface { domain, charts })
+}
+
+impl Surface {
+    /// A field of metrics given at the points of the surface.
+    ///
+    /// # Errors
+    /// Metrics that are not positive definite.
+    pub fn table(&self, metrics: &[Metric3]) -> Result<Field, Fault> {
+        let (mut uv, mut triangles, mut at) = (Vec::new(), Vec::new(), Vec::new());
+        for (k, chart) in self.charts.iter().enumerate() {
+            let offset = self.domain.spatial.as_ref().map_or(DVec2::ZERO, |spatial| spatial.atlas.offset(k));
+            let first = uv.len() as u32;
+            uv.extend(chart.uv.iter().map(|p| *p + offset));
+            at.extend(chart.points.iter().map(|&p| metrics[p as usize]));
+            triangles.extend(chart.local.iter().map(|t| t.map(|node| first + node)));
+        }
+        Field::table(&uv, &triangles, at)
+    }
+}
+
+/// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the mean
+/// length of the edges there, but no larger than what turns by 30 degrees, and growing by 1.3 at most from one element to the next.
+pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
+    let edges = Edges::of(&mesh.triangles);
+    let mut sums = vec![(0.0, 0.0); mesh.points.len()];
+    let mut most = vec![f64::INFINITY; mesh.points.len()];
+    let features = features(mesh, &edges, ANGLE);
+    for edge in 0..edges.len() {
+        let Edge { ends, sides } = edges.get(edge);
+        let [a, b] = ends.map(|end| mesh.points[end as usize]);
+        let long = a.distance(b);
+        for end in ends {
+            let (sum, count) = &mut sums[end as usize];
+            *sum += long;
+            *count += 1.0;
+        }
+        if let (None, &[one, other]) = (features[edge], sides) {
+            let [n, m] = [one, other].map(|side| mesh.area_vector(side as usize / 3));
+            let turn = libm::atan2(n.cross(m).length(), n.dot(m));
+            // Half of each triangle's height over the edge: the way on which the surface turns there.
+            let way = 0.5 * (n.length() + m.length()) / long.max(f64::MIN_POSITIVE);
+            let corners = [one, other].map(|side| mesh.triangles[side as usize / 3]);
+            for node in corners.as_flattened() {
+                let bound = &mut most[*node as usize];
+                *bound = bound.min(way * MOST_TURN / turn.max(f64::MIN_POSITIVE));
+            }
+        }
+    }
+    let size = |((sum, count), most): (&(f64, f64), &f64)| if *count > 0.0 { (sum / count).min(*most) } else { 1.0 };
+    let mut sizes: Vec<Metric3> = sums.iter().zip(&most).map(size).map(Metric3::isotropic).collect();
+    let ends: Vec<[u32; 2]> = (0..edges.len()).map(|edge| edges.get(edge).ends).collect();
+    bound_gradation(&mesh.points, &ends, &mut sizes, GRADATION);
+    sizes
+}
+
+/// The sides of a chart's border, loop by loop, each with its first local node.
+fn sides(chart: &Chart) -> impl Iterator<Item = Vec<[u32; 2]>> + '_ {
+    let mut first = 0;
+    chart.loops.iter().map(move |&long| {
+        let begin = first;
+        first += long;
+        (0..long).map(|k| [begin + k, begin + (k + 1) % long]).collect()
+    })
+}
+
+/// The chains of all borders, and for each edge of the surface that lies on one where. A chain goes on through a point where just two
+/// border edges meet that are shared by the same charts and are both features or both not.
+fn chains(
+    mesh: &Triangles,
+    edges: &Edges,
+    charts: &[Chart],
+    is_feature: &dyn Fn(usize) -> bool,
+) -> (Vec<Chain>, Vec<Option<Link>>) {
+    // The charts on each border edge, ascending.
+    let mut users: Vec<(usize, u32)> = Vec::new();
+    for (number, chart) in charts.iter().enumerate() {
+        for side in sides(chart).flatten() {
+            if let Some(edge) = edges.between(side.map(|node| chart.points[node as usize])) {
+                users.push((edge, number as u32));
+            }
+        }
+    }
+    users.sort_unstable();
+    let mut of_edge: Vec<&[(usize, u32)]> = vec![&[]; edges.len()];
+    users.chunk_by(|a, b| a.0 == b.0).for_each(|group| of_edge[group[0].0] = group);
+    let mut at_point: Vec<Vec<u32>> = vec![Vec::new(); mesh.points.len()];
+    let border: Vec<usize> = (0..edges.len()).filter(|&edge| !of_edge[edge].is_empty()).collect();
+    for &edge in &border {
+        edges.get(edge).ends.iter().for_each(|&end| at_point[end as usize].push(edge as u32));
+    }
+    let alike = |a: u32, b: u32| {
+        let charts = |edge: u32| of_edge[edge as usize].iter().map(|user| user.1);
+        is_feature(a as usize) == is_feature(b as usize) && charts(a).eq(charts(b))
+    };
+    let goes_on = |point: u32| matches!(at_point[point as usize][..], [a, b] if alike(a, b));
+    let mut chains = Vec::new();
+    let mut links: Vec<Option<Link>> = vec![None; edges.len()];
+    let mut walk = |first: u32, edge: u32, links: &mut Vec<Option<Link>>| {
+        let mut points = vec![first];
+        let (mut at, mut edge) = (first, edge);
+        loop {
+            links[edge as usize] = Some(Link { chain: chains.len() as u32, at: points.len() as u32 - 1 });
+            let [a, b] = edges.get(edge as usize).ends;
+            at = if a == at { b } else { a };
+            points.push(at);
+            let next = at_point[at as usize].iter().copied().find(|&next| next != edge);
+            match next {
+                Some(next) if at != first && goes_on(at) => edge = next,
+                _ => break,
+            }
+        }
+        chains.push(Chain { points, feature: is_feature(edge as usize) });
+    };
+    for point in 0..mesh.points.len() as u32 {
+        if !goes_on(point) {
+            for &edge in &at_point[point as usize] {
+                if links[edge as usize].is_none() {
+                    walk(point, edge, &mut links);
+                }
+            }
+        }
+    }
+    for &edge in &border {
+        if links[edge].is_none() {
+            walk(edges.get(edge).ends[0], edge as u32, &mut links);
+        }
+    }
+    (chains, links)
+}
+
+/// Places along a chain at which it turns by more than an angle.
+fn corners(mesh: &Triangles, points: &[u32], angle: f64) -> Vec<u32> {
+    let least_cosine = libm::cos(angle);
+    let p = |k: usize| mesh.points[points[k] as usize];
+    let turns = |&k: &usize| {
+        let (before, after) = (p(k) - p(k - 1), p(k + 1) - p(k));
+        before.dot(after) < least_cosine * before.length() * after.length()
+    };
+    (1..points.len() - 1).filter(turns).map(|k| k as u32).collect()
+}
+
+/// The loops of a chart as images of the curves, the outer one first.
+fn pieces(
+    chart: &Chart,
+    facets: &Arc<Facets>,
+    edges: &Edges,
+    chains: &[Chain],
+    links: &[Option<Link>],
+    curves: &[Named],
+) -> Vec<Vec<Piece>> {
+    let mut loops: Vec<(bool, Vec<Piece>)> = Vec::new();
+    for sides in sides(chart) {
+        let uv = |node: u32| chart.uv[node as usize];
+        let doubled: f64 =
+            sides.iter().map(|side| (uv(side[0]) - uv(sides[0][0])).perp_dot(uv(side[1]) - uv(sides[0][0]))).sum();
+        // Each side with its chain, where along it, and which way.
+        let on: Vec<(u32, u32, bool)> = sides
+            .iter()
+            .map(|side| {
+                let ends = side.map(|node| chart.points[node as usize]);
+                let link = edges.between(ends).and_then(|edge| links[edge]).expect("sides of borders are on chains");
+                let forward = chains[link.chain as usize].points[link.at as usize] == ends[0];
+                (link.chain, link.at, forward)
+            })
+            .collect();
+        let begins = |&(chain, at, forward): &(u32, u32, bool)| {
+            if forward { at == 0 } else { at as usize + 2 == chains[chain as usize].points.len() }
+        };
+        let start = on.iter().position(|side| begins(side)).unwrap_or(0);
+        let n = on.len();
+        let mut pieces = Vec::new();
+        let mut k = 0;
+        while k < n {
+            let (chain, _, forward) = on[(start + k) % n];
+            let long = chains[chain as usize].points.len() - 1;
+            let nodes = (0..long).map(|i| sides[(start + k + i) % n][0]).chain([sides[(start + k + long - 1) % n][1]]);
+            let mut places: Vec<DVec2> = nodes.map(uv).collect();
+            if !forward {
+                places.reverse();
+            }
+            let image = Image::of_sides(facets, &curves[chain as usize].curve, &places);
+            pieces.push(Piece { curve: chain as usize, image, forward });
+            k += long;
+        }
+        loops.push((doubled < 0.0, pieces));
+    }
+    loops.sort_by_key(|l| l.0);
+    loops.into_iter().map(|l| l.1).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
+
+    #[test]
+    fn surfaces_become_domains_whose_curves_are_shared() {
+        let names = ["all".to_owned()];
+        for (mesh, faces, curves) in [
+            (cube(4), 6, 12),
+            (sphere(8), 2, 1),
+            (tube(24, 10, 4.0), 1, 3),
+            (three_half_planes(), 3, 4),
+            (plate(10, 0.1), 1, 1),
+        ] {
+            let found = surface(&mesh, &names, ANGLE).unwrap();
+            let domain = &found.domain;
+            let own = domain.curves.iter().enumerate().filter(|(k, curve)| curve.first.index() == *k).count();
+            assert_eq!((domain.faces.len(), own), (faces, curves));
+            assert!(found.table(&implied_sizes(&mesh)).is_ok());
+        }
+        assert!(surface(&torus(30, 20), &names, ANGLE).is_ok());
+    }
+}

@@ -1,0 +1,138 @@
+//! A disc of triangles laid into the plane: the border on a circle by its length, every node inside at a weighted mean of its
+//! neighbours (Tutte 1963) with mean-value weights (Floater 2003). Positive weights and a convex border make it one to one.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+
+use super::chart::Stretch;
+use super::sparse::Means;
+use crate::core::geometry::predicates::orient;
+
+/// How nearly each node stands at its mean, on a circle of radius 1.
+const NEAR: f64 = 1e-13;
+
+/// Weights are held within this factor of a node's greatest: triangles with nearly no area pull at nobody without end.
+const LEAST_WEIGHT: f64 = 1e-4;
+
+/// Where the nodes of a disc lie in the plane; those of the border are the first `border` ones, anticlockwise. `None` where rounding
+/// keeps a triangle from lying the right way round.
+pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize) -> Option<Vec<DVec2>> {
+    let lengths: Vec<f64> = (0..border).map(|k| xyz[k].distance(xyz[(k + 1) % border])).collect();
+    let around: f64 = lengths.iter().sum();
+    if around.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) || border < 3 {
+        return None;
+    }
+    // No piece of the border shrinks to nothing, however short it is.
+    let least = 1e-3 * around / border as f64;
+    let pieces: Vec<f64> = lengths.iter().map(|l| l.max(least)).collect();
+    let all: f64 = pieces.iter().sum();
+    let radius = around / TAU;
+    let mut uv = Vec::with_capacity(xyz.len());
+    let mut along = 0.0;
+    for piece in &pieces {
+        let (sin, cos) = libm::sincos(TAU * along / all);
+        uv.push(DVec2::new(cos, sin) * radius);
+        along += piece;
+    }
+    let inner = xyz.len() - border;
+    if inner > 0 {
+        let weights = weights(xyz, triangles, border);
+        let mut right = [vec![0.0; inner], vec![0.0; inner]];
+        let mut rows = Vec::with_capacity(inner);
+        for (i, row) in weights.iter().enumerate() {
+            let sum: f64 = row.iter().map(|w| w.1).sum();
+            let mut inside = Vec::with_capacity(row.len());
+            for &(node, weight) in row {
+                let weight = weight / sum;
+                match (node as usize).checked_sub(border) {
+                    Some(column) => inside.push((column as u32, weight)),
+                    None => {
+                        right[0][i] += weight * uv[node as usize].x / radius;
+                        right[1][i] += weight * uv[node as usize].y / radius;
+                    }
+                }
+            }
+            rows.push(inside);
+        }
+        let solver = Means::new(rows.into_iter()).factored();
+        let [x, y] = right.map(|b| solver.solve(&b, b.clone(), NEAR));
+        let (x, y) = (x?, y?);
+        uv.extend(x.into_iter().zip(y).map(|(x, y)| DVec2::new(x, y) * radius));
+    }
+    stands(triangles, &uv).then_some(uv)
+}
+
+/// Whether all triangles lie the right way round, by an exact predicate.
+pub fn stands(triangles: &[[u32; 3]], uv: &[DVec2]) -> bool {
+    triangles.iter().all(|t| {
+        let [a, b, c] = t.map(|k| uv[k as usize]);
+        orient(a, b, c) > 0.0
+    })
+}
+
+/// For each node inside, its neighbours with their mean-value weights: (tan(alpha/2) + tan(beta/2)) / length, with the angles at
+/// the node on both sides of the edge. Neighbours ascend.
+fn weights(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize) -> Vec<Vec<(u32, f64)>> {
+    let mut weights: Vec<Vec<(u32, f64)>> = vec![Vec::with_capacity(8); xyz.len() - border];
+    for t in triangles {
+        for k in 0..3 {
+            let [at, b, c] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]];
+            let Some(row) = (at as usize).checked_sub(border) else { continue };
+            let [to_b, to_c] = [b, c].map(|n| xyz[n as usize] - xyz[at as usize]);
+            let (long_b, long_c) = (to_b.length(), to_c.length());
+            let tangent = half_angle_tangent(to_b, to_c);
+            for (node, long) in [(b, long_b), (c, long_c)] {
+                let weight = tangent / long.max(f64::MIN_POSITIVE);
+                match weights[row].iter_mut().find(|w| w.0 == node) {
+                    Some(found) => found.1 += weight,
+                    None => weights[row].push((node, weight)),
+                }
+            }
+        }
+    }
+    for row in &mut weights {
+        row.sort_unstable_by_key(|w| w.0);
+        let greatest = row.iter().map(|w| w.1).filter(|w| w.is_finite()).fold(0.0, f64::max);
+        for (_, weight) in row.iter_mut() {
+            let bound = if weight.is_finite() { *weight } else { greatest };
+            *weight = if greatest > 0.0 { bound.max(LEAST_WEIGHT * greatest) } else { 1.0 };
+        }
+    }
+    weights
+}
+
+/// tan(angle / 2) without an angle: sin / (1 + cos).
+fn half_angle_tangent(a: DVec3, b: DVec3) -> f64 {
+    let sine = a.cross(b).length();
+    let cosine = a.dot(b);
+    sine / (a.length() * b.length() + cosine).max(1e-12 * sine).max(f64::MIN_POSITIVE)
+}
+
+/// How much the map stretches. Triangles that are nearly flat in space say nothing of it and are passed over.
+pub fn stretch(xyz: &[DVec3], triangles: &[[u32; 3]], uv: &[DVec2]) -> Stretch {
+    let (mut shape, mut least, mut most) = (1.0_f64, f64::INFINITY, 0.0_f64);
+    for t in triangles {
+        let [p, q, r] = t.map(|k| xyz[k as usize]);
+        let (e, f) = (q - p, r - p);
+        let area = e.cross(f).length();
+        let longest = e.length_squared().max(f.length_squared()).max(e.distance_squared(f));
+        if area < 1e-3 * longest {
+            continue;
+        }
+        // First fundamental form of the map from the plane to space: its eigenvalues are the squares of the singular values.
+        let [a, b, c] = t.map(|k| uv[k as usize]);
+        let (g, h) = (b - a, c - a);
+        let det = g.perp_dot(h);
+        let (x_u, x_v) = ((e * h.y - f * g.y) / det, (f * g.x - e * h.x) / det);
+        let (uu, uv, vv) = (x_u.length_squared(), x_u.dot(x_v), x_v.length_squared());
+        let (mean, radius) = (0.5 * (uu + vv), (0.25 * (uu - vv) * (uu - vv) + uv * uv).sqrt());
+        let product = (area / det).abs();
+        // The smaller eigenvalue by the product: the difference would lose it.
+        let ratio = (mean + radius) / product;
+        shape = shape.max(if ratio.is_finite() { ratio } else { f64::INFINITY });
+        (least, most) = (least.min(product), most.max(product));
+    }
+    let area = if most > 0.0 { most / least } else { 1.0 };
+    Stretch { shape, area: if area.is_finite() { area } else { f64::INFINITY } }
+}

@@ -1,0 +1,448 @@
+//! Faces on surfaces that share curves (paper 3.1; spec 2.9): each face gets a chart, each curve an image in the chart of
+//! every face that it bounds, and all charts lie side by side in the plane of an [`Atlas`]. What comes out is a [`Domain`] of
+//! that plane, which knows what its curves and vertices are in space.
+//!
+//! Here: which chart a face gets, and how all are set side by side. How images are chained to loops is in `lifting`, a surface
+//! that is a face as a whole in `whole_surface`.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use rustc_hash::FxHashMap;
+
+use super::assembly::{join_ends, loop_name, placed};
+use super::atlas::Atlas;
+use super::chart::{Chart, singular_edges};
+use super::curve::Curve;
+use super::domain::{CurveId, CurveKind, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial};
+use super::ground::Ground;
+use super::image::Image;
+use super::lifting::{Lift, Piece};
+use super::primitive::SurfaceShape;
+use super::space_curve::{SpaceCurve, SpaceShape, told_xyz};
+use super::surface::{Edge, NurbsSurface};
+use super::whole_surface::whole;
+use crate::core::fault::Fault;
+
+/// Ends of curves in space nearer than this part of the size of all are one vertex.
+const SAME_VERTEX: f64 = 1e-9;
+
+/// A surface of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceSpec {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub shape: SurfaceShape,
+    /// Where it stands, for messages.
+    pub place: String,
+}
+
+/// A curve of a case with surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpaceCurveSpec {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub shape: SpaceShape,
+    /// Number of segments where the case fixes it.
+    pub segments: Option<u32>,
+    /// Where it stands, for messages.
+    pub place: String,
+}
+
+/// A face of a case with surfaces; without an outer loop it is all of its surface, but for the holes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceFaceSpec {
+    /// Its surface.
+    pub surface: String,
+    /// Its name and its curves.
+    pub face: FaceSpec,
+}
+
+/// What [`build`] makes a domain of.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ComplexSpec {
+    /// All surfaces.
+    pub surfaces: Vec<SurfaceSpec>,
+    /// All curves.
+    pub curves: Vec<SpaceCurveSpec>,
+    /// All faces, at least one.
+    pub faces: Vec<SurfaceFaceSpec>,
+}
+
+/// A named curve in space.
+pub(in crate::core) struct Named {
+    pub name: String,
+    pub curve: Arc<SpaceCurve>,
+    pub segments: Option<u32>,
+    pub place: String,
+    /// Vertices in space at its start and end.
+    pub ends: [u32; 2],
+}
+
+/// A face, or a part of one that is too much for one chart.
+pub(super) struct Part {
+    pub spec: FaceSpec,
+    pub surface: Arc<NurbsSurface>,
+    /// The singular edge about which its chart is to be drawn; `None`: that is to be found.
+    pub about: Option<Edge>,
+    /// Whether it is the surface as a whole: the outer loop is the surface's own edge.
+    pub whole: bool,
+    /// Of one of two halves between poles: the axis between them, and the range of this half along it.
+    pub half: Option<(usize, [f64; 2])>,
+}
+
+/// Builds the domain of faces on surfaces. Faces stand in it by name.
+///
+/// # Errors
+/// Surfaces and curves that are none; names that are unknown, given twice or used wrongly; curves that do not lie on the
+/// surface of their face, with the distance; loops that do not close on their surface; and what [`Domain::build`] refuses.
+pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
+    let surfaces = surfaces(spec)?;
+    let find = |name: &str| surfaces.iter().find(|(known, _)| known == name).map(|(_, s)| Arc::clone(s));
+    let mut curves: Vec<Named> = Vec::new();
+    for given in &spec.curves {
+        if curves.iter().any(|c| c.name == given.name) {
+            let fault = Fault::new(format!("There are two curves \"{}\"", given.name)).remedy("Rename one of them");
+            return Err(placed(fault, &given.place));
+        }
+        let curve = SpaceCurve::new(&given.shape, &find)
+            .map_err(|fault| placed(fault.at(format!("curve \"{}\"", given.name)), &given.place))?;
+        curves.push(Named {
+            name: given.name.clone(),
+            curve: Arc::new(curve),
+            segments: given.segments,
+            place: given.place.clone(),
+            ends: [0; 2],
+        });
+    }
+    let mut parts = Vec::new();
+    let mut faces: Vec<&SurfaceFaceSpec> = spec.faces.iter().collect();
+    faces.sort_by(|a, b| a.face.name.cmp(&b.face.name));
+    if let Some(w) = faces.windows(2).find(|w| w[0].face.name == w[1].face.name) {
+        let fault = Fault::new(format!("There are two faces \"{}\"", w[0].face.name)).remedy("Rename one of them");
+        return Err(placed(fault, &w[1].face.place));
+    }
+    if faces.is_empty() {
+        return Err(Fault::new("There is no face to mesh").remedy("Add a face"));
+    }
+    for face in faces {
+        let surface = find(&face.surface).ok_or_else(|| {
+            let what = format!("The face \"{}\" lies on \"{}\", which is not there", face.face.name, face.surface);
+            placed(Fault::new(what).remedy("Add it as [[surface]]"), &face.face.place)
+        })?;
+        if face.face.outer.is_empty() {
+            whole(&face.face, &surface, &mut curves, &mut parts);
+        } else {
+            parts.push(Part { spec: face.face.clone(), surface, about: None, whole: false, half: None });
+        }
+    }
+    let vertices = join_in_space(&mut curves);
+    let mut lifts = Vec::new();
+    for part in &mut parts {
+        keep_own(part, &curves)?;
+        lifts.push(lift(part, &curves)?);
+    }
+    let specs: Vec<FaceSpec> = parts.into_iter().map(|part| part.spec).collect();
+    assemble(&curves, &vertices, &specs, lifts)
+}
+
+fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Fault> {
+    let mut surfaces: Vec<(String, Arc<NurbsSurface>)> = Vec::new();
+    // Curves in space, for surfaces that are swept; curves on surfaces come after those.
+    let swept = |name: &str| {
+        let given = spec.curves.iter().find(|c| c.name == name)?;
+        SpaceCurve::new(&given.shape, &|_| None).ok()
+    };
+    for given in &spec.surfaces {
+        if surfaces.iter().any(|(name, _)| *name == given.name) {
+            let fault = Fault::new(format!("There are two surfaces \"{}\"", given.name)).remedy("Rename one of them");
+            return Err(placed(fault, &given.place));
+        }
+        let surface = given
+            .shape
+            .surface(&swept)
+            .map_err(|fault| placed(fault.at(format!("surface \"{}\"", given.name)), &given.place))?;
+        surfaces.push((given.name.clone(), Arc::new(surface)));
+    }
+    Ok(surfaces)
+}
+
+/// Joins ends of curves in space into vertices; ends that were given as numbers come first, theirs is the place.
+fn join_in_space(curves: &mut [Named]) -> Vec<DVec3> {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for p in curves.iter().flat_map(|c| c.curve.polyline()) {
+        (low, high) = (low.min(p), high.max(p));
+    }
+    let tolerance = SAME_VERTEX * (high - low).max_element();
+    let mut ends: Vec<(bool, usize, usize, DVec3)> = Vec::new();
+    for (i, c) in curves.iter().enumerate() {
+        for which in 0..2 {
+            ends.push((!c.curve.ends_given(), i, which, c.curve.point(which as f64)));
+        }
+    }
+    ends.sort_by_key(|e| (e.0, e.1, e.2));
+    // Cells of a grid wider than the tolerance; the neighbours of a cell are looked into too.
+    let cell = |p: DVec3| {
+        let q = ((p - low) / (8.0 * tolerance.max(f64::MIN_POSITIVE))).floor();
+        [q.x as i64, q.y as i64, q.z as i64]
+    };
+    let mut grid: FxHashMap<[i64; 3], Vec<u32>> = FxHashMap::default();
+    let mut vertices: Vec<DVec3> = Vec::new();
+    for (_, i, which, p) in ends {
+        let mut known: Option<u32> = None;
+        let home = cell(p);
+        for k in 0..27_i64 {
+            let near = [home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1];
+            for &v in grid.get(&near).into_iter().flatten() {
+                if vertices[v as usize].distance(p) <= tolerance && known.is_none_or(|known| v < known) {
+                    known = Some(v);
+                }
+            }
+        }
+        curves[i].ends[which] = known.unwrap_or_else(|| {
+            vertices.push(p);
+            grid.entry(home).or_default().push(vertices.len() as u32 - 1);
+            vertices.len() as u32 - 1
+        });
+    }
+    vertices
+}
+
+/// A face in its chart: the images of its curves, chained.
+pub(in crate::core) struct Lifted {
+    pub ground: Ground,
+    /// Outer loop, holes.
+    pub loops: Vec<Vec<Piece>>,
+    pub cracks: Vec<Piece>,
+    pub repeated: Vec<Piece>,
+}
+
+/// Finds the chart of a face and the images of its curves there.
+fn lift(part: &Part, curves: &[Named]) -> Result<Lifted, Fault> {
+    let spec = &part.spec;
+    let find = |name: &String| {
+        curves.iter().position(|c| c.name == *name).ok_or_else(|| {
+            let what = format!("The face \"{}\" names the curve \"{name}\", which is not there", spec.name);
+            let nearest = curves.iter().map(|c| (strsim::damerau_levenshtein(name, &c.name), &c.name)).min();
+            let fault = Fault::new(what);
+            placed(
+                match nearest {
+                    Some((_, near)) => fault.remedy(format!("The nearest known name is \"{near}\"")),
+                    None => fault.remedy("The case has no curves"),
+                },
+                &spec.place,
+            )
+        })
+    };
+    let numbers = |names: &[String]| names.iter().map(find).collect::<Result<Vec<_>, _>>();
+    let outer = numbers(&spec.outer)?;
+    let charts = match part.about {
+        Some(edge) => vec![Chart::about(Arc::clone(&part.surface), edge)],
+        None if part.whole => vec![Chart::sheet(Arc::clone(&part.surface))],
+        None => charts_for(&part.surface, &outer, curves),
+    };
+    let mut refusal: Option<Fault> = None;
+    for chart in charts {
+        let chart = Arc::new(chart);
+        let mut lift = Lift::new(&chart, curves, &spec.name);
+        let found = lift.chain(&outer, &loop_name(spec, 0));
+        let outer = match found {
+            Ok(outer) => outer,
+            Err(fault) => {
+                refusal.get_or_insert(fault);
+                continue;
+            }
+        };
+        let around = Lift::polygon(&outer);
+        let mut loops = vec![outer];
+        for (i, hole) in spec.holes.iter().enumerate() {
+            let chained = lift.chain(&numbers(hole)?, &loop_name(spec, i + 1)).map_err(|f| placed(f, &spec.place))?;
+            loops.push(lift.brought_inside(chained, &around));
+        }
+        let mut lines = |names: &[String]| -> Result<Vec<Piece>, Fault> {
+            numbers(names)?
+                .into_iter()
+                .map(|curve| {
+                    let piece = lift.single(curve).map_err(|f| placed(f, &spec.place))?;
+                    Ok(lift.brought_inside(vec![piece], &around).remove(0))
+                })
+                .collect()
+        };
+        let (cracks, repeated) = (lines(&spec.cracks)?, lines(&spec.repeated)?);
+        return Ok(Lifted { ground: Ground::Chart(chart), loops, cracks, repeated });
+    }
+    Err(placed(refusal.unwrap_or_else(|| Fault::new(format!("The face \"{}\" has no chart", spec.name))), &spec.place))
+}
+
+/// Charts in which a face with these outer curves may lie: about the singular point that is nearest to them, then the
+/// others; the parametric plane where there is none, or last.
+fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[Named]) -> Vec<Chart> {
+    let points: Vec<DVec3> = outer.iter().flat_map(|&c| curves[c].curve.polyline()).collect();
+    let domain = surface.domain();
+    let mut edges: Vec<(f64, Edge)> = singular_edges(surface)
+        .into_iter()
+        .map(|edge| {
+            let (value, along) = (domain[edge.axis][usize::from(edge.last)], domain[1 - edge.axis][0]);
+            let uv = if edge.axis == 0 { DVec2::new(value, along) } else { DVec2::new(along, value) };
+            let apex = surface.at(uv, 1).p;
+            (points.iter().map(|p| p.distance(apex)).fold(f64::INFINITY, f64::min), edge)
+        })
+        .collect();
+    edges.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut charts: Vec<Chart> = edges.into_iter().map(|(_, edge)| Chart::about(Arc::clone(surface), edge)).collect();
+    charts.push(Chart::sheet(Arc::clone(surface)));
+    charts
+}
+
+/// Where a whole surface was divided between its poles, each hole and line belongs to the half in which it lies.
+fn keep_own(part: &mut Part, curves: &[Named]) -> Result<(), Fault> {
+    let Some((axis, [first, last])) = part.half else { return Ok(()) };
+    let chart = Chart::sheet(Arc::clone(&part.surface));
+    let margin = 1e-9 * (last - first);
+    let mut crossing: Option<String> = None;
+    let mut is_own = |names: &[String]| {
+        let named = names.iter().filter_map(|name| curves.iter().find(|c| c.name == *name));
+        let points: Vec<DVec3> = named.flat_map(|c| c.curve.polyline()).collect();
+        let along = points.iter().map(|p| chart.uv(chart.locate(*p).0)[axis]);
+        let (mut inside, mut outside) = (false, false);
+        for t in along {
+            inside |= t > first + margin && t < last - margin;
+            outside |= t < first - margin || t > last + margin;
+        }
+        if inside && outside {
+            crossing = names.first().cloned();
+        }
+        inside || !outside
+    };
+    let mut spec = part.spec.clone();
+    spec.holes.retain(|hole| is_own(hole));
+    spec.cracks.retain(|line| is_own(std::slice::from_ref(line)));
+    spec.repeated.retain(|line| is_own(std::slice::from_ref(line)));
+    part.spec = spec;
+    let Some(name) = crossing else { return Ok(()) };
+    let fault =
+        Fault::new(format!("The curve \"{name}\" crosses the line at which its surface is divided between its poles"))
+            .remedy("Turn the surface's axis, so that this line lies elsewhere, or give the face an outer loop");
+    Err(placed(fault, &part.spec.place))
+}
+
+/// An image in the order of all: its curve, its face, its place in a loop (the loop and the number in it), what it is.
+type Placed = (usize, usize, Option<(usize, usize)>, CurveKind, Piece);
+
+/// Puts the lifted faces side by side and makes the domain of them.
+pub(in crate::core) fn assemble(
+    curves: &[Named],
+    vertices: &[DVec3],
+    specs: &[FaceSpec],
+    lifts: Vec<Lifted>,
+) -> Result<Domain, Fault> {
+    let bounds: Vec<[DVec2; 2]> = lifts
+        .iter()
+        .map(|lifted| {
+            let places = lifted.loops.iter().flatten().flat_map(|piece| piece.image.places());
+            places.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
+        })
+        .collect();
+    let atlas = Arc::new(Atlas::new(lifts.iter().map(|l| l.ground.clone()).collect(), &bounds));
+    // Every piece by curve, then by face, so that the images of one curve stand together.
+    let mut pieces: Vec<Placed> = Vec::new();
+    for (f, lifted) in lifts.into_iter().enumerate() {
+        for (i, chain) in lifted.loops.into_iter().enumerate() {
+            for (k, piece) in chain.into_iter().enumerate() {
+                pieces.push((piece.curve, f, Some((i, k)), CurveKind::Boundary, piece));
+            }
+        }
+        pieces.extend(lifted.cracks.into_iter().map(|p| (p.curve, f, None, CurveKind::Crack, p)));
+        pieces.extend(lifted.repeated.into_iter().map(|p| (p.curve, f, None, CurveKind::Repeated, p)));
+    }
+    pieces.sort_by_key(|p| (p.0, p.1, p.2));
+    let mut chains: Vec<Vec<Vec<DirectedCurve>>> = vec![Vec::new(); specs.len()];
+    let mut places: Vec<(usize, usize, usize, DirectedCurve)> = Vec::new();
+    let mut domain_curves: Vec<DomainCurve> = Vec::new();
+    let mut space: Vec<Arc<SpaceCurve>> = Vec::new();
+    let mut last: Option<(usize, CurveId)> = None;
+    for (c, f, at, kind, piece) in pieces {
+        let id = CurveId(domain_curves.len() as u32);
+        let first = match last {
+            Some((known, first)) if known == c => first,
+            _ => id,
+        };
+        last = Some((c, first));
+        let named = &curves[c];
+        let image = Arc::new(piece.image.moved(atlas.offset(f)));
+        let internal = (kind != CurveKind::Boundary).then_some(f as u32);
+        domain_curves.push(DomainCurve {
+            name: named.name.clone(),
+            curve: Curve::of_image(image),
+            segments: named.segments,
+            place: named.place.clone(),
+            ends: [0; 2],
+            sides: [internal; 2],
+            kind,
+            fine: Vec::new(),
+            first,
+        });
+        space.push(Arc::clone(&named.curve));
+        if let Some((i, k)) = at {
+            places.push((f, i, k, DirectedCurve { curve: id, forward: piece.forward }));
+        }
+    }
+    places.sort_by_key(|p| (p.0, p.1, p.2));
+    for (f, i, _, step) in places {
+        let loops = &mut chains[f];
+        if loops.len() <= i {
+            loops.resize(i + 1, Vec::new());
+        }
+        loops[i].push(step);
+    }
+    let extent = Extent::of(&domain_curves)?;
+    let plane = join_ends(&mut domain_curves, extent.size, extent.tolerance)?;
+    let mut vertex_of = vec![u32::MAX; plane.len()];
+    for curve in &domain_curves {
+        let named = curves.iter().find(|c| c.name == curve.name).expect("images are of named curves");
+        for (own, in_space) in curve.ends.iter().zip(named.ends) {
+            let known = &mut vertex_of[*own as usize];
+            if *known != u32::MAX && *known != in_space {
+                let [a, b] = [*known, in_space].map(|v| told_xyz(vertices[v as usize]));
+                let fault =
+                    Fault::new(format!("The ends of curves at {a} and {b} come to one place of a face's chart"))
+                        .remedy("Let them meet, or move them apart");
+                return Err(placed(fault, &curve.place));
+            }
+            *known = in_space;
+        }
+    }
+    let mut domain = Domain::assemble(domain_curves, plane, chains, specs, extent)?;
+    domain.spatial = Some(Arc::new(Spatial {
+        atlas,
+        vertices: vertices.to_vec(),
+        vertex_of,
+        curves: space,
+        polylines: curves.iter().map(|c| (c.name.clone(), c.curve.polyline())).collect(),
+    }));
+    Ok(domain)
+}
+
+/// An image of a curve in a chart on some sheet; see [`Lift`].
+pub(super) fn image_on(chart: &Arc<Chart>, named: &Named, move_by: DVec2, face: &str) -> Result<Image, Fault> {
+    if let Some((surface, trim)) = named.curve.trim()
+        && Arc::ptr_eq(surface, chart.surface())
+    {
+        return Ok(Image::of_trim(chart, &named.curve, trim, move_by));
+    }
+    let (start, off) = chart.locate(named.curve.point(0.0));
+    let refuse = |distance: f64, at: DVec3| {
+        let what = format!("The curve \"{}\" does not lie on the surface of the face \"{face}\"", named.name);
+        let fault = Fault::new(format!("{what}: it is {} away", super::place::number(distance)))
+            .at(format!("at {}", told_xyz(at)))
+            .remedy("Mend the curve, or name another one");
+        placed(fault, &named.place)
+    };
+    if off > super::image::ON_SURFACE * chart.surface().size() {
+        return Err(refuse(off, named.curve.point(0.0)));
+    }
+    let guess = if move_by == DVec2::ZERO { start } else { chart.of_uv(chart.uv(start) + move_by) };
+    Image::projected(chart, &named.curve, guess).map_err(|off| refuse(off.distance, off.at))
+}

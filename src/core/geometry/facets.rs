@@ -1,0 +1,55 @@
+//! A chart of triangles as a surface: the ground of faces without CAD (spec 4). Within a triangle places in the plane and in space
+//! go together linearly, so that the derivatives are those of the triangle.
+
+use glam::{DVec2, DVec3};
+
+use super::chart::ChartPoint;
+use crate::core::fault::Fault;
+use crate::core::metric::plane_triangles::PlaneTriangles;
+
+/// Triangles in the plane and in space.
+#[derive(Clone, Debug)]
+pub struct Facets {
+    plane: PlaneTriangles,
+    xyz: Vec<DVec3>,
+    /// Derivatives of each triangle by the coordinates of the plane.
+    j: Vec<[DVec3; 2]>,
+    size: f64,
+}
+
+impl Facets {
+    /// Triangles that lie anticlockwise in the plane, by the places of their nodes there and in space.
+    ///
+    /// # Errors
+    /// What [`PlaneTriangles::new`] refuses.
+    pub fn new(uv: &[DVec2], xyz: Vec<DVec3>, triangles: &[[u32; 3]]) -> Result<Facets, Fault> {
+        let j = triangles.iter().map(|t| {
+            let [a, b, c] = t.map(|k| uv[k as usize]);
+            let [p, q, r] = t.map(|k| xyz[k as usize]);
+            let (g, h, e, f) = (b - a, c - a, q - p, r - p);
+            let det = g.perp_dot(h);
+            [(e * h.y - f * g.y) / det, (f * g.x - e * h.x) / det]
+        });
+        let j = j.collect();
+        let (low, high) =
+            xyz.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+        Ok(Facets { plane: PlaneTriangles::new(uv, triangles)?, size: (high - low).max_element(), xyz, j })
+    }
+
+    /// Largest side of the box around it.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The point at a place of the plane; beyond the border that of the nearest place within.
+    pub fn at(&self, p: DVec2) -> ChartPoint {
+        match self.plane.find(p) {
+            Some(found) => {
+                let terms = found.nodes.into_iter().zip(found.weights);
+                let xyz = terms.map(|(node, weight)| self.xyz[node as usize] * weight).sum();
+                ChartPoint { xyz, uv: p, j: self.j[found.triangle as usize] }
+            }
+            None => ChartPoint { xyz: DVec3::NAN, uv: p, j: [DVec3::NAN; 2] },
+        }
+    }
+}

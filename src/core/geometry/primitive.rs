@@ -1,0 +1,380 @@
+//! Exact NURBS of the surfaces and curves that people name: planes, what turns about an axis (A8.1 of "The NURBS Book":
+//! cylinder, cone, sphere, torus, revolution), extrusions, Bezier patches.
+//!
+//! The parameter of what turns is the angle in degrees: exact at the ends and at the ends of its equal arcs of at most 90
+//! degrees, and near it (within 1.1 degrees) between.
+
+use glam::DVec3;
+
+use super::nurbs::NurbsCurve;
+use super::space_curve::SpaceCurve;
+use super::surface::NurbsSurface;
+use crate::core::fault::Fault;
+
+/// The directions of something that turns: angles are measured from `start` towards `axis x start`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// A point on the axis.
+    pub centre: DVec3,
+    /// Unit vector along the axis.
+    pub axis: DVec3,
+    /// Unit vector across it, where the angle is 0.
+    pub start: DVec3,
+}
+
+impl Frame {
+    /// A frame about an axis; without `start` the angle 0 is towards x, or y where the axis is x.
+    ///
+    /// # Errors
+    /// Directions that are zero, not finite, or parallel.
+    pub fn new(centre: DVec3, axis: DVec3, start: Option<DVec3>) -> Result<Frame, Fault> {
+        let told = |p: DVec3| format!("({}, {}, {})", p.x, p.y, p.z);
+        let axis_unit = axis.normalize_or_zero();
+        if axis_unit == DVec3::ZERO || !centre.is_finite() {
+            return Err(Fault::new(format!("The axis {} is no direction", told(axis))));
+        }
+        let given = start.unwrap_or(if axis_unit.cross(DVec3::X).length() > 1e-6 { DVec3::X } else { DVec3::Y });
+        let across = given.normalize_or_zero();
+        let across = across - axis_unit * across.dot(axis_unit);
+        if across.length() < 1e-6 {
+            return Err(Fault::new(format!("start = {} is no direction across the axis", told(given)))
+                .remedy("Give a direction that is not along the axis"));
+        }
+        Ok(Frame { centre, axis: axis_unit, start: across.normalize() })
+    }
+
+    /// The unit vector at an angle in degrees, exact at multiples of 90.
+    pub fn towards(&self, degrees: f64) -> DVec3 {
+        let (sin, cos) = sin_cos(degrees);
+        self.start * cos + self.axis.cross(self.start) * sin
+    }
+}
+
+/// Sine and cosine of an angle in degrees, exact at multiples of 90.
+pub fn sin_cos(degrees: f64) -> (f64, f64) {
+    let turns = (degrees / 360.0).floor();
+    let within = degrees - 360.0 * turns;
+    match within {
+        0.0 | 360.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => libm::sincos(within.to_radians()),
+    }
+}
+
+/// Angles of the control points of an arc: ends and joints at even places, and between them the poles, with the weight
+/// of those and the knots.
+struct Arcs {
+    angles: Vec<f64>,
+    /// Weight of the points between the joints; their distance is the radius over it.
+    weight: f64,
+    knots: Vec<f64>,
+}
+
+impl Arcs {
+    fn new([from, to]: [f64; 2]) -> Result<Arcs, Fault> {
+        let turn = to - from;
+        if !(turn.is_finite() && turn > 0.0 && turn <= 360.0) {
+            return Err(Fault::new(format!("The angles {from} and {to} are no turn of up to 360 degrees"))
+                .remedy("Write to_angle greater than from_angle, by 360 at most"));
+        }
+        let count = (turn / 90.0 - 1e-9).ceil().max(1.0) as usize;
+        let joint = |i: usize| if i == count { to } else { from + turn * i as f64 / count as f64 };
+        let mut angles = vec![from];
+        let mut knots = vec![from; 3];
+        for i in 1..=count {
+            angles.extend([0.5 * (joint(i - 1) + joint(i)), joint(i)]);
+            knots.extend([joint(i); 2]);
+        }
+        knots.push(to);
+        Ok(Arcs { angles, weight: libm::cos((0.5 * turn / count as f64).to_radians()), knots })
+    }
+
+    fn weight_at(&self, i: usize) -> f64 {
+        if i.is_multiple_of(2) { 1.0 } else { self.weight }
+    }
+}
+
+/// A circular arc as a rational quadratic, its parameter about the angle in degrees.
+///
+/// # Errors
+/// A radius that is not positive, angles that are no turn.
+pub fn arc(frame: &Frame, radius: f64, angles: [f64; 2]) -> Result<NurbsCurve<DVec3>, Fault> {
+    positive("radius", radius)?;
+    let arcs = Arcs::new(angles)?;
+    let weights: Vec<f64> = (0..arcs.angles.len()).map(|i| arcs.weight_at(i)).collect();
+    let mut points: Vec<DVec3> = arcs
+        .angles
+        .iter()
+        .zip(&weights)
+        .map(|(&angle, w)| frame.centre + frame.towards(angle) * (radius / w))
+        .collect();
+    close_full(&mut points, angles, 1);
+    NurbsCurve::new(2, arcs.knots, &weights, &points)
+}
+
+/// After a full turn the last points are the first ones, to the last bit.
+fn close_full(points: &mut [DVec3], [from, to]: [f64; 2], columns: usize) {
+    if to - from == 360.0 {
+        let last = points.len() - columns;
+        points.copy_within(..columns, last);
+    }
+}
+
+fn positive(name: &str, value: f64) -> Result<(), Fault> {
+    if value.is_finite() && value > 0.0 && value < 1e100 {
+        Ok(())
+    } else {
+        Err(Fault::new(format!("{name} = {value} is not positive")).remedy("Give a positive finite number"))
+    }
+}
+
+/// The surface that a profile sweeps about an axis (A8.1): u is the angle in degrees, v the profile's parameter.
+///
+/// # Errors
+/// Angles that are no turn, and what [`NurbsSurface::new`] refuses.
+pub fn revolution(profile: &NurbsCurve<DVec3>, frame: &Frame, angles: [f64; 2]) -> Result<NurbsSurface, Fault> {
+    let arcs = Arcs::new(angles)?;
+    let columns = profile.weighted_points().len();
+    let (mut points, mut weights) = (Vec::new(), Vec::new());
+    for (i, &angle) in arcs.angles.iter().enumerate() {
+        let w = arcs.weight_at(i);
+        let towards = frame.towards(angle);
+        let across = frame.axis.cross(towards);
+        for &(p, weight) in profile.weighted_points() {
+            // In the frame of the profile: along the axis, and across it towards start and beside it.
+            let p = p / weight - frame.centre;
+            let (height, x, y) = (p.dot(frame.axis), p.dot(frame.start), p.dot(frame.axis.cross(frame.start)));
+            points.push(frame.centre + frame.axis * height + (towards * x + across * y) / w);
+            weights.push(w * weight);
+        }
+    }
+    close_full(&mut points, angles, columns);
+    let knots = [arcs.knots, profile.basis().knots().to_vec()];
+    NurbsSurface::new([2, profile.basis().degree()], knots, &weights, &points, columns)
+}
+
+/// A profile in the half plane of a frame at angle 0, from points (across, along the axis).
+fn profile(
+    frame: &Frame,
+    degree: usize,
+    knots: Vec<f64>,
+    weights: &[f64],
+    points: &[[f64; 2]],
+) -> Result<NurbsCurve<DVec3>, Fault> {
+    let points: Vec<DVec3> = points.iter().map(|[x, z]| frame.centre + frame.start * *x + frame.axis * *z).collect();
+    NurbsCurve::new(degree, knots, weights, &points)
+}
+
+/// A cone about an axis, of the radii at its foot and its top (0: its apex); equal radii make a cylinder. v is the distance
+/// from the foot along its generator.
+///
+/// # Errors
+/// Radii that are negative or both 0, a height that is not positive, angles that are no turn.
+pub fn cone(frame: &Frame, radii: [f64; 2], height: f64, angles: [f64; 2]) -> Result<NurbsSurface, Fault> {
+    positive("height", height)?;
+    if let Some(r) = radii.iter().find(|r| !(r.is_finite() && **r >= 0.0)) {
+        return Err(Fault::new(format!("The radius {r} is negative or not finite")));
+    }
+    positive("radius", radii[0].max(radii[1]))?;
+    let length = libm::hypot(height, radii[1] - radii[0]);
+    let line = profile(frame, 1, vec![0.0, 0.0, length, length], &[], &[[radii[0], 0.0], [radii[1], height]])?;
+    revolution(&line, frame, angles)
+}
+
+/// A sphere: u is the longitude, v the latitude, both in degrees.
+///
+/// # Errors
+/// A radius that is not positive, angles that are no turn, latitudes beyond -90 and 90.
+pub fn sphere(frame: &Frame, radius: f64, angles: [f64; 2], latitudes: [f64; 2]) -> Result<NurbsSurface, Fault> {
+    positive("radius", radius)?;
+    if !(-90.0..=90.0).contains(&latitudes[0]) || !(-90.0..=90.0).contains(&latitudes[1]) {
+        return Err(Fault::new(format!("The latitudes {} and {} are beyond the poles", latitudes[0], latitudes[1]))
+            .remedy("Write them between -90 and 90"));
+    }
+    let meridian = Arcs::new(latitudes)?;
+    let weights: Vec<f64> = (0..meridian.angles.len()).map(|i| meridian.weight_at(i)).collect();
+    let points: Vec<[f64; 2]> = meridian
+        .angles
+        .iter()
+        .zip(&weights)
+        .map(|(&latitude, w)| {
+            let (sin, cos) = sin_cos(latitude);
+            [cos * radius / w, sin * radius / w]
+        })
+        .collect();
+    revolution(&profile(frame, 2, meridian.knots, &weights, &points)?, frame, angles)
+}
+
+/// A torus: u is the angle about the axis, v that about its tube from the outermost circle upwards, both in degrees.
+///
+/// # Errors
+/// Radii that are not positive, a tube that is not thinner than its circle, angles that are no turn.
+pub fn torus(
+    frame: &Frame,
+    radius: f64,
+    tube: f64,
+    angles: [f64; 2],
+    tube_angles: [f64; 2],
+) -> Result<NurbsSurface, Fault> {
+    positive("radius", radius)?;
+    positive("tube", tube)?;
+    if tube >= radius {
+        return Err(Fault::new(format!("The tube's radius {tube} is not less than {radius}: the torus meets itself"))
+            .remedy("Give a thinner tube, or a larger radius"));
+    }
+    let ring = Arcs::new(tube_angles)?;
+    let weights: Vec<f64> = (0..ring.angles.len()).map(|i| ring.weight_at(i)).collect();
+    let mut points: Vec<[f64; 2]> = ring
+        .angles
+        .iter()
+        .zip(&weights)
+        .map(|(&angle, w)| {
+            let (sin, cos) = sin_cos(angle);
+            [radius + cos * tube / w, sin * tube / w]
+        })
+        .collect();
+    if tube_angles[1] - tube_angles[0] == 360.0 {
+        let last = points.len() - 1;
+        points[last] = points[0];
+    }
+    revolution(&profile(frame, 2, ring.knots, &weights, &points)?, frame, angles)
+}
+
+/// A part of a plane: the parallelogram of two sides from a corner. u and v are lengths along the sides.
+///
+/// # Errors
+/// Sides that are zero or parallel.
+pub fn plane(corner: DVec3, sides: [DVec3; 2]) -> Result<NurbsSurface, Fault> {
+    let lengths = sides.map(DVec3::length);
+    let spanned = sides[0].cross(sides[1]).length();
+    if spanned <= 1e-9 * lengths[0] * lengths[1] || spanned.is_nan() {
+        return Err(Fault::new("The sides u and v of the plane are zero or parallel")
+            .remedy("Give two directions that span the plane, as long as it is to reach"));
+    }
+    let knots = lengths.map(|l| vec![0.0, 0.0, l, l]);
+    let points = [corner, corner + sides[1], corner + sides[0], corner + sides[0] + sides[1]];
+    NurbsSurface::new([1, 1], knots, &[], &points, 2)
+}
+
+/// What a curve sweeps along a straight line: u is the curve's parameter, v the length along the line.
+///
+/// # Errors
+/// A direction without length, and what [`NurbsSurface::new`] refuses.
+pub fn extrusion(curve: &NurbsCurve<DVec3>, along: DVec3) -> Result<NurbsSurface, Fault> {
+    positive("the length of direction", along.length())?;
+    let (mut points, mut weights) = (Vec::new(), Vec::new());
+    for &(p, w) in curve.weighted_points() {
+        points.extend([p / w, p / w + along]);
+        weights.extend([w, w]);
+    }
+    let length = along.length();
+    let knots = [curve.basis().knots().to_vec(), vec![0.0, 0.0, length, length]];
+    NurbsSurface::new([curve.basis().degree(), 1], knots, &weights, &points, 2)
+}
+
+/// A surface as a case gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SurfaceShape {
+    /// See [`plane`].
+    Plane {
+        /// A corner.
+        corner: DVec3,
+        /// Two sides from it.
+        sides: [DVec3; 2],
+    },
+    /// See [`cone`]; a cylinder where both radii are equal.
+    Cone {
+        /// Foot, axis and where the angle is 0.
+        frame: Frame,
+        /// Radius at the foot and at the top.
+        radii: [f64; 2],
+        /// Height.
+        height: f64,
+        /// First and last angle, degrees.
+        angles: [f64; 2],
+    },
+    /// See [`sphere`].
+    Sphere {
+        /// Centre, axis and where the angle is 0.
+        frame: Frame,
+        /// Radius.
+        radius: f64,
+        /// First and last longitude, degrees.
+        angles: [f64; 2],
+        /// First and last latitude, degrees.
+        latitudes: [f64; 2],
+    },
+    /// See [`torus`].
+    Torus {
+        /// Centre, axis and where the angle is 0.
+        frame: Frame,
+        /// Radius of the circle in the middle of the tube.
+        radius: f64,
+        /// Radius of the tube.
+        tube: f64,
+        /// First and last angle, degrees.
+        angles: [f64; 2],
+        /// First and last angle about the tube, degrees.
+        tube_angles: [f64; 2],
+    },
+    /// See [`extrusion`].
+    Extrusion {
+        /// The name of a curve.
+        curve: String,
+        /// Direction and length.
+        along: DVec3,
+    },
+    /// See [`revolution`].
+    Revolution {
+        /// The name of a curve.
+        curve: String,
+        /// The axis.
+        frame: Frame,
+        /// First and last angle, degrees.
+        angles: [f64; 2],
+    },
+    /// Control points and knots; a Bezier patch where the knots are only at the ends.
+    Nurbs {
+        /// Degrees along u and v.
+        degrees: [usize; 2],
+        /// Knots along u and v.
+        knots: [Vec<f64>; 2],
+        /// One a point, or none.
+        weights: Vec<f64>,
+        /// Rows along v, one for each place along u.
+        points: Vec<DVec3>,
+        /// Points in a row.
+        columns: usize,
+    },
+}
+
+impl SurfaceShape {
+    /// The surface; `curve` gives the curve of a name.
+    ///
+    /// # Errors
+    /// What its maker refuses, and a curve that is not there or is not of space.
+    pub fn surface(&self, curve: &dyn Fn(&str) -> Option<SpaceCurve>) -> Result<NurbsSurface, Fault> {
+        let profile = |name: &str| {
+            let curve = curve(name).ok_or_else(|| Fault::new(format!("There is no curve \"{name}\"")))?;
+            curve.nurbs().ok_or_else(|| {
+                Fault::new(format!("The curve \"{name}\" lies on a surface and cannot be swept"))
+                    .remedy("Give it by points in space")
+            })
+        };
+        match self {
+            SurfaceShape::Plane { corner, sides } => plane(*corner, *sides),
+            SurfaceShape::Cone { frame, radii, height, angles } => cone(frame, *radii, *height, *angles),
+            SurfaceShape::Sphere { frame, radius, angles, latitudes } => sphere(frame, *radius, *angles, *latitudes),
+            SurfaceShape::Torus { frame, radius, tube, angles, tube_angles } => {
+                torus(frame, *radius, *tube, *angles, *tube_angles)
+            }
+            SurfaceShape::Extrusion { curve, along } => extrusion(&profile(curve)?, *along),
+            SurfaceShape::Revolution { curve, frame, angles } => revolution(&profile(curve)?, frame, *angles),
+            SurfaceShape::Nurbs { degrees, knots, weights, points, columns } => {
+                NurbsSurface::new(*degrees, knots.clone(), weights, points, *columns)
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Meshes in space as pictures: seen from afar, slightly from above, what is hidden left out. All areas are drawn (they are
+//! of one colour each), and of every line the parts that no nearer element covers.
+
+use glam::{DVec2, DVec3};
+
+use super::picture::{Line, Picture};
+use crate::core::io::mesh_file::MeshFile;
+
+/// From where one looks: so many degrees to the right of -y, and up.
+const AZIMUTH: f64 = 33.0;
+const ELEVATION: f64 = 27.0;
+
+/// Parts of a line that are judged each for itself.
+const PARTS: usize = 12;
+
+/// The direction of a view.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    right: DVec3,
+    up: DVec3,
+    towards: DVec3,
+}
+
+impl View {
+    /// The view in which meshes in space are drawn.
+    pub fn usual() -> View {
+        let ((sin_a, cos_a), (sin_e, cos_e)) =
+            (libm::sincos(AZIMUTH.to_radians()), libm::sincos(ELEVATION.to_radians()));
+        View {
+            right: DVec3::new(cos_a, sin_a, 0.0),
+            up: DVec3::new(-sin_e * sin_a, sin_e * cos_a, cos_e),
+            towards: DVec3::new(cos_e * sin_a, -cos_e * cos_a, sin_e),
+        }
+    }
+
+    /// Where a point comes to lie in the picture.
+    pub fn place(&self, p: DVec3) -> DVec2 {
+        DVec2::new(p.dot(self.right), p.dot(self.up))
+    }
+
+    /// How near it is to who looks.
+    fn depth(&self, p: DVec3) -> f64 {
+        p.dot(self.towards)
+    }
+}
+
+/// Whether a mesh lies in a plane z = constant, and is drawn as it is.
+pub fn is_flat(mesh: &MeshFile) -> bool {
+    mesh.points.windows(2).all(|w| w[0].z == w[1].z)
+}
+
+/// The mesh with its points where they come to lie in the picture.
+pub fn flattened(mesh: &MeshFile, view: &View) -> MeshFile {
+    let points = mesh.points.iter().map(|p| view.place(*p).extend(0.0)).collect();
+    MeshFile { points, ..mesh.clone() }
+}
+
+/// Turns areas that are seen from behind, so that all run anticlockwise and none takes away from another that it covers.
+pub fn turn_over(picture: &mut Picture) {
+    for area in &mut picture.areas {
+        let [a, b, c, d] = area.corners;
+        if (c - a).perp_dot(d - b) < 0.0 {
+            area.corners = if c == d { [a, c, b, b] } else { [a, d, c, b] };
+        }
+    }
+}
+
+/// Leaves out the parts of lines that elements hide; `ends` gives the points in space between which each line runs.
+pub fn hide(picture: &mut Picture, ends: &[[DVec3; 2]], mesh: &MeshFile, view: &View) {
+    let cover = Cover::of(mesh, view);
+    let mut lines = Vec::with_capacity(picture.lines.len());
+    for (line, [a, b]) in picture.lines.iter().zip(ends) {
+        let at = |i: usize| a.lerp(*b, i as f64 / PARTS as f64);
+        let mut begun: Option<usize> = None;
+        for i in 0..=PARTS {
+            let seen = i < PARTS && !cover.hides(at(i).midpoint(at(i + 1)), view);
+            match (begun, seen) {
+                (None, true) => begun = Some(i),
+                (Some(from), false) => {
+                    lines.push(Line { ends: [view.place(at(from)), view.place(at(i))], ..line.clone() });
+                    begun = None;
+                }
+                _ => {}
+            }
+        }
+    }
+    picture.lines = lines;
+}
+
+/// The elements as triangles in the picture, by the cells of a grid.
+struct Cover {
+    triangles: Vec<[DVec3; 3]>,
+    cells: Vec<Vec<u32>>,
+    low: DVec2,
+    cell: f64,
+    columns: usize,
+    rows: usize,
+    /// Nearer than this is in the same place.
+    thickness: f64,
+}
+
+impl Cover {
+    fn of(mesh: &MeshFile, view: &View) -> Cover {
+        let at = |n: u32| {
+            let p = mesh.points[n as usize];
+            view.place(p).extend(view.depth(p))
+        };
+        let halves = mesh.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let triangles: Vec<[DVec3; 3]> = mesh.triangles.iter().copied().chain(halves).map(|t| t.map(at)).collect();
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for p in triangles.iter().flatten() {
+            (low, high) = (low.min(*p), high.max(*p));
+        }
+        let extent = (high - low).max(DVec3::splat(f64::MIN_POSITIVE));
+        let cell = (extent.x * extent.y / (triangles.len().max(1) as f64)).sqrt().max(1e-3 * extent.max_element());
+        let (columns, rows) = ((extent.x / cell) as usize + 1, (extent.y / cell) as usize + 1);
+        let mut cover = Cover {
+            triangles,
+            cells: vec![Vec::new(); columns * rows],
+            low: low.truncate(),
+            cell,
+            columns,
+            rows,
+            thickness: 4e-3 * extent.max_element(),
+        };
+        for (t, corners) in cover.triangles.iter().enumerate() {
+            let least = corners.iter().fold(DVec3::INFINITY, |m, p| m.min(*p));
+            let greatest = corners.iter().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
+            let [(c0, r0), (c1, r1)] = [least, greatest].map(|p| cover.cell_of(p.truncate()));
+            for row in r0..=r1 {
+                for column in c0..=c1 {
+                    cover.cells[row * columns + column].push(t as u32);
+                }
+            }
+        }
+        cover
+    }
+
+    fn cell_of(&self, p: DVec2) -> (usize, usize) {
+        let q = ((p - self.low) / self.cell).floor().max(DVec2::ZERO);
+        ((q.x as usize).min(self.columns - 1), (q.y as usize).min(self.rows - 1))
+    }
+
+    /// Whether an element lies before the point.
+    fn hides(&self, p: DVec3, view: &View) -> bool {
+        let (place, depth) = (view.place(p), view.depth(p));
+        let (column, row) = self.cell_of(place);
+        self.cells[row * self.columns + column].iter().any(|&t| {
+            let [a, b, c] = self.triangles[t as usize];
+            let area = (b - a).truncate().perp_dot((c - a).truncate());
+            if area == 0.0 {
+                return false;
+            }
+            let share = |p: DVec2, q: DVec2| (q - p).perp_dot(place - p) / area;
+            let (w_c, w_a) = (share(a.truncate(), b.truncate()), share(b.truncate(), c.truncate()));
+            let w_b = 1.0 - w_a - w_c;
+            w_a >= 0.0 && w_b >= 0.0 && w_c >= 0.0 && w_a * a.z + w_b * b.z + w_c * c.z > depth + self.thickness
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::picture::Role;
+
+    #[test]
+    fn a_line_behind_an_element_is_left_out_and_one_before_it_is_drawn() {
+        let view = View::usual();
+        let corner = |x: f64, y: f64, z: f64| view.right * x + view.up * y + view.towards * z;
+        let mesh = MeshFile {
+            points: vec![corner(0.0, 0.0, 0.0), corner(4.0, 0.0, 0.0), corner(4.0, 4.0, 0.0), corner(0.0, 4.0, 0.0)],
+            quads: vec![[0, 1, 2, 3]],
+            ..MeshFile::default()
+        };
+        let line = |z: f64| [corner(-2.0, 2.0, z), corner(2.0, 2.0, z)];
+        let drawn = |z: f64| {
+            let ends = line(z);
+            let one = Line { role: Role::DeadEdge, ends: ends.map(|p| view.place(p)), room: 1.0 };
+            let mut picture = Picture { lines: vec![one], ..Picture::default() };
+            hide(&mut picture, &[ends], &mesh, &view);
+            picture.lines
+        };
+        assert_eq!(drawn(1.0).len(), 1);
+        let behind = drawn(-1.0);
+        assert_eq!(behind.len(), 1);
+        assert!((behind[0].ends[1].x).abs() < 0.2, "{behind:?}");
+    }
+}

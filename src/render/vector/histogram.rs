@@ -1,0 +1,210 @@
+//! Histograms as figures: edge lengths in the metric (fig. 23), least and greatest angles of the elements (fig. 24).
+
+use glam::DVec2;
+
+use super::svg::page::{Page, Path, width};
+use super::svg::{LABEL, NOTE, Sheet};
+use crate::core::io::statistics::{ANGLE_CLASSES, LENGTH_CLASSES, Statistics};
+use crate::render::number::{fixed, grouped};
+use crate::render::palette::{LETTER, bars};
+
+/// Ground around the axes, in points: for the numbers of the counts, and for those below.
+const LEFT: f64 = 27.0;
+const BELOW: f64 = 22.0;
+const ABOVE: f64 = 12.0;
+const RIGHT: f64 = 6.0;
+/// Height over width, where the page has no height.
+const SHAPE: f64 = 0.62;
+/// Bars with fewer than so many have their count above them.
+const FEW: u64 = 12;
+
+/// A histogram of one series or two.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    /// What is measured, below its axis, and what is counted.
+    axes: [String; 2],
+    /// What else is to be said, above.
+    note: String,
+    /// Where the first class begins and the last one ends.
+    range: [f64; 2],
+    /// Between two numbers on the axis, and their decimals.
+    tick: (f64, usize),
+    /// Counts of each class, with a name where there are several.
+    series: Vec<(&'static str, Vec<u64>)>,
+}
+
+impl Histogram {
+    /// Edge lengths in the metric (fig. 23); the classes are 0.1 wide.
+    pub fn of_lengths(statistics: &Statistics) -> Histogram {
+        let lengths = &statistics.lengths;
+        // To the next half beyond the last edge; the last class takes in all that are longer.
+        let last = lengths.edges.iter().rposition(|count| *count > 0).map_or(0, |k| k + 1);
+        let classes = last.next_multiple_of(5).clamp(20, LENGTH_CLASSES);
+        Histogram {
+            axes: ["length of edge in the metric".to_owned(), "number of edges".to_owned()],
+            note: format!(
+                "{}, {} edges: {} ± {}",
+                elements(statistics),
+                grouped(statistics.edges as u64),
+                fixed(lengths.mean, 2),
+                fixed(lengths.deviation, 2)
+            ),
+            range: [0.0, 0.1 * classes as f64],
+            tick: (0.5, 1),
+            series: vec![("", lengths.edges[..classes].to_vec())],
+        }
+    }
+
+    /// Least and greatest angles of the elements in the metric (fig. 24); the classes are 10 degrees wide.
+    pub fn of_angles(statistics: &Statistics) -> Histogram {
+        let angles = &statistics.metric_angles;
+        Histogram {
+            axes: ["angle in the metric, degrees".to_owned(), "number of elements".to_owned()],
+            note: format!("{}: {}° to {}°", elements(statistics), fixed(angles.min, 1), fixed(angles.max, 1)),
+            range: [0.0, 10.0 * ANGLE_CLASSES as f64],
+            tick: (30.0, 0),
+            series: vec![
+                ("least", angles.least_of_element.to_vec()),
+                ("greatest", angles.greatest_of_element.to_vec()),
+            ],
+        }
+    }
+
+    /// The histogram as an SVG file.
+    pub fn write(&self, sheet: &Sheet<'_>) -> String {
+        let height = sheet.height.unwrap_or(SHAPE * sheet.width);
+        let mut page = Page::new(sheet, height, true);
+        let most = self.series.iter().flat_map(|s| &s.1).copied().max().unwrap_or(0).max(1);
+        let step = step(most);
+        let top = most.div_ceil(step) * step;
+        let plot = Plot {
+            low: DVec2::new(LEFT, height - BELOW),
+            high: DVec2::new(sheet.width - RIGHT, ABOVE),
+            range: self.range,
+            top: top as f64,
+        };
+        page.text(DVec2::new(plot.high.x, NOTE), NOTE, "end", &self.note);
+        self.bars(&mut page, &plot, sheet);
+        self.axes(&mut page, &plot, step, top);
+        page.finish()
+    }
+
+    fn bars(&self, page: &mut Page, plot: &Plot, sheet: &Sheet<'_>) {
+        let styles = bars(sheet.look.ink);
+        let count = self.series.len() as f64;
+        let mut taken = f64::NEG_INFINITY;
+        let classes = self.series.first().map_or(0, |s| s.1.len());
+        let class = (self.range[1] - self.range[0]) / classes.max(1) as f64;
+        let mut numbers = Vec::new();
+        for k in 0..classes {
+            for (i, (_, counts)) in self.series.iter().enumerate().filter(|s| s.1.1[k] > 0) {
+                let share = |part: f64| self.range[0] + class * (k as f64 + 0.08 + 0.84 * (i as f64 + part) / count);
+                let (low, high) = (plot.at(share(0.0), 0.0), plot.at(share(1.0), counts[k] as f64));
+                let [fill, stroke] = styles[i.min(1)];
+                // The outline lies within the bar.
+                let inset = DVec2::new(0.2, 0.0);
+                let area = [DVec2::new(low.x, high.y) + inset, DVec2::new(high.x, low.y) - inset];
+                page.bar(area, &format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"0.4\""));
+                if counts[k] < FEW {
+                    numbers.push((DVec2::new(0.5 * (low.x + high.x), high.y - 1.5), counts[k].to_string()));
+                }
+            }
+        }
+        for (at, text) in numbers {
+            let half = 0.5 * width(&text, NOTE);
+            if at.x - half > taken {
+                page.text(at, NOTE, "middle", &text);
+                taken = at.x + half + 0.3;
+            }
+        }
+        if self.series.len() > 1 {
+            let mut x = plot.low.x + 6.0;
+            for (i, (name, _)) in self.series.iter().enumerate() {
+                let [fill, stroke] = styles[i.min(1)];
+                let box_at = DVec2::new(x, plot.high.y + 2.0);
+                let style = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"0.4\"");
+                page.bar([box_at, box_at + DVec2::new(5.0, 4.0)], &style);
+                page.text(box_at + DVec2::new(7.0, 4.2), NOTE, "start", name);
+                x += 7.0 + width(name, NOTE) + 8.0;
+            }
+        }
+    }
+
+    fn axes(&self, page: &mut Page, plot: &Plot, step: u64, top: u64) {
+        let mut path = Path::default();
+        let (corner, end) = (plot.low, DVec2::new(plot.high.x, plot.low.y));
+        path.walk([DVec2::new(corner.x, plot.high.y), corner, end].into_iter(), false);
+        let mut numbers = Vec::new();
+        for k in 0..=(top / step) {
+            let at = plot.at(self.range[0], (k * step) as f64);
+            path.walk([at, at - DVec2::new(2.0, 0.0)].into_iter(), false);
+            numbers.push((at + DVec2::new(-3.5, 0.35 * NOTE), "end", grouped(k * step)));
+        }
+        let (tick, decimals) = self.tick;
+        let ticks = ((self.range[1] - self.range[0]) / tick + 1e-6) as u32;
+        for k in 0..=ticks {
+            let x = self.range[0] + tick * f64::from(k);
+            let at = plot.at(x, 0.0);
+            path.walk([at, at + DVec2::new(0.0, 2.0)].into_iter(), false);
+            numbers.push((at + DVec2::new(0.0, 3.0 + 0.8 * NOTE), "middle", fixed(x, decimals)));
+        }
+        page.path(&path, &format!("fill=\"none\" stroke=\"{LETTER}\" stroke-width=\"0.5\""));
+        for (at, anchor, text) in numbers {
+            page.text(at, NOTE, anchor, &text);
+        }
+        let below = DVec2::new(0.5 * (plot.low.x + plot.high.x), plot.low.y + BELOW - 0.35 * LABEL);
+        page.text(below, LABEL, "middle", &self.axes[0]);
+        page.upright_text(DVec2::new(LABEL, 0.5 * (plot.low.y + plot.high.y)), LABEL, &self.axes[1]);
+    }
+}
+
+/// Where the numbers of a plot lie.
+struct Plot {
+    /// On the page, the corner at the least measure and no count.
+    low: DVec2,
+    /// The corner opposite.
+    high: DVec2,
+    range: [f64; 2],
+    top: f64,
+}
+
+impl Plot {
+    fn at(&self, x: f64, count: f64) -> DVec2 {
+        let share = DVec2::new((x - self.range[0]) / (self.range[1] - self.range[0]), count / self.top);
+        self.low + share * (self.high - self.low)
+    }
+}
+
+/// A round step in which an axis up to `most` has three to six numbers.
+fn step(most: u64) -> u64 {
+    let mut power = 1;
+    loop {
+        for k in [1, 2, 5] {
+            if most.div_ceil(k * power) <= 5 {
+                return k * power;
+            }
+        }
+        power *= 10;
+    }
+}
+
+fn elements(statistics: &Statistics) -> String {
+    let many = |n: usize, one: &str, more: &str| format!("{} {}", grouped(n as u64), if n == 1 { one } else { more });
+    match (statistics.quads, statistics.triangles) {
+        (0, n) => many(n, "triangle", "triangles"),
+        (n, _) => many(n, "quadrilateral", "quadrilaterals"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_have_few_and_round_numbers() {
+        assert_eq!([1, 5, 6, 12, 37, 100, 1_000_000].map(step), [1, 1, 2, 5, 10, 20, 200_000]);
+        for most in 1..3000_u64 {
+            assert!((1..=5).contains(&most.div_ceil(step(most))), "{most}");
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The text of an SVG: its head with what it carries, paths and letters.
+
+use std::fmt::Write;
+
+use glam::DVec2;
+
+use super::Sheet;
+use crate::core::io::figure;
+
+/// The font of figures: those characters of IBM Plex Sans that they need.
+pub(in crate::render::vector) const FONT: &[u8] =
+    include_bytes!("../../../../assets/fonts/QuadfrontFigure-Regular.ttf");
+/// Its name.
+pub(in crate::render::vector) const FAMILY: &str = "Quadfront Figure";
+
+/// An SVG being written.
+pub struct Page {
+    svg: String,
+    hatched: bool,
+}
+
+impl Page {
+    /// A page of a sheet's width; the font comes with it where there is text.
+    pub fn new(sheet: &Sheet<'_>, height: f64, has_text: bool) -> Page {
+        let (w, h) = (Short(sheet.width), Short(sheet.height.unwrap_or(height)));
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}pt\" height=\"{h}pt\" viewBox=\"0 0 {w} {h}\">\n\
+             <title>{}</title>\n<desc>{}</desc>\n",
+            escaped(sheet.title),
+            escaped(sheet.description)
+        );
+        if let Some(run) = sheet.run {
+            svg.push_str(&figure::metadata(run));
+        }
+        if has_text {
+            let font = base64(FONT);
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                svg,
+                "<style>@font-face{{font-family:\"{FAMILY}\";src:url(data:font/ttf;base64,{font})}}</style>"
+            );
+        }
+        if !sheet.look.transparent {
+            let _ = writeln!(svg, "<rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>");
+        }
+        Page { svg, hatched: false }
+    }
+
+    /// Lets everything until [`Page::unclip`] be seen within a box only.
+    pub fn clip(&mut self, number: usize, at: DVec2, size: DVec2) {
+        let _ = writeln!(
+            self.svg,
+            "<clipPath id=\"part{number}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n\
+             <g clip-path=\"url(#part{number})\">",
+            Short(at.x),
+            Short(at.y),
+            Short(size.x),
+            Short(size.y)
+        );
+    }
+
+    /// Ends what is clipped.
+    pub fn unclip(&mut self) {
+        self.svg.push_str("</g>\n");
+    }
+
+    /// Defines the hatching, once.
+    pub fn define_hatch(&mut self) {
+        if !std::mem::replace(&mut self.hatched, true) {
+            self.svg.push_str(
+                "<pattern id=\"hatch\" width=\"1.2\" height=\"1.2\" patternUnits=\"userSpaceOnUse\" \
+                 patternTransform=\"rotate(45)\"><rect width=\"0.3\" height=\"1.2\" fill=\"#404040\"/></pattern>\n",
+            );
+        }
+    }
+
+    /// A path, where there is anything on it.
+    pub fn path(&mut self, path: &Path, attributes: &str) {
+        if !path.is_empty() {
+            let _ = writeln!(self.svg, "<path {attributes} d=\"{}\"/>", path.data.trim_end());
+        }
+    }
+
+    /// A text that starts, has its middle or ends at a point of its base line.
+    pub fn text(&mut self, at: DVec2, size: f64, anchor: &str, text: &str) {
+        let _ = writeln!(
+            self.svg,
+            "<text x=\"{}\" y=\"{}\" font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" font-size=\"{size}\" \
+             text-anchor=\"{anchor}\" fill=\"#000000\">{}</text>",
+            Short(at.x),
+            Short(at.y),
+            escaped(text)
+        );
+    }
+
+    /// A text that stands upwards, its middle at a point of its base line.
+    pub fn upright_text(&mut self, at: DVec2, size: f64, text: &str) {
+        let (x, y) = (Short(at.x), Short(at.y));
+        let _ = writeln!(
+            self.svg,
+            "<text transform=\"translate({x} {y}) rotate(-90)\" font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" \
+             font-size=\"{size}\" text-anchor=\"middle\" fill=\"#000000\">{}</text>",
+            escaped(text)
+        );
+    }
+
+    /// A white plate under a text, its corners a little round.
+    pub fn plate(&mut self, [low, high]: [DVec2; 2]) {
+        self.bar([low, high], "fill=\"#FFFFFF\" fill-opacity=\"0.9\" rx=\"0.8\"");
+    }
+
+    /// A rectangle.
+    pub fn bar(&mut self, [low, high]: [DVec2; 2], attributes: &str) {
+        let size = high - low;
+        let _ = writeln!(
+            self.svg,
+            "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {attributes}/>",
+            Short(low.x),
+            Short(low.y),
+            Short(size.x),
+            Short(size.y)
+        );
+    }
+
+    /// The whole file.
+    pub fn finish(mut self) -> String {
+        self.svg.push_str("</svg>\n");
+        self.svg
+    }
+}
+
+/// Many polygons or lines as one path element: no seams between neighbours, and a short file.
+#[derive(Default)]
+pub struct Path {
+    data: String,
+}
+
+impl Path {
+    /// A polygon or line through points of the page.
+    pub fn walk(&mut self, points: impl Iterator<Item = DVec2>, closed: bool) {
+        for (k, p) in points.enumerate() {
+            let letter = if k == 0 { 'M' } else { 'L' };
+            // Writing to a String cannot fail.
+            let _ = write!(self.data, "{letter}{} {}", Short(p.x), Short(p.y));
+        }
+        self.data.push_str(if closed { "Z\n" } else { "\n" });
+    }
+
+    /// Whether nothing is on it.
+    pub fn is_empty(&self) -> bool {
+        self.data.is_empty()
+    }
+}
+
+/// The width of a text in the font of figures, in points.
+pub fn width(text: &str, size: f64) -> f64 {
+    let of = |c: char| match c {
+        '0'..='9' | '−' => 0.6,
+        ' ' => 0.236,
+        '\u{2009}' => 0.12,
+        '.' | ',' | ':' | 'i' | 'l' | '|' => 0.27,
+        '°' => 0.35,
+        'M' | 'W' | 'm' | 'w' => 0.84,
+        'A'..='Z' => 0.64,
+        _ => 0.55,
+    };
+    size * text.chars().map(of).sum::<f64>()
+}
+
+/// A length in points to a thousandth: finer than any printer, and the same on every machine.
+pub struct Short(pub f64);
+
+impl std::fmt::Display for Short {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // Adding zero turns -0 into 0.
+        write!(f, "{}", (self.0 * 1000.0).round() / 1000.0 + 0.0)
+    }
+}
+
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            // XML has no other control characters, and not these two.
+            c if c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{FFFE}' | '\u{FFFF}') => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// Bytes as text (RFC 4648).
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let byte = |k: usize| u32::from(three.get(k).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for k in 0..4 {
+            let digit = DIGITS[(bits >> (18 - 6 * k)) as usize & 63];
+            out.push(if k <= three.len() { char::from(digit) } else { '=' });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_written_as_rfc_4648_says() {
+        let words = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|word| base64(word.as_bytes()));
+        assert_eq!(words, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
+    }
+
+    #[test]
+    fn lengths_are_short_and_never_minus_nothing() {
+        assert_eq!([1.0, -0.0001, 0.1 + 0.2, 1234.56789].map(|x| Short(x).to_string()), ["1", "0", "0.3", "1234.568"]);
+    }
+}

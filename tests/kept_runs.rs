@@ -1,0 +1,265 @@
+//! Promise: a crash or a kill loses nothing of what a person did in the window, a figure that is dropped on it opens what it shows,
+//! and a file that goes bad under it is told.
+//!
+//! Needs a graphics adapter, as the window's own tests; without any they are skipped with the reason.
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::process::{Command as Process, Stdio};
+use std::time::{Duration, Instant};
+
+use eframe::egui::Vec2;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use quadfront::app::window::{App, Command, Goal, Source};
+
+/// Set for the child that works until it is killed: where runs are kept.
+const CHILD: &str = "QUADFRONT_TEST_KEEPS_IN";
+
+fn has_adapter() -> bool {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
+        Ok(_) => true,
+        Err(error) => {
+            assert!(std::env::var_os("QUADFRONT_NEEDS_ADAPTER").is_none(), "no graphics adapter: {error}");
+            println!("skipped: there is no graphics adapter ({error})");
+            false
+        }
+    }
+}
+
+/// A window on a source that keeps its run in a folder.
+fn window(source: Source, folder: &Path) -> Harness<'static, App> {
+    let folder = folder.to_path_buf();
+    let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
+    let mut harness = builder.build_eframe(|cc| App::new(cc, Some(source)).keeping(Some(folder)));
+    settle(&mut harness);
+    harness
+}
+
+fn example() -> Source {
+    Source::BuiltIn("example1".to_owned())
+}
+
+/// Runs frames until something holds.
+fn wait(harness: &mut Harness<'static, App>, what: &str, holds: impl Fn(&Harness<'static, App>) -> bool) {
+    let begin = Instant::now();
+    while !holds(harness) {
+        harness.run_steps(1);
+        let faults = &harness.state().state.faults;
+        assert!(begin.elapsed() < Duration::from_secs(60), "{what} does not come: {faults:?}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    harness.run_steps(2);
+}
+
+fn settle(harness: &mut Harness<'static, App>) {
+    wait(harness, "an answer", |harness| {
+        let state = &harness.state().state;
+        state.moment.is_some() && !state.is_busy() && state.recorded
+    });
+}
+
+fn apply(harness: &mut Harness<'static, App>, command: Command) {
+    harness.state_mut().apply(command);
+    settle(harness);
+}
+
+/// Files of runs in a folder.
+fn runs(folder: &Path) -> usize {
+    let Ok(entries) = std::fs::read_dir(folder) else { return 0 };
+    entries.filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|e| e == "toml")).count()
+}
+
+#[test]
+fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_start() {
+    if !has_adapter() {
+        return;
+    }
+    if let Some(folder) = std::env::var_os(CHILD) {
+        let mut harness = window(example(), Path::new(&folder));
+        apply(&mut harness, Command::Go(Goal::Step(60)));
+        apply(&mut harness, Command::Set("c", "1.5".to_owned()));
+        apply(&mut harness, Command::Go(Goal::Step(90)));
+        apply(&mut harness, Command::Set("theta_rect", "120".to_owned()));
+        apply(&mut harness, Command::Bookmark);
+        loop {
+            harness.run_steps(1);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Process::new(std::env::current_exe().unwrap())
+        .args(["--exact", "a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_start"])
+        .env(CHILD, folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    // The bookmark is what it does last.
+    let begin = Instant::now();
+    let has_all = || {
+        std::fs::read_dir(folder.path())
+            .unwrap()
+            .any(|entry| std::fs::read_to_string(entry.unwrap().path()).is_ok_and(|text| text.contains("[[bookmark]]")))
+    };
+    while !has_all() {
+        assert!(begin.elapsed() < Duration::from_secs(120), "the child keeps nothing");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // While it lives, another window neither offers nor touches its run.
+    let mut other = window(example(), folder.path());
+    std::thread::sleep(Duration::from_millis(200));
+    other.run_steps(3);
+    assert!(other.query_by_label("Open it").is_none());
+    drop(other);
+    assert_eq!(runs(folder.path()), 1, "a window without changes keeps nothing");
+    // On Unix this is kill -9.
+    child.kill().unwrap();
+    child.wait().unwrap();
+
+    let mut harness = window(example(), folder.path());
+    wait(&mut harness, "the offer", |harness| harness.query_by_label("Open it").is_some());
+    harness.get_by_label("A run of example1 with 2 edits from a moment ago was not closed.");
+    harness.get_by_label("Open it").click();
+    wait(&mut harness, "the run", |harness| harness.state().state.kept.edits.len() == 2);
+    settle(&mut harness);
+    let kept = &harness.state().state.kept;
+    assert_eq!(kept.bookmarks, [90]);
+    assert!(harness.query_by_label("Open it").is_none());
+    // It goes on being kept, and is still there when the window is closed without saving.
+    apply(&mut harness, Command::Go(Goal::Step(200)));
+    apply(&mut harness, Command::Set("c", "1.7".to_owned()));
+    harness.run_steps(2);
+    drop(harness);
+    assert_eq!(runs(folder.path()), 1);
+    let mut harness = window(example(), folder.path());
+    wait(&mut harness, "the offer", |harness| harness.query_by_label("Discard").is_some());
+    harness.get_by_label("A run of example1 with 3 edits from a moment ago was not closed.");
+    harness.get_by_label("Discard").click();
+    harness.run_steps(3);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing stays behind");
+}
+
+#[test]
+fn what_is_taken_back_leaves_nothing_to_be_kept() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(example(), folder.path());
+    apply(&mut harness, Command::Go(Goal::Step(60)));
+    apply(&mut harness, Command::Set("c", "1.5".to_owned()));
+    wait(&mut harness, "the file", |_| runs(folder.path()) == 1);
+    apply(&mut harness, Command::Undo);
+    wait(&mut harness, "its end", |_| runs(folder.path()) == 0);
+    apply(&mut harness, Command::Redo);
+    wait(&mut harness, "the file", |_| runs(folder.path()) == 1);
+    // Another case takes the place of this one: the run that was not saved is offered at once.
+    apply(&mut harness, Command::Open(Source::BuiltIn("uniform".to_owned())));
+    wait(&mut harness, "the offer", |harness| harness.query_by_label("Open it").is_some());
+    drop(harness);
+    assert_eq!(runs(folder.path()), 1);
+}
+
+#[test]
+fn a_figure_opens_at_the_state_that_it_shows_and_another_state_is_said() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let figure = folder.path().join("a.svg");
+    let status = Process::new(env!("CARGO_BIN_EXE_quadfront"))
+        .args(["render", "example1", "--at", "nq=40", "--set", "c=1.9", "-q", "-o"])
+        .arg(&figure)
+        .status();
+    assert!(status.unwrap().success());
+    let kept = folder.path().join("runs");
+    let mut harness = window(example(), &kept);
+    apply(&mut harness, Command::Open(Source::File(figure.clone())));
+    let state = &harness.state().state;
+    assert_eq!(state.moment.as_ref().unwrap().standing, 40);
+    assert_eq!((state.parameter("c").as_deref(), state.faults.len()), (Some("1.9"), 0));
+    let text = std::fs::read_to_string(&figure).unwrap();
+    let at = text.find("fingerprint = \"").unwrap() + 15;
+    let old = folder.path().join("old.svg");
+    std::fs::write(&old, format!("{}{}{}", &text[..at], "0".repeat(32), &text[at + 32..])).unwrap();
+    apply(&mut harness, Command::Open(Source::File(old)));
+    let faults = &harness.state().state.faults;
+    assert!(faults.len() == 1 && faults[0].contains("another state at step"), "{faults:?}");
+}
+
+#[test]
+fn a_file_that_goes_bad_while_it_is_open_is_told_and_the_window_keeps_what_it_has() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plate.toml");
+    let (_, text) = quadfront::core::io::built_in::all().find(|case| case.0 == "uniform").unwrap();
+    std::fs::write(&path, text).unwrap();
+    let mut harness = window(Source::File(path.clone()), &folder.path().join("runs"));
+    apply(&mut harness, Command::Go(Goal::Step(30)));
+    std::fs::write(&path, "version = 1\ntitel = 3\n").unwrap();
+    wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
+    let state = &harness.state().state;
+    assert!(state.faults[0].contains("line 2") && state.faults[0].contains("keeps what it has"), "{:?}", state.faults);
+    assert_eq!(state.moment.as_ref().unwrap().step, 30);
+    // Opened again it is refused, and what is open stays.
+    harness.state_mut().state.faults.clear();
+    harness.state_mut().apply(Command::Reopen);
+    wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
+    settle(&mut harness);
+    apply(&mut harness, Command::Go(Goal::Steps(1)));
+    assert_eq!(harness.state().state.moment.as_ref().unwrap().step, 31);
+    harness.state_mut().state.faults.clear();
+    std::fs::remove_file(&path).unwrap();
+    wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
+    assert!(harness.state().state.faults[0].contains("no such file"), "{:?}", harness.state().state.faults);
+}
+
+#[test]
+fn a_small_case_shows_its_notes() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(Source::named("figure-13"), folder.path());
+    harness.get_by_label("Fig. 13: the H-value against the shortest segment");
+    apply(&mut harness, Command::Notes);
+    assert!(harness.query_by_label("Fig. 13: the H-value against the shortest segment").is_none());
+}
+
+#[test]
+fn the_panel_for_figures_saves_what_it_says_and_a_bad_place_is_told() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window(example(), &folder.path().join("runs"));
+    apply(&mut harness, Command::Go(Goal::Step(100)));
+    apply(&mut harness, Command::Figures);
+    harness.get_by_label("grey").click();
+    harness.get_by_label("nodes in the figure").click();
+    harness.run_steps(2);
+    let stem = folder.path().join("mine");
+    harness.state_mut().state.figures.name = stem.display().to_string();
+    harness.state_mut().state.figures.size = "60mm".to_owned();
+    harness.get_by_label("Save SVG and PNG").click();
+    wait(&mut harness, "the figure", |_| stem.with_extension("png").is_file());
+    let render = |from: &Path, to: &Path, options: &[&str]| {
+        let mut process = Process::new(env!("CARGO_BIN_EXE_quadfront"));
+        assert!(process.arg("render").arg(from).args(options).args(["-q", "-o"]).arg(to).status().unwrap().success());
+        std::fs::read(to).unwrap()
+    };
+    let again = folder.path().join("again.svg");
+    let svg = std::fs::read(stem.with_extension("svg")).unwrap();
+    assert!(render(&stem.with_extension("png"), &again, &[]) == svg, "the command line draws the same");
+    let options = ["--at", "step=100", "--ink", "grey", "--size", "60mm"];
+    let plain = render(Path::new("example1"), &again, &options);
+    assert_ne!(plain.len(), svg.len(), "the nodes are missing there");
+    harness.state_mut().state.figures.name = folder.path().join("no/where").display().to_string();
+    harness.get_by_label("Save SVG").click();
+    wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
+    assert!(harness.state().state.faults[0].contains("does not exist"), "{:?}", harness.state().state.faults);
+}

@@ -1,0 +1,223 @@
+//! Meshes in space, without CAD: whatever the shape, they become sound meshes of quadrilaterals on the same surface.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+use quadfront::core::convert::conversion::convert;
+use quadfront::core::io::case::Case;
+use quadfront::core::io::export::Export;
+use quadfront::core::io::format::{Format, WriteOptions, write_mesh};
+use quadfront::core::io::mesh_file::MeshFile;
+use quadfront::core::mesh::soundness::{Allow, examine};
+use quadfront::core::progress::Nobody;
+
+/// A grid over the unit square, wrapped around where asked to, at the places that `at` gives.
+fn grid(nu: u32, nv: u32, wrap: [bool; 2], at: impl Fn(f64, f64) -> DVec3) -> MeshFile {
+    let [columns, rows] = [nu + u32::from(!wrap[0]), nv + u32::from(!wrap[1])];
+    let node = |i: u32, j: u32| (j % rows) * columns + i % columns;
+    let place = |k: u32| at(f64::from(k % columns) / f64::from(nu), f64::from(k / columns) / f64::from(nv));
+    let squares = (0..nu * nv).flat_map(|k| {
+        let (i, j) = (k % nu, k / nu);
+        let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    MeshFile { points: (0..columns * rows).map(place).collect(), triangles: squares.collect(), ..MeshFile::default() }
+}
+
+fn on_circle(angle: f64) -> DVec2 {
+    let (sin, cos) = libm::sincos(TAU * angle);
+    DVec2::new(cos, sin)
+}
+
+fn torus() -> MeshFile {
+    grid(40, 20, [true, true], |u, v| {
+        let r = 2.0 + 0.7 * on_circle(v).x;
+        (on_circle(u) * r).extend(0.7 * on_circle(v).y)
+    })
+}
+
+fn tube(length: f64) -> MeshFile {
+    grid(24, 30, [true, false], |u, v| on_circle(u).extend(length * v))
+}
+
+fn bumps() -> MeshFile {
+    grid(24, 24, [false, false], |u, v| DVec3::new(u, v, 0.1 * on_circle(u).y * on_circle(v).y))
+}
+
+/// Converts a mesh and looks at what comes out; `allow` is for shapes that branch.
+fn converted(name: &str, file: &MeshFile, allow: Allow) -> MeshFile {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mesh.ply");
+    write_mesh(&path, Format::Ply, file, WriteOptions::default()).unwrap();
+    let done = convert(&Case::of_mesh(path, None), &mut Nobody).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+    let mesh = Export::of(&done.mesh, &done.regions).file;
+    assert!(mesh.triangles.is_empty() && !mesh.quads.is_empty(), "{name}");
+    let found = examine(&mesh);
+    assert!(found.verdict(allow).is_ok(), "{name}: {:?}", found.verdict(allow));
+    let far = farthest(&mesh, file);
+    assert!(far < 0.01, "{name} leaves its surface by {far} of its size");
+    mesh
+}
+
+/// How far points of one mesh lie from the triangles of another, by the diagonal of that one's box.
+fn farthest(mesh: &MeshFile, file: &MeshFile) -> f64 {
+    let box_of = |points: &[DVec3]| {
+        points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)))
+    };
+    let (low, high) = box_of(&file.points);
+    let middles = mesh.quads.iter().map(|q| q.iter().map(|&k| mesh.points[k as usize]).sum::<DVec3>() / 4.0);
+    let nearest = |p: DVec3| {
+        let to = |t: &[u32; 3]| distance_to_triangle(p, t.map(|k| file.points[k as usize]));
+        file.triangles.iter().map(to).fold(f64::INFINITY, f64::min)
+    };
+    middles.chain(mesh.points.iter().copied()).map(nearest).fold(0.0, f64::max) / (high - low).length()
+}
+
+fn distance_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let n = (b - a).cross(c - a).normalize();
+    let inside = [(a, b), (b, c), (c, a)].iter().all(|&(s, t)| n.dot((t - s).cross(p - s)) >= 0.0);
+    if inside {
+        return n.dot(p - a).abs();
+    }
+    let to_side = |(s, t): (DVec3, DVec3)| {
+        p.distance(s + (t - s) * ((p - s).dot(t - s) / (t - s).length_squared()).clamp(0.0, 1.0))
+    };
+    [(a, b), (b, c), (c, a)].into_iter().map(to_side).fold(f64::INFINITY, f64::min)
+}
+
+/// V - E + F.
+fn euler(mesh: &MeshFile) -> i64 {
+    let mut edges: Vec<[u32; 2]> = mesh
+        .quads
+        .iter()
+        .flat_map(|q| (0..4).map(|k| [q[k], q[(k + 1) % 4]]))
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    mesh.points.len() as i64 - edges.len() as i64 + mesh.quads.len() as i64
+}
+
+fn boundary_edges(mesh: &MeshFile) -> usize {
+    let mut edges: Vec<[u32; 2]> = mesh
+        .quads
+        .iter()
+        .flat_map(|q| (0..4).map(|k| [q[k], q[(k + 1) % 4]]))
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.chunk_by(|a, b| a == b).filter(|group| group.len() == 1).count()
+}
+
+#[test]
+fn open_and_closed_surfaces_keep_their_topology() {
+    for (name, file, characteristic, open) in [
+        ("torus", torus(), 0, false),
+        ("short tube", tube(1.0), 0, true),
+        ("long tube", tube(12.0), 0, true),
+        ("bumps", bumps(), 1, true),
+    ] {
+        let mesh = converted(name, &file, Allow::default());
+        assert_eq!((euler(&mesh), boundary_edges(&mesh) > 0), (characteristic, open), "{name}");
+    }
+}
+
+#[test]
+fn edges_of_a_box_are_kept() {
+    // A tube over a square, closed by two lids.
+    let corners = [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::new(1.0, 1.0), DVec2::new(-1.0, 1.0)];
+    let n = 8;
+    let around = |u: f64| {
+        let at = u * 4.0;
+        let k = (at.floor() as usize).min(3);
+        corners[k].lerp(corners[(k + 1) % 4], at - k as f64)
+    };
+    let mut file = grid(4 * n, 10, [true, false], |u, v| around(u).extend(3.0 * v));
+    let ring = 4 * n;
+    for (first, turn) in [(0, true), (10 * ring, false)] {
+        let middle = file.points.len() as u32;
+        file.points.push(DVec3::new(0.0, 0.0, file.points[first as usize].z));
+        for k in 0..ring {
+            let (a, b) = (first + k, first + (k + 1) % ring);
+            file.triangles.push(if turn { [b, a, middle] } else { [a, b, middle] });
+        }
+    }
+    let mesh = converted("box", &file, Allow::default());
+    assert_eq!((euler(&mesh), boundary_edges(&mesh)), (2, 0));
+    // Every corner is a node, and no quadrilateral bends over an edge.
+    for z in [0.0, 3.0] {
+        for corner in corners {
+            assert!(mesh.points.iter().any(|p| p.distance(corner.extend(z)) < 1e-9), "{corner} {z}");
+        }
+    }
+    let flat = |q: &[u32; 4]| {
+        let [a, b, c, d] = q.map(|k| mesh.points[k as usize]);
+        (b - a).cross(d - a).normalize().dot((c - d).cross(c - b).normalize()) > 0.99
+    };
+    assert!(mesh.quads.iter().all(flat));
+}
+
+#[test]
+fn what_branches_or_has_one_side_or_is_turned_is_taken_as_it_is() {
+    // Three half planes about a line.
+    let mut pages = MeshFile::default();
+    for k in 0..3 {
+        let out = on_circle(f64::from(k) / 3.0);
+        let page = grid(6, 8, [false, false], |u, v| (out * u).extend(v));
+        let first = pages.points.len() as u32;
+        let mut number = Vec::new();
+        for p in &page.points {
+            let known = pages.points.iter().position(|q| q.distance(*p) < 1e-12);
+            number.push(known.unwrap_or_else(|| {
+                pages.points.push(*p);
+                pages.points.len() - 1
+            }) as u32);
+        }
+        assert!(first < pages.points.len() as u32);
+        pages.triangles.extend(page.triangles.iter().map(|t| t.map(|n| number[n as usize])));
+    }
+    converted("pages", &pages, Allow { branching: true, ..Allow::default() });
+    // A torus with every third triangle the wrong way round.
+    let mut turned = torus();
+    turned.triangles.iter_mut().step_by(3).for_each(|t| t.swap(0, 1));
+    assert_eq!(euler(&converted("turned", &turned, Allow::default())), 0);
+    // A Moebius strip: an edge at which two sides disagree is a curve between faces.
+    let strip = grid(60, 5, [false, false], |u, v| {
+        let (c, half) = (on_circle(u), on_circle(0.5 * u));
+        let r = 2.0 + (v - 0.5) * half.x;
+        (c * r).extend((v - 0.5) * half.y)
+    });
+    let (points, triangles) = {
+        let n = 61;
+        let same = |k: u32| if k % n == n - 1 { (5 - k / n) * n } else { k };
+        (strip.points, strip.triangles.iter().map(|t| t.map(same)).collect())
+    };
+    let moebius = MeshFile { points, triangles, ..MeshFile::default() };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("moebius.ply");
+    write_mesh(&path, Format::Ply, &moebius, WriteOptions::default()).unwrap();
+    let done = convert(&Case::of_mesh(path, None), &mut Nobody).unwrap();
+    let mesh = Export::of(&done.mesh, &done.regions).file;
+    assert_eq!(euler(&mesh), 0);
+}
+
+#[test]
+fn the_same_mesh_gives_the_same_bytes() {
+    assert_eq!(converted("once", &bumps(), Allow::default()), converted("again", &bumps(), Allow::default()));
+}
+
+#[test]
+fn sizes_of_a_case_hold_on_a_mesh_in_space() {
+    let folder = tempfile::tempdir().unwrap();
+    write_mesh(&folder.path().join("torus.ply"), Format::Ply, &torus(), WriteOptions::default()).unwrap();
+    let quads = |h: f64| {
+        let text = format!("version = 1\nmesh = \"torus.ply\"\n[[metric]]\nkind = \"uniform\"\nh = {h}\n");
+        let case = Case::parse(&text, "torus", "torus.toml", folder.path()).unwrap();
+        convert(&case, &mut Nobody).unwrap().mesh.elements().count() as f64
+    };
+    // The area of the torus by that of an element.
+    let area = TAU * 2.0 * TAU * 0.7;
+    for h in [0.3, 0.15] {
+        assert!((quads(h) / (area / (h * h)) - 1.0).abs() < 0.15, "{h}: {}", quads(h));
+    }
+}
