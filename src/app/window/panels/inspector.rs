@@ -153,7 +153,8 @@ fn ends(
     palette: &Palette,
 ) {
     let widths = [38.0, 44.0, 44.0, 48.0, 44.0];
-    table_head(ui, &widths, &["", "x", "y", "h\u{2081}", "h\u{2082}", "axis °"], palette);
+    let axes = if moment.mesh.ground().is_some() { ["u", "v"] } else { ["x", "y"] };
+    table_head(ui, &widths, &["", axes[0], axes[1], "h\u{2081}", "h\u{2082}", "axis °"], palette);
     for (k, (name, node)) in nodes.iter().enumerate() {
         let p = moment.mesh.uv(*node);
         let told = MetricTold::of(moment.mesh.metric_ref(*node));
@@ -183,7 +184,15 @@ fn ends(
             commands.push(Command::Pick(Some(Outlined::Node(*node))));
         }
     }
-    ui.label(note("Plane case: u = x, v = y, z = 0.", palette));
+    if moment.mesh.ground().is_none() {
+        ui.label(note("Plane case: u = x, v = y, z = 0.", palette));
+        return;
+    }
+    // On surfaces the columns are places in the chart; where that is in space stands below.
+    for (name, node) in nodes {
+        let [x, y, z] = moment.mesh.xyz(*node).to_array().map(words::size);
+        ui.label(note(&format!("{name} {} in space: {x}, {y}, {z}.", node.0), palette));
+    }
 }
 
 /// The angle of a direction with the x axis, from \u{2212}90 (excluded) to 90 degrees.
