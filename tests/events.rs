@@ -132,3 +132,35 @@ fn an_operation_that_is_switched_off_is_not_done() {
         });
     }
 }
+
+#[test]
+fn loops_where_the_front_has_changed_are_told_and_even_and_crossings_name_the_edge_that_is_swapped() {
+    for (name, least) in [("crack", 1), ("gear", 2), ("example1", 2)] {
+        with_case(name, &[], |mut converter| {
+            let (mut formed, mut several, mut swapped) = (0, 0, 0);
+            let mut look = |told: &Told<'_>| {
+                if let Some(loops) = told.loops {
+                    assert!(loops.iter().all(|n| n % 2 == 0 && *n >= 2), "{name}, step {}: {loops:?}", told.step);
+                    several += usize::from(loops.len() > 1);
+                }
+                match told.event {
+                    Event::Formed { .. } => {
+                        assert!(told.loops.is_some());
+                        formed += 1;
+                    }
+                    Event::TopSwapped { across, .. } => {
+                        let crossings = told.crossings.unwrap();
+                        let same = |edge: &[_; 2]| edge == across || [edge[1], edge[0]] == *across;
+                        assert!(crossings.iter().any(same), "{name}, step {}: {crossings:?}", told.step);
+                        swapped += 1;
+                    }
+                    Event::TopFound { .. } => assert_eq!(told.crossings, Some(&[][..])),
+                    Event::BaseSelected { .. } => assert!(told.loops.is_none() && told.crossings.is_none()),
+                    _ => {}
+                }
+            };
+            walk(&mut converter, None, &mut Nobody, Some(&mut look)).unwrap();
+            assert!(formed > 100 && swapped > 20 && several >= least, "{name}: {formed} {swapped} {several}");
+        });
+    }
+}

@@ -5,6 +5,7 @@ pub mod parameters;
 pub mod event;
 pub mod phase;
 pub mod converter;
+mod loops;
 pub mod walk;
 mod sides;
 pub mod candidates;

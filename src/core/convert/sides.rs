@@ -15,6 +15,10 @@ use crate::core::metric::tensor::Metric2;
 /// Half a divided side must be at least this long in the metric.
 const LEAST_HALF: f64 = 0.5;
 
+/// The widest frontal angle that is bisected: at 225 degrees the bisector lies at 112 and is still near enough to a right angle. A
+/// rule of ours and no reading of `theta_revr`, which the paper draws (fig. 12) and never uses: that one only classifies.
+const WIDEST_BISECTED: f64 = 1.25 * PI;
+
 /// A side edge that was decided on, before anything is changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Choice {
@@ -203,7 +207,7 @@ impl Converter<'_> {
     /// else the right angle; always the right angle where the bisector is switched off.
     pub(super) fn target_angle(&self, base: &Base, side: Side) -> f64 {
         let theta = base.theta[side.index()];
-        if self.parameters.bisector && theta <= 1.25 * PI { 0.5 * theta } else { FRAC_PI_2 }
+        if self.parameters.bisector && theta <= WIDEST_BISECTED { 0.5 * theta } else { FRAC_PI_2 }
     }
 
     /// The base's node at a side.

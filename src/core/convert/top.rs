@@ -3,6 +3,7 @@
 
 use super::converter::Converter;
 use super::event::{Event, Purpose, Why};
+use super::phase::Phase;
 use crate::core::geometry::predicates::orient;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
@@ -21,6 +22,17 @@ pub(super) enum Recovery {
 }
 
 impl Converter<'_> {
+    /// The edges that the top edge crosses, from C on, where the next step recovers it and none of them is dead; none where it is
+    /// there.
+    pub fn top_crossings(&self) -> Option<Vec<[NodeId; 2]>> {
+        let Phase::RecoverTop { tops: [c, d], .. } = *self.phase() else { return None };
+        if self.mesh.are_joined(c, d) {
+            return Some(Vec::new());
+        }
+        let found = crossings(&self.mesh, c, d).ok()?;
+        Some(found.into_iter().map(|h| [self.mesh.origin(h), self.mesh.target(h)]).collect())
+    }
+
     /// One step of the recovery of the edge from C to D.
     pub(super) fn recover_step(&mut self, c: NodeId, d: NodeId, keep: &[NodeId]) -> Result<Recovery, Why> {
         if self.mesh.are_joined(c, d) {

@@ -10,6 +10,7 @@ use super::converter::Converter;
 use super::event::Event;
 use super::phase::{Part, Phase};
 use crate::core::fault::Fault;
+use crate::core::mesh::ids::NodeId;
 use crate::core::progress::{Stage, Watch};
 
 /// Where a walk stops.
@@ -67,6 +68,14 @@ pub struct Told<'e> {
     /// What a side edge was chosen from, where one was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub candidates: Option<&'e Candidates>,
+    /// The edges that the line from C to D crosses, from C on, where the top edge is being recovered (4.3.4): all live; a dead one
+    /// ends the recovery, and its `rolled_back` has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossings: Option<&'e [[NodeId; 2]]>,
+    /// Segments of each loop of the front that runs through the nodes at which the front has changed, after the step; an even
+    /// number each (spec 2.6).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loops: Option<&'e [u32]>,
     /// Worst quality of the elements around the last quadrilateral before and after, where its neighbourhood was improved
     /// (4.3.6).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,7 +102,7 @@ pub fn standing(converter: &Converter<'_>) -> u64 {
 
 /// Steps until `stop` is reached, or to the end where there is none; the same states as
 /// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What an event
-/// leaves unsaid (candidates, qualities) is only computed where somebody is told.
+/// leaves unsaid (candidates, crossings, loops, qualities) is only computed where somebody is told.
 ///
 /// # Errors
 /// As [`Converter::step`](super::converter::Converter::step); and where the conversion ends before the stop.
@@ -126,6 +135,7 @@ pub fn walk_editing(
             Phase::PostProcess { part: Part::FirstSmoothing } => watch.tell(Stage::Finish, 0, 0),
             _ => {}
         }
+        let crossings = tell.as_ref().and_then(|_| converter.top_crossings());
         let (candidates, element, before) = match &tell {
             Some(_) => {
                 let element = converter.phase().last_formed();
@@ -143,7 +153,9 @@ pub fn walk_editing(
                 _ => None,
             };
             let step = converter.counts.steps;
-            tell(&Told { step, nq, event: &event, candidates: candidates.as_ref(), quality });
+            let (crossings, loops) = (crossings.as_deref(), converter.loops_after(&event));
+            let (candidates, loops) = (candidates.as_ref(), loops.as_deref());
+            tell(&Told { step, nq, event: &event, candidates, crossings, loops, quality });
         }
         edit(converter)?;
         if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::Done) {
