@@ -1,4 +1,5 @@
 //! Meshes in space, without CAD: whatever the shape, they become sound meshes of quadrilaterals on the same surface.
+#![allow(clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
 

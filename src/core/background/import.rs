@@ -5,6 +5,7 @@
 //! of a crack. Deliberately absent: reading files (`core/io`).
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
@@ -76,7 +77,8 @@ pub fn is_plane(file: &MeshFile) -> bool {
     }
     let extent = high - low;
     // Points that are not finite are refused with their numbers later on.
-    !(extent.z > 1e-9 * extent.x.max(extent.y).max(high.z.abs()))
+    let least = 1e-9 * extent.x.max(extent.y).max(high.z.abs());
+    extent.z.partial_cmp(&least) != Some(Ordering::Greater)
 }
 
 /// A mesh of triangles and larger elements with these cut; one of quadrilaterals alone stays, and is refused: it is what a

@@ -270,7 +270,7 @@ fn pieces(
         let begins = |&(chain, at, forward): &(u32, u32, bool)| {
             if forward { at == 0 } else { at as usize + 2 == chains[chain as usize].points.len() }
         };
-        let start = on.iter().position(|side| begins(side)).unwrap_or(0);
+        let start = on.iter().position(begins).unwrap_or(0);
         let n = on.len();
         let mut pieces = Vec::new();
         let mut k = 0;

@@ -191,7 +191,7 @@ fn ends(
     // On surfaces the columns are places in the chart; where that is in space stands below.
     for (name, node) in nodes {
         let [x, y, z] = moment.mesh.xyz(*node).to_array().map(words::size);
-        ui.label(note(&format!("{name} {} in space: {x}, {y}, {z}.", node.0), palette));
+        ui.label(note(format!("{name} {} in space: {x}, {y}, {z}.", node.0), palette));
     }
 }
 
