@@ -218,7 +218,7 @@ fn sizes_of_a_case_hold_on_a_mesh_in_space() {
     };
     // The area of the torus by that of an element.
     let area = TAU * 2.0 * TAU * 0.7;
-    for h in [0.3, 0.15] {
+    for h in [0.2, 0.1] {
         assert!((quads(h) / (area / (h * h)) - 1.0).abs() < 0.15, "{h}: {}", quads(h));
     }
 }
