@@ -284,6 +284,8 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("last_resort_recut", resort.recut),
         ("last_resort_template_quad", resort.template_quads),
         ("smoothing_move", finished.moves),
+        ("unfolding_moved", finished.unfolded.moved),
+        ("unfolding_pillowed", finished.unfolded.pillowed),
     ];
     let counts = counts.into_iter().map(|(name, count)| (name, count as u64));
     counts.chain(front).map(|(name, count)| (name.to_owned(), count)).collect()

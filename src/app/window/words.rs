@@ -2,7 +2,7 @@
 //! is not defined.
 
 use crate::core::convert::candidates::{Candidate, Candidates, Passed};
-use crate::core::convert::event::{Event, Purpose, Why};
+use crate::core::convert::event::{Event, Mending, Purpose, Why};
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
 use crate::render::scene::Outlined;
@@ -107,6 +107,13 @@ pub fn event(event: &Event) -> String {
         }
         Event::Cleaned { energy: [before, after], .. } => {
             format!("structure cleaned up at one place: energy {} to {}", size(before), size(after))
+        }
+        Event::Unfolded { element, how, .. } => {
+            let how = match how {
+                Mending::Moved => "its corners were moved",
+                Mending::Pillowed { .. } => "a smaller quadrilateral was inlaid",
+            };
+            format!("element {} folded over the surface: {how}", element.0)
         }
         Event::Swept { looked, moved } => format!("{moved} of {looked} nodes smoothed by the energy"),
         Event::LastResort(outcome) => format!("last resort: {} triangles left over", grouped(outcome.triangles as u64)),

@@ -6,6 +6,7 @@ use super::cut::Sets;
 use super::length::{Piece, about, give, measure, share_out};
 use super::parity;
 use crate::core::fault::Fault;
+use crate::core::geometry::curve::distance_to_segment;
 use crate::core::geometry::domain::{CurveId, DirectedCurve, Domain};
 use crate::core::metric::field::MetricSource;
 
@@ -20,6 +21,8 @@ pub struct DividedDomain {
     pub nodes: Vec<DVec2>,
     /// Nodes of each curve from its start to its end.
     pub chains: Vec<Vec<u32>>,
+    /// The parameters of those nodes.
+    pub parameters: Vec<Vec<f64>>,
     /// On surfaces: the first node at the same point in space, for each node. Empty in the plane.
     pub joined: Vec<u32>,
     /// On surfaces: the point in space of each node. Empty in the plane.
@@ -106,13 +109,23 @@ impl<'a> Division<'a> {
     }
 
     /// The curve that rules how this one is divided.
-    fn first(&self, id: CurveId) -> CurveId {
+    pub fn first(&self, id: CurveId) -> CurveId {
         self.domain.curves[id.index()].first
     }
 
-    /// Gives the curve about half as many segments again, by an even number; `false` where nothing would come of it.
-    pub fn refine(&mut self, id: CurveId) -> bool {
+    /// Whether a curve is an image of sides of triangles.
+    pub fn is_polygonal(&self, id: CurveId) -> bool {
+        self.domain.curves[id.index()].curve.polygonal()
+    }
+
+    /// Divides a curve more finely because of one of its chords, from parameter to parameter: an image of sides at the one of
+    /// its points that the chord misses most, any other by about half as many segments again. By even numbers; `false` where nothing
+    /// would come of it.
+    pub fn refine(&mut self, id: CurveId, chord: [f64; 2]) -> bool {
         let id = self.first(id);
+        if self.is_polygonal(id) {
+            return self.part(id, chord);
+        }
         if self.domain.curves[id.index()].segments.is_some()
             || self.domain.images(id).iter().all(|image| image.curve.straight())
         {
@@ -120,6 +133,25 @@ impl<'a> Division<'a> {
         }
         let more = (self.segments(id) / 4 * 2).max(2);
         give(&mut self.pieces[id.index()], more);
+        true
+    }
+
+    /// Makes a node of the point of a curve of sides that a chord misses most, in proportion to the chord.
+    fn part(&mut self, id: CurveId, [from, to]: [f64; 2]) -> bool {
+        let images = self.domain.images(id);
+        let missed = |t: f64| {
+            let off = images.iter().map(|image| {
+                let [a, b, p] = [from, to, t].map(|t| image.curve.point(t));
+                distance_to_segment(p, a, b) / a.distance(b).max(f64::MIN_POSITIVE)
+            });
+            off.fold(0.0, f64::max)
+        };
+        let inside = images[0].fine.iter().map(|entry| entry.0).filter(|&t| from < t && t < to);
+        let Some((_, t)) = inside.map(|t| (missed(t), t)).max_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+        let pieces = &mut self.pieces[id.index()];
+        let Some(k) = pieces.iter().position(|piece| t < piece.end()) else { return false };
+        let Some(parts) = pieces[k].parted(t) else { return false };
+        pieces.splice(k..=k, parts);
         true
     }
 
@@ -304,6 +336,7 @@ impl<'a> Division<'a> {
             }
             chain.push(curve.ends[1]);
             divided.chains.push(chain);
+            divided.parameters.push([0.0].into_iter().chain(parameters.iter().copied()).chain([1.0]).collect());
         }
         Ok(divided)
     }

@@ -28,6 +28,21 @@ impl Piece {
         self.table[self.table.len() - 1].0
     }
 
+    /// Divides it at an entry of its table, its segments shared among the two by their lengths, with an even number more
+    /// than before or none; `None` where there is no such entry inside.
+    pub fn parted(&self, t: f64) -> Option<[Piece; 2]> {
+        let k = self.table.iter().position(|entry| entry.0 == t).filter(|&k| k > 0 && k + 1 < self.table.len())?;
+        let before = self.table[k].1;
+        let rest = self.table[k..].iter().map(|&(t, length)| (t, length - before)).collect();
+        let mut parts = [self.table[..=k].to_vec(), rest].map(|table| Piece { table, segments: 1 });
+        let share = |part: &Piece| (part.length() / self.stretched()).round().max(1.0) as u32;
+        parts.iter_mut().for_each(|part| part.segments = share(part));
+        let all: u32 = parts.iter().map(|part| part.segments).sum();
+        let wanted = all.max(self.segments);
+        give(&mut parts, wanted + (wanted - self.segments) % 2 - all);
+        Some(parts)
+    }
+
     /// How far metric lengths are from 1 when divided into `n` segments.
     pub fn error(&self, n: u32) -> f64 {
         (self.length() / f64::from(n) - 1.0).abs()

@@ -2,28 +2,31 @@
 //! cracks and repeated lines.
 
 use glam::DVec2;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use super::cut::{Cut, CutMesh, cut};
+use super::cut::{Cut, CutMesh, cut, sorted_sides};
 use super::discretise::{DividedDomain, Division};
 use crate::core::fault::Fault;
 use crate::core::geometry::crossing::crossing_of;
 use crate::core::geometry::domain::{CurveId, CurveKind, Domain};
 use crate::core::geometry::place::{number, told};
-use crate::core::geometry::predicates::{firm, orient};
+use crate::core::geometry::predicates::{firm, orient, positive};
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::MetricSource;
 
 /// How often offending curves are divided more finely before the domain is refused.
-const ROUNDS: usize = 16;
+const ROUNDS: usize = 64;
+
+/// A chord of a divided curve: the curve, and which of its chords.
+pub type DividedChord = (CurveId, u32);
 
 /// Why divided curves cannot be triangulated: their chords cross or come too close where the curves do not.
 #[derive(Clone, Debug)]
 pub struct Clash {
-    /// The curves that finer division may help.
-    pub curves: Vec<CurveId>,
+    /// The chords that finer division may help.
+    pub chords: Vec<DividedChord>,
     /// What is wrong, should it not help.
     pub fault: Fault,
 }
@@ -44,14 +47,28 @@ pub fn divide_and_triangulate(
         match triangulate(domain, &divided) {
             Ok(set) => return Ok((divided, set)),
             Err(clash) => {
-                let helped = clash.curves.iter().filter(|id| division.refine(**id)).count() > 0;
-                if !helped || round >= ROUNDS {
+                if !refined(&mut division, &divided, clash.chords) || round >= ROUNDS {
                     return Err(clash.fault);
                 }
             }
         }
     }
     unreachable!("the rounds end by returning")
+}
+
+/// Divides curves more finely at some of their chords; `false` where nothing comes of it.
+fn refined(division: &mut Division, divided: &DividedDomain, chords: Vec<DividedChord>) -> bool {
+    let mut seen: FxHashSet<DividedChord> = FxHashSet::default();
+    let mut helped = false;
+    for (id, k) in chords {
+        // A curve of sides is divided at each of these chords, any other once as a whole.
+        let first = division.first(id);
+        let [from, to] = [k, k + 1].map(|k| divided.parameters[id.index()][k as usize]);
+        if seen.insert((first, if division.is_polygonal(first) { k } else { 0 })) {
+            helped |= division.refine(first, [from, to]);
+        }
+    }
+    helped
 }
 
 #[derive(Clone, Copy)]
@@ -101,7 +118,8 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Cl
             region.push(f);
         }
     }
-    if let Some(t) = kept.iter().find(|&&[a, b, c]| !firm(edges.at(a), edges.at(b), edges.at(c))) {
+    edges.turn_thin(&mut kept, &region);
+    if let Some(t) = kept.iter().find(|t| !edges.is_firm(**t)) {
         return Err(edges.thin(t));
     }
     let lines: Vec<([u32; 2], Cut)> = domain
@@ -139,13 +157,13 @@ fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVerte
         let at = spade::mitigate_underflow(Point2::new(p.x * scale, p.y * scale));
         let count = cdt.num_vertices();
         let failed = |e| {
-            Box::new(Clash { curves: Vec::new(), fault: Fault::new(format!("The nodes cannot be triangulated: {e}")) })
+            Box::new(Clash { chords: Vec::new(), fault: Fault::new(format!("The nodes cannot be triangulated: {e}")) })
         };
         let handle = cdt.insert(Vertex { at, node }).map_err(failed)?;
         if cdt.num_vertices() == count {
             // It has taken the place of another one.
             let other = handles.iter().position(|&h| h == handle).unwrap_or(0) as u32;
-            return Err(clash(domain, curves_through(domain, divided, &[other, node]), "come to the same point", p));
+            return Err(clash(domain, chords_at(divided, &[other, node]), "come to the same point", p));
         }
         handles[node as usize] = handle;
         Ok(())
@@ -167,27 +185,27 @@ fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVerte
 struct Edges<'a> {
     domain: &'a Domain,
     divided: &'a DividedDomain,
-    /// The curve of each edge, by its nodes in ascending order.
-    curve_of: FxHashMap<(u32, u32), CurveId>,
+    /// The chord that each edge is, by its nodes in ascending order.
+    chord_of: FxHashMap<(u32, u32), DividedChord>,
 }
 
 impl<'a> Edges<'a> {
     fn new(domain: &'a Domain, divided: &'a DividedDomain) -> Result<Self, Box<Clash>> {
-        let mut edges = Edges { domain, divided, curve_of: FxHashMap::default() };
-        edges.curve_of.reserve(divided.nodes.len());
-        for (id, a, b) in edges.all() {
-            if let Some(other) = edges.curve_of.insert((a.min(b), a.max(b)), id) {
+        let mut edges = Edges { domain, divided, chord_of: FxHashMap::default() };
+        edges.chord_of.reserve(divided.nodes.len());
+        for (chord, a, b) in edges.all() {
+            if let Some(other) = edges.chord_of.insert((a.min(b), a.max(b)), chord) {
                 let middle = divided.nodes[a as usize].midpoint(divided.nodes[b as usize]);
-                return Err(clash(domain, vec![id, other], "come to the same line", middle));
+                return Err(clash(domain, vec![chord, other], "come to the same line", middle));
             }
         }
         Ok(edges)
     }
 
     /// Every edge from node to node in its curve's direction.
-    fn all(&self) -> impl Iterator<Item = (CurveId, u32, u32)> + use<'a> {
+    fn all(&self) -> impl Iterator<Item = (DividedChord, u32, u32)> + use<'a> {
         let chains = self.divided.chains.iter().zip(0..);
-        chains.flat_map(|(chain, id)| chain.windows(2).map(move |w| (CurveId(id), w[0], w[1])))
+        chains.flat_map(|(chain, id)| chain.windows(2).zip(0..).map(move |(w, k)| ((CurveId(id), k), w[0], w[1])))
     }
 
     fn at(&self, node: u32) -> DVec2 {
@@ -196,8 +214,8 @@ impl<'a> Edges<'a> {
 
     /// Makes every edge an edge of the triangulation.
     fn constrain(&self, cdt: &mut Cdt, handles: &[FixedVertexHandle]) -> Result<(), Box<Clash>> {
-        let mut found: Option<(Vec<CurveId>, &str, DVec2)> = None;
-        for (id, a, b) in self.all() {
+        let mut found: Option<(Vec<DividedChord>, &str, DVec2)> = None;
+        for (chord, a, b) in self.all() {
             let (from, to) = (handles[a as usize], handles[b as usize]);
             match cdt.try_add_constraint(from, to).as_slice() {
                 [_] => {}
@@ -206,11 +224,11 @@ impl<'a> Edges<'a> {
                         let [c, d] = other.vertices().map(|v| v.data().node);
                         let place =
                             crossing_of([self.at(a), self.at(b)], [self.at(c), self.at(d)]).unwrap_or(self.at(a));
-                        let (curves, ..) = found.get_or_insert((vec![id], "cross", place));
-                        curves.extend([id].into_iter().chain(self.curve_of.get(&(c.min(d), c.max(d))).copied()));
+                        let (chords, ..) = found.get_or_insert((vec![chord], "cross", place));
+                        chords.extend([chord].into_iter().chain(self.chord_of.get(&(c.min(d), c.max(d))).copied()));
                     }
                     // A conflict at a vertex has no edge to name.
-                    found.get_or_insert((vec![id], "cross", self.at(a)));
+                    found.get_or_insert((vec![chord], "cross", self.at(a)));
                 }
                 [first, ..] => {
                     // The edge runs through a node, which has split it.
@@ -221,16 +239,15 @@ impl<'a> Edges<'a> {
                         ends.into_iter().find(|&n| n != b)
                     };
                     let through = through.unwrap_or(a);
-                    let mut curves = curves_through(self.domain, self.divided, &[through]);
-                    curves.insert(0, id);
-                    let (all, ..) = found.get_or_insert((Vec::new(), "touch", self.at(through)));
-                    all.extend(curves);
+                    let (chords, ..) = found.get_or_insert((Vec::new(), "touch", self.at(through)));
+                    chords.push(chord);
+                    chords.extend(chords_at(self.divided, &[through]));
                 }
             }
         }
         match found {
             None => Ok(()),
-            Some((curves, verb, place)) => Err(clash(self.domain, curves, verb, place)),
+            Some((chords, verb, place)) => Err(clash(self.domain, chords, verb, place)),
         }
     }
 
@@ -240,11 +257,12 @@ impl<'a> Edges<'a> {
         let mut labels: Vec<Option<Option<u32>>> = vec![None; cdt.num_inner_faces()];
         let mut walls = vec![false; cdt.num_undirected_edges()];
         let mut seeds = Vec::new();
-        let missing = |id| {
-            clash(self.domain, vec![id], "cannot be kept as it is divided", self.domain.curves[id.index()].first())
+        let missing = |chord: DividedChord| {
+            let first = self.domain.curves[chord.0.index()].first();
+            clash(self.domain, vec![chord], "cannot be kept as it is divided", first)
         };
         for (id, a, b) in self.all() {
-            let curve = &self.domain.curves[id.index()];
+            let curve = &self.domain.curves[id.0.index()];
             let Some(edge) = cdt.get_edge_from_neighbors(handles[a as usize], handles[b as usize]) else {
                 return Err(missing(id));
             };
@@ -261,7 +279,7 @@ impl<'a> Edges<'a> {
             let mut stack = vec![seed];
             match labels[seed.index() - 1] {
                 Some(known) if known == label => continue,
-                Some(_) => return Err(self.misplaced(id, self.divided.chains[id.index()][0])),
+                Some(_) => return Err(self.misplaced(id, self.divided.chains[id.0.index()][0])),
                 None => labels[seed.index() - 1] = Some(label),
             }
             while let Some(face) = stack.pop() {
@@ -277,7 +295,7 @@ impl<'a> Edges<'a> {
                                 stack.push(next.fix());
                             }
                             Some(known) if known == label => {}
-                            Some(_) => return Err(self.misplaced(id, self.divided.chains[id.index()][0])),
+                            Some(_) => return Err(self.misplaced(id, self.divided.chains[id.0.index()][0])),
                         }
                     }
                 }
@@ -288,16 +306,73 @@ impl<'a> Edges<'a> {
     }
 
     /// A chord that has jumped over another curve: all curved ones are to be divided more finely.
-    fn misplaced(&self, id: CurveId, node: u32) -> Box<Clash> {
-        let mut found =
-            clash(self.domain, vec![id], "lies on the wrong side of another when divided so coarsely", self.at(node));
-        found.curves = (0..self.domain.curves.len() as u32).map(CurveId).collect();
+    fn misplaced(&self, chord: DividedChord, node: u32) -> Box<Clash> {
+        let mut found = clash(
+            self.domain,
+            vec![chord],
+            "lies on the wrong side of another when divided so coarsely",
+            self.at(node),
+        );
+        found.chords = self.all().map(|(chord, ..)| chord).collect();
         found
+    }
+
+    fn is_firm(&self, triangle: [u32; 3]) -> bool {
+        let [a, b, c] = triangle.map(|n| self.at(n));
+        firm(a, b, c)
+    }
+
+    /// Swaps the longest side of triangles that are too thin where both triangles are firm then: three nodes of a curve that is
+    /// all but straight make such a triangle, which its neighbour can be divided into.
+    fn turn_thin(&self, triangles: &mut [[u32; 3]], region: &[u32]) {
+        let mut thin: Vec<usize> = (0..triangles.len()).filter(|&t| !self.is_firm(triangles[t])).collect();
+        // One swap may leave a neighbour as thin, which is then swapped in its turn: the thin triangles of a row, one by one.
+        for _ in 0..ROUNDS {
+            if thin.is_empty() {
+                return;
+            }
+            let sides = sorted_sides(self.divided.nodes.len(), triangles);
+            let mut touched: FxHashSet<usize> = FxHashSet::default();
+            for &t in &thin {
+                let long = |k: usize| self.at(triangles[t][k]).distance_squared(self.at(triangles[t][(k + 1) % 3]));
+                let Some(k) = (0..3).max_by(|&i, &j| long(i).total_cmp(&long(j)).then(j.cmp(&i))) else { continue };
+                let [a, b, apex] = [0, 1, 2].map(|i| triangles[t][(k + i) % 3]);
+                let key = (a.min(b), a.max(b));
+                let from = sides.partition_point(|side| (side.low, side.high) < key);
+                let mut beyond = sides[from..].iter().take_while(|side| (side.low, side.high) == key);
+                let Some(other) = beyond.find(|side| side.corner as usize / 3 != t) else { continue };
+                let (o, i) = (other.corner as usize / 3, other.corner as usize % 3);
+                if self.chord_of.contains_key(&key)
+                    || region[o] != region[t]
+                    || touched.contains(&o)
+                    || touched.contains(&t)
+                {
+                    continue;
+                }
+                let far = triangles[o][(i + 2) % 3];
+                let halves = [[a, far, apex], [far, b, apex]];
+                if halves.iter().all(|half| self.is_positive(*half)) {
+                    [triangles[t], triangles[o]] = halves;
+                    touched.extend([t, o]);
+                }
+            }
+            if touched.is_empty() {
+                return;
+            }
+            thin = (0..triangles.len()).filter(|&t| !self.is_firm(triangles[t])).collect();
+        }
+    }
+
+    fn is_positive(&self, triangle: [u32; 3]) -> bool {
+        let [a, b, c] = triangle.map(|n| self.at(n));
+        positive(a, b, c)
     }
 
     fn thin(&self, triangle: &[u32; 3]) -> Box<Clash> {
         let [a, b, c] = triangle.map(|n| self.at(n));
-        let curves = curves_through(self.domain, self.divided, triangle);
+        let chords = chords_at(self.divided, triangle);
+        let mut curves: Vec<CurveId> = chords.iter().map(|chord| chord.0).collect();
+        curves.dedup();
         let names: Vec<String> =
             curves.iter().map(|id| format!("\"{}\"", self.domain.curves[id.index()].name)).collect();
         let fault = Fault::new(format!(
@@ -308,7 +383,7 @@ impl<'a> Edges<'a> {
             names.join(", "),
             too_thin(a, b, c)
         ));
-        Box::new(Clash { curves, fault: fault.remedy("Keep the curves further apart there, or ask for smaller sizes") })
+        Box::new(Clash { chords, fault: fault.remedy("Keep the curves further apart there, or ask for smaller sizes") })
     }
 }
 
@@ -325,16 +400,24 @@ pub fn too_thin(a: DVec2, b: DVec2, c: DVec2) -> String {
     }
 }
 
-/// The curves on which the nodes lie, ascending.
-fn curves_through(domain: &Domain, divided: &DividedDomain, nodes: &[u32]) -> Vec<CurveId> {
-    let ids = (0..domain.curves.len() as u32).map(CurveId);
-    ids.filter(|id| divided.chains[id.index()].iter().any(|n| nodes.contains(n))).collect()
+/// The chords that begin or end at the nodes, ascending.
+fn chords_at(divided: &DividedDomain, nodes: &[u32]) -> Vec<DividedChord> {
+    let mut chords = Vec::new();
+    for (chain, id) in divided.chains.iter().zip(0..) {
+        let at_one = chain.windows(2).zip(0..).filter(|(w, _)| w.iter().any(|n| nodes.contains(n)));
+        chords.extend(at_one.map(|(_, k)| (CurveId(id), k)));
+    }
+    chords
 }
 
-/// A clash of curves, the first of which are named.
-fn clash(domain: &Domain, mut curves: Vec<CurveId>, verb: &str, at: DVec2) -> Box<Clash> {
-    let mut seen = Vec::new();
-    curves.retain(|id| !seen.contains(id) && (seen.push(*id), true).1);
+/// A clash of chords, the curves of the first of which are named.
+fn clash(domain: &Domain, chords: Vec<DividedChord>, verb: &str, at: DVec2) -> Box<Clash> {
+    let mut curves: Vec<CurveId> = Vec::new();
+    for (id, _) in &chords {
+        if !curves.contains(id) && curves.len() < 2 {
+            curves.push(*id);
+        }
+    }
     let named = |id: &CurveId| format!("\"{}\"", domain.curves[id.index()].name);
     let what = match curves.as_slice() {
         [] => format!("Curves {verb}"),
@@ -344,7 +427,7 @@ fn clash(domain: &Domain, mut curves: Vec<CurveId>, verb: &str, at: DVec2) -> Bo
     let fault = Fault::new(what)
         .at(format!("at {}", told(at)))
         .remedy("Keep them further apart, ask for smaller sizes there, or fix larger numbers of segments");
-    Box::new(Clash { curves, fault })
+    Box::new(Clash { chords, fault })
 }
 
 #[cfg(test)]

@@ -170,6 +170,14 @@ fn perp(d: DVec2) -> DVec2 {
     DVec2::new(-d.y, d.x)
 }
 
+/// A basis in which the metric is the identity: columns of the inverse transposed Cholesky factor.
+pub fn unit_axes(m: &Metric2) -> [DVec2; 2] {
+    let l11 = m.uu.sqrt();
+    let l21 = m.uv / l11;
+    let l22 = (m.vv - l21 * l21).sqrt();
+    [DVec2::new(1.0 / l11, 0.0), DVec2::new(-l21 / (l11 * l22), 1.0 / l22)]
+}
+
 /// Moves a free node towards the least energy of its star by one damped Newton step, if that lowers it and keeps every
 /// element strictly convex. Returns the distance moved, in the node's metric; 0 where it stays.
 pub fn relax(mesh: &mut Mesh, node: NodeId, source: &dyn MetricSource) -> f64 {
@@ -182,11 +190,7 @@ pub fn relax(mesh: &mut Mesh, node: NodeId, source: &dyn MetricSource) -> f64 {
     if !before.is_finite() {
         return 0.0;
     }
-    // A basis in which the metric is the identity: columns of the inverse transposed Cholesky factor.
-    let l11 = m.uu.sqrt();
-    let l21 = m.uv / l11;
-    let l22 = (m.vv - l21 * l21).sqrt();
-    let e = [DVec2::new(1.0 / l11, 0.0), DVec2::new(-l21 / (l11 * l22), 1.0 / l22)];
+    let e = unit_axes(&m);
     let along = |g: DVec2| DVec2::new(g.dot(e[0]), g.dot(e[1]));
     let slope = star.slope(p, &m);
     let g = along(slope.gradient);

@@ -116,6 +116,19 @@ pub enum Cleaning {
     },
 }
 
+/// How a quadrilateral that folded over its surface was mended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "how", rename_all = "snake_case")]
+pub enum Mending {
+    /// Its corners were moved.
+    Moved,
+    /// A smaller quadrilateral was inlaid, with four between the two.
+    Pillowed {
+        /// Its nodes.
+        inner: [NodeId; 4],
+    },
+}
+
 /// What a step of the converter did or decided. Angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -346,6 +359,16 @@ pub enum Event {
         /// Nodes that moved.
         moved: u32,
     },
+    /// A quadrilateral that folded over its surface was mended.
+    Unfolded {
+        /// Its id.
+        element: ElementId,
+        /// How.
+        #[serde(flatten)]
+        how: Mending,
+        /// The least sine of its corners in space before, and of those around after.
+        sine: [f64; 2],
+    },
     /// The whole mesh is cleaned up and smoothed (4.3.7).
     PostProcessed,
     /// All is done.
@@ -380,6 +403,7 @@ impl Event {
         "last_resort",
         "cleaned",
         "swept",
+        "unfolded",
         "post_processed",
         "finished",
     ];
@@ -425,6 +449,7 @@ impl Event {
             Event::LastResort(_) => "last_resort",
             Event::Cleaned { .. } => "cleaned",
             Event::Swept { .. } => "swept",
+            Event::Unfolded { .. } => "unfolded",
             Event::PostProcessed => "post_processed",
             Event::Finished => "finished",
         }

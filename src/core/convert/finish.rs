@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::clean_up::{CleanUp, CleanedUp, Reach};
 use super::converter::Converter;
 use super::energy;
-use super::event::Event;
+use super::event::{Event, Mending};
 use super::phase::{Part, Phase};
+use super::unfold::{Unfolded, Unfolding};
 use super::worklist::{ListMark, Worklist};
 use crate::core::mesh::half_edge::Mesh;
 
@@ -23,6 +24,8 @@ pub struct Finished {
     pub cleaned_up: CleanedUp,
     /// Nodes moved by smoothing.
     pub moves: usize,
+    /// What folded over its surface and was mended.
+    pub unfolded: Unfolded,
 }
 
 /// What the post-processing has under way: the parts that have begun. Those that are done are only there for whoever
@@ -32,16 +35,18 @@ pub(super) struct Finishing<'a> {
     first_smoothing: Option<Worklist>,
     clean_up: [Option<CleanUp<'a>>; 3],
     last_smoothing: Option<Worklist>,
+    unfolding: Option<Unfolding<'a>>,
 }
 
 /// Where the lists of the parts stood; none where a part had not begun.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PartMarks([Option<ListMark>; 5]);
+pub(super) struct PartMarks([Option<ListMark>; 6]);
 
 impl Finishing<'_> {
-    fn lists(&self) -> [Option<&Worklist>; 5] {
+    fn lists(&self) -> [Option<&Worklist>; 6] {
         let [singles, pairs, longer] = self.clean_up.each_ref().map(|part| part.as_ref().map(CleanUp::list));
-        [self.first_smoothing.as_ref(), singles, pairs, longer, self.last_smoothing.as_ref()]
+        let unfolding = self.unfolding.as_ref().map(Unfolding::list);
+        [self.first_smoothing.as_ref(), singles, pairs, longer, self.last_smoothing.as_ref(), unfolding]
     }
 
     /// Whether the budget of the pairs has ended before every node was looked at.
@@ -52,7 +57,9 @@ impl Finishing<'_> {
     /// Bytes that the parts take.
     pub fn bytes(&self) -> usize {
         let lists = [&self.first_smoothing, &self.last_smoothing].into_iter().flatten();
-        lists.map(Worklist::bytes).sum::<usize>() + self.clean_up.iter().flatten().map(CleanUp::bytes).sum::<usize>()
+        lists.map(Worklist::bytes).sum::<usize>()
+            + self.clean_up.iter().flatten().map(CleanUp::bytes).sum::<usize>()
+            + self.unfolding.as_ref().map_or(0, Unfolding::bytes)
     }
 
     /// Bytes of what the parts have written down for taking back.
@@ -64,7 +71,8 @@ impl Finishing<'_> {
     pub fn record(&mut self) {
         let clean_up = self.clean_up.iter_mut().flatten().map(CleanUp::list_mut);
         let smoothing = [self.first_smoothing.as_mut(), self.last_smoothing.as_mut()];
-        clean_up.chain(smoothing.into_iter().flatten()).for_each(Worklist::record);
+        let unfolding = self.unfolding.iter_mut().map(Unfolding::list_mut);
+        clean_up.chain(smoothing.into_iter().flatten()).chain(unfolding).for_each(Worklist::record);
     }
 
     /// The present place.
@@ -73,7 +81,11 @@ impl Finishing<'_> {
     }
 
     /// Takes back everything that was done after the mark; `cleaned_up` is what the clean-up had done then.
-    pub fn take_back(&mut self, PartMarks([first, singles, pairs, longer, last]): PartMarks, cleaned_up: CleanedUp) {
+    pub fn take_back(
+        &mut self,
+        PartMarks([first, singles, pairs, longer, last, unfolding]): PartMarks,
+        cleaned_up: CleanedUp,
+    ) {
         let list = |list: &mut Option<Worklist>, mark: Option<ListMark>| match (list.as_mut(), mark) {
             (Some(list), Some(mark)) => list.take_back(mark),
             _ => *list = None,
@@ -85,6 +97,10 @@ impl Finishing<'_> {
                 (Some(part), Some(mark)) => part.take_back(mark, cleaned_up),
                 _ => *part = None,
             }
+        }
+        match (self.unfolding.as_mut(), unfolding) {
+            (Some(part), Some(mark)) => part.take_back(mark),
+            _ => self.unfolding = None,
         }
     }
 
@@ -107,6 +123,7 @@ impl Converter<'_> {
                 Part::CleanUp => self.clean_up(Reach::Singles),
                 Part::CleanUpByPairs => self.clean_up(Reach::Pairs),
                 Part::CleanUpBySequences => self.clean_up(Reach::Longer),
+                Part::Unfolding => self.unfold(),
             };
             if let Some(event) = event {
                 return (Phase::PostProcess { part }, event);
@@ -117,7 +134,8 @@ impl Converter<'_> {
                 Part::CleanUpByPairs if self.finishing.pairs_are_cut_short() => part = Part::LastSmoothing,
                 Part::CleanUpByPairs => part = Part::CleanUpBySequences,
                 Part::CleanUpBySequences => part = Part::LastSmoothing,
-                Part::LastSmoothing => return (Phase::Done, Event::PostProcessed),
+                Part::LastSmoothing if self.mesh.ground().is_some() => part = Part::Unfolding,
+                Part::LastSmoothing | Part::Unfolding => return (Phase::Done, Event::PostProcessed),
             }
         }
     }
@@ -131,6 +149,22 @@ impl Converter<'_> {
         let event = part.step(mesh, keep_journal);
         self.finished.cleaned_up = part.done();
         event
+    }
+
+    /// Mends the next quadrilateral that folds over its surface.
+    fn unfold(&mut self) -> Option<Event> {
+        let (recording, keep_journal) = (self.keeps_history(), self.keeps_journal());
+        let (mesh, source) = (&mut self.mesh, Arc::clone(&self.source));
+        let part = self.finishing.unfolding.get_or_insert_with(|| Unfolding::begin(mesh, source, recording));
+        let event = part.step(mesh, keep_journal)?;
+        if let Event::Unfolded { how, .. } = event {
+            let Unfolded { moved, pillowed } = &mut self.finished.unfolded;
+            match how {
+                Mending::Moved => *moved += 1,
+                Mending::Pillowed { .. } => *pillowed += 1,
+            }
+        }
+        Some(event)
     }
 
     /// Looks at every free node that waits: all in the first sweep of a part, then those around nodes that moved. None

@@ -24,6 +24,7 @@ pub mod last_resort;
 pub mod energy;
 mod worklist;
 pub mod clean_up;
+pub mod unfold;
 pub mod finish;
 mod layers;
 pub mod conversion;

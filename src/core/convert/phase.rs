@@ -51,6 +51,8 @@ pub enum Part {
     CleanUpBySequences,
     /// Smoothing of the final structure.
     LastSmoothing,
+    /// Mending of what folds over its surface.
+    Unfolding,
 }
 
 /// Where the converter stands.

@@ -7,7 +7,7 @@ use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
-const FLAT: f64 = 1e-9;
+const FLAT: f64 = 1e-6;
 /// Turning the longest side of a flat triangle may leave another; so often it is tried.
 const ROUNDS: usize = 16;
 

@@ -167,3 +167,21 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
     }
     Ok(vertices)
 }
+
+/// Joins ends that are the same place to the last bit into vertices, and makes the fine polylines between them: for images
+/// of sides of triangles, whose places are the triangles' own.
+pub fn join_equal_ends(curves: &mut [DomainCurve]) -> Vec<DVec2> {
+    let mut known: FxHashMap<[u64; 2], u32> = FxHashMap::default();
+    let mut vertices: Vec<DVec2> = Vec::new();
+    for curve in curves {
+        curve.ends = [curve.curve.start(), curve.curve.end()].map(|p| {
+            // The sum turns -0 into 0.
+            *known.entry([(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits()]).or_insert_with(|| {
+                vertices.push(p);
+                vertices.len() as u32 - 1
+            })
+        });
+        curve.fine = curve.curve.polyline(0.0);
+    }
+    vertices
+}

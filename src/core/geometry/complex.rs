@@ -10,11 +10,11 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use super::assembly::{join_ends, loop_name, placed};
+use super::assembly::{join_ends, join_equal_ends, loop_name, placed};
 use super::atlas::Atlas;
 use super::chart::{Chart, singular_edges};
 use super::curve::Curve;
-use super::domain::{CurveId, CurveKind, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial};
+use super::domain::{Borders, CurveId, CurveKind, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial};
 use super::ground::Ground;
 use super::image::Image;
 use super::lifting::{Lift, Piece};
@@ -362,6 +362,8 @@ pub(in crate::core) fn assemble(
     let mut places: Vec<(usize, usize, usize, DirectedCurve)> = Vec::new();
     let mut domain_curves: Vec<DomainCurve> = Vec::new();
     let mut space: Vec<Arc<SpaceCurve>> = Vec::new();
+    // The curve in space of each image.
+    let mut numbers: Vec<usize> = Vec::new();
     let mut last: Option<(usize, CurveId)> = None;
     for (c, f, at, kind, piece) in pieces {
         let id = CurveId(domain_curves.len() as u32);
@@ -385,6 +387,7 @@ pub(in crate::core) fn assemble(
             first,
         });
         space.push(Arc::clone(&named.curve));
+        numbers.push(c);
         if let Some((i, k)) = at {
             places.push((f, i, k, DirectedCurve { curve: id, forward: piece.forward }));
         }
@@ -398,11 +401,15 @@ pub(in crate::core) fn assemble(
         loops[i].push(step);
     }
     let extent = Extent::of(&domain_curves)?;
-    let plane = join_ends(&mut domain_curves, extent.size, extent.tolerance)?;
+    let is_embedded = atlas.charts().iter().all(|chart| matches!(chart, Ground::Facets(_)));
+    let (plane, borders) = if is_embedded {
+        (join_equal_ends(&mut domain_curves), Borders::Embedded)
+    } else {
+        (join_ends(&mut domain_curves, extent.size, extent.tolerance)?, Borders::Given)
+    };
     let mut vertex_of = vec![u32::MAX; plane.len()];
-    for curve in &domain_curves {
-        let named = curves.iter().find(|c| c.name == curve.name).expect("images are of named curves");
-        for (own, in_space) in curve.ends.iter().zip(named.ends) {
+    for (curve, &number) in domain_curves.iter().zip(&numbers) {
+        for (own, in_space) in curve.ends.iter().zip(curves[number].ends) {
             let known = &mut vertex_of[*own as usize];
             if *known != u32::MAX && *known != in_space {
                 let [a, b] = [*known, in_space].map(|v| told_xyz(vertices[v as usize]));
@@ -414,7 +421,7 @@ pub(in crate::core) fn assemble(
             *known = in_space;
         }
     }
-    let mut domain = Domain::assemble(domain_curves, plane, chains, specs, extent)?;
+    let mut domain = Domain::assemble(domain_curves, plane, chains, specs, extent, borders)?;
     domain.spatial = Some(Arc::new(Spatial {
         atlas,
         vertices: vertices.to_vec(),

@@ -222,6 +222,11 @@ impl Curve {
         }
     }
 
+    /// Whether it is an image that runs straight from one of its breaks to the next.
+    pub fn polygonal(&self) -> bool {
+        matches!(&self.path, Path::Image(pictured) if pictured.image.polygonal())
+    }
+
     /// Whether its ends are numbers that were given, and not computed.
     pub fn ends_given(&self) -> bool {
         matches!(self.path, Path::Segment { .. } | Path::Polyline { .. })
@@ -273,7 +278,7 @@ impl Curve {
                 let n = (turn.abs() / step).ceil().max(1.0);
                 (0..=n as usize).map(|i| i as f64 / n).map(|t| (t, self.point(t))).collect()
             }
-            Path::Image(pictured) if pictured.image.straight() => {
+            Path::Image(pictured) if pictured.image.straight() || pictured.image.polygonal() => {
                 pictured.breaks.iter().map(|&t| (t, self.point(t))).collect()
             }
             Path::Nurbs(_) | Path::Image(_) => {

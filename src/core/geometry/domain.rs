@@ -155,7 +155,7 @@ impl DomainCurve {
     pub fn leaves(&self, backwards: bool, radius: f64) -> DVec2 {
         let n = self.fine.len() - 1;
         let (origin, next) = if backwards { (self.fine[n], self.fine[n - 1]) } else { (self.fine[0], self.fine[1]) };
-        if self.curve.straight() {
+        if self.curve.straight() || self.curve.polygonal() {
             return next.1 - origin.1;
         }
         let (mut near, mut far) = (origin.0, next.0);
@@ -250,7 +250,7 @@ impl Domain {
             }
             chains.push(chain);
         }
-        Domain::assemble(curves, vertices, chains, &faces, extent)
+        Domain::assemble(curves, vertices, chains, &faces, extent, Borders::Given)
     }
 
     /// A domain of curves that meet at `vertices`, chained to the loops of each face.
@@ -260,6 +260,7 @@ impl Domain {
         mut chains: Vec<Vec<Vec<DirectedCurve>>>,
         faces: &[FaceSpec],
         extent: Extent,
+        borders: Borders,
     ) -> Result<Domain, Fault> {
         let Extent { lower, upper, size, tolerance } = extent;
         let names: Vec<String> = faces.iter().map(|f| f.name.clone()).collect();
@@ -267,11 +268,13 @@ impl Domain {
             let curve = &curves[id.index()];
             crossing::bulge(curve, curve.fine[i as usize], curve.fine[i as usize + 1]) + tolerance
         });
-        crossing::check(&curves, &chords, Limits { tolerance, near: 1e-3 * size })?;
+        if borders == Borders::Given {
+            crossing::check(&curves, &chords, Limits { tolerance, near: 1e-3 * size })?;
+        }
         for (f, (spec, chain)) in faces.iter().zip(&mut chains).enumerate() {
             for (i, steps) in chain.iter_mut().enumerate() {
                 let area = loops::doubled_area(&loops::polygon(&curves, steps));
-                if area.abs() <= tolerance * tolerance {
+                if borders == Borders::Given && area.abs() <= tolerance * tolerance {
                     return Err(placed(
                         Fault::new(format!("The {} encloses no area", loop_name(spec, i))),
                         &spec.place,
@@ -303,7 +306,9 @@ impl Domain {
             .zip(chains)
             .map(|(name, loops)| DomainFace { name: name.clone(), loops, walks: Vec::new() })
             .collect();
-        domain.check_nesting(faces)?;
+        if borders == Borders::Given {
+            domain.check_nesting(faces)?;
+        }
         let walks = loops::walks(&domain.curves, &names, &domain.vertices)?;
         for (face, walks) in domain.faces.iter_mut().zip(walks) {
             face.walks = walks;
@@ -463,11 +468,19 @@ impl Domain {
 
     /// The images of the curve of which this is the first one, itself included.
     pub fn images(&self, first: CurveId) -> Vec<&DomainCurve> {
-        if self.spatial.is_none() {
-            return vec![&self.curves[first.index()]];
-        }
-        self.curves.iter().filter(|curve| curve.first == first).collect()
+        // They stand together, the first one first.
+        self.curves[first.index()..].iter().take_while(|curve| curve.first == first).collect()
     }
+}
+
+/// What is known of the borders of faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Borders {
+    /// Nothing: they are looked at.
+    Given,
+    /// They bound charts of triangles that were found to lie one to one in the plane, by exact predicates: they neither
+    /// cross nor touch, however near they come.
+    Embedded,
 }
 
 /// How large a domain is, and which lengths are nothing in it.

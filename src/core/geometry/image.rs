@@ -136,7 +136,7 @@ impl Image {
             course => {
                 let k = self.table.partition_point(|entry| entry.0 <= t).clamp(1, self.table.len() - 1);
                 let (a, b) = (self.table[k - 1], self.table[k]);
-                let guess = a.1 + (b.1 - a.1) * ((t - a.0) / (b.0 - a.0));
+                let guess = lerp(a.1, b.1, (t - a.0) / (b.0 - a.0));
                 match course {
                     Course::Projected(chart) => chart.project(self.curve.point(t), guess).0,
                     _ => guess,
@@ -157,6 +157,11 @@ impl Image {
         self.straight
     }
 
+    /// Whether it runs straight from one place of its table to the next.
+    pub fn polygonal(&self) -> bool {
+        matches!(self.course, Course::Straight)
+    }
+
     /// Its places at the points of the table.
     pub fn places(&self) -> impl Iterator<Item = DVec2> + '_ {
         self.table.iter().map(|entry| entry.1 + self.shift)
@@ -170,6 +175,11 @@ impl Image {
             Course::Straight => entry.1,
         })
     }
+}
+
+/// Between two places, exact at both.
+fn lerp(a: DVec2, b: DVec2, t: f64) -> DVec2 {
+    if t <= 0.5 { a + (b - a) * t } else { b - (b - a) * (1.0 - t) }
 }
 
 /// The vector in the chart whose image in space is the tangent `d`.

@@ -1,5 +1,8 @@
 //! Structural and exact geometric checks of the half-edge mesh (spec 5): what must hold after every operation.
 
+use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
+
 use super::half_edge::Mesh;
 use super::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::geometry::predicates::{convex, positive};
@@ -63,20 +66,36 @@ impl Mesh {
     /// The elements on surfaces that have a corner, between straight sides in space, whose normal does not agree with that of
     /// the surface there: they fold over it, which a mesh too coarse for its curvature does. None in the plane.
     pub fn folded(&self) -> Vec<ElementId> {
-        let Some(ground) = self.ground() else { return Vec::new() };
-        let folds = |e: &ElementId| {
-            let nodes: Vec<NodeId> = self.corners(*e).collect();
-            let xyz: Vec<_> = nodes.iter().map(|&n| self.xyz(n)).collect();
-            let count = nodes.len();
-            let middle = nodes.iter().map(|&n| self.uv(n)).sum::<glam::DVec2>() / count as f64;
-            (0..count).any(|k| {
-                let (next, previous) = (xyz[(k + 1) % count] - xyz[k], xyz[(k + count - 1) % count] - xyz[k]);
-                // At an apex there are many normals: that from a little within the element is meant.
-                let within = self.uv(nodes[k]).lerp(middle, 1e-3);
-                next.cross(previous).dot(ground.atlas.at(within).normal()) <= 0.0
-            })
-        };
-        self.elements().filter(folds).collect()
+        if self.ground().is_none() {
+            return Vec::new();
+        }
+        self.elements()
+            .filter(|&e| self.corner_sines(e).any(|(surface, _)| surface.is_nan() || surface <= 0.0))
+            .collect()
+    }
+
+    /// The least sine of an element's corners, between straight sides in space, seen along the normal of the surface there and
+    /// along its own. In the plane, where exact predicates say more, along z.
+    pub fn least_sine(&self, e: ElementId) -> f64 {
+        self.corner_sines(e).map(|(surface, own)| surface.min(own)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The sine of each corner as seen along the normal of the surface there, and along the element's own.
+    fn corner_sines(&self, e: ElementId) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let nodes: SmallVec<[NodeId; 4]> = self.corners(e).collect();
+        let xyz: SmallVec<[DVec3; 4]> = nodes.iter().map(|&n| self.xyz(n)).collect();
+        let count = nodes.len();
+        let middle = nodes.iter().map(|&n| self.uv(n)).sum::<DVec2>() / count as f64;
+        // Twice the mean area of a quadrilateral as a vector; of a triangle too.
+        let own = (xyz[2] - xyz[0]).cross(xyz[count - 1] - xyz[1]).normalize_or_zero();
+        (0..count).map(move |k| {
+            let (next, previous) = (xyz[(k + 1) % count] - xyz[k], xyz[(k + count - 1) % count] - xyz[k]);
+            // At an apex there are many normals: that from a little within the element is meant.
+            let within = self.uv(nodes[k]).lerp(middle, 1e-3);
+            let normal = self.ground().map_or(DVec3::Z, |ground| ground.atlas.at(within).normal());
+            let corner = next.cross(previous) / (next.length() * previous.length()).max(f64::MIN_POSITIVE);
+            (corner.dot(normal), corner.dot(own))
+        })
     }
 
     /// Checks one element: its half-edges and twins agree, its nodes differ, it is strictly positive.

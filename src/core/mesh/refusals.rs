@@ -34,6 +34,8 @@ pub enum Operation {
     OpenVertex,
     /// Removing a doublet.
     RemoveDoublet,
+    /// Pillowing a quadrilateral.
+    Pillow,
     /// Forming a quadrilateral.
     Form,
     /// Covering a small loop.

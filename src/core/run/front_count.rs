@@ -168,6 +168,7 @@ pub(super) fn changes_front(event: &Event) -> bool {
             | Event::Matched { .. }
             | Event::Cleaned { .. }
             | Event::Swept { .. }
+            | Event::Unfolded { .. }
             | Event::PostProcessed
             | Event::Finished
     )
