@@ -176,15 +176,9 @@ impl<'a> Division<'a> {
                 self.pieces[c][piece].segments = n;
             }
         }
-        let doubled: Vec<bool> = {
-            let mut doubled = vec![false; self.pieces.len()];
-            for (_, walk) in &walks {
-                let mut ids: Vec<u32> = walk.iter().map(|d| self.first(d.curve).0).collect();
-                ids.sort_unstable();
-                ids.chunk_by(|a, b| a == b).filter(|g| g.len() == 2).for_each(|g| doubled[g[0] as usize] = true);
-            }
-            doubled
-        };
+        // Curves that no walk runs through an odd number of times.
+        let mut doubled = vec![true; self.pieces.len()];
+        rows.iter().flatten().for_each(|&c| doubled[c as usize] = false);
         let loops = self.domain.faces.iter().enumerate().flat_map(|(f, face)| face.loops.iter().map(move |l| (f, l)));
         for (f, steps) in loops.chain(walks) {
             while steps.iter().map(|s| self.segments(s.curve)).sum::<u32>() < 4 {

@@ -18,6 +18,8 @@ use crate::core::metric::field::MetricSource;
 
 /// How often offending curves are divided more finely before the domain is refused.
 const ROUNDS: usize = 64;
+/// Two chords of a corner whose sine in space is below this are divided more finely.
+const LEAST_SINE: f64 = 0.02;
 
 /// A chord of a divided curve: the curve, and which of its chords.
 pub type DividedChord = (CurveId, u32);
@@ -45,7 +47,12 @@ pub fn divide_and_triangulate(
     for round in 0.. {
         let divided = division.nodes()?;
         match triangulate(domain, &divided) {
-            Ok(set) => return Ok((divided, set)),
+            Ok(Triangulated { set, folded }) => {
+                // A corner that no finer division helps is as the surface has it.
+                if round >= ROUNDS || !refined(&mut division, &divided, folded) {
+                    return Ok((divided, set));
+                }
+            }
             Err(clash) => {
                 if !refined(&mut division, &divided, clash.chords) || round >= ROUNDS {
                     return Err(clash.fault);
@@ -93,8 +100,8 @@ type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 ///
 /// # Panics
 /// Where a boundary loop is odd: [`Division::even_out`] has made them even.
-pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<TriangleSet, Box<Clash>> {
-    let mesh = triangles(domain, divided)?;
+pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<Triangulated, Box<Clash>> {
+    let (mesh, folded) = triangles(domain, divided)?;
     for nodes in mesh.loops() {
         assert!(
             nodes.len().is_multiple_of(2),
@@ -102,10 +109,18 @@ pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<TriangleS
             told(mesh.set.uv[nodes[0] as usize])
         );
     }
-    Ok(mesh.set)
+    Ok(Triangulated { set: mesh.set, folded })
 }
 
-fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Clash>> {
+/// What [`triangulate`] makes of divided curves.
+pub struct Triangulated {
+    /// The triangles.
+    pub set: TriangleSet,
+    /// Chords that fold over the surface in space: finer division may help.
+    pub folded: Vec<DividedChord>,
+}
+
+fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<(CutMesh, Vec<DividedChord>), Box<Clash>> {
     let edges = Edges::new(domain, divided)?;
     let (mut cdt, handles) = load(domain, divided)?;
     edges.constrain(&mut cdt, &handles)?;
@@ -122,6 +137,7 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Cl
     if let Some(t) = kept.iter().find(|t| !edges.is_firm(**t)) {
         return Err(edges.thin(t));
     }
+    let folded = edges.folded(&kept);
     let lines: Vec<([u32; 2], Cut)> = domain
         .curves
         .iter()
@@ -137,7 +153,7 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<CutMesh, Box<Cl
     if domain.spatial.is_some() {
         mesh.join_in_space(&divided.joined, &divided.xyz);
     }
-    Ok(mesh)
+    Ok((mesh, folded))
 }
 
 /// The Delaunay triangulation of the nodes, and where each is in it. Scaled by a power of two, so that signs are those of
@@ -361,6 +377,28 @@ impl<'a> Edges<'a> {
             }
             thin = (0..triangles.len()).filter(|&t| !self.is_firm(triangles[t])).collect();
         }
+    }
+
+    /// Pairs of chords with a corner of a triangle between them that lies flat or turned over in space, along the normal of the
+    /// surface there: in a narrow corner between bent curves chords may cross in space that do not in the plane.
+    fn folded(&self, triangles: &[[u32; 3]]) -> Vec<DividedChord> {
+        let Some(spatial) = &self.domain.spatial else { return Vec::new() };
+        let chord = |a: u32, b: u32| self.chord_of.get(&(a.min(b), a.max(b))).copied();
+        let mut folded = Vec::new();
+        for t in triangles {
+            for k in 0..3 {
+                let [at, next, previous] = [0, 1, 2].map(|i| t[(k + i) % 3]);
+                let (Some(one), Some(other)) = (chord(at, next), chord(previous, at)) else { continue };
+                let [p, q, r] = [at, next, previous].map(|n| self.divided.xyz[n as usize]);
+                let middle = t.iter().map(|&n| self.at(n)).sum::<DVec2>() / 3.0;
+                let normal = spatial.atlas.at(self.at(at).lerp(middle, 1e-3)).normal();
+                let (a, b) = (q - p, r - p);
+                if a.cross(b).dot(normal) < LEAST_SINE * a.length() * b.length() {
+                    folded.extend([one, other]);
+                }
+            }
+        }
+        folded
     }
 
     fn is_positive(&self, triangle: [u32; 3]) -> bool {

@@ -196,10 +196,13 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
 /// A mesh in space: a surface without CAD, meshed anew. Sizes are those of the case's fields; where there are none those given at its
 /// points, or those that its triangles have.
 fn from_surface(case: &Case, file: &MeshFile, watch: &mut dyn Watch) -> Result<Background, Fault> {
-    let Sound { mesh, regions, repairs } = sound(file)?;
+    let Sound { mesh, copied, regions, repairs } = sound(file)?;
     let surface = surface(&mesh, &regions, ANGLE)?;
     let sizes = match &file.metric {
-        Some(given) => surface.table(given)?,
+        Some(given) => {
+            let copies = copied.iter().map(|&point| given[point as usize]);
+            surface.table(&given.iter().copied().chain(copies).collect::<Vec<_>>())?
+        }
         None => surface.table(&implied_sizes(&mesh))?,
     };
     let made = from_domain(case, surface.domain, Some(sizes), watch)?;

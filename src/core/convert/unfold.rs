@@ -46,21 +46,23 @@ pub(super) struct Unfolding<'a> {
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Nodes of quadrilaterals that are to be mended.
     list: Worklist,
-    /// Nodes of two faces with two edges between both, ascending.
-    doublets: Vec<NodeId>,
+    /// Nodes of two faces with two edges between both, and one of each quadrilateral that has the points of another; ascending.
+    shared: Vec<NodeId>,
 }
 
 impl<'a> Unfolding<'a> {
     /// The mending at its beginning.
     pub fn begin(mesh: &Mesh, source: Arc<dyn MetricSource + Send + Sync + 'a>, recording: bool) -> Unfolding<'a> {
-        let doublets = doublets(mesh);
+        let mut shared = doublets(mesh);
+        shared.extend(doubles(mesh));
+        shared.sort_unstable();
         let folded = folded(mesh);
-        let mut list = Worklist::new(LOOKS * (folded.len() + doublets.len()), recording);
+        let mut list = Worklist::new(LOOKS * (folded.len() + shared.len()), recording);
         for e in folded {
             list.add(mesh.quad(e)[0]);
         }
-        doublets.iter().for_each(|&node| list.add(node));
-        Unfolding { source, list, doublets }
+        shared.iter().for_each(|&node| list.add(node));
+        Unfolding { source, list, shared }
     }
 
     pub fn list(&self) -> &Worklist {
@@ -78,7 +80,7 @@ impl<'a> Unfolding<'a> {
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        self.list.bytes() + size_of::<NodeId>() * self.doublets.capacity()
+        self.list.bytes() + size_of::<NodeId>() * self.shared.capacity()
     }
 
     /// Mends the next quadrilateral; what cannot be mended is passed over. None where nothing waits any more.
@@ -91,10 +93,10 @@ impl<'a> Unfolding<'a> {
             let worst = worst.map(|e| (sine(mesh, e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let Some((before, element)) = worst else { continue };
             let mut nodes: Vec<NodeId> = mesh.corners(element).collect();
-            let is_doublet = self.doublets.binary_search(&node).is_ok() && mesh.fan(node).count() == 1;
+            let is_shared = self.shared.binary_search(&node).is_ok() && mesh.fan(node).count() == 1;
             let how = if before < FOLDED && self.moved(mesh, element) {
                 Some(Mending::Moved)
-            } else if before < FOLDED || is_doublet {
+            } else if before < FOLDED || is_shared {
                 self.pillowed(mesh, element).map(|inner| {
                     nodes.extend(inner);
                     Mending::Pillowed { inner }
@@ -246,6 +248,19 @@ fn doublets(mesh: &Mesh) -> Vec<NodeId> {
             found.push(a);
         }
     }
-    found.sort_unstable();
     found
+}
+
+/// A node of each quadrilateral whose points are those of an earlier one on another face: it is alone there, and so are the others.
+fn doubles(mesh: &Mesh) -> Vec<NodeId> {
+    let alone = |e: ElementId| mesh.half_edges(e).all(|h| mesh.twin(h).is_none());
+    let mut quads: Vec<([u32; 4], ElementId)> = Vec::new();
+    for e in mesh.elements().filter(|&e| mesh.is_quad(e) && alone(e)) {
+        let mut points = mesh.quad(e).map(|n| mesh.point(n).map_or(u32::MAX, |p| p.0));
+        points.sort_unstable();
+        quads.push((points, e));
+    }
+    quads.sort_unstable();
+    let later = quads.windows(2).filter(|w| w[0].0 == w[1].0);
+    later.map(|w| mesh.quad(w[1].1)[0]).collect()
 }

@@ -116,6 +116,8 @@ struct Surface<'a> {
     mesh: &'a Triangles,
     beyond: Vec<Option<Corner>>,
     centre: Vec<DVec3>,
+    /// Coordinates in the plane are multiples of this.
+    grid: f64,
 }
 
 impl<'a> Surface<'a> {
@@ -128,7 +130,12 @@ impl<'a> Surface<'a> {
             }
         }
         let centre = (0..mesh.triangles.len()).map(|t| mesh.corners(t).iter().sum::<DVec3>() / 3.0).collect();
-        Surface { mesh, beyond, centre }
+        let (low, high) =
+            mesh.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+        let size = (high - low).max_element();
+        // Ten thousand charts as wide as the surface still have exact coordinates side by side.
+        let grid = if size > 0.0 { libm::ldexp(1.0, libm::ilogb(size) - 37) } else { 1.0 };
+        Surface { mesh, beyond, centre, grid }
     }
 
     /// The sides of a triangle.
@@ -176,11 +183,15 @@ impl<'a> Surface<'a> {
             return Next::Cut;
         }
         let xyz: Vec<DVec3> = chart.points.iter().map(|&p| self.mesh.points[p as usize]).collect();
-        let rigid = rigid::map(&xyz, &chart.local, &chart.loops);
+        let rigid = rigid::map(&xyz, &chart.local, &chart.loops, self.grid);
         let mapped = match rigid {
-            None if holes == 0 => tutte::map(&xyz, &chart.local, chart.loops[0] as usize),
+            None if holes == 0 => tutte::map(&xyz, &chart.local, chart.loops[0] as usize, self.grid),
             found => found,
         };
+        // Taken as it is where nothing else can be done: what is mended before lets no triangle come to that.
+        let mapped = mapped.or_else(|| {
+            is_single.then(|| rigid::flattened([0, 1, 2].map(|k| xyz[chart.local[0][k] as usize])).to_vec())
+        });
         if let Some(uv) = mapped {
             chart.stretch = tutte::stretch(&xyz, &chart.local, &uv);
             chart.uv = uv;

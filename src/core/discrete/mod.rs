@@ -4,6 +4,7 @@
 //! Deliberately absent: reading files (`core/io`), sizes (`core/metric`).
 
 pub mod edges;
+pub mod mend;
 pub mod sound;
 pub mod features;
 pub mod chart;

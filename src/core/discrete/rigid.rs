@@ -19,7 +19,9 @@ const LEAST_WEIGHT: f64 = 1e-2;
 
 /// Where the nodes lie in the plane; those of the border loops (so many each) come first, with the triangles to their left. `None`
 /// where that is not one to one.
-pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32]) -> Option<Vec<DVec2>> {
+///
+/// Coordinates are multiples of `grid`, a power of two: so they stay what they are when charts are laid side by side.
+pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32], grid: f64) -> Option<Vec<DVec2>> {
     let flat: Vec<[DVec2; 3]> = triangles.iter().map(|t| flattened(t.map(|k| xyz[k as usize]))).collect();
     let weights: Vec<[f64; 3]> = flat.iter().map(weights).collect();
     let mut uv = unrolled(triangles, &flat, xyz.len());
@@ -80,11 +82,17 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32]) -> Option<Vec<D
             break;
         }
     }
+    uv.iter_mut().for_each(|p| *p = snapped(*p, grid));
     (stands(triangles, &uv) && is_embedded(&uv, loops)).then_some(uv)
 }
 
+/// The nearest multiple of the grid.
+pub fn snapped(p: DVec2, grid: f64) -> DVec2 {
+    (p / grid).round() * grid
+}
+
 /// A triangle in a plane of its own.
-fn flattened([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
+pub fn flattened([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
     let (e, f) = (b - a, c - a);
     let long = e.length();
     if long == 0.0 {

@@ -2,12 +2,16 @@
 
 use std::collections::BTreeSet;
 
+use glam::DVec3;
+
 use super::edges::{Edges, Triangles};
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
 const FLAT: f64 = 1e-6;
+/// Nor has one that is no higher than this part of the whole surface: it would not stand in the plane's coordinates.
+const LOW: f64 = 1e-10;
 /// Turning the longest side of a flat triangle may leave another; so often it is tried.
 const ROUNDS: usize = 16;
 
@@ -16,14 +20,17 @@ const ROUNDS: usize = 16;
 pub struct Sound {
     /// The triangles.
     pub mesh: Triangles,
+    /// The points that the mesh has beyond the file's, by those that they were.
+    pub copied: Vec<u32>,
     /// Names of the regions by number.
     pub regions: Vec<String>,
     /// What was mended, sentences without a full stop.
     pub repairs: Vec<String>,
 }
 
-/// The triangles of a file: quadrilaterals and polygons cut; triangles with a node twice or without area, and duplicates, taken out; all
-/// turned so that neighbours agree on which side is outside, where that can be.
+/// The triangles of a file: quadrilaterals and polygons cut; points at one place used as one, and points that hang in sides of
+/// the border taken into them; triangles with a node twice or without area, and duplicates, taken out; all
+/// turned so that neighbours agree on which side is outside, where that can be; parts that touch in a point set apart.
 ///
 /// # Errors
 /// No triangles; points that are not finite or beyond 1e100; points that are not there.
@@ -64,6 +71,10 @@ pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
     let regions = tags.iter().map(name).collect();
     let region = (0..file.triangles.len()).map(|i| tags.partition_point(|&t| t < tag(i)) as u32).collect();
     let mut mesh = Triangles { points: file.points, triangles: file.triangles, region };
+    let welded = mesh.weld();
+    tell(welded, "point lay on another and was made one with it", "points lay on others and were made one with them");
+    let stitched = mesh.stitch();
+    tell(stitched, "point hung in a side and was taken into it", "points hung in sides and were taken into them");
     let doubles = mesh.drop_doubles();
     tell(doubles, "duplicate triangle was left out", "duplicate triangles were left out");
     let flat = mesh.turn_flat_ones();
@@ -77,7 +88,9 @@ pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
     if mesh.triangles.is_empty() {
         return Err(Fault::new("No triangle of the mesh has an area"));
     }
-    Ok(Sound { mesh, regions, repairs })
+    let (copied, parted) = mesh.part();
+    tell(parted, "point in which parts touched was parted", "points in which parts touched were parted");
+    Ok(Sound { mesh, regions, copied, repairs })
 }
 
 impl Triangles {
@@ -105,22 +118,28 @@ impl Triangles {
         keep.iter().filter(|k| !**k).count()
     }
 
-    /// Whether a triangle has no plane of its own, and the corner opposite to its longest side.
-    fn is_flat(&self, triangle: usize) -> Option<usize> {
+    /// Whether a triangle has no plane of its own, or is no higher than `least`, and the corner opposite to its longest side.
+    fn is_flat(&self, triangle: usize, least: f64) -> Option<usize> {
         let t = self.triangles[triangle];
         let p = self.corners(triangle);
         let long = |k: usize| p[(k + 1) % 3].distance_squared(p[(k + 2) % 3]);
         let apex = (0..3).max_by(|&a, &b| long(a).total_cmp(&long(b)).then(b.cmp(&a)))?;
-        let flat = self.area_vector(triangle).length() <= FLAT * long(apex);
+        let area = self.area_vector(triangle).length();
+        let flat = area <= FLAT * long(apex) || area <= least * long(apex).sqrt();
         (flat || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]).then_some(apex)
     }
 
     /// Takes out flat triangles: the one beyond the longest side gets the corner that stands on that side. How many those were.
     fn turn_flat_ones(&mut self) -> usize {
+        let (low, high) = self
+            .points
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+        let least = LOW * (high - low).max_element();
         let mut taken = 0;
         for _ in 0..ROUNDS {
             let flat: Vec<(usize, usize)> =
-                (0..self.triangles.len()).filter_map(|t| Some((t, self.is_flat(t)?))).collect();
+                (0..self.triangles.len()).filter_map(|t| Some((t, self.is_flat(t, least)?))).collect();
             if flat.is_empty() {
                 break;
             }
@@ -163,7 +182,7 @@ impl Triangles {
             self.keep(&keep);
         }
         // What is flat after all that is left out.
-        let keep: Vec<bool> = (0..self.triangles.len()).map(|t| self.is_flat(t).is_none()).collect();
+        let keep: Vec<bool> = (0..self.triangles.len()).map(|t| self.is_flat(t, least).is_none()).collect();
         self.keep(&keep);
         taken + keep.iter().filter(|k| !**k).count()
     }
@@ -211,8 +230,6 @@ impl Triangles {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::core::discrete::features::{Feature, features};
     use crate::core::discrete::fixtures::{plate, sphere, torus};

@@ -22,6 +22,8 @@ use crate::core::metric::tensor::Metric3;
 
 /// An element turns by no more than this where its size is not given (radians).
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
+/// Nor is it smaller than this part of the edges there, for that: the normals of slivers say little.
+const LEAST_SIZE: f64 = 1.0 / 6.0;
 /// Growth of such sizes from one element to the next (spec 3).
 const GRADATION: f64 = 1.3;
 
@@ -123,7 +125,7 @@ impl Surface {
 }
 
 /// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the mean
-/// length of the edges there, but no larger than what turns by 30 degrees, and growing by 1.3 at most from one element to the next.
+/// length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it), and growing by 1.3 at most from one element to the next.
 pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     let edges = Edges::of(&mesh.triangles);
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
@@ -150,7 +152,10 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
             }
         }
     }
-    let size = |((sum, count), most): (&(f64, f64), &f64)| if *count > 0.0 { (sum / count).min(*most) } else { 1.0 };
+    let size = |((sum, count), most): (&(f64, f64), &f64)| match sum / count {
+        mean if *count > 0.0 => most.clamp(LEAST_SIZE * mean, mean),
+        _ => 1.0,
+    };
     let mut sizes: Vec<Metric3> = sums.iter().zip(&most).map(size).map(Metric3::isotropic).collect();
     let ends: Vec<[u32; 2]> = (0..edges.len()).map(|edge| edges.get(edge).ends).collect();
     bound_gradation(&mesh.points, &ends, &mut sizes, GRADATION);

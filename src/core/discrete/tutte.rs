@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::chart::Stretch;
+use super::rigid::snapped;
 use super::sparse::Means;
 use crate::core::geometry::predicates::orient;
 
@@ -17,7 +18,7 @@ const LEAST_WEIGHT: f64 = 1e-4;
 
 /// Where the nodes of a disc lie in the plane; those of the border are the first `border` ones, anticlockwise. `None` where rounding
 /// keeps a triangle from lying the right way round.
-pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize) -> Option<Vec<DVec2>> {
+pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64) -> Option<Vec<DVec2>> {
     let lengths: Vec<f64> = (0..border).map(|k| xyz[k].distance(xyz[(k + 1) % border])).collect();
     let around: f64 = lengths.iter().sum();
     if around.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) || border < 3 {
@@ -60,6 +61,7 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize) -> Option<Vec<D
         let (x, y) = (x?, y?);
         uv.extend(x.into_iter().zip(y).map(|(x, y)| DVec2::new(x, y) * radius));
     }
+    uv.iter_mut().for_each(|p| *p = snapped(*p, grid));
     stands(triangles, &uv).then_some(uv)
 }
 

@@ -23,13 +23,18 @@ impl Atlas {
         let (mut offsets, mut begins) = (Vec::new(), Vec::new());
         let mut end: Option<f64> = None;
         let widest = bounds.iter().map(|[low, high]| (*high - *low).max_element()).fold(0.0, f64::max);
+        let mut gap = 0.2 * widest;
+        if gap > 0.0 && charts.iter().all(|chart| matches!(chart, Ground::Facets(_))) {
+            // Coordinates of charts of triangles are multiples of a small power of two, and stay exact side by side.
+            gap = libm::ldexp(1.0, libm::ilogb(gap));
+        }
         for [low, high] in bounds {
             let offset = match end {
                 // The first stays where it is: a single face is meshed in its own coordinates.
                 None => 0.0,
                 Some(end) => {
-                    begins.push(end + 0.1 * widest);
-                    end + 0.2 * widest - low.x
+                    begins.push(end + 0.5 * gap);
+                    end + gap - low.x
                 }
             };
             offsets.push(DVec2::new(offset, 0.0));

@@ -9,7 +9,7 @@ pub mod msh;
 pub mod medit;
 pub mod vtu;
 pub mod obj;
-mod weld;
+pub(in crate::core) mod weld;
 mod polygons;
 pub mod stl;
 pub mod ply;

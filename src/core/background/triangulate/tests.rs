@@ -13,7 +13,7 @@ fn area(set: &TriangleSet) -> f64 {
 fn meshed(specs: Specs, h: f64) -> (TriangleSet, usize, Vec<usize>) {
     let domain = built(specs);
     let (divided, set) = divide_and_triangulate(&domain, &Uniform(h)).unwrap();
-    let mesh = triangles(&domain, &divided).unwrap();
+    let (mesh, _) = triangles(&domain, &divided).unwrap();
     assert_eq!(mesh.set, set);
     let points = set.point.iter().map(|p| p.index() + 1).max().unwrap();
     let mut loops: Vec<usize> = mesh.loops().iter().map(Vec::len).collect();
@@ -185,7 +185,7 @@ fn time_of_a_hundred_thousand_nodes() {
         edges.constrain(&mut cdt, &handles).unwrap();
         let constrained = start.elapsed() - loaded;
         let start = std::time::Instant::now();
-        let set = triangulate(&domain, &divided).unwrap();
+        let set = triangulate(&domain, &divided).unwrap().set;
         let whole = start.elapsed();
         let n = divided.nodes.len();
         println!(
@@ -231,7 +231,7 @@ proptest! {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let domain = built((curves, vec![face("f", "outer", &names, if crack { "crack" } else { "" }, "")]));
         let (divided, set) = divide_and_triangulate(&domain, &Uniform(h)).unwrap();
-        let mesh = triangles(&domain, &divided).unwrap();
+        let (mesh, _) = triangles(&domain, &divided).unwrap();
         prop_assert_eq!(mesh.loops().len(), 1 + holes.len() + usize::from(crack));
         prop_assert!(mesh.loops().iter().all(|l| l.len() % 2 == 0));
         let polygon = |chain: &[u32]| {
@@ -308,7 +308,7 @@ proptest! {
         let domain = built(grid(m, n, &shapes, &fixed, &diagonals));
         match divide_and_triangulate(&domain, &Uniform(h)) {
             Ok((divided, set)) => {
-                let mesh = triangles(&domain, &divided).unwrap();
+                let (mesh, _) = triangles(&domain, &divided).unwrap();
                 prop_assert!(mesh.loops().iter().all(|l| l.len().is_multiple_of(2) && l.len() >= 4));
                 prop_assert_eq!(mesh.loops().len(), domain.faces.iter().map(|f| f.walks.len()).sum::<usize>());
                 for (curve, chain) in domain.curves.iter().zip(&divided.chains) {
@@ -361,7 +361,7 @@ proptest! {
         }
         if let Ok(domain) = result {
             let (divided, _) = divide_and_triangulate(&domain, &Uniform(h)).map_err(|f| TestCaseError::fail(f.to_string()))?;
-            prop_assert_eq!(triangles(&domain, &divided).unwrap().loops().len(), domain.faces[0].walks.len());
+            prop_assert_eq!(triangles(&domain, &divided).unwrap().0.loops().len(), domain.faces[0].walks.len());
         }
     }
 }

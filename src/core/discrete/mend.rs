@@ -1,0 +1,203 @@
+//! Mending where it is certain: points at one place made one, points that hang in sides taken into them, parts that touch
+//! in a point only set apart there.
+
+use glam::DVec3;
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
+
+use super::edges::{Edges, Triangles};
+use crate::core::background::cut::Sets;
+use crate::core::io::weld::weld;
+
+/// Points nearer than this part of the largest coordinate are at one place.
+const SAME_PLACE: f64 = 1e-9;
+/// A point nearer to a side than this part of the side's length hangs in it.
+const IN_SIDE: f64 = 1e-6;
+/// Parts that touch in a point are set apart by this part of the size, and by no more than this part of an edge there.
+const APART: f64 = 1e-6;
+const APART_OF_EDGE: f64 = 1e-2;
+/// Sides in which points hang are divided round by round.
+const ROUNDS: usize = 8;
+
+impl Triangles {
+    /// Lets triangles that use points at one place use the first of them; how many points are no longer used for it.
+    pub fn weld(&mut self) -> usize {
+        let mut used: Vec<u32> = self.triangles.as_flattened().to_vec();
+        used.sort_unstable();
+        used.dedup();
+        let places: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
+        let (kept, standing) = weld(&places, SAME_PLACE);
+        if kept.len() == places.len() {
+            return 0;
+        }
+        // The first point of each place, by the order in which places were kept.
+        let mut first = vec![u32::MAX; kept.len()];
+        for (&point, &place) in used.iter().zip(&standing) {
+            let first = &mut first[place as usize];
+            *first = (*first).min(point);
+        }
+        let mut stands = vec![u32::MAX; self.points.len()];
+        used.iter().zip(&standing).for_each(|(&point, &place)| stands[point as usize] = first[place as usize]);
+        self.triangles.as_flattened_mut().iter_mut().for_each(|k| *k = stands[*k as usize]);
+        places.len() - kept.len()
+    }
+
+    /// Divides sides on the border in which points of the border hang, so that they meet there. How many points those were.
+    pub fn stitch(&mut self) -> usize {
+        let mut stitched = 0;
+        // A triangle is divided at one of its sides at a time.
+        for _ in 0..ROUNDS {
+            let hanging = self.hanging();
+            if hanging.is_empty() {
+                break;
+            }
+            for of_triangle in hanging.chunk_by(|a, b| a.0 / 3 == b.0 / 3) {
+                let (t, side) = (of_triangle[0].0 as usize / 3, of_triangle[0].0);
+                let in_side = of_triangle.iter().filter(|h| h.0 == side).map(|h| h.2);
+                let [a, b] = self.side(side);
+                let apex = self.triangles[t][(side as usize + 2) % 3];
+                let along: Vec<u32> = [a].into_iter().chain(in_side).chain([b]).collect();
+                stitched += along.len() - 2;
+                for (k, piece) in along.windows(2).enumerate() {
+                    let piece = [piece[0], piece[1], apex];
+                    if k == 0 {
+                        self.triangles[t] = piece;
+                    } else {
+                        self.triangles.push(piece);
+                        self.region.push(self.region[t]);
+                    }
+                }
+            }
+        }
+        stitched
+    }
+
+    /// Points of the border that hang in sides of the border: the side, how far along, the point, ascending.
+    fn hanging(&self) -> Vec<(u32, f64, u32)> {
+        let edges = Edges::of(&self.triangles);
+        let one = |e: usize| <[u32; 1]>::try_from(edges.get(e).sides).ok();
+        let sides: Vec<u32> = (0..edges.len()).filter_map(one).flatten().collect();
+        let mut points: Vec<u32> = sides.iter().flat_map(|&side| self.side(side)).collect();
+        points.sort_unstable();
+        points.dedup();
+        let places = points.iter().map(|&k| GeomWithData::new(self.points[k as usize].to_array(), k)).collect();
+        let tree: RTree<GeomWithData<[f64; 3], u32>> = RTree::bulk_load(places);
+        let mut hanging: Vec<(u32, f64, u32)> = Vec::new();
+        for side in sides {
+            let [a, b] = self.side(side).map(|k| self.points[k as usize]);
+            let along = b - a;
+            let margin = DVec3::splat(IN_SIDE * along.length());
+            let (low, high) = (a.min(b) - margin, a.max(b) + margin);
+            for place in tree.locate_in_envelope(AABB::from_corners(low.to_array(), high.to_array())) {
+                let p = self.points[place.data as usize] - a;
+                let t = p.dot(along) / along.length_squared();
+                let own = self.triangles[side as usize / 3].contains(&place.data);
+                if !own && t > IN_SIDE && t < 1.0 - IN_SIDE && (p - t * along).length() < margin.x {
+                    hanging.push((side, t, place.data));
+                }
+            }
+        }
+        hanging.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        hanging
+    }
+
+    /// Gives parts that touch in a point only, one of which closes around it, points of their own, a little apart. For each new
+    /// point the one that it was; how many places those were.
+    pub fn part(&mut self) -> (Vec<u32>, usize) {
+        let corners = 3 * self.triangles.len();
+        let edges = Edges::of(&self.triangles);
+        let mut sets = Sets::new(corners);
+        let next = |c: u32| c - c % 3 + (c + 1) % 3;
+        let mut is_outer = vec![false; self.points.len()];
+        for e in 0..edges.len() {
+            let edge = edges.get(e);
+            if let [_] = edge.sides {
+                edge.ends.iter().for_each(|&end| is_outer[end as usize] = true);
+            }
+            let corner_at = |side: u32, end: u32| if self.side(side)[0] == end { side } else { next(side) };
+            for other in &edge.sides[1..] {
+                edge.ends.iter().for_each(|&end| sets.join(corner_at(edge.sides[0], end), corner_at(*other, end)));
+            }
+        }
+        let mut by_point: Vec<(u32, u32, u32)> =
+            (0..corners as u32).map(|c| (self.triangles[c as usize / 3][c as usize % 3], sets.find(c), c)).collect();
+        by_point.sort_unstable();
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        self.points.iter().for_each(|&p| (low, high) = (low.min(p), high.max(p)));
+        let size = (high - low).length();
+        let (mut copies, mut places) = (Vec::new(), 0);
+        for at_point in by_point.chunk_by(|a, b| a.0 == b.0) {
+            let point = at_point[0].0;
+            let fans = at_point.chunk_by(|a, b| a.1 == b.1);
+            if fans.clone().count() < 2 || is_outer[point as usize] {
+                continue;
+            }
+            places += 1;
+            let place = self.points[point as usize];
+            for fan in fans {
+                let others = fan.iter().flat_map(|f| self.triangles[f.2 as usize / 3]).filter(|&k| k != point);
+                let others: Vec<DVec3> = others.map(|k| self.points[k as usize]).collect();
+                let way = others.iter().sum::<DVec3>() / others.len() as f64 - place;
+                let shortest = others.iter().map(|p| p.distance(place)).fold(f64::INFINITY, f64::min);
+                let far = (APART * size).min(APART_OF_EDGE * shortest);
+                self.points.push(place + way.normalize_or_zero() * far);
+                copies.push(point);
+                for &(_, _, c) in fan {
+                    self.triangles[c as usize / 3][c as usize % 3] = self.points.len() as u32 - 1;
+                }
+            }
+        }
+        (copies, places)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::discrete::fixtures::{cube, plate};
+
+    fn borders(mesh: &Triangles) -> usize {
+        let edges = Edges::of(&mesh.triangles);
+        (0..edges.len()).filter(|&e| edges.get(e).sides.len() == 1).count()
+    }
+
+    /// Two meshes as one, without a common point.
+    fn beside(mut one: Triangles, other: &Triangles, by: DVec3) -> Triangles {
+        let n = one.points.len() as u32;
+        one.points.extend(other.points.iter().map(|p| *p + by));
+        one.triangles.extend(other.triangles.iter().map(|t| t.map(|k| k + n)));
+        one.region.extend(&other.region);
+        one
+    }
+
+    #[test]
+    fn points_at_one_place_are_used_as_one() {
+        let plate_size = 1.0;
+        let mut mesh = beside(plate(4, 0.0), &plate(4, 0.0), DVec3::X * plate_size);
+        assert_eq!((borders(&mesh), mesh.weld(), borders(&mesh)), (32, 5, 24));
+        assert_eq!(mesh.weld(), 0);
+    }
+
+    #[test]
+    fn points_that_hang_in_sides_are_taken_into_them() {
+        // Five points of the one border stand on four, or two, sides of the other.
+        let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
+        assert_eq!((mesh.weld(), mesh.stitch()), (3, 2));
+        assert_eq!(borders(&mesh), 16 + 8 - 4 - 2);
+        let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.area_vector(t).length()).sum();
+        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch() == 0);
+    }
+
+    #[test]
+    fn cubes_that_touch_in_a_corner_are_set_apart_and_plates_are_not() {
+        let mut mesh = beside(cube(1), &cube(1), DVec3::ONE);
+        assert_eq!(mesh.weld(), 1);
+        let points = mesh.points.len();
+        let (copies, places) = mesh.part();
+        assert_eq!((copies.len(), places, mesh.points.len()), (2, 1, points + 2));
+        let [a, b] = [mesh.points[points], mesh.points[points + 1]];
+        assert!(a.distance(b) > 1e-7 && a.distance(b) < 1e-5);
+        let mut mesh = beside(plate(2, 0.0), &plate(2, 0.0), DVec3::new(1.0, 1.0, 0.0));
+        assert_eq!((mesh.weld(), mesh.part().1), (1, 0));
+    }
+}
