@@ -284,6 +284,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("last_resort_recut", resort.recut),
         ("last_resort_template_quad", resort.template_quads),
         ("smoothing_move", finished.moves),
+        ("unfolding_collapsed", finished.unfolded.collapsed),
         ("unfolding_moved", finished.unfolded.moved),
         ("unfolding_pillowed", finished.unfolded.pillowed),
     ];

@@ -122,6 +122,11 @@ pub enum Cleaning {
 pub enum Mending {
     /// Its corners were moved.
     Moved,
+    /// Two of its corners became one, and it is no more.
+    Collapsed {
+        /// The node that they are.
+        kept: NodeId,
+    },
     /// A smaller quadrilateral was inlaid, with four between the two.
     Pillowed {
         /// Its nodes.

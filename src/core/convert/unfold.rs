@@ -1,17 +1,20 @@
 //! Quadrilaterals that fold over their surface, mended one at a time after the last smoothing. Everything before works in the
 //! parametric plane, where all stays strictly convex; between straight sides in space a corner may still turn against the surface,
-//! or a node between two faces have two edges only. The nodes around are moved first; where that does not help the
-//! quadrilateral is pillowed: a smaller one is inlaid, with four between the two.
+//! or a node between two faces have two edges only, or what lies on two faces come to one place. The nodes around are moved first;
+//! where that does not help the quadrilateral is collapsed along a diagonal, or pillowed: a smaller one is inlaid, with
+//! four between the two.
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::energy;
 use super::event::{Event, Mending};
+use super::settle::{Nodes, put, settle};
 use super::worklist::{ListMark, Worklist};
+use crate::core::io::weld::weld;
 use crate::core::mesh::half_edge::{Mesh, NewElement};
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::ids::{ElementId, NodeId, PointId};
 use crate::core::mesh::refusals::Operation;
 use crate::core::metric::field::MetricSource;
 use crate::core::metric::tensor::Metric2;
@@ -24,6 +27,10 @@ const ENOUGH: f64 = 0.1;
 const STEPS: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
 const DIRECTIONS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.7, 0.7], [0.0, 1.0], [-0.7, 0.7], [-1.0, 0.0], [-0.7, -0.7], [0.0, -1.0], [0.7, -0.7]];
+/// How far a node is moved from the place of another.
+const STIRRED: f64 = 0.05;
+/// Nodes nearer than this part of the largest coordinate are at one place.
+const SAME_PLACE: f64 = 4e-9;
 /// How often the nodes at hand are moved in turn.
 const ROUNDS: usize = 4;
 /// How far the nodes of an inlaid quadrilateral lie from the corners towards the middle.
@@ -34,8 +41,10 @@ const LOOKS: usize = 24;
 /// What was mended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Unfolded {
-    /// Quadrilaterals that no longer fold since nodes were moved.
+    /// Times that nodes were moved.
     pub moved: usize,
+    /// Quadrilaterals that were collapsed.
+    pub collapsed: usize,
     /// Quadrilaterals that were pillowed.
     pub pillowed: usize,
 }
@@ -46,23 +55,24 @@ pub(super) struct Unfolding<'a> {
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Nodes of quadrilaterals that are to be mended.
     list: Worklist,
-    /// Nodes of two faces with two edges between both, and one of each quadrilateral that has the points of another; ascending.
-    shared: Vec<NodeId>,
+    /// Nodes of two faces with two edges between both, ascending.
+    doublets: Vec<NodeId>,
+    /// The points of quadrilaterals that a later one on another face has too, each ascending, all ascending.
+    doubles: Vec<[PointId; 4]>,
+    /// Free nodes at the place of another in space, ascending.
+    coincident: Vec<NodeId>,
 }
 
 impl<'a> Unfolding<'a> {
     /// The mending at its beginning.
     pub fn begin(mesh: &Mesh, source: Arc<dyn MetricSource + Send + Sync + 'a>, recording: bool) -> Unfolding<'a> {
-        let mut shared = doublets(mesh);
-        shared.extend(doubles(mesh));
-        shared.sort_unstable();
+        let (doublets, (doubles, later), coincident) = (doublets(mesh), doubles(mesh), coincident(mesh));
         let folded = folded(mesh);
-        let mut list = Worklist::new(LOOKS * (folded.len() + shared.len()), recording);
-        for e in folded {
-            list.add(mesh.quad(e)[0]);
-        }
-        shared.iter().for_each(|&node| list.add(node));
-        Unfolding { source, list, shared }
+        let all = folded.len() + doublets.len() + doubles.len() + coincident.len();
+        let mut list = Worklist::new(LOOKS * all, recording);
+        folded.iter().chain(&later).for_each(|&e| list.add(mesh.quad(e)[0]));
+        doublets.iter().chain(&coincident).for_each(|&node| list.add(node));
+        Unfolding { source, list, doublets, doubles, coincident }
     }
 
     pub fn list(&self) -> &Worklist {
@@ -80,7 +90,9 @@ impl<'a> Unfolding<'a> {
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        self.list.bytes() + size_of::<NodeId>() * self.shared.capacity()
+        self.list.bytes()
+            + size_of::<NodeId>() * (self.doublets.capacity() + self.coincident.capacity())
+            + size_of::<[PointId; 4]>() * self.doubles.capacity()
     }
 
     /// Mends the next quadrilateral; what cannot be mended is passed over. None where nothing waits any more.
@@ -89,20 +101,22 @@ impl<'a> Unfolding<'a> {
             if !mesh.has_node(node) {
                 continue;
             }
-            let worst = mesh.fan(node).map(|h| h.element()).filter(|&e| mesh.is_quad(e));
-            let worst = worst.map(|e| (sine(mesh, e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            let Some((before, element)) = worst else { continue };
+            let Some((before, element)) = self.at_fault(mesh, node) else { continue };
             let mut nodes: Vec<NodeId> = mesh.corners(element).collect();
-            let is_shared = self.shared.binary_search(&node).is_ok() && mesh.fan(node).count() == 1;
-            let how = if before < FOLDED && self.moved(mesh, element) {
+            let how = if before >= FOLDED && self.coincident.binary_search(&node).is_ok() {
+                self.stirred(mesh, node).then_some(Mending::Moved)
+            } else if before < FOLDED && self.moved(mesh, element) {
                 Some(Mending::Moved)
-            } else if before < FOLDED || is_shared {
+            } else if before < FOLDED
+                && let Some(kept) = self.collapsed(mesh, element)
+            {
+                nodes.retain(|&n| mesh.has_node(n));
+                Some(Mending::Collapsed { kept })
+            } else {
                 self.pillowed(mesh, element).map(|inner| {
                     nodes.extend(inner);
                     Mending::Pillowed { inner }
                 })
-            } else {
-                None
             };
             if how.is_some() {
                 for &n in &nodes {
@@ -123,15 +137,68 @@ impl<'a> Unfolding<'a> {
         None
     }
 
-    /// Moves the free corners of a quadrilateral in turn, each to where the least sine around it is greatest. Whether the
-    /// quadrilateral no longer folds, and nothing around that did not; otherwise all is as before.
+    /// The quadrilateral at a node that is to be mended, and its least sine: the worst one that folds; else one that has the points
+    /// of another, or makes a doublet with another, or any where the node lies on another.
+    fn at_fault(&self, mesh: &Mesh, node: NodeId) -> Option<(f64, ElementId)> {
+        let quads = || mesh.fan(node).map(|h| h.element()).filter(|&e| mesh.is_quad(e));
+        let worst = quads().map(|e| (sine(mesh, e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+        if worst.0 < FOLDED {
+            return Some(worst);
+        }
+        let is_double = |&e: &ElementId| points(mesh, e).is_some_and(|p| self.doubles.binary_search(&p).is_ok());
+        if let Some(double) = quads().find(is_double) {
+            return Some((sine(mesh, double), double));
+        }
+        let is_doublet = self.doublets.binary_search(&node).is_ok() && mesh.fan(node).count() == 1;
+        (is_doublet || self.coincident.binary_search(&node).is_ok()).then_some(worst)
+    }
+
+    /// Moves a free node a little, to leave the place of another; whether that folds nothing.
+    fn stirred(&self, mesh: &mut Mesh, node: NodeId) -> bool {
+        let axes = energy::unit_axes(&mesh.metric(node));
+        DIRECTIONS.iter().any(|&[x, y]| {
+            let place = mesh.uv(node) + (axes[0] * x + axes[1] * y) * STIRRED;
+            let (Ok(metric), Ok(())) = (self.source.metric(place), mesh.can_move(node, place)) else { return false };
+            let mark = mesh.mark();
+            mesh.move_node(node, place, metric);
+            let folds = star_sine(mesh, node) < FOLDED;
+            if folds {
+                mesh.take_back(mark);
+            }
+            !folds
+        })
+    }
+
+    /// Merges two opposite corners of a quadrilateral, so that it goes; the node that both become. None where not fewer elements
+    /// around fold then.
+    fn collapsed(&self, mesh: &mut Mesh, element: ElementId) -> Option<NodeId> {
+        let before = flaws(mesh, &mesh.quad(element));
+        for h_ab in mesh.half_edges(element).collect::<Vec<_>>() {
+            let mark = mesh.mark();
+            let [a, b, c, d] = [0, 1, 2, 3].map(|i| mesh.origin(element.half_edge((h_ab.corner() + i) % 4)));
+            let middle = mesh.uv(a).midpoint(mesh.uv(c));
+            if mesh.collapse_diamond(h_ab).is_ok()
+                && (mesh.is_fixed(c) || put(mesh, &*self.source, c, middle))
+                && settle(mesh, &*self.source, &Nodes::from_slice(&[b, c, d]))
+            {
+                let core = [b, c, d];
+                for _ in 0..ROUNDS {
+                    core.iter().for_each(|&node| self.improve(mesh, node));
+                }
+                if flaws(mesh, &core) < before {
+                    return Some(c);
+                }
+            }
+            mesh.take_back(mark);
+        }
+        None
+    }
+
+    /// Moves the free corners of a quadrilateral in turn, each to where the least sine around it is greatest. Whether
+    /// fewer elements around fold then; otherwise all is as before.
     fn moved(&self, mesh: &mut Mesh, element: ElementId) -> bool {
         let corners = mesh.quad(element);
-        let around = |mesh: &Mesh| {
-            let elements = corners.iter().flat_map(|&n| mesh.fan(n).map(|h| h.element()));
-            elements.map(|e| sine(mesh, e)).fold(f64::INFINITY, f64::min)
-        };
-        let (mark, before) = (mesh.mark(), around(mesh));
+        let (mark, before) = (mesh.mark(), flaws(mesh, &corners));
         for _ in 0..ROUNDS {
             for node in corners {
                 self.improve(mesh, node);
@@ -140,7 +207,7 @@ impl<'a> Unfolding<'a> {
                 break;
             }
         }
-        let is_better = sine(mesh, element) >= FOLDED && around(mesh) >= before.min(FOLDED);
+        let is_better = flaws(mesh, &corners) < before;
         if !is_better {
             mesh.take_back(mark);
         }
@@ -251,16 +318,58 @@ fn doublets(mesh: &Mesh) -> Vec<NodeId> {
     found
 }
 
-/// A node of each quadrilateral whose points are those of an earlier one on another face: it is alone there, and so are the others.
-fn doubles(mesh: &Mesh) -> Vec<NodeId> {
-    let alone = |e: ElementId| mesh.half_edges(e).all(|h| mesh.twin(h).is_none());
-    let mut quads: Vec<([u32; 4], ElementId)> = Vec::new();
-    for e in mesh.elements().filter(|&e| mesh.is_quad(e) && alone(e)) {
-        let mut points = mesh.quad(e).map(|n| mesh.point(n).map_or(u32::MAX, |p| p.0));
-        points.sort_unstable();
-        quads.push((points, e));
-    }
+/// The points of a quadrilateral whose nodes all lie on borders, ascending.
+fn points(mesh: &Mesh, e: ElementId) -> Option<[PointId; 4]> {
+    let [a, b, c, d] = mesh.quad(e).map(|n| mesh.point(n));
+    let mut points = [a?, b?, c?, d?];
+    points.sort_unstable();
+    Some(points)
+}
+
+/// The points of quadrilaterals that have those of an earlier one on another face, and these quadrilaterals.
+fn doubles(mesh: &Mesh) -> (Vec<[PointId; 4]>, Vec<ElementId>) {
+    let quads = mesh.elements().filter(|&e| mesh.is_quad(e));
+    let mut quads: Vec<([PointId; 4], ElementId)> = quads.filter_map(|e| Some((points(mesh, e)?, e))).collect();
     quads.sort_unstable();
-    let later = quads.windows(2).filter(|w| w[0].0 == w[1].0);
-    later.map(|w| mesh.quad(w[1].1)[0]).collect()
+    quads.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1]).unzip()
+}
+
+/// Free nodes at the place of another node in space, ascending: two sheets of the surface lie on each other there.
+fn coincident(mesh: &Mesh) -> Vec<NodeId> {
+    let mut seen: Vec<Option<PointId>> = Vec::new();
+    // Fixed nodes first, so that free ones are found to be where those are; of several at one point only the first.
+    let mut nodes: Vec<NodeId> = Vec::new();
+    for node in mesh.nodes() {
+        if let Some(point) = mesh.point(node) {
+            if seen.len() <= point.index() {
+                seen.resize(point.index() + 1, None);
+            }
+            if seen[point.index()].replace(point).is_none() {
+                nodes.push(node);
+            }
+        }
+    }
+    nodes.extend(mesh.nodes().filter(|&n| !mesh.is_fixed(n)));
+    let places: Vec<DVec3> = nodes.iter().map(|&n| mesh.xyz(n)).collect();
+    let standing = weld(&places, SAME_PLACE).1;
+    // A place is kept under a new number the first time it is seen.
+    let mut next = 0;
+    let is_later = |at: &u32| {
+        let is_new = *at == next;
+        next += u32::from(is_new);
+        !is_new
+    };
+    let later: Vec<bool> = standing.iter().map(is_later).collect();
+    let mut found: Vec<NodeId> =
+        nodes.iter().zip(later).filter(|(n, later)| *later && !mesh.is_fixed(**n)).map(|(n, _)| *n).collect();
+    found.sort_unstable();
+    found
+}
+
+/// How many elements around nodes fold.
+fn flaws(mesh: &Mesh, nodes: &[NodeId]) -> usize {
+    let mut around: Vec<ElementId> = nodes.iter().flat_map(|&n| mesh.fan(n).map(|h| h.element())).collect();
+    around.sort_unstable();
+    around.dedup();
+    around.into_iter().filter(|&e| mesh.is_quad(e) && sine(mesh, e) < FOLDED).count()
 }

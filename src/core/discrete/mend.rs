@@ -108,11 +108,12 @@ impl Triangles {
         let edges = Edges::of(&self.triangles);
         let mut sets = Sets::new(corners);
         let next = |c: u32| c - c % 3 + (c + 1) % 3;
-        let mut is_outer = vec![false; self.points.len()];
+        // How many sides of the border begin or end at each point: two for each part that does not close around it.
+        let mut outer = vec![0; self.points.len()];
         for e in 0..edges.len() {
             let edge = edges.get(e);
             if let [_] = edge.sides {
-                edge.ends.iter().for_each(|&end| is_outer[end as usize] = true);
+                edge.ends.iter().for_each(|&end| outer[end as usize] += 1);
             }
             let corner_at = |side: u32, end: u32| if self.side(side)[0] == end { side } else { next(side) };
             for other in &edge.sides[1..] {
@@ -129,7 +130,8 @@ impl Triangles {
         for at_point in by_point.chunk_by(|a, b| a.0 == b.0) {
             let point = at_point[0].0;
             let fans = at_point.chunk_by(|a, b| a.1 == b.1);
-            if fans.clone().count() < 2 || is_outer[point as usize] {
+            let fan_count = fans.clone().count();
+            if fan_count < 2 || 2 * fan_count <= outer[point as usize] {
                 continue;
             }
             places += 1;
