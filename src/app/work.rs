@@ -287,6 +287,7 @@ fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("unfolding_collapsed", finished.unfolded.collapsed),
         ("unfolding_moved", finished.unfolded.moved),
         ("unfolding_pillowed", finished.unfolded.pillowed),
+        ("unfolding_rotated", finished.unfolded.rotated),
     ];
     let counts = counts.into_iter().map(|(name, count)| (name, count as u64));
     counts.chain(front).map(|(name, count)| (name.to_owned(), count)).collect()

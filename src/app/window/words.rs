@@ -111,6 +111,7 @@ pub fn event(event: &Event) -> String {
         Event::Unfolded { element, how, .. } => {
             let how = match how {
                 Mending::Moved => "its corners were moved",
+                Mending::Rotated { .. } => "an edge was rotated",
                 Mending::Collapsed { .. } => "two of its corners were made one",
                 Mending::Pillowed { .. } => "a smaller quadrilateral was inlaid",
             };

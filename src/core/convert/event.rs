@@ -122,6 +122,11 @@ pub enum Cleaning {
 pub enum Mending {
     /// Its corners were moved.
     Moved,
+    /// An edge of it was rotated.
+    Rotated {
+        /// The ends that the edge has now.
+        new: [NodeId; 2],
+    },
     /// Two of its corners became one, and it is no more.
     Collapsed {
         /// The node that they are.

@@ -158,9 +158,10 @@ impl Converter<'_> {
         let part = self.finishing.unfolding.get_or_insert_with(|| Unfolding::begin(mesh, source, recording));
         let event = part.step(mesh, keep_journal)?;
         if let Event::Unfolded { how, .. } = event {
-            let Unfolded { moved, collapsed, pillowed } = &mut self.finished.unfolded;
+            let Unfolded { moved, rotated, collapsed, pillowed } = &mut self.finished.unfolded;
             match how {
                 Mending::Moved => *moved += 1,
+                Mending::Rotated { .. } => *rotated += 1,
                 Mending::Collapsed { .. } => *collapsed += 1,
                 Mending::Pillowed { .. } => *pillowed += 1,
             }

@@ -1,7 +1,7 @@
 //! Quadrilaterals that fold over their surface, mended one at a time after the last smoothing. Everything before works in the
 //! parametric plane, where all stays strictly convex; between straight sides in space a corner may still turn against the surface,
 //! or a node between two faces have two edges only, or what lies on two faces come to one place. The nodes around are moved first;
-//! where that does not help the quadrilateral is collapsed along a diagonal, or pillowed: a smaller one is inlaid, with
+//! where that does not help the quadrilateral has an edge rotated, is collapsed along a diagonal, or pillowed: a smaller one is inlaid, with
 //! four between the two.
 
 use std::sync::Arc;
@@ -43,6 +43,8 @@ const LOOKS: usize = 24;
 pub struct Unfolded {
     /// Times that nodes were moved.
     pub moved: usize,
+    /// Edges that were rotated.
+    pub rotated: usize,
     /// Quadrilaterals that were collapsed.
     pub collapsed: usize,
     /// Quadrilaterals that were pillowed.
@@ -108,6 +110,11 @@ impl<'a> Unfolding<'a> {
             } else if before < FOLDED && self.moved(mesh, element) {
                 Some(Mending::Moved)
             } else if before < FOLDED
+                && let Some(new) = self.rotated(mesh, element)
+            {
+                nodes.extend(new);
+                Some(Mending::Rotated { new })
+            } else if before < FOLDED
                 && let Some(kept) = self.collapsed(mesh, element)
             {
                 nodes.retain(|&n| mesh.has_node(n));
@@ -120,8 +127,8 @@ impl<'a> Unfolding<'a> {
             };
             if how.is_some() {
                 for &n in &nodes {
-                    let folds = |e: ElementId| mesh.is_quad(e) && sine(mesh, e) < FOLDED;
-                    if mesh.fan(n).any(|h| folds(h.element())) {
+                    let waits = |e: ElementId| mesh.is_quad(e) && (sine(mesh, e) < FOLDED || self.is_double(mesh, e));
+                    if mesh.fan(n).any(|h| waits(h.element())) {
                         self.list.add(n);
                     }
                 }
@@ -145,12 +152,15 @@ impl<'a> Unfolding<'a> {
         if worst.0 < FOLDED {
             return Some(worst);
         }
-        let is_double = |&e: &ElementId| points(mesh, e).is_some_and(|p| self.doubles.binary_search(&p).is_ok());
-        if let Some(double) = quads().find(is_double) {
+        if let Some(double) = quads().find(|&e| self.is_double(mesh, e)) {
             return Some((sine(mesh, double), double));
         }
         let is_doublet = self.doublets.binary_search(&node).is_ok() && mesh.fan(node).count() == 1;
         (is_doublet || self.coincident.binary_search(&node).is_ok()).then_some(worst)
+    }
+
+    fn is_double(&self, mesh: &Mesh, e: ElementId) -> bool {
+        points(mesh, e).is_some_and(|points| self.doubles.binary_search(&points).is_ok())
     }
 
     /// Moves a free node a little, to leave the place of another; whether that folds nothing.
@@ -167,6 +177,28 @@ impl<'a> Unfolding<'a> {
             }
             !folds
         })
+    }
+
+    /// Rotates an edge of a quadrilateral; the ends that it has then. None where not fewer elements around fold then.
+    fn rotated(&self, mesh: &mut Mesh, element: ElementId) -> Option<[NodeId; 2]> {
+        for h in mesh.half_edges(element).collect::<Vec<_>>() {
+            let Ok(ring) = mesh.hexagon(h) else { continue };
+            let before = flaws(mesh, &ring);
+            for by in [1, 2] {
+                let mark = mesh.mark();
+                let core = Nodes::from_slice(&ring);
+                if mesh.rotate_edge(h, by).is_ok() && settle(mesh, &*self.source, &core) {
+                    for _ in 0..ROUNDS {
+                        core.iter().for_each(|&node| self.improve(mesh, node));
+                    }
+                    if flaws(mesh, &ring) < before {
+                        return Some([ring[by], ring[by + 3]]);
+                    }
+                }
+                mesh.take_back(mark);
+            }
+        }
+        None
     }
 
     /// Merges two opposite corners of a quadrilateral, so that it goes; the node that both become. None where not fewer elements
@@ -220,7 +252,11 @@ impl<'a> Unfolding<'a> {
             return;
         }
         let mut best = star_sine(mesh, node);
-        for step in STEPS {
+        // Steps by the size that is asked for, then by that of the elements that are there.
+        let (from, metric) = (mesh.uv(node), mesh.metric(node));
+        let shortest = mesh.neighbours(node).map(|n| metric.norm2(mesh.uv(n) - from)).fold(1.0, f64::min).sqrt();
+        let steps = STEPS.into_iter().chain(STEPS.map(|step| step * shortest));
+        for step in steps {
             if best >= ENOUGH {
                 return;
             }
