@@ -20,6 +20,9 @@ use crate::core::metric::field::MetricSource;
 const ROUNDS: usize = 64;
 /// Two chords of a corner whose sine in space is below this are divided more finely.
 const LEAST_SINE: f64 = 0.02;
+/// So is a chord that leaves its curve by more than this part of its length times that sine: the surface would bulge out of the
+/// corner.
+const MOST_BULGE: f64 = 0.25;
 
 /// A chord of a divided curve: the curve, and which of its chords.
 pub type DividedChord = (CurveId, u32);
@@ -393,12 +396,32 @@ impl<'a> Edges<'a> {
                 let middle = t.iter().map(|&n| self.at(n)).sum::<DVec2>() / 3.0;
                 let normal = spatial.atlas.at(self.at(at).lerp(middle, 1e-3)).normal();
                 let (a, b) = (q - p, r - p);
-                if a.cross(b).dot(normal) < LEAST_SINE * a.length() * b.length() {
+                let sine = a.cross(b).dot(normal) / (a.length() * b.length()).max(f64::MIN_POSITIVE);
+                if sine < LEAST_SINE {
                     folded.extend([one, other]);
+                } else {
+                    folded.extend([one, other].into_iter().filter(|&chord| self.bulge(chord) > MOST_BULGE * sine));
                 }
             }
         }
         folded
+    }
+
+    /// How far a chord of a curve of sides is from it in space, by its length; 0 for other curves, whose charts are smooth.
+    fn bulge(&self, (id, k): DividedChord) -> f64 {
+        let (curve, Some(spatial)) = (&self.domain.curves[id.index()], &self.domain.spatial) else { return 0.0 };
+        if !curve.curve.polygonal() {
+            return 0.0;
+        }
+        let [from, to] = [k, k + 1].map(|k| self.divided.parameters[id.index()][k as usize]);
+        let [a, b] = [k, k + 1].map(|k| self.divided.xyz[self.divided.chains[id.index()][k as usize] as usize]);
+        let along = b - a;
+        let off = |t: f64| {
+            let p = spatial.curves[id.index()].point(t) - a;
+            (p - along * (p.dot(along) / along.length_squared()).clamp(0.0, 1.0)).length()
+        };
+        let inside = curve.fine.iter().map(|entry| entry.0).filter(|&t| from < t && t < to);
+        inside.map(off).fold(0.0, f64::max) / along.length()
     }
 
     fn is_positive(&self, triangle: [u32; 3]) -> bool {

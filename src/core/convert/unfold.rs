@@ -57,24 +57,29 @@ pub(super) struct Unfolding<'a> {
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Nodes of quadrilaterals that are to be mended.
     list: Worklist,
-    /// Nodes of two faces with two edges between both, ascending.
-    doublets: Vec<NodeId>,
+    /// Nodes of two faces with two edges between both, each with its copy on the other face, ascending.
+    doublets: Vec<[NodeId; 2]>,
     /// The points of quadrilaterals that a later one on another face has too, each ascending, all ascending.
     doubles: Vec<[PointId; 4]>,
     /// Free nodes at the place of another in space, ascending.
     coincident: Vec<NodeId>,
+    /// Nodes of an element nearer than this in space are at one place.
+    near: f64,
 }
 
 impl<'a> Unfolding<'a> {
     /// The mending at its beginning.
     pub fn begin(mesh: &Mesh, source: Arc<dyn MetricSource + Send + Sync + 'a>, recording: bool) -> Unfolding<'a> {
-        let (doublets, (doubles, later), coincident) = (doublets(mesh), doubles(mesh), coincident(mesh));
-        let folded = folded(mesh);
-        let all = folded.len() + doublets.len() + doubles.len() + coincident.len();
-        let mut list = Worklist::new(LOOKS * all, recording);
-        folded.iter().chain(&later).for_each(|&e| list.add(mesh.quad(e)[0]));
-        doublets.iter().chain(&coincident).for_each(|&node| list.add(node));
-        Unfolding { source, list, doublets, doubles, coincident }
+        let (doublets, (doubles, later), (coincident, near)) = (doublets(mesh), doubles(mesh), coincident(mesh));
+        let list = Worklist::new(0, false);
+        let mut work = Unfolding { source, list, doublets, doubles, coincident, near };
+        let folded: Vec<ElementId> = mesh.elements().filter(|&e| work.folds(mesh, e)).collect();
+        let all = folded.len() + later.len() + work.doublets.len() + work.coincident.len();
+        work.list = Worklist::new(LOOKS * all, recording);
+        folded.iter().chain(&later).for_each(|&e| work.list.add(mesh.quad(e)[0]));
+        work.doublets.iter().for_each(|&[node, _]| work.list.add(node));
+        work.coincident.iter().for_each(|&node| work.list.add(node));
+        work
     }
 
     pub fn list(&self) -> &Worklist {
@@ -93,7 +98,7 @@ impl<'a> Unfolding<'a> {
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
         self.list.bytes()
-            + size_of::<NodeId>() * (self.doublets.capacity() + self.coincident.capacity())
+            + size_of::<NodeId>() * (2 * self.doublets.capacity() + self.coincident.capacity())
             + size_of::<[PointId; 4]>() * self.doubles.capacity()
     }
 
@@ -127,7 +132,8 @@ impl<'a> Unfolding<'a> {
             };
             if how.is_some() {
                 for &n in &nodes {
-                    let waits = |e: ElementId| mesh.is_quad(e) && (sine(mesh, e) < FOLDED || self.is_double(mesh, e));
+                    let waits =
+                        |e: ElementId| mesh.is_quad(e) && (self.sine(mesh, e) < FOLDED || self.is_double(mesh, e));
                     if mesh.fan(n).any(|h| waits(h.element())) {
                         self.list.add(n);
                     }
@@ -137,7 +143,7 @@ impl<'a> Unfolding<'a> {
                 mesh.commit();
             }
             if let Some(how) = how {
-                let after = mesh.fan(nodes[0]).map(|h| sine(mesh, h.element())).fold(f64::INFINITY, f64::min);
+                let after = mesh.fan(nodes[0]).map(|h| self.sine(mesh, h.element())).fold(f64::INFINITY, f64::min);
                 return Some(Event::Unfolded { element, how, sine: [before, after] });
             }
         }
@@ -148,19 +154,43 @@ impl<'a> Unfolding<'a> {
     /// of another, or makes a doublet with another, or any where the node lies on another.
     fn at_fault(&self, mesh: &Mesh, node: NodeId) -> Option<(f64, ElementId)> {
         let quads = || mesh.fan(node).map(|h| h.element()).filter(|&e| mesh.is_quad(e));
-        let worst = quads().map(|e| (sine(mesh, e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+        let worst = quads().map(|e| (self.sine(mesh, e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
         if worst.0 < FOLDED {
             return Some(worst);
         }
         if let Some(double) = quads().find(|&e| self.is_double(mesh, e)) {
-            return Some((sine(mesh, double), double));
+            return Some((self.sine(mesh, double), double));
         }
-        let is_doublet = self.doublets.binary_search(&node).is_ok() && mesh.fan(node).count() == 1;
+        let pair = self.doublets.binary_search_by_key(&node, |pair| pair[0]).ok().map(|k| self.doublets[k]);
+        let is_doublet = pair.is_some_and(|pair| pair.iter().all(|&n| mesh.fan(n).count() == 1));
         (is_doublet || self.coincident.binary_search(&node).is_ok()).then_some(worst)
     }
 
     fn is_double(&self, mesh: &Mesh, e: ElementId) -> bool {
         points(mesh, e).is_some_and(|points| self.doubles.binary_search(&points).is_ok())
+    }
+
+    /// The least sine of a quadrilateral's corners in space, against its own normal and that of the surface: 0 or less where it
+    /// folds, and where a side is nothing.
+    fn sine(&self, mesh: &Mesh, e: ElementId) -> f64 {
+        mesh.least_sine(e, self.near)
+    }
+
+    /// The least sine of the elements around a node.
+    fn star_sine(&self, mesh: &Mesh, node: NodeId) -> f64 {
+        mesh.fan(node).map(|h| self.sine(mesh, h.element())).fold(f64::INFINITY, f64::min)
+    }
+
+    fn folds(&self, mesh: &Mesh, e: ElementId) -> bool {
+        mesh.is_quad(e) && self.sine(mesh, e) < FOLDED
+    }
+
+    /// How many elements around nodes fold.
+    fn flaws(&self, mesh: &Mesh, nodes: &[NodeId]) -> usize {
+        let mut around: Vec<ElementId> = nodes.iter().flat_map(|&n| mesh.fan(n).map(|h| h.element())).collect();
+        around.sort_unstable();
+        around.dedup();
+        around.into_iter().filter(|&e| self.folds(mesh, e)).count()
     }
 
     /// Moves a free node a little, to leave the place of another; whether that folds nothing.
@@ -171,7 +201,7 @@ impl<'a> Unfolding<'a> {
             let (Ok(metric), Ok(())) = (self.source.metric(place), mesh.can_move(node, place)) else { return false };
             let mark = mesh.mark();
             mesh.move_node(node, place, metric);
-            let folds = star_sine(mesh, node) < FOLDED;
+            let folds = self.star_sine(mesh, node) < FOLDED;
             if folds {
                 mesh.take_back(mark);
             }
@@ -183,7 +213,7 @@ impl<'a> Unfolding<'a> {
     fn rotated(&self, mesh: &mut Mesh, element: ElementId) -> Option<[NodeId; 2]> {
         for h in mesh.half_edges(element).collect::<Vec<_>>() {
             let Ok(ring) = mesh.hexagon(h) else { continue };
-            let before = flaws(mesh, &ring);
+            let before = self.flaws(mesh, &ring);
             for by in [1, 2] {
                 let mark = mesh.mark();
                 let core = Nodes::from_slice(&ring);
@@ -191,7 +221,7 @@ impl<'a> Unfolding<'a> {
                     for _ in 0..ROUNDS {
                         core.iter().for_each(|&node| self.improve(mesh, node));
                     }
-                    if flaws(mesh, &ring) < before {
+                    if self.flaws(mesh, &ring) < before {
                         return Some([ring[by], ring[by + 3]]);
                     }
                 }
@@ -204,7 +234,7 @@ impl<'a> Unfolding<'a> {
     /// Merges two opposite corners of a quadrilateral, so that it goes; the node that both become. None where not fewer elements
     /// around fold then.
     fn collapsed(&self, mesh: &mut Mesh, element: ElementId) -> Option<NodeId> {
-        let before = flaws(mesh, &mesh.quad(element));
+        let before = self.flaws(mesh, &mesh.quad(element));
         for h_ab in mesh.half_edges(element).collect::<Vec<_>>() {
             let mark = mesh.mark();
             let [a, b, c, d] = [0, 1, 2, 3].map(|i| mesh.origin(element.half_edge((h_ab.corner() + i) % 4)));
@@ -217,7 +247,7 @@ impl<'a> Unfolding<'a> {
                 for _ in 0..ROUNDS {
                     core.iter().for_each(|&node| self.improve(mesh, node));
                 }
-                if flaws(mesh, &core) < before {
+                if self.flaws(mesh, &core) < before {
                     return Some(c);
                 }
             }
@@ -230,16 +260,16 @@ impl<'a> Unfolding<'a> {
     /// fewer elements around fold then; otherwise all is as before.
     fn moved(&self, mesh: &mut Mesh, element: ElementId) -> bool {
         let corners = mesh.quad(element);
-        let (mark, before) = (mesh.mark(), flaws(mesh, &corners));
+        let (mark, before) = (mesh.mark(), self.flaws(mesh, &corners));
         for _ in 0..ROUNDS {
             for node in corners {
                 self.improve(mesh, node);
             }
-            if sine(mesh, element) >= ENOUGH {
+            if self.sine(mesh, element) >= ENOUGH {
                 break;
             }
         }
-        let is_better = flaws(mesh, &corners) < before;
+        let is_better = self.flaws(mesh, &corners) < before;
         if !is_better {
             mesh.take_back(mark);
         }
@@ -251,7 +281,7 @@ impl<'a> Unfolding<'a> {
         if mesh.is_fixed(node) {
             return;
         }
-        let mut best = star_sine(mesh, node);
+        let mut best = self.star_sine(mesh, node);
         // Steps by the size that is asked for, then by that of the elements that are there.
         let (from, metric) = (mesh.uv(node), mesh.metric(node));
         let shortest = mesh.neighbours(node).map(|n| metric.norm2(mesh.uv(n) - from)).fold(1.0, f64::min).sqrt();
@@ -268,7 +298,7 @@ impl<'a> Unfolding<'a> {
                 let (Ok(metric), Ok(())) = (self.source.metric(place), mesh.can_move(node, place)) else { continue };
                 let mark = mesh.mark();
                 mesh.move_node(node, place, metric);
-                let sine = star_sine(mesh, node);
+                let sine = self.star_sine(mesh, node);
                 mesh.take_back(mark);
                 if sine > found.map_or(best, |found| found.0) {
                     found = Some((sine, place, metric));
@@ -311,7 +341,7 @@ impl<'a> Unfolding<'a> {
                 for _ in 0..ROUNDS {
                     inner.iter().for_each(|&node| self.improve(mesh, node));
                 }
-                if made.iter().all(|&e| sine(mesh, e) >= FOLDED) {
+                if made.iter().all(|&e| self.sine(mesh, e) >= FOLDED) {
                     return Some(inner);
                 }
             }
@@ -321,22 +351,8 @@ impl<'a> Unfolding<'a> {
     }
 }
 
-/// The least sine of a quadrilateral's corners in space, against its own normal and that of the surface; 0 or less where it folds.
-fn sine(mesh: &Mesh, e: ElementId) -> f64 {
-    mesh.least_sine(e)
-}
-
-fn star_sine(mesh: &Mesh, node: NodeId) -> f64 {
-    mesh.fan(node).map(|h| sine(mesh, h.element())).fold(f64::INFINITY, f64::min)
-}
-
-/// Quadrilaterals that fold, ascending.
-fn folded(mesh: &Mesh) -> Vec<ElementId> {
-    mesh.elements().filter(|&e| mesh.is_quad(e) && sine(mesh, e) < FOLDED).collect()
-}
-
-/// Nodes between two faces, each with one quadrilateral there, that have but two edges in space: one of both copies, ascending.
-fn doublets(mesh: &Mesh) -> Vec<NodeId> {
+/// Nodes between two faces, each with one quadrilateral there, that have but two edges in space: each copy with the other, ascending.
+fn doublets(mesh: &Mesh) -> Vec<[NodeId; 2]> {
     let mut at_point: Vec<(u32, NodeId)> = mesh.nodes().filter_map(|n| Some((mesh.point(n)?.0, n))).collect();
     at_point.sort_unstable();
     let mut found = Vec::new();
@@ -348,7 +364,7 @@ fn doublets(mesh: &Mesh) -> Vec<NodeId> {
             points
         };
         if mesh.fan(a).count() == 1 && mesh.fan(b).count() == 1 && others(a) == others(b) {
-            found.push(a);
+            found.extend([[a, b], [b, a]]);
         }
     }
     found
@@ -370,8 +386,9 @@ fn doubles(mesh: &Mesh) -> (Vec<[PointId; 4]>, Vec<ElementId>) {
     quads.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1]).unzip()
 }
 
-/// Free nodes at the place of another node in space, ascending: two sheets of the surface lie on each other there.
-fn coincident(mesh: &Mesh) -> Vec<NodeId> {
+/// Free nodes at the place of another node in space, ascending: two sheets of the surface lie on each other there. And how near
+/// that is.
+fn coincident(mesh: &Mesh) -> (Vec<NodeId>, f64) {
     let mut seen: Vec<Option<PointId>> = Vec::new();
     // Fixed nodes first, so that free ones are found to be where those are; of several at one point only the first.
     let mut nodes: Vec<NodeId> = Vec::new();
@@ -399,13 +416,5 @@ fn coincident(mesh: &Mesh) -> Vec<NodeId> {
     let mut found: Vec<NodeId> =
         nodes.iter().zip(later).filter(|(n, later)| *later && !mesh.is_fixed(**n)).map(|(n, _)| *n).collect();
     found.sort_unstable();
-    found
-}
-
-/// How many elements around nodes fold.
-fn flaws(mesh: &Mesh, nodes: &[NodeId]) -> usize {
-    let mut around: Vec<ElementId> = nodes.iter().flat_map(|&n| mesh.fan(n).map(|h| h.element())).collect();
-    around.sort_unstable();
-    around.dedup();
-    around.into_iter().filter(|&e| mesh.is_quad(e) && sine(mesh, e) < FOLDED).count()
+    (found, SAME_PLACE * places.iter().fold(0.0, |largest, p| p.abs().max_element().max(largest)))
 }

@@ -75,8 +75,11 @@ impl Mesh {
     }
 
     /// The least sine of an element's corners, between straight sides in space, seen along the normal of the surface there and
-    /// along its own. In the plane, where exact predicates say more, along z.
-    pub fn least_sine(&self, e: ElementId) -> f64 {
+    /// along its own; 0 at most where a side is no longer than `near`. In the plane, where exact predicates say more, along z.
+    pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
+        if self.half_edges(e).any(|h| self.xyz(self.origin(h)).distance(self.xyz(self.target(h))) <= near) {
+            return 0.0;
+        }
         self.corner_sines(e).map(|(surface, own)| surface.min(own)).fold(f64::INFINITY, f64::min)
     }
 
