@@ -382,11 +382,13 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Pairs of chords with a corner of a triangle between them that lies flat or turned over in space, along the normal of the
-    /// surface there: in a narrow corner between bent curves chords may cross in space that do not in the plane.
+    /// Chords of curves of sides with a corner of a triangle between them that lies flat or turned over in space, along the normal of
+    /// the surface there, or out of which the surface bulges: in a narrow corner between bent curves chords may cross in space
+    /// that do not in the plane. (Smooth curves are left as they are: their sizes follow the surface.)
     fn folded(&self, triangles: &[[u32; 3]]) -> Vec<DividedChord> {
         let Some(spatial) = &self.domain.spatial else { return Vec::new() };
-        let chord = |a: u32, b: u32| self.chord_of.get(&(a.min(b), a.max(b))).copied();
+        let is_polygonal = |chord: &DividedChord| self.domain.curves[chord.0.index()].curve.polygonal();
+        let chord = |a: u32, b: u32| self.chord_of.get(&(a.min(b), a.max(b))).copied().filter(is_polygonal);
         let mut folded = Vec::new();
         for t in triangles {
             for k in 0..3 {
@@ -407,12 +409,9 @@ impl<'a> Edges<'a> {
         folded
     }
 
-    /// How far a chord of a curve of sides is from it in space, by its length; 0 for other curves, whose charts are smooth.
+    /// How far a chord of a curve of sides is from it in space, by its length.
     fn bulge(&self, (id, k): DividedChord) -> f64 {
         let (curve, Some(spatial)) = (&self.domain.curves[id.index()], &self.domain.spatial) else { return 0.0 };
-        if !curve.curve.polygonal() {
-            return 0.0;
-        }
         let [from, to] = [k, k + 1].map(|k| self.divided.parameters[id.index()][k as usize]);
         let [a, b] = [k, k + 1].map(|k| self.divided.xyz[self.divided.chains[id.index()][k as usize] as usize]);
         let along = b - a;
