@@ -398,6 +398,10 @@ impl<'a> Edges<'a> {
                 let middle = t.iter().map(|&n| self.at(n)).sum::<DVec2>() / 3.0;
                 let normal = spatial.atlas.at(self.at(at).lerp(middle, 1e-3)).normal();
                 let (a, b) = (q - p, r - p);
+                if a.dot(b) <= 0.0 {
+                    // Three nodes along a curve, more likely than a corner.
+                    continue;
+                }
                 let sine = a.cross(b).dot(normal) / (a.length() * b.length()).max(f64::MIN_POSITIVE);
                 if sine < LEAST_SINE {
                     folded.extend([one, other]);
