@@ -34,7 +34,7 @@ const SAME_PLACE: f64 = 4e-9;
 /// How often the nodes at hand are moved in turn.
 const ROUNDS: usize = 4;
 /// How far the nodes of an inlaid quadrilateral lie from the corners towards the middle.
-const INLAID: [f64; 3] = [0.4, 0.6, 0.25];
+const INLAID: [f64; 5] = [0.4, 0.6, 0.25, 0.5, 0.33];
 /// Looks at one quadrilateral that folds at the start, on average: what was mended may send its neighbours to be looked at.
 const LOOKS: usize = 24;
 
@@ -63,6 +63,8 @@ pub(super) struct Unfolding<'a> {
     doubles: Vec<[PointId; 4]>,
     /// Free nodes at the place of another in space, ascending.
     coincident: Vec<NodeId>,
+    /// The nodes on borders by their points, ascending: they never change.
+    copies: Vec<(PointId, NodeId)>,
     /// Nodes of an element nearer than this in space are at one place.
     near: f64,
 }
@@ -72,7 +74,9 @@ impl<'a> Unfolding<'a> {
     pub fn begin(mesh: &Mesh, source: Arc<dyn MetricSource + Send + Sync + 'a>, recording: bool) -> Unfolding<'a> {
         let (doublets, (doubles, later), (coincident, near)) = (doublets(mesh), doubles(mesh), coincident(mesh));
         let list = Worklist::new(0, false);
-        let mut work = Unfolding { source, list, doublets, doubles, coincident, near };
+        let mut copies: Vec<_> = mesh.nodes().filter_map(|n| Some((mesh.point(n)?, n))).collect();
+        copies.sort_unstable();
+        let mut work = Unfolding { source, list, doublets, doubles, coincident, copies, near };
         let folded: Vec<ElementId> = mesh.elements().filter(|&e| work.folds(mesh, e)).collect();
         let all = folded.len() + later.len() + work.doublets.len() + work.coincident.len();
         work.list = Worklist::new(LOOKS * all, recording);
@@ -100,6 +104,7 @@ impl<'a> Unfolding<'a> {
         self.list.bytes()
             + size_of::<NodeId>() * (2 * self.doublets.capacity() + self.coincident.capacity())
             + size_of::<[PointId; 4]>() * self.doubles.capacity()
+            + size_of::<(PointId, NodeId)>() * self.copies.capacity()
     }
 
     /// Mends the next quadrilateral; what cannot be mended is passed over. None where nothing waits any more.
@@ -311,15 +316,32 @@ impl<'a> Unfolding<'a> {
         }
     }
 
+    /// Places in space of the free nodes around the copies of a node on other faces.
+    fn free_beside(&self, mesh: &Mesh, node: NodeId) -> Vec<DVec3> {
+        let Some(point) = mesh.point(node) else { return Vec::new() };
+        let copies = &self.copies[self.copies.partition_point(|copy| copy.0 < point)..];
+        let others = copies.iter().take_while(|copy| copy.0 == point).map(|copy| copy.1).filter(|&n| n != node);
+        let elements = others.flat_map(|n| mesh.fan(n).map(|h| h.element()));
+        let free = elements.flat_map(|e| mesh.corners(e)).filter(|&n| !mesh.is_fixed(n));
+        free.map(|n| mesh.xyz(n)).collect()
+    }
+
     /// Inlays a quadrilateral; its nodes. None where what comes of it would fold too.
     fn pillowed(&self, mesh: &mut Mesh, element: ElementId) -> Option<[NodeId; 4]> {
         let corners = mesh.quad(element);
         mesh.permit(Operation::Pillow, &corners).ok()?;
         let (p, region) = (corners.map(|n| mesh.uv(n)), mesh.region(element));
         let middle = p.iter().sum::<DVec2>() * 0.25;
+        // Where another sheet lies on this one, the inner nodes must not come to its own.
+        let beside: Vec<DVec3> = corners.iter().flat_map(|&n| self.free_beside(mesh, n)).collect();
         INLAID.iter().find_map(|&part| {
             let mark = mesh.mark();
             let places = p.map(|p| p.lerp(middle, part));
+            let ground = mesh.ground()?;
+            let lies_on = |place: &DVec2| beside.iter().any(|q| ground.atlas.xyz(*place).distance(*q) <= self.near);
+            if places.iter().any(lies_on) {
+                return None;
+            }
             let metrics = places.map(|place| self.source.metric(place).ok());
             let inner = match metrics {
                 [Some(a), Some(b), Some(c), Some(d)] => [a, b, c, d],
