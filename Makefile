@@ -45,8 +45,9 @@ corpus:
 	tools/corpus
 	@echo "table: out/corpus.md"
 
-# Properties run this many rounds here, and a few hundred in `make test`.
+# Properties run this many rounds here, and a few hundred in `make test`; loaders meet mutated files for an hour.
 soak: export QUADFRONT_SOAK_ROUNDS = 10000
+soak: export QUADFRONT_SOAK_SECONDS ?= 3600
 soak:
 	@tools/setup build
 	cargo test --locked --release --no-default-features -- --include-ignored

@@ -38,18 +38,37 @@ pub(super) enum Command {
 }
 
 /// What a mesh is made from.
-#[derive(Args)]
+#[derive(Args, Default)]
 pub(super) struct Source {
-    /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp), a figure that carries its run (.svg
+    /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp .ply .stl .gltf .glb), a figure that carries its run (.svg
     /// .png), or - for standard input
     #[arg(value_name = "CASE|MESH|FIGURE")]
     pub input: String,
-    /// What is read where the name does not tell: toml (a case), msh, mesh, vtu, obj, inp
+    /// What is read where the name does not tell: toml (a case), msh, mesh, vtu, obj, inp, ply, stl, gltf, glb
     #[arg(long, value_name = "FORMAT", value_parser = input_format)]
     pub from: Option<InputFormat>,
     /// The metric at the nodes of MESH (Medit)
     #[arg(long, value_name = "FILE")]
     pub sol: Option<PathBuf>,
+    /// What MESH is used for: its triangles, converted as they are (what a mesh in the plane is used for where nothing is said), or
+    /// its shape, meshed anew (a mesh in space)
+    #[arg(long = "use", value_name = "triangles|shape", value_parser = ["triangles", "shape"], hide_possible_values = true)]
+    pub used: Option<String>,
+    /// Size of elements on MESH, everywhere; with --curvature where it is flat
+    #[arg(long, value_name = "H")]
+    pub size: Option<f64>,
+    /// Smaller elements where MESH is curved: how far a chord may be from its arc, over the radius (0.01)
+    #[arg(long, value_name = "ERR", requires = "size")]
+    pub curvature: Option<f64>,
+    /// Folds of MESH beyond this angle in degrees are edges to keep (default 40)
+    #[arg(long, value_name = "DEGREES")]
+    pub feature_angle: Option<f64>,
+    /// How far shapes may be stretched where MESH is laid into the plane (default 4)
+    #[arg(long, value_name = "RATIO")]
+    pub chart_stretch: Option<f64>,
+    /// Multiply the coordinates of MESH (0.001: from millimetres to metres)
+    #[arg(long, value_name = "FACTOR")]
+    pub scale: Option<f64>,
     /// Set a parameter of the case, for example size_scale=0.5 (may be given several times)
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
@@ -67,10 +86,10 @@ pub(super) struct Source {
 /// Where a mesh goes.
 #[derive(Args)]
 pub(super) struct Destination {
-    /// The mesh: .msh .mesh .vtu .obj .inp, or - for standard output
+    /// The mesh: .msh .mesh .vtu .obj .inp .ply, or - for standard output
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<Target>,
-    /// The format of the mesh where its name does not tell: msh, mesh, vtu, obj, inp
+    /// The format of the mesh where its name does not tell: msh, mesh, vtu, obj, inp, ply
     #[arg(long, value_name = "FORMAT", value_parser = mesh_format)]
     pub format: Option<Format>,
     /// Write Gmsh's version 2.2 instead of 4.1
@@ -179,6 +198,8 @@ mod tests {
             "quadfront convert example1 --out example1.msh --report example1.json",
             "quadfront convert - -o - --format msh --from toml --set size_scale=0.5 --set c=1.5 --msh2 --quiet",
             "quadfront convert plate.mesh --sol plate.sol --split-odd -o quads.vtu --picture quads.svg",
+            "quadfront convert bracket.stl --use shape --size 2 --curvature 0.01 --scale 0.001 -o quads.obj",
+            "quadfront convert bracket.stl --use triangles --feature-angle 30 --chart-stretch 2 -o quads.obj",
             "quadfront convert example1 --paper --events example1.jsonl --at nq=100 -o front.vtu",
             "quadfront render example1 --at step=812 -o front.svg",
             "quadfront render example1 --at nq=50,100,150 -o strip.svg",
@@ -203,6 +224,8 @@ mod tests {
             "quadfront convert a --set size_scale",
             "quadfront check",
             "quadfront convert a --at 5",
+            "quadfront convert a.stl --use wobble",
+            "quadfront convert a.stl --curvature 0.1",
             "quadfront render a --at nq=2,1 -o a.svg",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_err(), "{line}");

@@ -10,7 +10,7 @@ use crate::core::convert::parameters::nearest;
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
-use crate::core::io::case::Case;
+use crate::core::io::case::{self, Case};
 use crate::core::io::figure;
 use crate::core::io::format::{self, Format};
 use crate::core::io::mesh_file::MeshFile;
@@ -18,6 +18,9 @@ use crate::core::io::run_file;
 use crate::core::io::save::load;
 use crate::core::run::run::Run;
 use crate::core::run::shown::Shown;
+
+/// With --curvature the finest elements have the size of --size over this.
+const FINEST: f64 = 100.0;
 
 /// How messages call standard input.
 const STANDARD_INPUT: &str = "standard input";
@@ -137,7 +140,7 @@ pub(super) fn run_of(path: &Path) -> Result<Run, Fault> {
     if input == "-" {
         return Err(Fault::new("The window opens files").at(input).remedy("Name a case, a mesh or a run file"));
     }
-    let source = Source { input, from: None, sol: None, set: Vec::new(), paper: false, split_odd: false, quiet: true };
+    let source = Source { input, quiet: true, ..Source::default() };
     let mut input = read(&source)?;
     input.run.shown = input.figure;
     Ok(input.run)
@@ -157,10 +160,10 @@ fn read_plain(source: &Source) -> Result<Input, Fault> {
             let folder = tempfile::tempdir().map_err(refuse)?;
             let path = folder.path().join("standard-input").with_extension(format.extension());
             std::fs::write(&path, standard_input()?).map_err(refuse)?;
-            let run = Run::of(Case::of_mesh(path, source.sol.clone()));
+            let run = Run::of(mesh_case(path, source)?);
             return Ok(Input::of(run, Some(folder)));
         }
-        Kind::File(path, InputFormat::Mesh(_)) => return Ok(alone(Case::of_mesh(path, source.sol.clone()))),
+        Kind::File(path, InputFormat::Mesh(_)) => return Ok(alone(mesh_case(path, source)?)),
         Kind::Figure(path) => figure::read(&path)?,
         Kind::File(path, InputFormat::Case) => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -172,7 +175,72 @@ fn read_plain(source: &Source) -> Result<Input, Fault> {
             .at(name)
             .remedy("Write mesh = \"...\" and sol = \"...\" in the case, or leave --sol out"));
     }
+    if let Some((option, key)) = mesh_words(source).first().map(|word| (word.option, word.key)) {
+        return Err(Fault::new(format!("{option} goes with a mesh, and this is a case"))
+            .at(name)
+            .remedy(format!("Write {key} in the case, or leave {option} out")));
+    }
     Ok(Input::of(run, None))
+}
+
+/// An option for meshes, as the line of a case that says the same.
+struct MeshWord {
+    option: &'static str,
+    key: &'static str,
+    line: String,
+}
+
+/// What the options say of how a mesh is used.
+fn mesh_words(source: &Source) -> Vec<MeshWord> {
+    let mut words = Vec::new();
+    let mut word = |option, key, value: Option<String>| {
+        words.extend(value.map(|value| MeshWord { option, key, line: format!("{key} = {value}") }));
+    };
+    // In every case TOML needs a point in what may not be whole.
+    let number = |value: Option<f64>| value.map(|value| format!("{value:?}"));
+    word("--use", "use", source.used.as_ref().map(|word| format!("\"{word}\"")));
+    word("--feature-angle", "feature_angle", number(source.feature_angle));
+    word("--chart-stretch", "chart_stretch", number(source.chart_stretch));
+    word("--scale", "scale", number(source.scale));
+    if let Some(h) = source.size {
+        let line = match source.curvature {
+            None => format!("[[metric]]\nkind = \"uniform\"\nh = {h:?}"),
+            Some(chord) => {
+                let least = h / FINEST;
+                format!("[[metric]]\nkind = \"curvature\"\nchord = {chord:?}\nleast = {least:?}\nfar = {h:?}")
+            }
+        };
+        words.push(MeshWord { option: "--size", key: "[[metric]]", line });
+    }
+    words
+}
+
+/// The case of a mesh. Where options say how it is used it gets a text that says the same, so that reports, run files and figures
+/// tell it.
+fn mesh_case(path: PathBuf, source: &Source) -> Result<Case, Fault> {
+    let words = mesh_words(source);
+    let plain = Case::of_mesh(path, source.sol.clone());
+    if words.is_empty() {
+        return Ok(plain);
+    }
+    let case::DomainSource::Mesh { path, .. } = &plain.domain else { return Ok(plain) };
+    let quoted = |path: &Path| toml::Value::String(path.display().to_string()).to_string();
+    let sol = source.sol.as_ref().map_or_else(String::new, |sol| format!("sol = {}\n", quoted(sol)));
+    let lines: Vec<String> = words.into_iter().map(|word| word.line).collect();
+    let text = format!(
+        "version = {}\ntitle = {}\nmesh = {}\n{sol}{}\n",
+        case::VERSION,
+        toml::Value::String(plain.title.clone()),
+        quoted(path),
+        lines.join("\n")
+    );
+    let mut case = Case::parse(&text, &plain.name, "the options", Path::new(""))?;
+    // A path that is no text stays what it is.
+    if let case::DomainSource::Mesh { path: own, sol, .. } = &mut case.domain {
+        *own = path.clone();
+        *sol = source.sol.clone();
+    }
+    Ok(case)
 }
 
 /// The run of a TOML file: a case from its beginning, or a run file.

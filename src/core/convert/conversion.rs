@@ -13,20 +13,22 @@ use crate::core::background::adapt::{Adapted, adapt};
 use crate::core::background::discretise::DividedDomain;
 use crate::core::background::import::{implied_metric, import, is_plane};
 use crate::core::background::triangulate::divide_and_triangulate;
-use crate::core::discrete::features::ANGLE;
+use crate::core::discrete::curvature::curvature_sizes;
+use crate::core::discrete::edges::Triangles;
+use crate::core::discrete::given::implied_metric_in_space;
 use crate::core::discrete::sound::{Sound, sound};
-use crate::core::discrete::surface::{implied_sizes, surface};
+use crate::core::discrete::surface::{Surface, implied_sizes, surface};
 use crate::core::fault::Fault;
 use crate::core::geometry::complex;
 use crate::core::geometry::domain::Domain;
 use crate::core::geometry::predicates::{convex, firm};
-use crate::core::io::case::{Case, DomainSource};
+use crate::core::io::case::{Case, DomainSource, MeshUse, Taking};
 use crate::core::io::format::read_mesh;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::half_edge::{Ground, Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::triangle_set::TriangleSet;
-use crate::core::metric::field::{Field, MetricSource, Sizing};
+use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::metric::gradation::bound_gradation;
 use crate::core::metric::measure::triangle_area;
 use crate::core::metric::tensor::{Metric2, Metric3};
@@ -89,7 +91,7 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
         }
         DomainSource::Surfaces(spec) => from_domain(case, complex::build(spec)?, None, watch)?,
         DomainSource::Elements { points, triangles, quads } => from_elements(case, points, triangles, quads)?,
-        DomainSource::Mesh { path, sol } => from_mesh(case, path, sol.as_deref(), watch)?,
+        DomainSource::Mesh { path, sol, taking } => from_mesh(case, path, sol.as_deref(), taking, watch)?,
     };
     refuse_needles(&made.mesh)?;
     Ok(made)
@@ -123,17 +125,20 @@ pub fn convert_by(
 }
 
 /// The background mesh of a domain of curves, in the plane or on surfaces; where the case bounds the gradation, a first mesh
-/// carries the table of the bounded metric for the second. Where the case has no fields the domain's own holds.
-fn from_domain(case: &Case, domain: Domain, own: Option<Field>, watch: &mut dyn Watch) -> Result<Background, Fault> {
+/// carries the table of the bounded metric for the second. `own` are fields in place of the case's.
+fn from_domain(
+    case: &Case,
+    domain: Domain,
+    own: Option<Vec<Field>>,
+    watch: &mut dyn Watch,
+) -> Result<Background, Fault> {
     watch.tell(Stage::Divide, 0, 0);
     let atlas = domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
-    let mut fields = Vec::new();
-    for spec in &case.fields {
-        fields.push(Field::compile(spec, &|name| domain.curve_polyline(name))?);
-    }
-    if fields.is_empty() {
-        fields.extend(own);
-    }
+    let compile = |spec| Field::compile(spec, &|name| domain.curve_polyline(name));
+    let fields = match own {
+        Some(own) => own,
+        None => case.fields.iter().map(compile).collect::<Result<_, _>>()?,
+    };
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
     let layered = layers::layered_curves(&domain, &case.parameters)?;
@@ -149,14 +154,21 @@ fn from_domain(case: &Case, domain: Domain, own: Option<Field>, watch: &mut dyn 
     Ok(Background { mesh, sizing, regions, adapted, repairs: Vec::new() })
 }
 
-/// A mesh that was given, as it is. Its metric is that of the case's fields; where there are none its own, given at its
-/// nodes or implied by its triangles.
-fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch) -> Result<Background, Fault> {
+/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The metric is that
+/// of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
+fn from_mesh(
+    case: &Case,
+    path: &Path,
+    sol: Option<&Path>,
+    taking: &Taking,
+    watch: &mut dyn Watch,
+) -> Result<Background, Fault> {
     watch.tell(Stage::Read, 0, 0);
-    let file = read_mesh(path, sol)?;
+    let mut file = read_mesh(path, sol)?;
+    taking.scale(&mut file);
     let place = path.display().to_string();
-    if !is_plane(&file) {
-        return from_surface(case, &file, watch)
+    if !is_plane(&file) || taking.used == Some(MeshUse::Shape) {
+        return from_surface(case, &file, taking, watch)
             .map_err(|fault| if fault.place.is_empty() { fault.at(place) } else { fault });
     }
     let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
@@ -193,20 +205,73 @@ fn from_mesh(case: &Case, path: &Path, sol: Option<&Path>, watch: &mut dyn Watch
     Ok(Background { mesh, sizing, regions: imported.regions, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
-/// A mesh in space: a surface without CAD, meshed anew. Sizes are those of the case's fields; where there are none those given at its
-/// points, or those that its triangles have.
-fn from_surface(case: &Case, file: &MeshFile, watch: &mut dyn Watch) -> Result<Background, Fault> {
-    let Sound { mesh, copied, regions, repairs } = sound(file)?;
-    let surface = surface(&mesh, &regions, ANGLE)?;
-    let sizes = match &file.metric {
-        Some(given) => {
-            let copies = copied.iter().map(|&point| given[point as usize]);
-            surface.table(&given.iter().copied().chain(copies).collect::<Vec<_>>())?
-        }
-        None => surface.table(&implied_sizes(&mesh))?,
+/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
+/// case's fields; where there are none those given at its points, or those that its triangles have.
+fn from_surface(case: &Case, file: &MeshFile, taking: &Taking, watch: &mut dyn Watch) -> Result<Background, Fault> {
+    let Sound { mesh, copied, regions, mut repairs } = sound(file)?;
+    let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound())?;
+    let converts = taking.used == Some(MeshUse::Triangles);
+    let mut fields = Vec::new();
+    for spec in &case.fields {
+        fields.push(match spec {
+            &FieldSpec::Curvature { chord, least, far, ref place } => {
+                let sizes = curvature_sizes(&mesh, taking.feature_angle, [chord, least, far]);
+                surface.table(&sizes.map_err(|fault| fault.at(place.clone()))?)?
+            }
+            spec => Field::compile(spec, &|_| None)?,
+        });
+    }
+    if fields.is_empty() {
+        fields.push(match &file.metric {
+            Some(given) => {
+                let copies = copied.iter().map(|&point| given[point as usize]);
+                surface.table(&given.iter().copied().chain(copies).collect::<Vec<_>>())?
+            }
+            None if converts => surface.table(&implied_metric_in_space(&mesh))?,
+            None => surface.table(&implied_sizes(&mesh))?,
+        });
+    }
+    let names = surface.regions.clone();
+    let made = if converts {
+        from_laid_out(case, &mesh, &surface, fields, &mut repairs)?
+    } else {
+        from_domain(case, surface.domain, Some(fields), watch)?
     };
-    let made = from_domain(case, surface.domain, Some(sizes), watch)?;
-    Ok(Background { repairs, ..made })
+    Ok(Background { repairs, regions: names, ..made })
+}
+
+/// The triangles of a surface as they are, laid flat chart by chart.
+fn from_laid_out(
+    case: &Case,
+    surface: &Triangles,
+    laid: &Surface,
+    fields: Vec<Field>,
+    repairs: &mut Vec<String>,
+) -> Result<Background, Fault> {
+    let (set, divided) = laid.triangles(surface, case.split_odd)?;
+    match divided {
+        0 => {}
+        1 => repairs.push("1 side of a triangle was divided to make counts even".to_owned()),
+        n => repairs.push(format!("{n} sides of triangles were divided to make counts even")),
+    }
+    let atlas = laid.domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
+    let ground = atlas.clone().map(|atlas| Arc::new(Ground { atlas, points: set.xyz.clone() }));
+    let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
+    sizing.survey(&set.uv, &|_| false)?;
+    let meshed = |sizing: &Sizing| -> Result<Mesh, Fault> {
+        let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+        let mut mesh = Mesh::from_triangles(&set, metric);
+        if let Some(ground) = &ground {
+            mesh.set_ground(Arc::clone(ground));
+        }
+        Ok(mesh.reordered())
+    };
+    let mut mesh = meshed(&sizing)?;
+    if let Some(beta) = case.gradation {
+        sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0).on(atlas);
+        mesh = meshed(&sizing)?;
+    }
+    Ok(Background { mesh, sizing, regions: Vec::new(), adapted: Adapted::default(), repairs: Vec::new() })
 }
 
 /// A small mesh that the case itself holds, as it is: nodes keep its numbers, and its quadrilaterals stand already.

@@ -12,5 +12,7 @@ pub mod sparse;
 pub mod tutte;
 pub mod rigid;
 pub mod surface;
+pub mod curvature;
+pub mod given;
 #[cfg(test)]
 mod fixtures;

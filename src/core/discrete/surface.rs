@@ -34,7 +34,9 @@ const GRADATION: f64 = 1.3;
 pub struct Surface {
     /// Its faces and curves.
     pub domain: Domain,
-    charts: Vec<Chart>,
+    pub(super) charts: Vec<Chart>,
+    /// The region of each face, by its name.
+    pub regions: Vec<String>,
 }
 
 /// Sides of triangles from one meeting point to the next, or all around.
@@ -53,14 +55,14 @@ struct Link {
 }
 
 /// Divides a surface at its features (folds beyond `angle`, in radians) into charts and makes a domain of them; `regions` are the
-/// names of its regions.
+/// names of its regions, and `bound` is how much a chart may be stretched.
 ///
 /// # Errors
 /// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that.
-pub fn surface(mesh: &Triangles, regions: &[String], angle: f64) -> Result<Surface, Fault> {
+pub fn surface(mesh: &Triangles, regions: &[String], angle: f64, bound: Bound) -> Result<Surface, Fault> {
     let edges = Edges::of(&mesh.triangles);
     let features = features(mesh, &edges, angle);
-    let charts = charts(mesh, &edges, &features, Bound::default());
+    let charts = charts(mesh, &edges, &features, bound);
     let is_feature = |edge: usize| features[edge].is_some();
     let (chains, links) = chains(mesh, &edges, &charts, &is_feature);
     let mut vertices = Vec::new();
@@ -105,7 +107,9 @@ pub fn surface(mesh: &Triangles, regions: &[String], angle: f64) -> Result<Surfa
         lifts.push(Lifted { ground: Ground::Facets(facets), loops, cracks: Vec::new(), repeated: Vec::new() });
     }
     let domain = assemble(&curves, &vertices, &specs, lifts)?;
-    Ok(Surface { domain, charts })
+    let region = |chart: &Chart| regions[mesh.region[chart.triangles[0] as usize] as usize].clone();
+    let regions = charts.iter().map(region).collect();
+    Ok(Surface { domain, charts, regions })
 }
 
 impl Surface {
@@ -321,12 +325,12 @@ mod tests {
             (three_half_planes(), 3, 4),
             (plate(10, 0.1), 1, 1),
         ] {
-            let found = surface(&mesh, &names, ANGLE).unwrap();
+            let found = surface(&mesh, &names, ANGLE, Bound::default()).unwrap();
             let domain = &found.domain;
             let own = domain.curves.iter().enumerate().filter(|(k, curve)| curve.first.index() == *k).count();
             assert_eq!((domain.faces.len(), own), (faces, curves));
             assert!(found.table(&implied_sizes(&mesh)).is_ok());
         }
-        assert!(surface(&torus(30, 20), &names, ANGLE).is_ok());
+        assert!(surface(&torus(30, 20), &names, ANGLE, Bound::default()).is_ok());
     }
 }

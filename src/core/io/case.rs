@@ -6,12 +6,14 @@ mod geometry;
 mod surfaces;
 mod elements;
 mod metric;
+mod taking;
 
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 use toml::de::DeTable;
 
+pub use self::taking::{MeshUse, Taking};
 use super::save::load;
 use super::table::{self, Source, Table};
 use crate::core::convert::parameters::Parameters;
@@ -44,12 +46,14 @@ pub enum DomainSource {
         /// Quadrilaterals that stand already.
         quads: Vec<[u32; 4]>,
     },
-    /// A triangle mesh in a file is the background.
+    /// A triangle mesh in a file.
     Mesh {
         /// The mesh.
         path: PathBuf,
         /// Its metric at the nodes (Medit `.sol`).
         sol: Option<PathBuf>,
+        /// How it is used.
+        taking: Taking,
     },
 }
 
@@ -133,6 +137,10 @@ impl Case {
             "background",
             "mesh",
             "sol",
+            "use",
+            "feature_angle",
+            "chart_stretch",
+            "scale",
         ])?;
         let word = |key| table.get(key).map(|v| v.text()).transpose();
         let domain = domain(&table, folder)?;
@@ -164,7 +172,7 @@ impl Case {
             name,
             notes: String::new(),
             parameters: Parameters::default(),
-            domain: DomainSource::Mesh { path, sol },
+            domain: DomainSource::Mesh { path, sol, taking: Taking::default() },
             fields: Vec::new(),
             gradation: None,
             split_odd: false,
@@ -206,10 +214,12 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
     }
     if let Some(path) = file("mesh")? {
         alone("mesh", &["surface", "curve", "face"])?;
-        return Ok(DomainSource::Mesh { path, sol: file("sol")? });
+        return Ok(DomainSource::Mesh { path, sol: file("sol")?, taking: taking::taking(table)? });
     }
-    if let Some(value) = table.get("sol") {
-        return Err(value.fault("sol is given without mesh").remedy("Write mesh = \"...\" too"));
+    for key in ["sol", "use", "feature_angle", "chart_stretch", "scale"] {
+        if let Some(value) = table.get(key) {
+            return Err(value.fault(format!("{key} is given without mesh")).remedy("Write mesh = \"...\" too"));
+        }
     }
     if table.get("surface").is_some() {
         let complex = surfaces::complex(table)?;

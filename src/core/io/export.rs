@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use rustc_hash::FxHashMap;
 
 use super::mesh_file::{Data, FRONT, Group, MeshFile};
 use super::statistics::Measured;
@@ -51,6 +52,7 @@ impl Export {
     /// of its own, each with its live triangle to the left.
     pub fn of_state(mesh: &Mesh, regions: &[String]) -> Export {
         let (mut export, node_at) = Export::with_nodes(mesh, regions);
+        let tags = region_tags(mesh, regions);
         let (live, dead): (Vec<ElementId>, Vec<ElementId>) = mesh.elements().partition(|e| mesh.is_triangle(*e));
         let data = |name: &str, value: &dyn Fn(ElementId) -> f64| Data {
             name: name.to_owned(),
@@ -60,7 +62,7 @@ impl Export {
         file.element_data = vec![
             data("live", &|e| f64::from(u8::from(mesh.is_triangle(e)))),
             data("level", &|e| f64::from(mesh.level(e))),
-            data("region", &|e| f64::from(mesh.region(e) + 1)),
+            data("region", &|e| f64::from(tags.get(mesh.region(e) as usize).copied().unwrap_or(0))),
         ];
         for h in mesh.front() {
             let nodes = [mesh.origin(h), mesh.target(h)];
@@ -107,17 +109,19 @@ impl Export {
         let file = &mut export.file;
         let points = &export.points;
         let point_of = |node: u32| points[node as usize].0;
+        let tags = region_tags(mesh, regions);
+        let tag_of = |e: ElementId| tags[mesh.region(e) as usize];
         for e in mesh.elements() {
             if mesh.is_triangle(e) {
                 let nodes = mesh.triangle(e).map(|n| node_at[n.index()]);
                 export.triangles.push(nodes);
                 file.triangles.push(nodes.map(point_of));
-                file.triangle_tags.push(mesh.region(e) + 1);
+                file.triangle_tags.push(tag_of(e));
             } else {
                 let nodes = mesh.quad(e).map(|n| node_at[n.index()]);
                 export.quads.push(nodes);
                 file.quads.push(nodes.map(point_of));
-                file.quad_tags.push(mesh.region(e) + 1);
+                file.quad_tags.push(tag_of(e));
             }
         }
         let mut sides = Vec::new();
@@ -135,8 +139,10 @@ impl Export {
                 file.groups.push(Group { dimension: 1, tag, name: name.to_owned() });
             }
         }
-        for (region, name) in (1..).zip(regions) {
-            file.groups.push(Group { dimension: 2, tag: region, name: name.clone() });
+        for (&tag, name) in tags.iter().zip(regions) {
+            if file.groups.iter().all(|group| (group.dimension, group.tag) != (2, tag)) {
+                file.groups.push(Group { dimension: 2, tag, name: name.clone() });
+            }
         }
         (export, node_at)
     }
@@ -151,6 +157,20 @@ impl Export {
             atlas: self.atlas.as_deref(),
         }
     }
+}
+
+/// The tag of each face: from 1 in the order of the names, faces of one name (the charts of a region) alike.
+fn region_tags(mesh: &Mesh, regions: &[String]) -> Vec<u32> {
+    let mut tags: Vec<u32> = Vec::new();
+    let mut known: FxHashMap<&str, u32> = FxHashMap::default();
+    for name in regions {
+        let next = known.len() as u32 + 1;
+        tags.push(*known.entry(name).or_insert(next));
+    }
+    // Faces without names are told apart by their numbers.
+    let faces = mesh.elements().map(|e| mesh.region(e) + 1).max().unwrap_or(0);
+    (tags.len() as u32..faces).for_each(|face| tags.push(face + 1));
+    tags
 }
 
 #[cfg(test)]
@@ -186,6 +206,25 @@ mod tests {
         assert_eq!(export.file.lines.len(), 5);
         let names: Vec<_> = export.file.groups.iter().map(|g| g.name.as_str()).collect();
         assert_eq!(names, ["boundary", "inside", "left", "right"]);
+    }
+
+    #[test]
+    fn faces_of_one_name_are_one_group() {
+        let named = |a: &str, b: &str| {
+            let uv = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+            let set = TriangleSet {
+                uv: uv.map(|(x, y)| DVec2::new(x, y)).to_vec(),
+                point: [0, 1, 2, 1, 3, 2].map(PointId).to_vec(),
+                triangles: vec![[0, 1, 2], [3, 4, 5]],
+                region: vec![0, 1],
+                ..TriangleSet::default()
+            };
+            let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6]);
+            let file = Export::of(&mesh, &[a.to_owned(), b.to_owned()]).file;
+            (file.triangle_tags, file.groups.iter().filter(|g| g.dimension == 2).count())
+        };
+        assert_eq!(named("shell", "shell"), (vec![1, 1], 1));
+        assert_eq!(named("shell", "rib"), (vec![1, 2], 2));
     }
 
     #[test]

@@ -138,7 +138,7 @@ fn case(table: &Table<'_>, file: &str, folder: &Path) -> Result<Case, Fault> {
         (None, None) => return Err(table.fault("The case has neither text nor mesh").remedy("Write one of them")),
     };
     match (&mut case.domain, mesh) {
-        (DomainSource::Mesh { path, sol: own }, Some(mesh)) => (*path, *own) = (mesh, sol),
+        (DomainSource::Mesh { path, sol: own, .. }, Some(mesh)) => (*path, *own) = (mesh, sol),
         (DomainSource::Mesh { .. }, None) => {
             return Err(table.fault("The mesh of the case is missing").remedy("Write mesh = { path = \"...\", ... }"));
         }
@@ -221,7 +221,7 @@ fn camera(table: &Table<'_>) -> Result<Camera, Fault> {
 
 impl Links {
     fn of(run: &Run) -> Result<Links, Fault> {
-        let DomainSource::Mesh { path, sol } = &run.case.domain else { return Ok(Links::default()) };
+        let DomainSource::Mesh { path, sol, .. } = &run.case.domain else { return Ok(Links::default()) };
         let link = |path: &Path| -> Result<Link, Fault> {
             let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
             Ok(Link { fingerprint: Fingerprint::of(&load(path)?), path: absolute })

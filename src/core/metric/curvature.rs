@@ -9,7 +9,7 @@ use crate::core::geometry::surface::Bend;
 
 /// Sizes by principal curvatures.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Curvature {
+pub struct Curvature {
     /// `2 sqrt(eps (2 - eps))`: size over radius.
     factor: f64,
     least: f64,

@@ -6,7 +6,7 @@ pub mod measure;
 pub mod formula;
 mod box_tree;
 mod boundary_layer;
-mod curvature;
+pub(in crate::core) mod curvature;
 pub mod plane_triangles;
 mod table;
 pub mod field;

@@ -1,0 +1,241 @@
+//! The triangles of a surface as a background, as they are: each chart is a face laid flat, its border kept. Counts are made even by
+//! dividing sides on which charts meet. Deliberately absent: meshing the shape anew (`surface`).
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+
+use super::chart::Chart;
+use super::edges::{Edges, Triangles};
+use super::surface::Surface;
+use crate::core::background::parity::toggles;
+use crate::core::fault::Fault;
+use crate::core::geometry::predicates::firm;
+use crate::core::mesh::ids::PointId;
+use crate::core::mesh::triangle_set::TriangleSet;
+use crate::core::metric::spectrum::LogMetric3;
+use crate::core::metric::tensor::Metric3;
+
+/// A chart while sides of it are divided.
+struct Laid {
+    uv: Vec<DVec2>,
+    points: Vec<u32>,
+    local: Vec<[u32; 3]>,
+}
+
+impl Surface {
+    /// The triangles of the surface `mesh`, chart by chart in the plane, and how many sides had to be divided so that every
+    /// chart has an even number of them. Sides at which the surface ends are divided only where `split_odd` allows.
+    ///
+    /// # Errors
+    /// An open part with an odd number of triangles; triangles that are too flat, in space or where they are laid.
+    pub fn triangles(&self, mesh: &Triangles, split_odd: bool) -> Result<(TriangleSet, usize), Fault> {
+        let offset = |k: usize| self.domain.spatial.as_ref().map_or(DVec2::ZERO, |spatial| spatial.atlas.offset(k));
+        let laid = |(k, chart): (usize, &Chart)| Laid {
+            uv: chart.uv.iter().map(|&uv| uv + offset(k)).collect(),
+            points: chart.points.clone(),
+            local: chart.local.clone(),
+        };
+        let mut charts: Vec<Laid> = self.charts.iter().enumerate().map(laid).collect();
+        let mut points = mesh.points.clone();
+        let divided = divide_odd(mesh, &self.charts, split_odd)?;
+        for &[a, b] in &divided {
+            let middle = points.len() as u32;
+            points.push(0.5 * (points[a as usize] + points[b as usize]));
+            charts.iter_mut().for_each(|chart| chart.divide([a, b], middle));
+        }
+        let mut set = TriangleSet::default();
+        let mut number = vec![u32::MAX; points.len()];
+        for (k, chart) in charts.iter().enumerate() {
+            let first = set.uv.len() as u32;
+            for (&uv, &point) in chart.uv.iter().zip(&chart.points) {
+                let known = &mut number[point as usize];
+                if *known == u32::MAX {
+                    *known = set.xyz.len() as u32;
+                    set.xyz.push(points[point as usize]);
+                }
+                set.uv.push(uv);
+                set.point.push(PointId(*known));
+            }
+            for t in &chart.local {
+                let [a, b, c] = t.map(|node| chart.uv[node as usize]);
+                if !firm(a, b, c) {
+                    let [p, q, r] = t.map(|node| told(points[chart.points[node as usize] as usize]));
+                    return Err(Fault::new("A triangle of the mesh is too flat to be converted as it is")
+                        .at(format!("at {p}, {q}, {r}"))
+                        .remedy("Mend the mesh there, or mesh its shape anew (--use shape)"));
+                }
+                set.triangles.push(t.map(|node| first + node));
+                set.region.push(k as u32);
+            }
+        }
+        Ok((set, divided.len()))
+    }
+}
+
+fn told(p: DVec3) -> String {
+    format!("({}, {}, {})", p.x, p.y, p.z)
+}
+
+impl Laid {
+    /// Divides the triangles at a side; at a slit both banks.
+    fn divide(&mut self, [a, b]: [u32; 2], middle: u32) {
+        let stands = |at: &Laid, t: usize, k: usize, [a, b]: [u32; 2]| {
+            let node = |k: usize| at.points[at.local[t][k % 3] as usize];
+            (node(k), node(k + 1)) == (a, b) || (node(k), node(k + 1)) == (b, a)
+        };
+        let sides: Vec<(usize, usize)> = (0..self.local.len())
+            .flat_map(|t| [0, 1, 2].map(|k| (t, k)))
+            .filter(|&(t, k)| stands(self, t, k, [a, b]))
+            .collect();
+        for (t, k) in sides {
+            let [p, q, r] = [0, 1, 2].map(|i| self.local[t][(k + i) % 3]);
+            let new = self.uv.len() as u32;
+            self.uv.push(0.5 * (self.uv[p as usize] + self.uv[q as usize]));
+            self.points.push(middle);
+            self.local[t] = [p, new, r];
+            self.local.push([new, q, r]);
+        }
+    }
+}
+
+/// The sides to divide, by the points at their ends, so that every chart has an even number of triangles: of each set of
+/// charts that meet at sides the longest one is at hand.
+fn divide_odd(mesh: &Triangles, charts: &[Chart], split_odd: bool) -> Result<Vec<[u32; 2]>, Fault> {
+    let odd: Vec<bool> = charts.iter().map(|chart| chart.local.len() % 2 == 1).collect();
+    if !odd.contains(&true) {
+        return Ok(Vec::new());
+    }
+    let edges = Edges::of(&mesh.triangles);
+    let mut chart_of = vec![0_u32; mesh.triangles.len()];
+    for (number, chart) in charts.iter().enumerate() {
+        chart.triangles.iter().for_each(|&t| chart_of[t as usize] = number as u32);
+    }
+    // The charts that are turned from even to odd by dividing an edge, and the longest such edge.
+    let mut longest: BTreeMap<Vec<u32>, (f64, usize)> = BTreeMap::new();
+    for edge in 0..edges.len() {
+        let edge_at = edges.get(edge);
+        if edge_at.sides.len() == 1 && !split_odd {
+            continue;
+        }
+        let mut at: Vec<u32> = edge_at.sides.iter().map(|&side| chart_of[side as usize / 3]).collect();
+        at.sort_unstable();
+        let turned: Vec<u32> =
+            at.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1).map(|same| same[0]).collect();
+        if turned.is_empty() {
+            continue;
+        }
+        let [a, b] = edge_at.ends.map(|end| mesh.points[end as usize]);
+        let long = a.distance(b);
+        let known = longest.entry(turned).or_insert((long, edge));
+        if long > known.0 {
+            *known = (long, edge);
+        }
+    }
+    let mut rows: Vec<Vec<u32>> = vec![Vec::new(); charts.len()];
+    for (column, turned) in longest.keys().enumerate() {
+        turned.iter().for_each(|&chart| rows[chart as usize].push(column as u32));
+    }
+    let cost: Vec<Option<f64>> = longest.values().map(|(long, _)| Some(1.0 / long.max(f64::MIN_POSITIVE))).collect();
+    let toggled = toggles(&rows, &odd, &cost).map_err(|blamed| {
+        let triangles: usize = blamed.iter().map(|&k| charts[k as usize].local.len()).sum();
+        let place = charts[blamed[0] as usize].points[0];
+        Fault::new(format!(
+            "A part of the surface with {triangles} triangles has an odd number of sides at its border; an all-quad mesh needs an even count"
+        ))
+        .at(format!("at {}", told(mesh.points[place as usize])))
+        .remedy("Divide one side at its border, or allow that (--split-odd)")
+    })?;
+    Ok(longest
+        .values()
+        .zip(toggled)
+        .filter(|(_, toggled)| *toggled)
+        .map(|((_, edge), _)| edges.get(*edge).ends)
+        .collect())
+}
+
+/// The metric that the triangles themselves imply, at each point: in that of a triangle it is equilateral with sides of length 1. At a
+/// point it is the log-Euclidean mean over its triangles, as in the plane (`background::import`).
+pub fn implied_metric_in_space(mesh: &Triangles) -> Vec<Metric3> {
+    let mut sums = vec![(LogMetric3::ZERO, 0.0_f64); mesh.points.len()];
+    for (t, nodes) in mesh.triangles.iter().enumerate() {
+        let Some(metric) = implied_by(mesh.corners(t)) else { continue };
+        let ln = metric.ln();
+        for &node in nodes {
+            let (sum, count) = &mut sums[node as usize];
+            *sum = sum.plus(1.0, &ln);
+            *count += 1.0;
+        }
+    }
+    let mean = |(sum, count): &(LogMetric3, f64)| {
+        if *count > 0.0 { LogMetric3::ZERO.plus(1.0 / count, sum).exp() } else { Metric3::isotropic(1.0) }
+    };
+    sums.iter().map(mean).collect()
+}
+
+/// The metric in which a triangle is equilateral with unit sides; across its plane as much as in it on average (the geometric mean).
+/// None for a triangle without area.
+fn implied_by([a, b, c]: [DVec3; 3]) -> Option<Metric3> {
+    let s = (b - a).try_normalize()?;
+    let normal = (b - a).cross(c - a).try_normalize()?;
+    let t = normal.cross(s);
+    let [e, f] = [b - a, c - a].map(|d| DVec2::new(d.dot(s), d.dot(t)));
+    let doubled = e.perp_dot(f);
+    let sides = [e, f - e, -f];
+    let factor = 0.5 / (doubled * doubled);
+    let sum = |of: fn(DVec2) -> f64| factor * sides.iter().map(|&side| of(side)).sum::<f64>();
+    let (uu, uv, vv) = (sum(|d| d.y * d.y), -sum(|d| d.x * d.y), sum(|d| d.x * d.x));
+    let angle = 0.5 * libm::atan2(2.0 * uv, uu - vv);
+    let half = (0.25 * (uu - vv) * (uu - vv) + uv * uv).sqrt();
+    let [one, other] = [0.5 * (uu + vv) + half, 0.5 * (uu + vv) - half];
+    let along = s * libm::cos(angle) + t * libm::sin(angle);
+    let metric = Metric3::from_eigen([one, other, (one * other).sqrt()], [along, normal.cross(along), normal]);
+    metric.is_spd().then_some(metric)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::discrete::chart::Bound;
+    use crate::core::discrete::features::ANGLE;
+    use crate::core::discrete::fixtures::{cube, plate, sphere, torus};
+    use crate::core::discrete::surface::surface;
+
+    #[test]
+    fn charts_of_closed_surfaces_are_made_even_and_nothing_else_is_changed() {
+        for mesh in [cube(3), sphere(5), torus(15, 9)] {
+            let laid = surface(&mesh, &["all".to_owned()], ANGLE, Bound::default()).unwrap();
+            let (set, divided) = laid.triangles(&mesh, false).unwrap();
+            assert_eq!(set.xyz.len(), mesh.points.len() + divided);
+            assert_eq!(set.triangles.len(), mesh.triangles.len() + 2 * divided);
+            for chart in 0..laid.charts.len() as u32 {
+                assert_eq!(set.region.iter().filter(|r| **r == chart).count() % 2, 0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_part_with_an_odd_count_is_refused_unless_a_side_may_be_divided() {
+        let mut mesh = plate(3, 0.2);
+        mesh.triangles.pop();
+        mesh.region.pop();
+        let laid = surface(&mesh, &["all".to_owned()], ANGLE, Bound::default()).unwrap();
+        assert!(laid.triangles(&mesh, false).unwrap_err().what.contains("17 triangles"));
+        assert_eq!(laid.triangles(&mesh, true).unwrap().0.triangles.len(), 18);
+    }
+
+    #[test]
+    fn sides_have_length_one_in_the_metric_of_their_triangle() {
+        let corners = [DVec3::new(0.1, 0.2, 0.3), DVec3::new(4.0, 0.5, 1.0), DVec3::new(0.0, 1.0, -2.0)];
+        let metric = implied_by(corners).unwrap();
+        for k in 0..3 {
+            let d = corners[(k + 1) % 3] - corners[k];
+            let [xx, xy, xz, yy, yz, zz] = [metric.xx, metric.xy, metric.xz, metric.yy, metric.yz, metric.zz];
+            let long = xx * d.x * d.x
+                + yy * d.y * d.y
+                + zz * d.z * d.z
+                + 2.0 * (xy * d.x * d.y + xz * d.x * d.z + yz * d.y * d.z);
+            assert!((long - 1.0).abs() < 1e-12, "{long}");
+        }
+    }
+}
