@@ -102,7 +102,7 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
 /// # Errors
 /// As [`background`]; and where a component cannot be converted, which its checks should have found.
 pub fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Converted, Fault> {
-    convert_by(case, watch, &mut |converter, watch| converter.run(watch))
+    convert_by(case, watch, &mut |converter, watch| converter.run_by_faces(watch))
 }
 
 /// Converts a case as far as `drive` takes its converter.

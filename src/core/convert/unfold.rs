@@ -51,6 +51,19 @@ pub struct Unfolded {
     pub pillowed: usize,
 }
 
+impl Unfolded {
+    /// The sums of two.
+    #[must_use]
+    pub fn plus(&self, other: &Unfolded) -> Unfolded {
+        Unfolded {
+            moved: self.moved + other.moved,
+            rotated: self.rotated + other.rotated,
+            collapsed: self.collapsed + other.collapsed,
+            pillowed: self.pillowed + other.pillowed,
+        }
+    }
+}
+
 /// The mending under way.
 #[derive(Clone)]
 pub(super) struct Unfolding<'a> {

@@ -68,6 +68,23 @@ pub struct CleanedUp {
     pub refused: usize,
 }
 
+impl CleanedUp {
+    /// The sums of two.
+    #[must_use]
+    pub fn plus(&self, other: &CleanedUp) -> CleanedUp {
+        CleanedUp {
+            collapses: self.collapses + other.collapses,
+            rotations: self.rotations + other.rotations,
+            openings: self.openings + other.openings,
+            doublets: self.doublets + other.doublets,
+            pairs: self.pairs + other.pairs,
+            longer: self.longer + other.longer,
+            trials: self.trials + other.trials,
+            refused: self.refused + other.refused,
+        }
+    }
+}
+
 /// How far a clean-up looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reach {
@@ -164,6 +181,7 @@ impl<'a> CleanUp<'a> {
     /// counting where `done` stands.
     pub fn begin(
         mesh: &Mesh,
+        face: Option<u32>,
         source: Arc<dyn MetricSource + Send + Sync + 'a>,
         reach: Reach,
         done: CleanedUp,
@@ -171,7 +189,7 @@ impl<'a> CleanUp<'a> {
     ) -> CleanUp<'a> {
         let most_trials = match reach {
             Reach::Singles => usize::MAX,
-            Reach::Pairs => done.trials + PAIR_TRIALS + mesh.element_count() / ELEMENTS_A_PAIR_TRIAL,
+            Reach::Pairs => done.trials + PAIR_TRIALS + mesh.elements_of(face).count() / ELEMENTS_A_PAIR_TRIAL,
             Reach::Longer => done.trials + LONGER_TRIALS,
         };
         let mut work = CleanUp {
@@ -179,15 +197,15 @@ impl<'a> CleanUp<'a> {
             reach,
             valences: Valences::of(mesh),
             // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
-            list: Worklist::new(20 * mesh.node_count() + 1000, recording),
+            list: Worklist::new(20 * mesh.nodes_of(face).count() + 1000, recording),
             most_trials,
             before: Region::default(),
             after: Region::default(),
             done,
         };
         match reach {
-            Reach::Singles => mesh.nodes().for_each(|node| work.enqueue(mesh, node)),
-            Reach::Pairs | Reach::Longer => work.enqueue_worst_first(mesh),
+            Reach::Singles => mesh.nodes_of(face).for_each(|node| work.enqueue(mesh, node)),
+            Reach::Pairs | Reach::Longer => work.enqueue_worst_first(mesh, face),
         }
         work
     }
@@ -255,10 +273,10 @@ impl<'a> CleanUp<'a> {
         }
     }
 
-    /// All irregular nodes, those with the greatest energy around them first.
-    fn enqueue_worst_first(&mut self, mesh: &Mesh) {
+    /// All irregular nodes of a face, or of all, those with the greatest energy around them first.
+    fn enqueue_worst_first(&mut self, mesh: &Mesh, face: Option<u32>) {
         let mut nodes: Vec<(f64, NodeId)> = mesh
-            .nodes()
+            .nodes_of(face)
             .filter(|&n| self.valences.excess(mesh, n) != 0)
             .map(|n| (mesh.fan(n).map(|h| energy::judge(mesh, h.element()).0).sum::<f64>(), n))
             .collect();
