@@ -120,8 +120,11 @@ pub struct Converter<'a> {
     faces: Arc<[u32]>,
     /// Which of them is being converted; past the last one, none.
     face: usize,
-    /// Elements of the faces after each.
+    /// Elements of the faces after each, at step 0.
     waiting: Arc<[u64]>,
+    /// Elements at step 0, and, where this is one of several faces at the same time, of all together.
+    elements_at_first: u64,
+    total: u64,
     /// What stood and had been counted when the face at hand was turned to.
     begun: Begun,
     /// The base segment that a person picked for the next selection.
@@ -155,6 +158,8 @@ impl<'a> Converter<'a> {
             faces: faces.into(),
             face: 0,
             waiting: waiting.into(),
+            elements_at_first: mesh.element_count() as u64,
+            total: mesh.element_count() as u64,
             begun: Begun { stood: given, made: 0 },
             finished_faces: Vec::new(),
             mesh,
@@ -270,6 +275,18 @@ impl<'a> Converter<'a> {
         }
     }
 
+    /// How much of the whole mesh the face at hand is, from 0 to 1: its share of what is bounded for the whole.
+    pub(super) fn share(&self) -> f64 {
+        let after = |face: usize| self.waiting.get(face).copied().unwrap_or(0);
+        let own = match self.face.checked_sub(1) {
+            _ if self.faces.is_empty() => self.total,
+            Some(before) => after(before) - after(self.face),
+            // The first face is what is left of all; of a face alone, that is the face.
+            None => self.elements_at_first - after(0),
+        };
+        own as f64 / self.total.max(1) as f64
+    }
+
     /// Quadrilaterals that front and last resort have made so far.
     fn made(&self) -> u64 {
         self.counts.formed + self.counts.closed + self.last_resort.quads() as u64
@@ -328,7 +345,7 @@ impl<'a> Converter<'a> {
                 let (mesh, sender) = (std::mem::take(&mut part.mesh), sender.clone());
                 let (source, parameters) = (Arc::clone(&self.source), self.parameters.clone());
                 scope.spawn(move |_| {
-                    let mut converter = Converter::new(mesh, source, parameters);
+                    let mut converter = Converter { total, ..Converter::new(mesh, source, parameters) };
                     let face = loop {
                         match converter.step() {
                             Ok(Event::FaceConverted { .. }) => break Ok(converter),

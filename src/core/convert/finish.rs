@@ -155,10 +155,10 @@ impl Converter<'_> {
     /// The next change of structure within reach.
     fn clean_up(&mut self, reach: Reach) -> Option<Event> {
         let (recording, keep_journal) = (self.keeps_history(), self.keeps_journal());
-        let face = self.face();
+        let (face, share) = (self.face(), self.share());
         let (mesh, source, done) = (&mut self.mesh, Arc::clone(&self.source), self.finished.cleaned_up);
         let part = &mut self.finishing.clean_up[reach as usize];
-        let part = part.get_or_insert_with(|| CleanUp::begin(mesh, face, source, reach, done, recording));
+        let part = part.get_or_insert_with(|| CleanUp::begin(mesh, (face, share), source, reach, done, recording));
         let event = part.step(mesh, keep_journal);
         self.finished.cleaned_up = part.done();
         event

@@ -177,20 +177,21 @@ pub(super) struct CleanUp<'a> {
 }
 
 impl<'a> CleanUp<'a> {
-    /// A clean-up at its beginning, whose list writes down what it needs to be taken back where `recording`. It goes on
-    /// counting where `done` stands.
+    /// A clean-up of a face, which is that share of the whole, or of all, at its beginning. Its list writes down what it needs to
+    /// be taken back where `recording`. It goes on counting where `done` stands.
     pub fn begin(
         mesh: &Mesh,
-        face: Option<u32>,
+        (face, share): (Option<u32>, f64),
         source: Arc<dyn MetricSource + Send + Sync + 'a>,
         reach: Reach,
         done: CleanedUp,
         recording: bool,
     ) -> CleanUp<'a> {
+        let of_all = |trials: usize| (trials as f64 * share).ceil() as usize;
         let most_trials = match reach {
             Reach::Singles => usize::MAX,
-            Reach::Pairs => done.trials + PAIR_TRIALS + mesh.elements_of(face).count() / ELEMENTS_A_PAIR_TRIAL,
-            Reach::Longer => done.trials + LONGER_TRIALS,
+            Reach::Pairs => done.trials + of_all(PAIR_TRIALS) + mesh.elements_of(face).count() / ELEMENTS_A_PAIR_TRIAL,
+            Reach::Longer => done.trials + of_all(LONGER_TRIALS),
         };
         let mut work = CleanUp {
             source,

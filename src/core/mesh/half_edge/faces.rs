@@ -30,18 +30,31 @@ impl Mesh {
     /// Every face as a mesh of its own, by ascending region; the journals are empty. The mesh must be dense.
     pub fn parts(&self) -> Vec<Part> {
         let faces = self.faces();
-        let face_of = |region: u32| faces.partition_point(|&face| face < region);
-        let (mut nodes, mut elements) = (vec![Vec::new(); faces.len()], vec![Vec::new(); faces.len()]);
+        self.grouped(faces.len(), &|region| faces.binary_search(&region).ok())
+    }
+
+    /// The faces of these regions alone. The mesh must be dense.
+    #[must_use]
+    pub fn of_faces(&self, regions: &[u32]) -> Mesh {
+        let parts = self.grouped(1, &|region| regions.contains(&region).then_some(0));
+        parts.into_iter().next().map_or_else(Mesh::default, |part| part.mesh)
+    }
+
+    /// The faces by the group that each region belongs to, if to any.
+    fn grouped(&self, groups: usize, group_of: &dyn Fn(u32) -> Option<usize>) -> Vec<Part> {
+        let (mut nodes, mut elements) = (vec![Vec::new(); groups], vec![Vec::new(); groups]);
         let (mut new_node, mut new_element) = (vec![NONE; self.uv.len()], vec![NONE; self.sides.len()]);
         for e in self.elements() {
-            let elements = &mut elements[face_of(self.region(e))];
-            new_element[e.index()] = elements.len() as u32;
-            elements.push(e.0);
+            if let Some(group) = group_of(self.region(e)) {
+                new_element[e.index()] = elements[group].len() as u32;
+                elements[group].push(e.0);
+            }
         }
         for n in self.nodes() {
-            let nodes = &mut nodes[face_of(self.region[(self.anchor[n.index()] >> 2) as usize])];
-            new_node[n.index()] = nodes.len() as u32;
-            nodes.push(n.0);
+            if let Some(group) = group_of(self.region[(self.anchor[n.index()] >> 2) as usize]) {
+                new_node[n.index()] = nodes[group].len() as u32;
+                nodes[group].push(n.0);
+            }
         }
         let half_edge = |h: u32| if h == NONE { NONE } else { new_element[(h >> 2) as usize] << 2 | (h & 3) };
         let node = |n: u32| if n == NONE { NONE } else { new_node[n as usize] };
@@ -113,12 +126,5 @@ impl Mesh {
             self.closed = [self.free_nodes.len() as u32, self.free_elements.len() as u32];
         }
         self.journal = Journal::default();
-    }
-
-    /// The face alone, of one region; none where no element has it.
-    #[must_use]
-    pub fn of_face(&self, region: u32) -> Option<Mesh> {
-        let at = self.faces().binary_search(&region).ok()?;
-        Some(self.parts().swap_remove(at).mesh)
     }
 }
