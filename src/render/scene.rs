@@ -20,7 +20,7 @@ pub use shading::{ColourBy, Shading, angles, metric_area};
 
 use super::palette::Rgba;
 use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::ElementId;
+use crate::core::mesh::ids::{ElementId, NodeId};
 use placed::Places;
 
 /// A filled triangle or quadrilateral.
@@ -142,6 +142,8 @@ pub struct Scene {
     pieces: usize,
     /// Where each node stands.
     spots: Vec<Spot>,
+    /// The nodes at each point that faces share, where elements are drawn curved.
+    copies: Vec<Vec<NodeId>>,
     places: Places,
     boundary_places: Places,
     /// What stands out as just changed.

@@ -183,7 +183,8 @@ mod tests {
                 let at = 0.5 * SIZE + DVec2::new(r * cos, r * sin);
                 let hit = hit(&scene, &camera, SIZE, at).unwrap();
                 hits += 1;
-                assert!(camera.seen(hit.place, SIZE).z > 0.0, "the place is on the near half");
+                let z = camera.seen(hit.place, SIZE).z;
+                assert!(z > 0.0, "{form:?}: {at} {z} {:?}", hit.place);
                 let nodes: Vec<NodeId> = match pick_in_space(&scene, mesh, &camera, SIZE, at).unwrap() {
                     Outlined::Node(n) => (named[0] += 1, vec![n]).1,
                     Outlined::Edge(ends) => (named[1] += 1, ends.to_vec()).1,

@@ -117,6 +117,18 @@ impl Scene {
         }
         let [a, b, c, d] = nodes.map(|n| mesh.uv(n));
         let part = |i: usize| i as f64 / n as f64;
+        // Sides that other faces share run where theirs do: by so much the surface is moved there, and less away from them.
+        let moved: Vec<Option<Vec<DVec3>>> = (0..4)
+            .map(|k| {
+                let ends = [nodes[k], nodes[(k + 1) % 4]];
+                let joint = self.joint(mesh, ends)?;
+                let [p, q] = ends.map(|n| mesh.uv(n));
+                let own = |k: usize| Spot::over(mesh, p.lerp(q, part(k))).at;
+                let at = |k: usize| if k == 0 || k == n { DVec3::ZERO } else { joint[k] - own(k) };
+                Some((0..=n).map(at).collect())
+            })
+            .collect();
+        let by = |side: usize, k: usize| moved[side].as_ref().map_or(DVec3::ZERO, |moved| moved[k]);
         let mut grid = Vec::with_capacity((n + 1) * (n + 1));
         for j in 0..=n {
             for i in 0..=n {
@@ -125,7 +137,12 @@ impl Scene {
                     (i, 0) if i == n => spots[1],
                     (i, j) if i == n && j == n => spots[2],
                     (0, j) if j == n => spots[3],
-                    _ => Spot::over(mesh, a.lerp(b, part(i)).lerp(d.lerp(c, part(i)), part(j))),
+                    _ => {
+                        let (s, t) = (part(i), part(j));
+                        let mut spot = Spot::over(mesh, a.lerp(b, s).lerp(d.lerp(c, s), t));
+                        spot.at += by(0, i) * (1.0 - t) + by(1, j) * s + by(2, n - i) * t + by(3, n - j) * (1.0 - s);
+                        spot
+                    }
                 });
             }
         }
@@ -135,18 +152,63 @@ impl Scene {
         cells.map(|(i, j)| face([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])).collect()
     }
 
+    /// Where an edge of the boundary of its face runs that other faces have too: in the middle of where they would draw it. Each
+    /// would draw it straight in its own plane, and between them would be gaps.
+    fn joint(&self, mesh: &Mesh, [a, b]: [NodeId; 2]) -> Option<Vec<DVec3>> {
+        let n = self.pieces;
+        let copies = |node: NodeId| mesh.point(node).and_then(|point| self.copies.get(point.index()));
+        let (starts, ends) = (copies(a)?, copies(b)?);
+        if n == 1 || starts.len() < 2 && ends.len() < 2 || !is_outer(mesh, a, b) {
+            return None;
+        }
+        let pairs = starts.iter().flat_map(|a| ends.iter().map(|b| [*a, *b]));
+        let chains = pairs.filter(|[a, b]| mesh.has_node(*a) && mesh.has_node(*b) && is_outer(mesh, *a, *b));
+        let chains: Vec<[DVec2; 2]> = chains.map(|ends| ends.map(|n| mesh.uv(n))).collect();
+        let at = |k: usize| {
+            let places = chains.iter().map(|[p, q]| Spot::over(mesh, p.lerp(*q, k as f64 / n as f64)).at);
+            places.sum::<DVec3>() / chains.len() as f64
+        };
+        (chains.len() > 1).then(|| (0..=n).map(at).collect())
+    }
+
     /// Lines from one node to the other along the surface, as `line` has them but for their ends.
     pub(super) fn chain(&self, mesh: &Mesh, [a, b]: [NodeId; 2], line: Line) -> impl Iterator<Item = Line> + use<> {
         let n = self.pieces;
         let (p, q) = (mesh.uv(a), mesh.uv(b));
-        let place = |k: usize| match k {
-            0 => self.at(a),
-            k if k == n => self.at(b),
-            _ => Spot::over(mesh, p.lerp(q, k as f64 / n as f64)).at,
+        let joint = self.joint(mesh, [a, b]);
+        let place = |k: usize| match (k, &joint) {
+            (0, _) => self.at(a),
+            (k, _) if k == n => self.at(b),
+            (k, Some(joint)) => joint[k],
+            (k, None) => Spot::over(mesh, p.lerp(q, k as f64 / n as f64)).at,
         };
         let places: Vec<[f32; 3]> = (0..=n).map(|k| relative(place(k), self.anchor)).collect();
         (0..n).map(move |k| Line { ends: [places[k], places[k + 1]], ..line })
     }
+
+    /// Takes note of where a node stands.
+    pub(super) fn set_spot(&mut self, mesh: &Mesh, node: NodeId) {
+        self.spots[node.index()] = Spot::of(mesh, node, self.form);
+        if self.pieces > 1
+            && let Some(point) = mesh.point(node)
+        {
+            if self.copies.len() <= point.index() {
+                self.copies.resize(point.index() + 1, Vec::new());
+            }
+            let copies = &mut self.copies[point.index()];
+            if let Err(place) = copies.binary_search(&node) {
+                copies.insert(place, node);
+            }
+            // What stood there before the mesh went another way.
+            copies.retain(|n| mesh.has_node(*n) && mesh.point(*n) == Some(point));
+        }
+    }
+}
+
+/// Whether an element on one side alone has an edge between these nodes.
+fn is_outer(mesh: &Mesh, a: NodeId, b: NodeId) -> bool {
+    let found = |a: NodeId, b: NodeId| mesh.fan(a).find(|h| mesh.target(*h) == b);
+    found(a, b).or_else(|| found(b, a)).is_some_and(|h| mesh.twin(h).is_none())
 }
 
 #[cfg(test)]

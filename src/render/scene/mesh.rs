@@ -51,8 +51,9 @@ impl Scene {
         }
         self.form = drawn.form;
         self.resize(drawn.mesh);
+        self.copies.clear();
         for node in drawn.mesh.nodes() {
-            self.spots[node.index()] = Spot::of(drawn.mesh, node, self.form);
+            self.set_spot(drawn.mesh, node);
         }
         let slots = (0..drawn.mesh.element_slots() as u32).map(ElementId);
         slots.clone().for_each(|e| self.leave_places(drawn.mesh, e));
@@ -71,7 +72,7 @@ impl Scene {
         self.resize(mesh);
         let moved = nodes.iter().copied().filter(|n| mesh.has_node(*n));
         for node in moved.clone() {
-            self.spots[node.index()] = Spot::of(mesh, node, self.form);
+            self.set_spot(mesh, node);
         }
         let mut around: Vec<ElementId> = moved.flat_map(|n| mesh.fan(n)).map(HalfEdgeId::element).collect();
         around.extend(elements.iter().copied().filter(|e| e.index() < mesh.element_slots()));
