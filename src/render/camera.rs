@@ -25,9 +25,10 @@ pub struct Camera {
 }
 
 /// From where a mesh in space is looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Side {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Bearing {
     /// From before, to the right and above.
+    #[default]
     Iso,
     /// From +x.
     X,
@@ -35,38 +36,73 @@ pub enum Side {
     Y,
     /// From +z.
     Z,
-    /// From so many degrees to the right of -y, and so many up.
-    Angles(f64, f64),
+    /// From so many degrees to the right of -y, and so many up, the picture turned by so many anticlockwise.
+    Angles([f64; 3]),
 }
 
-impl Side {
-    /// The same, read from `iso`, `x`, `y`, `z`, or two numbers of degrees, `AZ,EL`.
-    pub fn parse(text: &str) -> Option<Side> {
+impl Bearing {
+    /// The same, read from `iso`, `x`, `y`, `z`, or degrees: `AZ,EL` or `AZ,EL,ROLL`.
+    pub fn parse(text: &str) -> Option<Bearing> {
         Some(match text.trim().to_lowercase().as_str() {
-            "iso" => Side::Iso,
-            "x" => Side::X,
-            "y" => Side::Y,
-            "z" => Side::Z,
+            "iso" => Bearing::Iso,
+            "x" => Bearing::X,
+            "y" => Bearing::Y,
+            "z" => Bearing::Z,
             text => {
-                let (azimuth, elevation) = text.split_once(',')?;
-                let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
-                let (azimuth, elevation) = (number(azimuth)?, number(elevation)?);
-                (azimuth.abs() <= 360.0 && elevation.abs() <= 90.0).then_some(Side::Angles(azimuth, elevation))?
+                let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite() && x.abs() <= 360.0);
+                let numbers: Vec<f64> = text.split(',').map(number).collect::<Option<_>>()?;
+                let angles = match numbers[..] {
+                    [azimuth, elevation] => [azimuth, elevation, 0.0],
+                    [azimuth, elevation, roll] => [azimuth, elevation, roll],
+                    _ => return None,
+                };
+                (angles[1].abs() <= 90.0).then_some(Bearing::Angles(angles))?
             }
         })
     }
 
+    /// Azimuth, elevation and roll in degrees.
+    pub fn angles(self) -> [f64; 3] {
+        match self {
+            Bearing::Iso => [33.0, 27.0, 0.0],
+            Bearing::X => [90.0, 0.0, 0.0],
+            Bearing::Y => [180.0, 0.0, 0.0],
+            Bearing::Z => [0.0, 90.0, 0.0],
+            Bearing::Angles(angles) => angles,
+        }
+    }
+
     /// The turn of the mesh that shows it from there, with z up as far as that can be.
     pub fn turn(self) -> DQuat {
-        let (azimuth, elevation) = match self {
-            Side::Iso => (33.0, 27.0),
-            Side::X => (90.0, 0.0),
-            Side::Y => (180.0, 0.0),
-            Side::Z => (0.0, 90.0),
-            Side::Angles(azimuth, elevation) => (azimuth, elevation),
-        };
-        let tilt = f64::to_radians(elevation - 90.0);
-        DQuat::from_rotation_x(tilt) * DQuat::from_rotation_z(-f64::to_radians(azimuth))
+        let [azimuth, elevation, roll] = self.angles().map(f64::to_radians);
+        let tilt = elevation - 0.5 * std::f64::consts::PI;
+        DQuat::from_rotation_z(roll) * DQuat::from_rotation_x(tilt) * DQuat::from_rotation_z(-azimuth)
+    }
+
+    /// The side from which a turn shows the mesh, to a thousandth of a degree.
+    pub fn of_turn(turn: DQuat) -> Bearing {
+        let towards = turn.inverse() * DVec3::Z;
+        let elevation = libm::asin(towards.z.clamp(-1.0, 1.0));
+        // From straight above or below only azimuth and roll together are known.
+        let level = libm::hypot(towards.x, towards.y) > 1e-6;
+        let azimuth = if level { libm::atan2(towards.x, -towards.y) } else { 0.0 };
+        let upright = Bearing::Angles([azimuth, elevation, 0.0].map(f64::to_degrees)).turn();
+        let up = turn * upright.inverse() * DVec3::X;
+        let roll = libm::atan2(up.y, up.x);
+        Bearing::Angles([azimuth, elevation, roll].map(|angle| (angle.to_degrees() * 1e3).round() / 1e3 + 0.0))
+    }
+}
+
+impl std::fmt::Display for Bearing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Bearing::Iso => write!(f, "iso"),
+            Bearing::X => write!(f, "x"),
+            Bearing::Y => write!(f, "y"),
+            Bearing::Z => write!(f, "z"),
+            Bearing::Angles([azimuth, elevation, 0.0]) => write!(f, "{azimuth},{elevation}"),
+            Bearing::Angles([azimuth, elevation, roll]) => write!(f, "{azimuth},{elevation},{roll}"),
+        }
     }
 }
 
@@ -294,17 +330,28 @@ mod tests {
     #[test]
     fn standard_views_look_from_their_sides_with_z_up() {
         let near = |a: DVec3, b: DVec3| assert!(a.distance(b) < 1e-12, "{a} {b}");
-        for (side, towards) in [(Side::X, DVec3::X), (Side::Y, DVec3::Y), (Side::Z, DVec3::Z)] {
+        for (side, towards) in [(Bearing::X, DVec3::X), (Bearing::Y, DVec3::Y), (Bearing::Z, DVec3::Z)] {
             near(side.turn() * towards, DVec3::Z);
         }
-        for side in [Side::X, Side::Y, Side::Angles(12.0, 0.0)] {
+        for side in [Bearing::X, Bearing::Y, Bearing::Angles([12.0, 0.0, 0.0])] {
             near(side.turn() * DVec3::Z, DVec3::Y);
         }
-        near(Side::Z.turn() * DVec3::Y, DVec3::Y);
-        assert_eq!(Side::parse(" 33, -27 "), Some(Side::Angles(33.0, -27.0)));
-        assert_eq!(Side::parse("Z"), Some(Side::Z));
-        for bad in ["", "w", "33", "nan,0", "0,91", "361,0", "1,2,3"] {
-            assert_eq!(Side::parse(bad), None, "{bad}");
+        near(Bearing::Z.turn() * DVec3::Y, DVec3::Y);
+        assert_eq!(Bearing::parse(" 33, -27 "), Some(Bearing::Angles([33.0, -27.0, 0.0])));
+        assert_eq!(Bearing::parse("Z"), Some(Bearing::Z));
+        for bad in ["", "w", "33", "nan,0", "0,91", "361,0", "1,2,3,4"] {
+            assert_eq!(Bearing::parse(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_side_is_found_from_its_turn_and_reads_back() {
+        for angles in
+            [[33.0, 27.0, 0.0], [-120.5, -60.0, 14.0], [0.0, 90.0, 45.0], [0.0, -90.0, 0.0], [179.0, 0.0, -90.0]]
+        {
+            let side = Bearing::of_turn(Bearing::Angles(angles).turn());
+            assert_eq!(side, Bearing::Angles(angles));
+            assert_eq!(Bearing::parse(&side.to_string()), Some(side));
         }
     }
 
@@ -312,7 +359,7 @@ mod tests {
     fn in_space_all_places_are_seen_and_what_is_grabbed_stays_where_it_is() {
         let places: Vec<DVec3> =
             (0..60).map(|k| f64::from(k)).map(|k| DVec3::new(k.sin(), 9.0 * k.cos(), 0.1 * k)).collect();
-        let mut camera = Camera::fit_in_space(places.iter().copied(), Side::Iso.turn(), SIZE, 20.0);
+        let mut camera = Camera::fit_in_space(places.iter().copied(), Bearing::Iso.turn(), SIZE, 20.0);
         for p in &places {
             let at = camera.seen(*p, SIZE);
             assert!(at.x > 19.9 && at.x < 780.1 && at.y > 19.9 && at.y < 580.1, "{at}");

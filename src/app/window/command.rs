@@ -7,7 +7,7 @@ use super::session::{Goal, Source};
 use super::state::Place;
 use crate::core::io::built_in;
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::render::camera::Side;
+use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 
 /// What a person asks for.
@@ -46,7 +46,7 @@ pub enum Command {
     /// Space beside the plane, or no longer.
     ToggleSplit,
     /// Look at the mesh in space from there.
-    LookFrom(Side),
+    LookFrom(Bearing),
     /// The next way to draw lines that faces cover.
     HiddenLines,
     /// Elements curved or flat.
@@ -181,10 +181,10 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (NONE, Key::F, Command::Fit),
         (NONE, Key::D, Command::ShowDecision),
         (NONE, Key::V, Command::TogglePlace),
-        (NONE, Key::I, Command::LookFrom(Side::Iso)),
-        (NONE, Key::X, Command::LookFrom(Side::X)),
-        (NONE, Key::Y, Command::LookFrom(Side::Y)),
-        (NONE, Key::Z, Command::LookFrom(Side::Z)),
+        (NONE, Key::I, Command::LookFrom(Bearing::Iso)),
+        (NONE, Key::X, Command::LookFrom(Bearing::X)),
+        (NONE, Key::Y, Command::LookFrom(Bearing::Y)),
+        (NONE, Key::Z, Command::LookFrom(Bearing::Z)),
         (NONE, Key::H, Command::HiddenLines),
         (NONE, Key::C, Command::ToggleCurved),
         (NONE, Key::Escape, Command::Escape),
@@ -217,11 +217,11 @@ impl Command {
             Command::Place(place) => place.name().into(),
             Command::TogglePlace => "Space or parametric plane".into(),
             Command::ToggleSplit => "Space and parametric plane side by side".into(),
-            Command::LookFrom(Side::Iso) => "Look from before, right and above".into(),
-            Command::LookFrom(Side::X) => "Look from +x".into(),
-            Command::LookFrom(Side::Y) => "Look from +y".into(),
-            Command::LookFrom(Side::Z) => "Look from +z".into(),
-            Command::LookFrom(Side::Angles(azimuth, elevation)) => format!("Look from {azimuth}°, {elevation}° up"),
+            Command::LookFrom(Bearing::Iso) => "Look from before, right and above".into(),
+            Command::LookFrom(Bearing::X) => "Look from +x".into(),
+            Command::LookFrom(Bearing::Y) => "Look from +y".into(),
+            Command::LookFrom(Bearing::Z) => "Look from +z".into(),
+            Command::LookFrom(bearing) => format!("Look from {bearing}"),
             Command::HiddenLines => "Hidden lines: off, faint, shown".into(),
             Command::ToggleCurved => "Elements curved or flat".into(),
             Command::Set(key, value) => format!("Set {key} = {value}"),

@@ -28,7 +28,7 @@ use crate::core::run::run::{self, Bookmark, Edit, Run};
 use crate::core::run::shown::{ShownState, fingerprint};
 use crate::core::run::timeline::Sample;
 use crate::core::run::watch::Watched;
-use crate::render::camera::{Camera, Side};
+use crate::render::camera::{Bearing, Camera};
 use crate::render::scene::{ColourBy, Layers, Outlined};
 
 /// What undo takes back: all that a person sets.
@@ -192,7 +192,7 @@ pub enum Look {
     Decision,
     At(Outlined),
     /// All of it in space, from a side.
-    From(Side),
+    From(Bearing),
 }
 
 /// What is open over the window.

@@ -99,7 +99,7 @@ fn the_far_side_of_a_sphere_is_hidden_but_for_hidden_lines() {
     use crate::core::io::built_in;
     use crate::core::progress::Nobody;
     use crate::core::run::{history::History, run::Run};
-    use crate::render::camera::Side;
+    use crate::render::camera::Bearing;
     use crate::render::scene::{Drawn, Form, Layers, Shading};
     use glam::DVec3;
 
@@ -108,7 +108,8 @@ fn the_far_side_of_a_sphere_is_hidden_but_for_hidden_lines() {
     case.parameters.size_scale = 2.0;
     let history = History::open(Run::of(case), &mut Nobody).unwrap();
     let mesh = &history.state().mesh;
-    let camera = Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Side::Iso.turn(), DVec2::splat(300.0), 20.0);
+    let camera =
+        Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Bearing::Iso.turn(), DVec2::splat(300.0), 20.0);
     for form in [Form::Flat, Form::Curved] {
         for samples in [1, 4] {
             let draw = |half: f32, hidden: f32| {

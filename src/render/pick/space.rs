@@ -153,7 +153,7 @@ mod tests {
     use crate::core::progress::Nobody;
     use crate::core::run::history::History;
     use crate::core::run::run::Run;
-    use crate::render::camera::Side;
+    use crate::render::camera::Bearing;
     use crate::render::palette::DARK;
     use crate::render::scene::{Drawn, Form, Layers, Shading};
 
@@ -174,7 +174,7 @@ mod tests {
         for form in [Form::Flat, Form::Curved] {
             let (scene, history) = sphere(form);
             let mesh = &history.state().mesh;
-            let camera = Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Side::Iso.turn(), SIZE, 20.0);
+            let camera = Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Bearing::Iso.turn(), SIZE, 20.0);
             let radius = 0.5 * (SIZE.y - 40.0);
             let (mut hits, mut named) = (0, [0; 3]);
             for k in 0..400 {
@@ -202,7 +202,7 @@ mod tests {
     fn a_cover_hides_the_far_half_of_a_sphere() {
         let (scene, history) = sphere(Form::Flat);
         let mesh = &history.state().mesh;
-        let camera = Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Side::X.turn(), SIZE, 20.0);
+        let camera = Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Bearing::X.turn(), SIZE, 20.0);
         let cover = Cover::of(&scene, &camera, SIZE);
         let nodes = mesh.nodes().map(|n| camera.seen(mesh.xyz(n), SIZE));
         // Near the outline both halves are in one cell.

@@ -9,7 +9,7 @@ use crate::app::window::labels;
 use crate::app::window::session::Moment;
 use crate::app::window::state::{Look, State};
 use crate::core::mesh::ids::NodeId;
-use crate::render::camera::{Camera, Side};
+use crate::render::camera::{Bearing, Camera};
 use crate::render::palette::Palette;
 use crate::render::pick::{self, Cover};
 use crate::render::scene::{Decision, Outlined};
@@ -107,7 +107,7 @@ fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<Look>) -> C
     let mut camera = match space.camera {
         None => {
             space.fitted = true;
-            fit(moment, Side::Iso.turn(), size)
+            fit(moment, Bearing::Iso.turn(), size)
         }
         // A view that still shows the whole mesh goes on doing so when its size changes.
         Some(camera) if space.fitted && space.size != size => fit(moment, camera.turn, size),

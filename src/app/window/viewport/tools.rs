@@ -5,7 +5,7 @@ use eframe::egui::{Align, Frame, Layout, Margin, Rect, RichText, Role, Ui, UiBui
 use crate::app::window::command::Command;
 use crate::app::window::state::{HiddenLines, Place, State};
 use crate::app::window::theme::{self, ink};
-use crate::render::camera::Side;
+use crate::render::camera::Bearing;
 use crate::render::palette::Palette;
 
 /// Shows the buttons in the upper right corner.
@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Co
             button(ui, hidden != HiddenLines::Off, &text, Command::HiddenLines);
             button(ui, state.space.curved, "Curved", Command::ToggleCurved);
             ui.separator();
-            for (side, text) in [(Side::Z, "Z"), (Side::Y, "Y"), (Side::X, "X"), (Side::Iso, "Iso")] {
+            for (side, text) in [(Bearing::Z, "Z"), (Bearing::Y, "Y"), (Bearing::X, "X"), (Bearing::Iso, "Iso")] {
                 button(ui, false, text, Command::LookFrom(side));
             }
         });
