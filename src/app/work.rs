@@ -117,7 +117,7 @@ pub(super) fn convert(
         run.make_edits(converter, 0)?;
         match tell.take() {
             // Nobody looks on the way: the faces go at the same time, to the same state.
-            None if at.is_none() && run.edits.is_empty() => converter.run_by_faces(watch)?,
+            None if at.is_none() && run.edits().is_empty() => converter.run_by_faces(watch)?,
             tell => walk_editing(converter, at, watch, tell, &mut |c| run.make_edits(c, c.counts.steps))?,
         }
         end = (converter.phase().plain(), converter.parameters().clone());
