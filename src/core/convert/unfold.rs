@@ -133,7 +133,7 @@ impl<'a> Unfolding<'a> {
             } else if before < FOLDED && self.moved(mesh, element) {
                 Some(Mending::Moved)
             } else if before < FOLDED
-                && let Some(new) = self.rotated(mesh, element)
+                && let Some(new) = self.rotated(mesh, element, None)
             {
                 nodes.extend(new);
                 Some(Mending::Rotated { new })
@@ -143,9 +143,15 @@ impl<'a> Unfolding<'a> {
                 nodes.retain(|&n| mesh.has_node(n));
                 Some(Mending::Collapsed { kept })
             } else {
-                self.pillowed(mesh, element).map(|inner| {
+                let pillowed = self.pillowed(mesh, element).map(|inner| {
                     nodes.extend(inner);
                     Mending::Pillowed { inner }
+                });
+                let is_doublet = before >= FOLDED && self.is_doublet(mesh, node);
+                pillowed.or_else(|| {
+                    let new = is_doublet.then(|| self.rotated(mesh, element, Some(node))).flatten()?;
+                    nodes.extend(new);
+                    Some(Mending::Rotated { new })
                 })
             };
             if how.is_some() {
@@ -179,9 +185,13 @@ impl<'a> Unfolding<'a> {
         if let Some(double) = quads().find(|&e| self.is_double(mesh, e)) {
             return Some((self.sine(mesh, double), double));
         }
-        let pair = self.doublets.binary_search_by_key(&node, |pair| pair[0]).ok().map(|k| self.doublets[k]);
-        let is_doublet = pair.is_some_and(|pair| pair.iter().all(|&n| mesh.fan(n).count() == 1));
+        let is_doublet = self.is_doublet(mesh, node);
         (is_doublet || self.coincident.binary_search(&node).is_ok()).then_some(worst)
+    }
+
+    fn is_doublet(&self, mesh: &Mesh, node: NodeId) -> bool {
+        let pair = self.doublets.binary_search_by_key(&node, |pair| pair[0]).ok().map(|k| self.doublets[k]);
+        pair.is_some_and(|pair| pair.iter().all(|&n| mesh.fan(n).count() == 1))
     }
 
     fn is_double(&self, mesh: &Mesh, e: ElementId) -> bool {
@@ -227,8 +237,9 @@ impl<'a> Unfolding<'a> {
         })
     }
 
-    /// Rotates an edge of a quadrilateral; the ends that it has then. None where not fewer elements around fold then.
-    fn rotated(&self, mesh: &mut Mesh, element: ElementId) -> Option<[NodeId; 2]> {
+    /// Rotates an edge of a quadrilateral; the ends that it has then. None where not fewer elements around fold then; for a node that
+    /// needs an edge more, where it gets none, or more fold.
+    fn rotated(&self, mesh: &mut Mesh, element: ElementId, needy: Option<NodeId>) -> Option<[NodeId; 2]> {
         for h in mesh.half_edges(element).collect::<Vec<_>>() {
             let Ok(ring) = mesh.hexagon(h) else { continue };
             let before = self.flaws(mesh, &ring);
@@ -239,7 +250,12 @@ impl<'a> Unfolding<'a> {
                     for _ in 0..ROUNDS {
                         core.iter().for_each(|&node| self.improve(mesh, node));
                     }
-                    if self.flaws(mesh, &ring) < before {
+                    let after = self.flaws(mesh, &ring);
+                    let is_better = match needy {
+                        None => after < before,
+                        Some(node) => after <= before && mesh.fan(node).count() > 1,
+                    };
+                    if is_better {
                         return Some([ring[by], ring[by + 3]]);
                     }
                 }
@@ -402,6 +418,7 @@ fn doublets(mesh: &Mesh) -> Vec<[NodeId; 2]> {
             found.extend([[a, b], [b, a]]);
         }
     }
+    found.sort_unstable();
     found
 }
 
