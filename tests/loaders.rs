@@ -34,7 +34,7 @@ struct XorShift(u64);
 impl XorShift {
     fn of(seed: u64) -> XorShift {
         let mut random = XorShift(seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15 | 1);
-        (0..4).for_each(|_| drop(random.next()));
+        (0..4).for_each(|_| _ = random.next());
         random
     }
 

@@ -60,23 +60,25 @@ fn converted(name: &str, file: &MeshFile, allow: Allow) -> MeshFile {
     mesh
 }
 
-/// How far points of one mesh lie from the triangles of another, by the diagonal of that one's box.
+/// How far the points of two meshes lie from each other's elements, both ways, by the diagonal of the box of the second.
 fn farthest(mesh: &MeshFile, file: &MeshFile) -> f64 {
-    let box_of = |points: &[DVec3]| {
-        points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)))
+    let used: Vec<DVec3> = file.triangles.as_flattened().iter().map(|&k| file.points[k as usize]).collect();
+    let (low, high) =
+        used.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+    let given: Vec<[DVec3; 3]> = file.triangles.iter().map(|t| t.map(|k| file.points[k as usize])).collect();
+    let halves = mesh.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let made: Vec<[DVec3; 3]> = halves.map(|t| t.map(|k| mesh.points[k as usize])).collect();
+    let one_way = |from: &[[DVec3; 3]], to: &[[DVec3; 3]]| {
+        let points = from.iter().flat_map(|t| [t[0], t.iter().sum::<DVec3>() / 3.0]);
+        let nearest = |p: DVec3| to.iter().map(|t| distance_to_triangle(p, *t)).fold(f64::INFINITY, f64::min);
+        points.map(nearest).fold(0.0, f64::max)
     };
-    let (low, high) = box_of(&file.points);
-    let middles = mesh.quads.iter().map(|q| q.iter().map(|&k| mesh.points[k as usize]).sum::<DVec3>() / 4.0);
-    let nearest = |p: DVec3| {
-        let to = |t: &[u32; 3]| distance_to_triangle(p, t.map(|k| file.points[k as usize]));
-        file.triangles.iter().map(to).fold(f64::INFINITY, f64::min)
-    };
-    middles.chain(mesh.points.iter().copied()).map(nearest).fold(0.0, f64::max) / (high - low).length()
+    one_way(&made, &given).max(one_way(&given, &made)) / (high - low).length()
 }
 
 fn distance_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-    let n = (b - a).cross(c - a).normalize();
-    let inside = [(a, b), (b, c), (c, a)].iter().all(|&(s, t)| n.dot((t - s).cross(p - s)) >= 0.0);
+    let n = (b - a).cross(c - a).normalize_or_zero();
+    let inside = n != DVec3::ZERO && [(a, b), (b, c), (c, a)].iter().all(|&(s, t)| n.dot((t - s).cross(p - s)) >= 0.0);
     if inside {
         return n.dot(p - a).abs();
     }
@@ -220,5 +222,133 @@ fn sizes_of_a_case_hold_on_a_mesh_in_space() {
     let area = TAU * 2.0 * TAU * 0.7;
     for h in [0.2, 0.1] {
         assert!((quads(h) / (area / (h * h)) - 1.0).abs() < 0.15, "{h}: {}", quads(h));
+    }
+}
+
+/// Triangles of several meshes, without a common point.
+fn together(parts: &[(&MeshFile, DVec3)]) -> MeshFile {
+    let mut all = MeshFile::default();
+    for (part, by) in parts {
+        let n = all.points.len() as u32;
+        all.points.extend(part.points.iter().map(|p| *p + *by));
+        all.triangles.extend(part.triangles.iter().map(|t| t.map(|k| k + n)));
+    }
+    all
+}
+
+/// The sides of the unit cube, `n` squares along each edge, points repeated along the edges.
+fn cube(n: u32) -> MeshFile {
+    let side = |turn: DVec3, flip: bool| {
+        grid(n, n, [false, false], |u, v| {
+            let p = if flip { DVec3::new(v, u, 0.0) } else { DVec3::new(u, v, 1.0) };
+            if turn.x > 0.0 {
+                p
+            } else if turn.y > 0.0 {
+                DVec3::new(p.z, p.x, p.y)
+            } else {
+                DVec3::new(p.y, p.z, p.x)
+            }
+        })
+    };
+    let sides: Vec<MeshFile> =
+        [DVec3::X, DVec3::Y, DVec3::Z].iter().flat_map(|&turn| [side(turn, false), side(turn, true)]).collect();
+    together(&sides.iter().map(|side| (side, DVec3::ZERO)).collect::<Vec<_>>())
+}
+
+#[test]
+fn surfaces_that_touch_themselves_are_sound_all_the_same() {
+    let branching = Allow { branching: true, seams: true, ..Allow::default() };
+    // Cubes that have a corner, an edge, a side and a part of a side in common.
+    let [one, other] = [cube(4), cube(3)];
+    let mesh = converted("corner", &together(&[(&one, DVec3::ZERO), (&one, DVec3::ONE)]), Allow::default());
+    assert_eq!((euler(&mesh), boundary_edges(&mesh)), (4, 0));
+    converted("edge", &together(&[(&one, DVec3::ZERO), (&one, DVec3::new(1.0, 1.0, 0.0))]), branching);
+    converted("side", &together(&[(&one, DVec3::ZERO), (&one, DVec3::X)]), branching);
+    converted("side, other triangles", &together(&[(&one, DVec3::ZERO), (&other, DVec3::X)]), branching);
+    // A plate twice, cut along the other diagonals the second time.
+    let plate = grid(3, 3, [false, false], |u, v| DVec3::new(u, v, 0.0));
+    let mut turned = plate.clone();
+    for k in (0..turned.triangles.len()).step_by(2) {
+        let ([a, b, c], [_, _, d]) = (turned.triangles[k], turned.triangles[k + 1]);
+        (turned.triangles[k], turned.triangles[k + 1]) = ([a, b, d], [b, c, d]);
+    }
+    let tilted = |mesh: &MeshFile| {
+        let points = mesh.points.iter().map(|p| DVec3::new(p.x, p.y, 0.5 * p.x)).collect();
+        MeshFile { points, ..mesh.clone() }
+    };
+    converted("doubled", &together(&[(&tilted(&plate), DVec3::ZERO), (&tilted(&turned), DVec3::ZERO)]), branching);
+    // Points of the one hang in sides of the other.
+    let coarse = grid(2, 2, [false, false], |u, v| DVec3::new(u, v, u * v));
+    let fine = grid(4, 5, [false, false], |u, v| DVec3::new(1.0 + u, v, v));
+    let mesh = converted("hanging", &together(&[(&coarse, DVec3::ZERO), (&fine, DVec3::ZERO)]), Allow::default());
+    assert_eq!(euler(&mesh), 1);
+}
+
+#[test]
+fn narrow_corners_and_spikes_are_sound() {
+    // A fan of triangles between two spirals that meet under three degrees.
+    let leaf = grid(40, 4, [false, false], |u, v| {
+        let angle = 2.0 * u + (v - 0.5) * 0.1 * u;
+        DVec3::new(u * libm::cos(angle), u * libm::sin(angle), 0.3 * u * u)
+    });
+    converted("leaf", &leaf, Allow::default());
+    // A ball with spikes.
+    let spiky = grid(36, 18, [true, true], |u, v| {
+        let far = if (7 * (36.0 * u) as u32 + 5 * (18.0 * v) as u32) % 11 == 0 { 1.25 } else { 1.0 };
+        let r = 2.0 + 0.7 * far * on_circle(v).x;
+        (on_circle(u) * r).extend(0.7 * far * on_circle(v).y)
+    });
+    assert_eq!(euler(&converted("spikes", &spiky, Allow::default())), 0);
+}
+
+/// A surface and what was done to it, by numbers from a generator.
+fn damaged(seed: u64) -> MeshFile {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut file = match (random() * 4.0) as u32 {
+        0 => {
+            grid(14, 9, [true, true], |u, v| (on_circle(u) * (2.0 + 0.8 * on_circle(v).x)).extend(0.8 * on_circle(v).y))
+        }
+        1 => grid(12, 12, [true, false], |u, v| on_circle(u).extend(2.0 * v)),
+        2 => cube(4),
+        _ => grid(12, 10, [false, false], |u, v| DVec3::new(u, v, 0.2 * on_circle(u).y * on_circle(v).y)),
+    };
+    let noise = [0.0, 0.01, 0.05, 0.15][(random() * 4.0) as usize];
+    // Points at one place move together.
+    let jolt = |p: DVec3, amount: f64| {
+        let part = |x: f64| libm::sin(1e3 * x + 17.0 * (p.x + 2.0 * p.y + 3.0 * p.z));
+        p + DVec3::new(part(p.x), part(p.y), part(p.z)) * amount
+    };
+    file.points.iter_mut().for_each(|p| *p = jolt(*p, noise));
+    let many = file.triangles.len() as f64;
+    for _ in 0..(random() * 6.0) as u32 {
+        let k = (random() * many) as usize % file.triangles.len();
+        match (random() * 4.0) as u32 {
+            0 => drop(file.triangles.swap_remove(k)),
+            1 => file.triangles[k].swap(0, 1),
+            2 => file.triangles.push(file.triangles[k]),
+            _ => {
+                // A tooth on a side, so that it branches.
+                let [a, b, _] = file.triangles[k];
+                let middle = (file.points[a as usize] + file.points[b as usize]) * 0.5;
+                file.points.push(middle + DVec3::new(random(), random(), random()) * 0.4);
+                file.triangles.push([a, b, file.points.len() as u32 - 1]);
+            }
+        }
+    }
+    file
+}
+
+/// `QUADFRONT_SOAK_ROUNDS` sets the number of rounds (`make soak`).
+#[test]
+fn damaged_surfaces_become_sound_meshes() {
+    let rounds = std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|text| text.parse().ok()).unwrap_or(12_u64);
+    for seed in 0..rounds {
+        converted(&format!("seed {seed}"), &damaged(seed), Allow { branching: true, seams: true, ..Allow::default() });
     }
 }

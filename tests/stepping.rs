@@ -42,8 +42,37 @@ fn running_is_a_loop_over_steps() {
 }
 
 #[test]
+fn faces_at_the_same_time_end_in_the_same_state_as_one_after_another() {
+    for (name, size_scale) in
+        [("example3", 1.6), ("example5", 1.5), ("example6", 2.0), ("branching", 1.0), ("sphere", 1.5)]
+    {
+        with_case(name, size_scale, |mut stepped| {
+            let mut together = stepped.clone();
+            together.run_by_faces(&mut Nobody).unwrap();
+            stepped.keep_history();
+            let mut faces = Vec::new();
+            while *stepped.phase() != Phase::Done {
+                if let Event::FaceConverted { region } = stepped.step().unwrap() {
+                    faces.push(region);
+                    // What was converted stays; what is to come has not begun.
+                    let (done, to_come) = (region, region + 1);
+                    assert!(stepped.mesh.elements_of(Some(done)).all(|e| stepped.mesh.is_quad(e)));
+                    assert!(stepped.mesh.elements_of(Some(to_come)).all(|e| stepped.mesh.is_triangle(e)));
+                }
+            }
+            assert_eq!(fingerprint(&together), fingerprint(&stepped), "{name}");
+            assert_eq!((together.counts, together.finished), (stepped.counts, stepped.finished), "{name}");
+            assert!(faces.is_sorted() && faces == stepped.mesh.faces(), "{name}: {faces:?}");
+            stepped.mesh.check().unwrap();
+        });
+    }
+}
+
+#[test]
 fn every_walk_of_steps_forward_and_back_meets_the_same_states() {
-    for (name, size_scale) in [("example1", 2.0), ("polar-1", 2.0), ("repeated-line", 1.5), ("airfoil", 2.0)] {
+    for (name, size_scale) in
+        [("example1", 2.0), ("polar-1", 2.0), ("repeated-line", 1.5), ("airfoil", 2.0), ("example5", 3.0)]
+    {
         with_case(name, size_scale, |mut converter| {
             let mut rolled_back = 0;
             let mut states = vec![fingerprint(&converter)];

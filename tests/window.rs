@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use quadfront::app::window::{App, Command, Goal, Lost, Source};
+use quadfront::app::window::{App, Command, Goal, Lost, Place, Source};
 use quadfront::render::scene::Outlined;
 
 fn has_adapter() -> bool {
@@ -447,4 +447,110 @@ fn times_are_shown_and_measured_where_they_are_asked_for() {
         harness.run_steps(1);
     }
     assert!(harness.query_by_label_contains("60 quads on and back").is_some());
+}
+
+/// The window on a case with surfaces.
+fn window_on(name: &str) -> Option<Harness<'static, App>> {
+    has_adapter().then(|| {
+        let source = Source::BuiltIn(name.to_owned());
+        let builder = Harness::builder().with_size(Vec2::new(1600.0, 900.0)).wgpu();
+        let mut harness = builder.build_eframe(|cc| App::new(cc, Some(source)));
+        settle(&mut harness);
+        harness
+    })
+}
+
+#[test]
+fn surfaces_open_in_space_and_a_key_a_button_and_the_palette_lead_to_the_plane_and_back() {
+    let Some(mut harness) = window_on("example2") else { return };
+    let place = |harness: &Harness<'static, App>| harness.state().state.space.place;
+    assert_eq!(place(&harness), Place::Space);
+    let space = harness.render().unwrap().into_raw();
+    press(&mut harness, Modifiers::NONE, Key::V);
+    assert_eq!(place(&harness), Place::Plane);
+    let plane = harness.render().unwrap().into_raw();
+    assert!(difference(&space, &plane) > 0.02, "{}", difference(&space, &plane));
+    harness.get_by_label("Show in space").click();
+    settle(&mut harness);
+    assert_eq!(place(&harness), Place::Space);
+    let again = harness.render().unwrap().into_raw();
+    assert!(difference(&space, &again) < 0.004, "{}", difference(&space, &again));
+    press(&mut harness, Modifiers::COMMAND, Key::P);
+    harness.get_by_label("Name of a command").type_text("side by side");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert_eq!(place(&harness), Place::Both);
+    let both = harness.render().unwrap().into_raw();
+    assert!(difference(&both, &space) > 0.02 && difference(&both, &plane) > 0.02);
+}
+
+#[test]
+fn a_step_in_space_looks_the_same_however_one_came_to_it() {
+    let Some(mut harness) = window_on("example2") else { return };
+    press(&mut harness, Modifiers::SHIFT, Key::V);
+    for curved in [false, true] {
+        if curved {
+            press(&mut harness, Modifiers::NONE, Key::C);
+        }
+        apply(&mut harness, Command::Go(Goal::Step(40)));
+        let there = harness.render().unwrap().into_raw();
+        apply(&mut harness, Command::Go(Goal::End));
+        let end = harness.render().unwrap().into_raw();
+        apply(&mut harness, Command::Go(Goal::Step(40)));
+        let again = harness.render().unwrap().into_raw();
+        assert!(difference(&there, &again) < 0.002, "{}", difference(&there, &again));
+        assert!(difference(&there, &end) > 0.02, "{}", difference(&there, &end));
+    }
+}
+
+#[test]
+fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_what_was_grabbed() {
+    let Some(mut harness) = window_on("sphere") else { return };
+    // The view is the first of the canvases; its middle is the middle of the sphere's near half.
+    let rect = harness.query_all_by_label_contains("Mesh at step").map(|node| node.rect()).next().unwrap();
+    let at = rect.center();
+    harness.hover_at(at);
+    harness.run_steps(2);
+    let what = harness.state().state.hovered.expect("something is under the pointer");
+    harness.drag_at(at);
+    harness.run_steps(1);
+    harness.drop_at(at);
+    harness.run_steps(3);
+    let state = &harness.state().state;
+    assert_eq!(state.kept.picked, Some(what));
+    let (mesh, camera) = (state.moment.as_ref().unwrap().mesh.clone(), state.space.camera.unwrap());
+    let towards = camera.towards();
+    let nodes = match what {
+        Outlined::Node(n) => vec![n],
+        Outlined::Edge(ends) => ends.to_vec(),
+        Outlined::Element(e) => mesh.corners(e).collect(),
+    };
+    assert!(nodes.iter().all(|n| (mesh.xyz(*n) - camera.centre).dot(towards) > 0.0), "it is on the near half");
+    harness.drag_at(at);
+    harness.run_steps(1);
+    for k in 1..=4 {
+        harness.hover_at(at + Vec2::new(20.0 * k as f32, 8.0 * k as f32));
+        harness.run_steps(1);
+    }
+    harness.drop_at(at + Vec2::new(80.0, 32.0));
+    harness.run_steps(3);
+    let turned = harness.state().state.space.camera.unwrap();
+    assert!(turned.towards().angle_between(towards) > 0.2, "{}", turned.towards().angle_between(towards));
+    assert_eq!(turned.scale, camera.scale);
+    press(&mut harness, Modifiers::NONE, Key::X);
+    let camera = harness.state().state.space.camera.unwrap();
+    assert!(camera.towards().distance(glam::DVec3::X) < 1e-9);
+}
+
+#[test]
+fn hidden_lines_go_round_and_show_more() {
+    let Some(mut harness) = window_on("sphere") else { return };
+    let mut pictures = vec![harness.render().unwrap().into_raw()];
+    for _ in 0..3 {
+        press(&mut harness, Modifiers::NONE, Key::H);
+        pictures.push(harness.render().unwrap().into_raw());
+    }
+    let apart: Vec<f64> = pictures[1..].iter().map(|p| difference(&pictures[0], p)).collect();
+    assert!(apart[1] > 0.005 && apart[1] > apart[0] && apart[2] < 0.002, "{apart:?}");
 }

@@ -69,6 +69,9 @@ pub(super) struct Source {
     /// Multiply the coordinates of MESH (0.001: from millimetres to metres)
     #[arg(long, value_name = "FACTOR")]
     pub scale: Option<f64>,
+    /// Convert this face only and leave the others out (may be given several times)
+    #[arg(long = "face", value_name = "NAME")]
+    pub faces: Vec<String>,
     /// Set a parameter of the case, for example size_scale=0.5 (may be given several times)
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,

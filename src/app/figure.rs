@@ -130,7 +130,7 @@ pub(super) fn make(
         return Err(Fault::new("A histogram is of one state").at("--plot").remedy("Name one stop with --at"));
     }
     let layers = options.look(wanted.len() > 1).layers;
-    let frames = work::frames(run, wanted, layers, options.plot.is_some(), watch)?;
+    let frames = work::frames(run, wanted, layers, options.bearing(), options.plot.is_some(), watch)?;
     Ok((Figure::of_run(run, &frames, options, carries)?, frames))
 }
 

@@ -125,6 +125,9 @@ pub(super) fn read(source: &Source) -> Result<Input, Fault> {
     if source.paper {
         *parameters = parameters.read_as_paper();
     }
+    if !source.faces.is_empty() {
+        parameters.faces.clone_from(&source.faces);
+    }
     for (key, value) in &source.set {
         parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
     }

@@ -17,7 +17,8 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
         && arguments.figure.plot.is_none()
         && let Some(mesh) = input::read_mesh(&source.input, source.from)?
     {
-        let picture = Picture { title: source.input.clone(), ..Picture::of_mesh(&mesh) };
+        let picture =
+            Picture { title: source.input.clone(), ..Picture::of_mesh_from(&mesh, arguments.figure.bearing()) };
         return output::write_figure(&arguments.out, &Figure::of_mesh(&picture, &arguments.figure));
     }
     let mut progress = Progress::new(source.quiet);

@@ -23,6 +23,7 @@ use crate::core::metric::field::Sizing;
 use crate::core::progress::{Stage, Watch};
 use crate::core::run::run::Run;
 use crate::core::run::shown::{ShownState, fingerprint};
+use crate::render::camera::Bearing;
 use crate::render::look::{Layer, Layers};
 use crate::render::picture::{Picture, Seen};
 
@@ -66,7 +67,7 @@ pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles
     let frame = {
         let (parameters, phase) = (&case.parameters, &Phase::Select);
         let shown = ShownState { step: 0, at: Some(Stop::Step(0)), state: fingerprint(&mesh, phase) };
-        let seen = Seen { mesh: &mesh, parameters, phase, changed: &[] };
+        let seen = Seen { mesh: &mesh, parameters, phase, changed: &[], from: Bearing::Iso };
         Frame { picture: Picture::of_state(&seen, Layers::default()), shown, statistics: None }
     };
     let mut export = Export::of(&mesh, &regions);
@@ -114,7 +115,11 @@ pub(super) fn convert(
     let mut end = (Phase::Done, case.parameters.clone());
     let converted = conversion::convert_by(case, watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
-        walk_editing(converter, at, watch, tell.take(), &mut |c| run.make_edits(c, c.counts.steps))?;
+        match tell.take() {
+            // Nobody looks on the way: the faces go at the same time, to the same state.
+            None if at.is_none() && run.edits().is_empty() => converter.run_by_faces(watch)?,
+            tell => walk_editing(converter, at, watch, tell, &mut |c| run.make_edits(c, c.counts.steps))?,
+        }
         end = (converter.phase().plain(), converter.parameters().clone());
         Ok(())
     })?;
@@ -146,9 +151,10 @@ pub(super) fn convert(
 }
 
 impl Quads {
-    /// The frame of it, for a figure.
-    pub fn frame(&self, layers: Layers) -> Frame {
-        let seen = Seen { mesh: &self.mesh, parameters: &self.in_force, phase: &self.phase, changed: &[] };
+    /// The frame of it, for a figure that looks from a side.
+    pub fn frame(&self, layers: Layers, from: Bearing) -> Frame {
+        let (mesh, parameters, phase) = (&self.mesh, &self.in_force, &self.phase);
+        let seen = Seen { mesh, parameters, phase, changed: &[], from };
         Frame { picture: Picture::of_state(&seen, layers), shown: self.shown, statistics: None }
     }
 }
@@ -171,6 +177,7 @@ pub(super) fn frames(
     run: &Run,
     wanted: &[Wanted],
     layers: Layers,
+    from: Bearing,
     plotted: bool,
     watch: &mut dyn Watch,
 ) -> Result<Vec<Frame>, Fault> {
@@ -192,7 +199,8 @@ pub(super) fn frames(
             let mut changed = Touched::default();
             converter.note_last_step(&mut changed);
             let (mesh, phase) = (&converter.mesh, converter.phase());
-            let seen = Seen { mesh, parameters: converter.parameters(), phase, changed: changed.elements() };
+            let (parameters, changed) = (converter.parameters(), changed.elements());
+            let seen = Seen { mesh, parameters, phase, changed, from };
             let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
             frames.push(Frame { picture: Picture::of_state(&seen, layers), shown, statistics: None });
             if plotted {

@@ -41,6 +41,8 @@ pub enum Entry {
     NodeFreed,
     /// An element became a tombstone.
     ElementFreed,
+    /// How much of the free lists is closed: of the nodes', of the elements'.
+    Closed([u32; 2]),
 }
 
 /// A place in the journal to which everything later can be taken back. Places are counted from the journal's beginning, also

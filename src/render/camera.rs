@@ -20,11 +20,102 @@ pub struct Camera {
     pub lens: DMat2,
     /// Points for one unit at which the whole mesh fits.
     fitted: f64,
+    /// A length that nothing seen is farther from the middle than, about.
+    reach: f64,
+}
+
+/// From where a mesh in space is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Bearing {
+    /// From before, to the right and above.
+    #[default]
+    Iso,
+    /// From +x.
+    X,
+    /// From +y.
+    Y,
+    /// From +z.
+    Z,
+    /// From so many degrees to the right of -y, and so many up, the picture turned by so many anticlockwise.
+    Angles([f64; 3]),
+}
+
+impl Bearing {
+    /// The same, read from `iso`, `x`, `y`, `z`, or degrees: `AZ,EL` or `AZ,EL,ROLL`.
+    pub fn parse(text: &str) -> Option<Bearing> {
+        Some(match text.trim().to_lowercase().as_str() {
+            "iso" => Bearing::Iso,
+            "x" => Bearing::X,
+            "y" => Bearing::Y,
+            "z" => Bearing::Z,
+            text => {
+                let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite() && x.abs() <= 360.0);
+                let numbers: Vec<f64> = text.split(',').map(number).collect::<Option<_>>()?;
+                let angles = match numbers[..] {
+                    [azimuth, elevation] => [azimuth, elevation, 0.0],
+                    [azimuth, elevation, roll] => [azimuth, elevation, roll],
+                    _ => return None,
+                };
+                (angles[1].abs() <= 90.0).then_some(Bearing::Angles(angles))?
+            }
+        })
+    }
+
+    /// Azimuth, elevation and roll in degrees.
+    pub fn angles(self) -> [f64; 3] {
+        match self {
+            Bearing::Iso => [33.0, 27.0, 0.0],
+            Bearing::X => [90.0, 0.0, 0.0],
+            Bearing::Y => [180.0, 0.0, 0.0],
+            Bearing::Z => [0.0, 90.0, 0.0],
+            Bearing::Angles(angles) => angles,
+        }
+    }
+
+    /// The turn of the mesh that shows it from there, with z up as far as that can be.
+    pub fn turn(self) -> DQuat {
+        let [azimuth, elevation, roll] = self.angles().map(f64::to_radians);
+        let tilt = elevation - 0.5 * std::f64::consts::PI;
+        DQuat::from_rotation_z(roll) * DQuat::from_rotation_x(tilt) * DQuat::from_rotation_z(-azimuth)
+    }
+
+    /// The side from which a turn shows the mesh, to a thousandth of a degree.
+    pub fn of_turn(turn: DQuat) -> Bearing {
+        let towards = turn.inverse() * DVec3::Z;
+        let elevation = libm::asin(towards.z.clamp(-1.0, 1.0));
+        // From straight above or below only azimuth and roll together are known.
+        let level = libm::hypot(towards.x, towards.y) > 1e-6;
+        let azimuth = if level { libm::atan2(towards.x, -towards.y) } else { 0.0 };
+        let upright = Bearing::Angles([azimuth, elevation, 0.0].map(f64::to_degrees)).turn();
+        let up = turn * upright.inverse() * DVec3::X;
+        let roll = libm::atan2(up.y, up.x);
+        Bearing::Angles([azimuth, elevation, roll].map(|angle| (angle.to_degrees() * 1e3).round() / 1e3 + 0.0))
+    }
+}
+
+impl std::fmt::Display for Bearing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Bearing::Iso => write!(f, "iso"),
+            Bearing::X => write!(f, "x"),
+            Bearing::Y => write!(f, "y"),
+            Bearing::Z => write!(f, "z"),
+            Bearing::Angles([azimuth, elevation, 0.0]) => write!(f, "{azimuth},{elevation}"),
+            Bearing::Angles([azimuth, elevation, roll]) => write!(f, "{azimuth},{elevation},{roll}"),
+        }
+    }
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Camera { centre: DVec3::ZERO, scale: 1.0, turn: DQuat::IDENTITY, lens: DMat2::IDENTITY, fitted: 1.0 }
+        Camera {
+            centre: DVec3::ZERO,
+            scale: 1.0,
+            turn: DQuat::IDENTITY,
+            lens: DMat2::IDENTITY,
+            fitted: 1.0,
+            reach: 1.0,
+        }
     }
 }
 
@@ -35,12 +126,27 @@ impl Camera {
         let room = (size - 2.0 * margin).max(DVec2::ONE);
         let scale = (room / extent).min_element();
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
-        Camera { centre: (0.5 * (bounds[0] + bounds[1])).extend(0.0), scale, fitted: scale, ..Camera::default() }
+        let centre = (0.5 * (bounds[0] + bounds[1])).extend(0.0);
+        Camera { centre, scale, fitted: scale, reach: size.max_element() / scale, ..Camera::default() }
+    }
+
+    /// A camera that sees all places from a side, in a view of `size` points with `margin` points left free around them.
+    pub fn fit_in_space(places: impl Iterator<Item = DVec3>, turn: DQuat, size: DVec2, margin: f64) -> Camera {
+        let empty = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        let [low, high] = places.map(|p| turn * p).fold(empty, |[low, high], p| [low.min(p), high.max(p)]);
+        if !(low.is_finite() && high.is_finite()) {
+            return Camera { turn, ..Camera::default() };
+        }
+        let middle = 0.5 * (low + high);
+        let bounds = [low.truncate(), high.truncate()];
+        let flat = Camera::fit(bounds, size, margin);
+        let reach = (high - low).length().max(f64::MIN_POSITIVE);
+        Camera { centre: turn.inverse() * middle, turn, reach, ..flat }
     }
 
     /// A camera on `centre` in which lengths of the symmetric root `lens` are `scale` points a unit.
     pub fn through_lens(centre: DVec2, lens: DMat2, scale: f64) -> Camera {
-        Camera { centre: centre.extend(0.0), scale, lens, fitted: scale, turn: DQuat::IDENTITY }
+        Camera { centre: centre.extend(0.0), scale, lens, fitted: scale, turn: DQuat::IDENTITY, reach: 1.0 }
     }
 
     /// From differences in the mesh to points on the screen: x to the right, y up, z towards the eye.
@@ -52,6 +158,23 @@ impl Camera {
     pub fn project(&self, p: DVec3, size: DVec2) -> DVec2 {
         let q = self.linear() * (p - self.centre);
         DVec2::new(0.5 * size.x + q.x, 0.5 * size.y - q.y)
+    }
+
+    /// The same with how near it is to the eye, in points.
+    pub fn seen(&self, p: DVec3, size: DVec2) -> DVec3 {
+        let q = self.linear() * (p - self.centre);
+        DVec3::new(0.5 * size.x + q.x, 0.5 * size.y - q.y, q.z)
+    }
+
+    /// The place in space that is seen there, so near to the eye: what `seen` turns round.
+    pub fn place(&self, seen: DVec3, size: DVec2) -> DVec3 {
+        let q = DVec3::new(seen.x - 0.5 * size.x, 0.5 * size.y - seen.y, seen.z);
+        self.centre + self.linear().inverse() * q
+    }
+
+    /// The direction towards the eye.
+    pub fn towards(&self) -> DVec3 {
+        self.turn.inverse() * DVec3::Z
     }
 
     /// The point of the plane z = 0 under a point of the screen; `None` where the plane is seen from its edge.
@@ -93,6 +216,30 @@ impl Camera {
         self.turn = (turn * self.turn).normalize();
     }
 
+    /// Turns the mesh about a place of it, which stays where it is on the screen.
+    pub fn orbit_about(&mut self, by: DVec2, pivot: DVec3) {
+        let away = self.turn * (self.centre - pivot);
+        self.orbit(by);
+        self.centre = pivot + self.turn.inverse() * away;
+    }
+
+    /// Shows a place in the middle, as large as before.
+    pub fn centre_on(&mut self, p: DVec3) {
+        self.centre = p;
+    }
+
+    /// Shows a place of space in the middle, at `scale` points a unit.
+    pub fn look_at_place(&mut self, p: DVec3, scale: f64) {
+        self.centre = p;
+        self.scale = scale.clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
+    }
+
+    /// Turns the mesh the shortest way so that a direction of it comes towards the eye.
+    pub fn face(&mut self, direction: DVec3) {
+        let now = self.turn * direction.normalize_or(DVec3::Z);
+        self.turn = (DQuat::from_rotation_arc(now, DVec3::Z) * self.turn).normalize();
+    }
+
     /// Shows `p` in the middle, at `scale` points a unit.
     pub fn look_at(&mut self, p: DVec2, scale: f64) {
         self.centre = p.extend(0.0);
@@ -121,12 +268,16 @@ impl Camera {
     pub fn clip(&self, anchor: DVec3, size: DVec2) -> Mat4 {
         let to_clip = DVec3::new(2.0 / size.x, 2.0 / size.y, 0.0);
         // Depth by a soft bound: everything between the ends of the world is in front of the far plane.
-        let depth = 0.25 / (self.scale / self.fitted * size.max_element());
-        let linear = DMat3::from_diagonal(to_clip.with_z(-depth)) * self.linear();
+        let linear = DMat3::from_diagonal(to_clip.with_z(-self.depth_of_point())) * self.linear();
         let offset = linear * (anchor - self.centre) + DVec3::new(0.0, 0.0, 0.5);
         let mut clip = glam::DMat4::from_mat3(linear);
         clip.w_axis = offset.extend(1.0);
         clip.as_mat4()
+    }
+
+    /// The depth in clip space of one point on the screen.
+    pub fn depth_of_point(&self) -> f64 {
+        0.25 / (self.scale * self.reach)
     }
 
     /// Whether positions relative to `anchor` are good enough for a view of `size` points: a step of f32 must stay well
@@ -174,6 +325,56 @@ mod tests {
         let before = camera.unproject(at, SIZE).unwrap();
         camera.zoom(7.0, at, SIZE);
         assert!((camera.unproject(at, SIZE).unwrap() - before).length() < 1e-12);
+    }
+
+    #[test]
+    fn standard_views_look_from_their_sides_with_z_up() {
+        let near = |a: DVec3, b: DVec3| assert!(a.distance(b) < 1e-12, "{a} {b}");
+        for (side, towards) in [(Bearing::X, DVec3::X), (Bearing::Y, DVec3::Y), (Bearing::Z, DVec3::Z)] {
+            near(side.turn() * towards, DVec3::Z);
+        }
+        for side in [Bearing::X, Bearing::Y, Bearing::Angles([12.0, 0.0, 0.0])] {
+            near(side.turn() * DVec3::Z, DVec3::Y);
+        }
+        near(Bearing::Z.turn() * DVec3::Y, DVec3::Y);
+        assert_eq!(Bearing::parse(" 33, -27 "), Some(Bearing::Angles([33.0, -27.0, 0.0])));
+        assert_eq!(Bearing::parse("Z"), Some(Bearing::Z));
+        for bad in ["", "w", "33", "nan,0", "0,91", "361,0", "1,2,3,4"] {
+            assert_eq!(Bearing::parse(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_side_is_found_from_its_turn_and_reads_back() {
+        for angles in
+            [[33.0, 27.0, 0.0], [-120.5, -60.0, 14.0], [0.0, 90.0, 45.0], [0.0, -90.0, 0.0], [179.0, 0.0, -90.0]]
+        {
+            let side = Bearing::of_turn(Bearing::Angles(angles).turn());
+            assert_eq!(side, Bearing::Angles(angles));
+            assert_eq!(Bearing::parse(&side.to_string()), Some(side));
+        }
+    }
+
+    #[test]
+    fn in_space_all_places_are_seen_and_what_is_grabbed_stays_where_it_is() {
+        let places: Vec<DVec3> =
+            (0..60).map(|k| f64::from(k)).map(|k| DVec3::new(k.sin(), 9.0 * k.cos(), 0.1 * k)).collect();
+        let mut camera = Camera::fit_in_space(places.iter().copied(), Bearing::Iso.turn(), SIZE, 20.0);
+        for p in &places {
+            let at = camera.seen(*p, SIZE);
+            assert!(at.x > 19.9 && at.x < 780.1 && at.y > 19.9 && at.y < 580.1, "{at}");
+            let clip = camera.clip(DVec3::ZERO, SIZE) * p.as_vec3().extend(1.0);
+            assert!((0.0..=1.0).contains(&clip.z));
+            assert!(camera.place(at, SIZE).distance(*p) < 1e-9);
+        }
+        camera.zoom(5.0, DVec2::new(200.0, 100.0), SIZE);
+        let before = camera.project(places[7], SIZE);
+        camera.orbit_about(DVec2::new(80.0, -50.0), places[7]);
+        assert!(camera.project(places[7], SIZE).distance(before) < 1e-9);
+        assert!(camera.project(places[8], SIZE).distance(before) > 1.0);
+        // Nearer to the eye is less deep.
+        let clip = |p: DVec3| (camera.clip(DVec3::ZERO, SIZE) * p.as_vec3().extend(1.0)).z;
+        assert!(clip(places[3] + 0.5 * camera.towards()) < clip(places[3]));
     }
 
     #[test]

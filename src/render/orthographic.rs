@@ -1,14 +1,11 @@
-//! Meshes in space as pictures: seen from afar, slightly from above, what is hidden left out. All areas are drawn (they are
+//! Meshes in space as pictures: seen from afar, from a side (slightly from above where none is asked for), what is hidden left out. All areas are drawn (they are
 //! of one colour each), and of every line the parts that no nearer element covers.
 
 use glam::{DVec2, DVec3};
 
+use super::camera::Bearing;
 use super::picture::{Line, Picture};
 use crate::core::io::mesh_file::MeshFile;
-
-/// From where one looks: so many degrees to the right of -y, and up.
-const AZIMUTH: f64 = 33.0;
-const ELEVATION: f64 = 27.0;
 
 /// Parts of a line that are judged each for itself.
 const PARTS: usize = 12;
@@ -22,13 +19,14 @@ pub struct View {
 }
 
 impl View {
-    /// The view in which meshes in space are drawn.
-    pub fn usual() -> View {
-        let ((sin_a, cos_a), (sin_e, cos_e)) =
-            (libm::sincos(AZIMUTH.to_radians()), libm::sincos(ELEVATION.to_radians()));
+    /// The view from a side.
+    pub fn from(side: Bearing) -> View {
+        let [(sin_a, cos_a), (sin_e, cos_e), (sin_r, cos_r)] = side.angles().map(|a| libm::sincos(a.to_radians()));
+        let right = DVec3::new(cos_a, sin_a, 0.0);
+        let up = DVec3::new(-sin_e * sin_a, sin_e * cos_a, cos_e);
         View {
-            right: DVec3::new(cos_a, sin_a, 0.0),
-            up: DVec3::new(-sin_e * sin_a, sin_e * cos_a, cos_e),
+            right: right * cos_r - up * sin_r,
+            up: right * sin_r + up * cos_r,
             towards: DVec3::new(cos_e * sin_a, -cos_e * cos_a, sin_e),
         }
     }
@@ -165,8 +163,17 @@ mod tests {
     use crate::render::picture::Role;
 
     #[test]
+    fn figures_and_the_window_look_from_the_same_sides() {
+        for side in [Bearing::Iso, Bearing::X, Bearing::Y, Bearing::Z, Bearing::Angles([-70.0, -20.0, 33.0])] {
+            let (view, turn) = (View::from(side), side.turn());
+            let p = DVec3::new(0.3, -1.1, 2.0);
+            assert!((turn * p).distance(view.place(p).extend(view.depth(p))) < 1e-12, "{side}");
+        }
+    }
+
+    #[test]
     fn a_line_behind_an_element_is_left_out_and_one_before_it_is_drawn() {
-        let view = View::usual();
+        let view = View::from(Bearing::Iso);
         let corner = |x: f64, y: f64, z: f64| view.right * x + view.up * y + view.towards * z;
         let mesh = MeshFile {
             points: vec![corner(0.0, 0.0, 0.0), corner(4.0, 0.0, 0.0), corner(4.0, 4.0, 0.0), corner(0.0, 4.0, 0.0)],

@@ -1,6 +1,10 @@
 //! What lies under the pointer: a node, an edge or front segment, or an element.
 
+mod space;
+
 use glam::DVec2;
+
+pub use space::{Cover, Hit, hit, pick_in_space};
 
 use super::scene::Outlined;
 use crate::core::mesh::half_edge::Mesh;
@@ -46,18 +50,33 @@ pub fn pick(
         }
         None => mesh.elements().flat_map(|e| mesh.half_edges(e)).filter(|h| mesh.twin(*h).is_none()).collect(),
     };
-    let node_distance = |n: NodeId| project(mesh.uv(n)).distance(at);
+    nearest(mesh, &sides, at, &|n| project(mesh.uv(n)), &|_, _| true).or(inside.map(Outlined::Element))
+}
+
+/// The node or edge among sides that is near enough to be meant. `place` has nodes on the screen; `is_seen`: whether the place
+/// at a share of the way between two nodes is.
+fn nearest(
+    mesh: &Mesh,
+    sides: &[HalfEdgeId],
+    at: DVec2,
+    place: &dyn Fn(NodeId) -> DVec2,
+    is_seen: &dyn Fn([NodeId; 2], f64) -> bool,
+) -> Option<Outlined> {
+    let node_distance = |n: NodeId| place(n).distance(at);
     let nodes = sides.iter().map(|h| mesh.origin(*h)).map(|n| (node_distance(n), n));
-    let nearest_node = nodes.filter(|n| n.0 <= NEAR[0]).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let nearest_node = nodes
+        .filter(|n| n.0 <= NEAR[0] && is_seen([n.1; 2], 0.0))
+        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let edges = sides.iter().filter_map(|&h| {
         let ends = [mesh.origin(h), mesh.target(h)];
         let on_front = front_side(mesh, h);
         let reach = if on_front.is_some() { NEAR[2] } else { NEAR[1] };
-        let [a, b] = ends.map(|n| project(mesh.uv(n)));
-        let away = distance(at, a, b);
+        let [a, b] = ends.map(place);
+        let share = share(at, a, b);
+        let away = at.distance(a.lerp(b, share));
         // A segment is named in its own direction, from A to B.
-        let ends = on_front.map_or(ends, |f| [mesh.origin(f), mesh.target(f)]);
-        (away <= reach).then_some((on_front.is_none(), away, a.distance(b), ends))
+        let directed = on_front.map_or(ends, |f| [mesh.origin(f), mesh.target(f)]);
+        (away <= reach && is_seen(ends, share)).then_some((on_front.is_none(), away, a.distance(b), directed))
     });
     let nearest_edge = edges.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.3.cmp(&b.3)));
     match (nearest_node, nearest_edge) {
@@ -65,7 +84,7 @@ pub fn pick(
         (Some((_, node)), edge) if edge.is_none_or(|e| e.2 > 3.0 * NEAR[0]) => Some(Outlined::Node(node)),
         (_, Some((_, _, _, ends))) => Some(Outlined::Edge(ends)),
         (Some((_, node)), _) => Some(Outlined::Node(node)),
-        (None, None) => inside.map(Outlined::Element),
+        (None, None) => None,
     }
 }
 
@@ -74,10 +93,10 @@ fn front_side(mesh: &Mesh, h: HalfEdgeId) -> Option<HalfEdgeId> {
     if mesh.is_front(h) { Some(h) } else { mesh.twin(h).filter(|t| mesh.is_front(*t)) }
 }
 
-fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+/// How far along from `a` to `b` is nearest to `p`, 0 to 1.
+fn share(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
-    let t = if along == DVec2::ZERO { 0.0 } else { ((p - a).dot(along) / along.length_squared()).clamp(0.0, 1.0) };
-    p.distance(a + t * along)
+    if along == DVec2::ZERO { 0.0 } else { ((p - a).dot(along) / along.length_squared()).clamp(0.0, 1.0) }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::camera::Bearing;
 use super::orthographic::{self, View};
 
 use super::look::{Layer, Layers};
@@ -161,6 +162,8 @@ pub struct Seen<'a> {
     pub phase: &'a Phase,
     /// What the last step changed.
     pub changed: &'a [ElementId],
+    /// From where it is looked at, where it is in space.
+    pub from: Bearing,
 }
 
 /// One side of an element on its way to a line.
@@ -176,10 +179,15 @@ impl Picture {
     ///
     /// An edge is of the boundary where one element has it or where the mesh has a line there.
     pub fn of_mesh(mesh: &MeshFile) -> Picture {
+        Picture::of_mesh_from(mesh, Bearing::Iso)
+    }
+
+    /// The same from another side, where the mesh is in space.
+    pub fn of_mesh_from(mesh: &MeshFile, from: Bearing) -> Picture {
         if orthographic::is_flat(mesh) {
             return Picture::as_it_lies(mesh).0;
         }
-        let view = View::usual();
+        let view = View::from(from);
         let (mut picture, edges) = Picture::as_it_lies(&orthographic::flattened(mesh, &view));
         let ends: Vec<[DVec3; 2]> = edges.iter().map(|e| e.map(|n| mesh.points[n as usize])).collect();
         orthographic::turn_over(&mut picture);
@@ -229,12 +237,12 @@ impl Picture {
     /// The picture of a conversion on surfaces: the mesh, over it the front by the classes of table 1 and the base segment. Marks are
     /// drawn in planar domains only.
     fn of_state_in_space(seen: &Seen<'_>, layers: Layers) -> Picture {
-        let Seen { mesh, parameters, phase, .. } = *seen;
+        let Seen { mesh, parameters, phase, from, .. } = *seen;
         let file = Export::of(mesh, &[]).file;
-        let mut picture = Picture::of_mesh(&file);
+        let mut picture = Picture::of_mesh_from(&file, from);
         let base = Decision::of(phase).base.and_then(|[a, b]| mesh.front_between(a, b));
         // Seen like the mesh itself.
-        let view = if orthographic::is_flat(&file) { None } else { Some(View::usual()) };
+        let view = if orthographic::is_flat(&file) { None } else { Some(View::from(from)) };
         let (mut front, mut space) = (Picture::default(), Vec::new());
         for h in mesh.front() {
             let segment = Segment::measure(mesh, h, parameters);
@@ -255,7 +263,7 @@ impl Picture {
     /// The picture of a conversion at some step: the mesh, over it the front by the classes of table 1, the quadrilateral in
     /// the making, and the marks that are asked for.
     pub fn of_state(seen: &Seen<'_>, layers: Layers) -> Picture {
-        let Seen { mesh, parameters, phase, changed } = *seen;
+        let Seen { mesh, parameters, phase, changed, .. } = *seen;
         if mesh.ground().is_some() {
             return Picture::of_state_in_space(seen, layers);
         }
@@ -411,7 +419,7 @@ mod tests {
         let phase = Phase::Defer { base };
         let parameters = Parameters::default();
         let changed = [ElementId(0), ElementId(9)];
-        let seen = Seen { mesh: &mesh, parameters: &parameters, phase: &phase, changed: &changed };
+        let seen = Seen { mesh: &mesh, parameters: &parameters, phase: &phase, changed: &changed, from: Bearing::Iso };
         let mut layers = Layers::usual(Ink::Grey, false);
         layers.set(Layer::Changed, true);
         layers.set(Layer::H, true);

@@ -5,12 +5,14 @@
 //! lays over the picture.
 
 mod placed;
+mod form;
 mod shading;
 mod mesh;
 mod overlay;
 
 use glam::{DVec2, DVec3};
 
+pub use form::{Form, Spot};
 pub use mesh::Drawn;
 pub use overlay::{Decision, Outlined, Overlay, front};
 pub use placed::{Placed, STRETCH};
@@ -18,7 +20,7 @@ pub use shading::{ColourBy, Shading, angles, metric_area};
 
 use super::palette::Rgba;
 use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::ElementId;
+use crate::core::mesh::ids::{ElementId, NodeId};
 use placed::Places;
 
 /// A filled triangle or quadrilateral.
@@ -28,6 +30,8 @@ use placed::Places;
 pub struct Face {
     /// Corners, anticlockwise; a triangle's last one is there twice.
     pub corners: [[f32; 3]; 4],
+    /// The surface's unit normals at them, folded into two numbers each (`form`).
+    pub normals: [[i16; 2]; 4],
     /// Its colour; nothing is drawn where it is 0.
     pub colour: u32,
 }
@@ -116,7 +120,7 @@ impl Default for Layers {
 pub struct Scene {
     /// What all positions are relative to.
     pub anchor: DVec3,
-    /// One for each element slot.
+    /// One for each element slot, or where elements are drawn curved so many as `pieces` says.
     pub faces: Placed<Face>,
     /// Edges of the mesh, each in its place for as long as it lives.
     pub edges: Placed<Line>,
@@ -132,15 +136,23 @@ pub struct Scene {
     pub over_dots: Placed<Dot>,
     /// Changes with everything above.
     pub generation: u64,
+    /// How the mesh is laid out.
+    form: Form,
+    /// Faces for an element and lines for an edge, each way, where they are drawn curved.
+    pieces: usize,
+    /// Where each node stands.
+    spots: Vec<Spot>,
+    /// The nodes at each point that faces share, where elements are drawn curved.
+    copies: Vec<Vec<NodeId>>,
     places: Places,
     boundary_places: Places,
     /// What stands out as just changed.
     standing_out: Vec<ElementId>,
 }
 
-/// A place of the plane relative to the anchor.
-fn relative(p: DVec2, anchor: DVec3) -> [f32; 3] {
-    (p.extend(0.0) - anchor).as_vec3().to_array()
+/// A place relative to the anchor.
+fn relative(p: DVec3, anchor: DVec3) -> [f32; 3] {
+    (p - anchor).as_vec3().to_array()
 }
 
 /// A colour that is drawn: 0 stands for nothing.

@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use crate::core::fault::Fault;
 use crate::core::run::shown::Shown;
+use crate::render::camera::Bearing;
 use crate::render::look::{Ink, Layer, Layers, Look, Part};
 use crate::render::vector::svg::{COLUMN, MILLIMETRE, PAGE, Sheet};
 
@@ -147,6 +148,11 @@ fn ink(text: &str) -> Result<Ink, String> {
     }
 }
 
+/// Bearings by name.
+fn bearing(text: &str) -> Result<Bearing, String> {
+    Bearing::parse(text).ok_or_else(|| "write iso, x, y, z, or degrees AZ,EL such as 33,27".to_owned())
+}
+
 fn dpi(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|x| (10.0..=2400.0).contains(x));
     number.ok_or_else(|| "write a number from 10 to 2400".to_owned())
@@ -178,6 +184,10 @@ pub(in crate::app) struct FigureOptions {
     /// Only a part: its middle and its height in units of the case
     #[arg(long, value_name = "X,Y,HEIGHT", allow_hyphen_values = true)]
     pub part: Option<PartWords>,
+    /// From where a mesh in space is seen: iso, x, y, z, or so many degrees to the right of -y and so many up, and the picture
+    /// turned by so many
+    #[arg(long, value_name = "iso|x|y|z|AZ,EL[,ROLL]", value_parser = bearing, allow_hyphen_values = true)]
+    pub view: Option<Bearing>,
     /// Frames side by side in a strip: 4, and rows of equal length
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=26))]
     pub columns: Option<u32>,
@@ -205,6 +215,7 @@ impl FigureOptions {
             self.layers.as_ref().map(|layers| format!("--layers={}", layers.0)),
             self.plot.map(|plot| format!("--plot={}", plots(plot))),
             self.part.map(|words| format!("--part={}", part(words))),
+            self.view.map(|side| format!("--view={side}")),
             self.columns.map(|columns| format!("--columns={columns}")),
         ];
         words.into_iter().flatten().collect()
@@ -234,6 +245,7 @@ impl FigureOptions {
             layers: own.layers.or(theirs.layers),
             plot: own.plot.or(theirs.plot),
             part: own.part.or(theirs.part),
+            view: own.view.or(theirs.view),
             columns: own.columns.or(theirs.columns),
         })
     }
@@ -248,6 +260,11 @@ impl FigureOptions {
             layers: self.layers.as_ref().map_or(usual, |words| words.over(usual)),
             part: self.part.map(|words| words.0),
         }
+    }
+
+    /// From where a mesh in space is seen.
+    pub fn bearing(&self) -> Bearing {
+        self.view.unwrap_or_default()
     }
 
     /// Dots an inch.
@@ -279,12 +296,25 @@ mod tests {
             "--size=84x60mm --dpi=600 --ink=grey --transparent=true --layers=+h,-letters --plot=angles --columns=3",
             "--size=1920 --ink=colour --transparent=false --layers=none --part=-0.5,1e-7,0.25",
             "--size=84.5mm --layers=live,front",
+            "--view=-30,27.5,4 --part=0,0,3",
+            "--view=x",
         ] {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
             let options = FigureOptions::from_words(&words).unwrap();
             assert_eq!(FigureOptions::from_words(&options.words()).unwrap(), options, "{line}");
         }
-        for line in ["--size=3mm", "--size=84", "--size=x", "--dpi=0", "--ink=red", "--layers=lives", "a", "--out=b"] {
+        for line in [
+            "--size=3mm",
+            "--size=84",
+            "--size=x",
+            "--dpi=0",
+            "--ink=red",
+            "--layers=lives",
+            "--view=w",
+            "--view=0,91",
+            "a",
+            "--out=b",
+        ] {
             let words = [line.to_owned()];
             let read = FigureOptions::from_words(&words);
             assert!(read.is_err() || line == "--size=84", "{line}");

@@ -8,7 +8,7 @@ use super::figures::Formats;
 use super::files;
 use super::measure::Measuring;
 use super::session::{Goal, Source};
-use super::state::{Kept, Look, Over, State};
+use super::state::{Kept, Look, Over, Place, State};
 use super::words;
 use crate::core::convert::event::Event;
 use crate::core::convert::parameters::Parameters;
@@ -65,6 +65,14 @@ impl State {
             Command::ShowTimes => self.show_times = !self.show_times,
             Command::Fit => self.look = Some(Look::Fit),
             Command::ShowDecision => self.look = Some(Look::Decision),
+            Command::Place(place) => self.space.place = place,
+            Command::TogglePlace => self.space.place = self.space.place.toggled(),
+            Command::ToggleSplit => {
+                self.space.place = if self.space.place == Place::Both { Place::Space } else { Place::Both };
+            }
+            Command::LookFrom(side) => self.look = Some(Look::From(side)),
+            Command::HiddenLines => self.space.hidden = self.space.hidden.next(),
+            Command::ToggleCurved => self.space.curved = !self.space.curved,
             Command::Set(key, value) => self.set(key, value),
             Command::ChooseBase(ends) => self.choose_base(ends),
             Command::ResetParameters => {

@@ -4,8 +4,10 @@ use eframe::egui::{Key, Modifiers};
 
 use super::figures::Formats;
 use super::session::{Goal, Source};
+use super::state::Place;
 use crate::core::io::built_in;
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 
 /// What a person asks for.
@@ -37,6 +39,18 @@ pub enum Command {
     Fit,
     /// Show the base segment in the middle, from near.
     ShowDecision,
+    /// Show meshes on surfaces there.
+    Place(Place),
+    /// From the plane to space and back.
+    TogglePlace,
+    /// Space beside the plane, or no longer.
+    ToggleSplit,
+    /// Look at the mesh in space from there.
+    LookFrom(Bearing),
+    /// The next way to draw lines that faces cover.
+    HiddenLines,
+    /// Elements curved or flat.
+    ToggleCurved,
     /// Change a parameter from this step on.
     Set(&'static str, String),
     /// Let the selection choose this front segment, from A to B: a change of the run.
@@ -143,6 +157,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL_SHIFT, Key::S, Command::Screenshot),
         (CTRL_SHIFT, Key::L, Command::ToggleTheme),
         (CTRL_SHIFT, Key::E, Command::Figures),
+        (SHIFT, Key::V, Command::ToggleSplit),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
         (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
@@ -165,6 +180,13 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (NONE, Key::Space, Command::Play),
         (NONE, Key::F, Command::Fit),
         (NONE, Key::D, Command::ShowDecision),
+        (NONE, Key::V, Command::TogglePlace),
+        (NONE, Key::I, Command::LookFrom(Bearing::Iso)),
+        (NONE, Key::X, Command::LookFrom(Bearing::X)),
+        (NONE, Key::Y, Command::LookFrom(Bearing::Y)),
+        (NONE, Key::Z, Command::LookFrom(Bearing::Z)),
+        (NONE, Key::H, Command::HiddenLines),
+        (NONE, Key::C, Command::ToggleCurved),
         (NONE, Key::Escape, Command::Escape),
     ];
     let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
@@ -192,6 +214,16 @@ impl Command {
             Command::ShowTimes => "Show how long states and frames take".into(),
             Command::Fit => "Fit the mesh to the view".into(),
             Command::ShowDecision => "Zoom to the decision".into(),
+            Command::Place(place) => place.name().into(),
+            Command::TogglePlace => "Space or parametric plane".into(),
+            Command::ToggleSplit => "Space and parametric plane side by side".into(),
+            Command::LookFrom(Bearing::Iso) => "Look from before, right and above".into(),
+            Command::LookFrom(Bearing::X) => "Look from +x".into(),
+            Command::LookFrom(Bearing::Y) => "Look from +y".into(),
+            Command::LookFrom(Bearing::Z) => "Look from +z".into(),
+            Command::LookFrom(bearing) => format!("Look from {bearing}"),
+            Command::HiddenLines => "Hidden lines: off, faint, shown".into(),
+            Command::ToggleCurved => "Elements curved or flat".into(),
             Command::Set(key, value) => format!("Set {key} = {value}"),
             Command::ChooseBase([a, b]) => format!("Choose {} as base", super::words::segment(*a, *b)),
             Command::ResetParameters => "All parameters as the case has them".into(),

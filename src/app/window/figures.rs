@@ -7,6 +7,8 @@ use std::sync::mpsc::{Receiver, channel};
 use super::files::free_path;
 use super::session::{Moment, Opened};
 use super::state::State;
+use glam::DVec2;
+
 use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Size, Wanted};
 use crate::app::work::{self, Frame};
 use crate::core::convert::walk::Stop;
@@ -16,7 +18,9 @@ use crate::core::io::{run_file, save};
 use crate::core::progress::Nobody;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{Shown, ShownState, fingerprint};
+use crate::render::camera::Bearing;
 use crate::render::look::{Ink, Layer, Layers, Part};
+use crate::render::orthographic::View;
 use crate::render::picture::{Picture, Seen};
 
 /// What a figure is saved as.
@@ -142,7 +146,7 @@ impl Figures {
     }
 
     /// The options of the command line that say the same.
-    fn options(&self, part: Option<(Part, f64)>) -> Result<FigureOptions, Fault> {
+    fn options(&self, part: Option<(Part, f64)>, view: Option<Bearing>) -> Result<FigureOptions, Fault> {
         let wrong = |what: String| Fault::new(format!("The size of the figure is not understood: {what}"));
         let text = self.size.trim();
         let mut size: Option<Size> = if text.is_empty() { None } else { Some(text.parse().map_err(wrong)?) };
@@ -170,6 +174,7 @@ impl Figures {
             layers: (!self.changed.is_empty()).then(|| LayerWords::exactly(layers)),
             plot,
             part: part.map(|part| PartWords(part.0)),
+            view,
             columns: None,
         })
     }
@@ -194,11 +199,19 @@ impl State {
         let (Some(moment), Some(opened), Some(run)) = (self.moment.clone(), self.opened.clone(), self.run()) else {
             return;
         };
-        let part = self.camera.filter(|_| self.figures.in_view && self.view_size.min_element() > 0.0).map(|camera| {
-            let height = self.view_size.y / camera.points_per_unit();
-            (Part { centre: camera.centre.truncate(), height }, self.view_size.y / self.view_size.x)
+        // Surfaces are seen as in the window; meshes on them are drawn in space whatever it shows.
+        let on_surfaces = moment.mesh.ground().is_some();
+        let (camera, size) = match (on_surfaces, self.is_in_space()) {
+            (false, _) => (self.camera, self.view_size),
+            (true, true) => (self.space.camera, self.space.size),
+            (true, false) => (None, DVec2::ZERO),
+        };
+        let side = camera.filter(|_| on_surfaces).map(|camera| Bearing::of_turn(camera.turn));
+        let part = camera.filter(|_| self.figures.in_view && size.min_element() > 0.0).map(|camera| {
+            let centre = side.map_or(camera.centre.truncate(), |side| View::from(side).place(camera.centre));
+            (Part { centre, height: size.y / camera.points_per_unit() }, size.y / size.x)
         });
-        let planned = self.figures.options(part).and_then(|options| {
+        let planned = self.figures.options(part, side).and_then(|options| {
             let strip = self.figures.is_strip();
             let wanted = if strip { Some(self.figures.wanted(&self.kept.bookmarks)?) } else { None };
             Ok((options, wanted))
@@ -268,7 +281,7 @@ fn shown(moment: &Moment) -> ShownState {
 /// The figure of the state at hand.
 fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &FigureOptions) -> Result<Figure, Fault> {
     let Moment { mesh, parameters, phase, just_changed, .. } = moment.as_ref();
-    let seen = Seen { mesh, parameters, phase, changed: just_changed };
+    let seen = Seen { mesh, parameters, phase, changed: just_changed, from: options.bearing() };
     let statistics = match options.plot {
         Some(_) => Some(work::statistics(&Export::of(mesh, &[]), &opened.background.sizing)?),
         None => None,

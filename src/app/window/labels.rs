@@ -18,7 +18,9 @@ use super::words;
 use crate::core::front::segment::Segment;
 use crate::core::mesh::ids::NodeId;
 use crate::render::palette::Palette;
-use crate::render::scene::{Decision, Outlined};
+use crate::render::pick::Cover;
+use crate::render::scene::{Decision, Outlined, Scene};
+use glam::{DVec2, DVec3};
 
 /// Labels in a view, and ellipses.
 const MOST_LABELS: usize = 150;
@@ -47,16 +49,25 @@ pub enum Which {
     Whole,
 }
 
+/// What labels are laid over: a view of a scene, and where it is one in space what of it hides labels.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    pub frame: &'a Frame,
+    pub scene: &'a Scene,
+    pub cover: Option<&'a Cover>,
+}
+
 /// Shows everything that is laid over a view.
 pub fn show(
     ui: &Ui,
-    frame: &Frame,
+    seen: &Seen<'_>,
     state: &State,
     moment: &Moment,
     palette: &Palette,
     which: Which,
     memory: &mut Memory,
 ) {
+    let Seen { frame, scene, cover } = *seen;
     let painter = ui.painter_at(frame.rect);
     let now = ui.input(|input| input.time);
     let scale = frame.camera.points_per_unit();
@@ -65,8 +76,19 @@ pub fn show(
     }
     let before = std::mem::take(&mut memory.labels);
     let is_new = (now - memory.zoomed < COMING && !before.is_empty()).then_some(now);
-    let mut over =
-        Over { painter, frame, moment, palette, taken: Vec::new(), before, is_new, now, labels: BTreeMap::new() };
+    let mut over = Over {
+        painter,
+        frame,
+        scene,
+        cover,
+        moment,
+        palette,
+        taken: Vec::new(),
+        before,
+        is_new,
+        now,
+        labels: BTreeMap::new(),
+    };
     let decision = Decision::of(&moment.phase);
     if which == Which::Lens {
         over.unit_grid(state);
@@ -75,6 +97,9 @@ pub fn show(
         over.main_frame(state);
     }
     let small = over.small_view(which, &decision);
+    if cover.is_some() {
+        over.lens_in_space(state);
+    }
     if state.kept.layers.ellipses && which == Which::Main {
         over.ellipses();
     }
@@ -105,6 +130,8 @@ pub fn show(
 struct Over<'a> {
     painter: Painter,
     frame: &'a Frame,
+    scene: &'a Scene,
+    cover: Option<&'a Cover>,
     moment: &'a Moment,
     palette: &'a Palette,
     taken: Vec<Rect>,
@@ -117,9 +144,30 @@ struct Over<'a> {
 }
 
 impl Over<'_> {
+    /// Where a node lies on the screen; none where it is not there, or hidden.
     fn place(&self, node: NodeId) -> Option<Pos2> {
-        let mesh = &self.moment.mesh;
-        mesh.has_node(node).then(|| self.frame.place(mesh.uv(node)))
+        let spot = self.scene.spot(node).filter(|_| self.moment.mesh.has_node(node))?;
+        self.on_screen(spot.at)
+    }
+
+    /// Where a place of the scene lies on the screen; none where it is hidden.
+    fn on_screen(&self, place: DVec3) -> Option<Pos2> {
+        let seen = self.frame.camera.seen(place, self.frame.size());
+        let hidden = self.cover.is_some_and(|cover| cover.hides(seen));
+        (!hidden).then(|| self.frame.rect.min + Vec2::new(seen.x as f32, seen.y as f32))
+    }
+
+    /// The place of the scene at a place of the plane.
+    fn lifted(&self, p: DVec2) -> DVec3 {
+        match self.moment.mesh.ground() {
+            Some(ground) if self.scene.form().is_in_space() => ground.atlas.xyz(p),
+            _ => p.extend(0.0),
+        }
+    }
+
+    /// Whether the surface is seen from behind at a node, so that what runs anticlockwise in the mesh runs clockwise here.
+    fn is_behind(&self, node: NodeId) -> bool {
+        self.scene.spot(node).is_some_and(|spot| spot.normal.dot(self.frame.camera.towards()) < 0.0)
     }
 
     /// Whether the decision is too small on the screen to be lettered.
@@ -180,6 +228,7 @@ impl Over<'_> {
         let Some((p, q)) = self.place(a).zip(self.place(b)) else { return };
         let across = (q - p).rot90().normalized();
         // The dead side lies to the right of A to B: down on the screen, turned by y.
+        let across = if self.is_behind(a) { -across } else { across };
         let at = p + 0.5 * (q - p) + 18.0 * Vec2::new(-across.x, -across.y);
         let text = match which {
             Which::Lens => words::fixed(segment.length_metric, 3),
@@ -206,7 +255,8 @@ impl Over<'_> {
                 Outlined::Element(e) => format!("triangle {}", e.0),
             };
             let font = if strong { theme::semibold(12.5) } else { theme::regular(12.0) };
-            let at = self.frame.place(p) + Vec2::new(0.0, -16.0);
+            let Some(at) = self.on_screen(self.lifted(p)) else { continue };
+            let at = at + Vec2::new(0.0, -16.0);
             self.label(at, Align2::CENTER_BOTTOM, &text, font, ink(self.palette.label), true);
         }
     }
@@ -232,13 +282,13 @@ impl Over<'_> {
         let mesh = &self.moment.mesh;
         let scale = self.frame.camera.points_per_unit();
         for node in mesh.nodes() {
-            let at = self.frame.place(mesh.uv(node));
+            let (Some(at), Some(spot)) = (self.place(node), self.scene.spot(node)) else { continue };
             let lettered = decision.letters().any(|letter| letter.0 == node);
             if lettered || !self.frame.rect.contains(at) {
                 continue;
             }
-            let p = mesh.uv(node);
-            let nearest = mesh.neighbours(node).map(|n| mesh.uv(n).distance_squared(p)).fold(f64::INFINITY, f64::min);
+            let near = mesh.neighbours(node).filter_map(|n| self.scene.spot(n));
+            let nearest = near.map(|s| s.at.distance_squared(spot.at)).fold(f64::INFINITY, f64::min);
             if nearest.sqrt() * scale < LEAST_FOR_IDS {
                 continue;
             }

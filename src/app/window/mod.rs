@@ -33,6 +33,7 @@ pub use app::App;
 pub use command::Command;
 pub use graphics::Lost;
 pub use session::{Goal, Source};
+pub use state::Place;
 
 /// The largest window in points: egui's textures end there.
 const LARGEST: f32 = 8192.0;

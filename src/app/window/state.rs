@@ -1,9 +1,12 @@
 //! What the window knows: the run as far as it has been told, what a person has set, and what is open over the window.
 
 mod hearing;
+mod space;
 
 use std::sync::Arc;
 use std::time::Instant;
+
+pub use space::{HiddenLines, InSpace, Place};
 
 use super::autosave::Autosave;
 use super::figures::Figures;
@@ -25,7 +28,7 @@ use crate::core::run::run::{self, Bookmark, Edit, Run};
 use crate::core::run::shown::{ShownState, fingerprint};
 use crate::core::run::timeline::Sample;
 use crate::core::run::watch::Watched;
-use crate::render::camera::Camera;
+use crate::render::camera::{Bearing, Camera};
 use crate::render::scene::{ColourBy, Layers, Outlined};
 
 /// What undo takes back: all that a person sets.
@@ -121,9 +124,11 @@ pub struct State {
     pub hovered: Option<Outlined>,
     /// What a bar of a plot stands for, lit up in the views.
     pub lit: Vec<Outlined>,
-    /// The camera of the main view; none until a mesh is fitted to it.
+    /// The camera of the view of the plane; none until a mesh is fitted to it.
     pub camera: Option<Camera>,
-    /// Whether the main view shows the whole mesh, and its size in points.
+    /// How meshes on surfaces are shown in space.
+    pub space: InSpace,
+    /// Whether the view of the plane shows the whole mesh, and its size in points.
     pub fitted: bool,
     pub view_size: DVec2,
     /// Whether what is hovered was met in the view, and not in a table.
@@ -186,6 +191,8 @@ pub enum Look {
     Kept(run::Camera),
     Decision,
     At(Outlined),
+    /// All of it in space, from a side.
+    From(Bearing),
 }
 
 /// What is open over the window.
@@ -233,6 +240,7 @@ impl State {
             hovered: None,
             lit: Vec::new(),
             camera: None,
+            space: InSpace::default(),
             fitted: true,
             view_size: DVec2::ZERO,
             hover_from_view: false,
@@ -328,6 +336,7 @@ impl State {
         self.hits.clear();
         (self.explained, self.asked, self.timeline) = (None, None, None);
         (self.camera, self.playing, self.hovered) = (None, None, None);
+        self.space.begin();
         self.look = Some(opened.run.camera.map_or(Look::Fit, Look::Kept));
         self.kept.edits = opened.run.edits().to_vec();
         self.kept.bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
@@ -430,8 +439,22 @@ impl State {
         let marks = self.kept.bookmarks.iter();
         let marks = marks.map(|step| Bookmark { step: *step, name: name(*step).unwrap_or_default() });
         run.bookmarks = marks.collect();
-        run.camera = self.camera.filter(|_| !self.fitted).map(|camera| camera.kept(self.view_size)).or(run.camera);
+        run.camera = self.kept_camera().or(run.camera);
         Some(run)
+    }
+
+    /// Whether the mesh lies on surfaces, and is shown in space.
+    pub fn is_in_space(&self) -> bool {
+        self.space.place != Place::Plane && self.moment.as_ref().is_some_and(|moment| moment.mesh.ground().is_some())
+    }
+
+    /// The camera of the main view, where it does not show all from where it did at first.
+    fn kept_camera(&self) -> Option<run::Camera> {
+        if self.is_in_space() {
+            let moved = self.space.camera.filter(|_| !self.space.fitted);
+            return moved.map(|camera| camera.kept(self.space.size));
+        }
+        self.camera.filter(|_| !self.fitted).map(|camera| camera.kept(self.view_size))
     }
 
     /// The value of a parameter at the step at hand.

@@ -1,6 +1,10 @@
-//! The views: the mesh in space, the same from the other end of the zoom, and through the metric of a node.
+//! The views: the mesh in space or in its plane, the same from the other end of the zoom, and through the metric of a node.
 
 mod cameras;
+mod faces;
+mod space;
+mod stage;
+mod tools;
 
 use std::sync::Arc;
 
@@ -16,17 +20,15 @@ use super::command::Command;
 use super::labels;
 use super::panels::{self, inspector};
 use super::session::Moment;
-use super::state::State;
+use super::state::{Look, Place, State};
 use super::theme::ink;
-use crate::core::convert::candidates::Passed;
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::history::Changes;
+use crate::core::mesh::ids::ElementId;
 use crate::render::camera::Camera;
-use crate::render::gpu::{Painter, View};
+use crate::render::gpu::{Light, Painter, View};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::pick;
-use crate::render::scene::{ColourBy, Decision, Drawn, Outlined, Overlay, Scene, Shading};
+use crate::render::scene::{Form, Outlined, Scene, Shading};
+use stage::Stage;
 
 /// A view beside the main one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,18 +39,26 @@ pub enum Lens {
     Whole,
 }
 
-/// All views, with the scene that they share.
+/// The pictures of the views on the card: the main one, the lens, the whole, and the plane beside space.
+const LENS: usize = 1;
+const WHOLE: usize = 2;
+const BESIDE: usize = 3;
+
+/// All views, with the scenes that they share: that of the plane and that in space.
 #[derive(Default)]
 pub struct Views {
-    scene: Arc<Scene>,
+    plane: Stage,
+    space: Stage,
     pub shading: Shading,
-    seen_style: Option<(u64, bool)>,
-    seen_over: Option<u64>,
     hint: Option<ElementId>,
     /// Labels of the views in the frame before.
-    labels: [labels::Memory; 3],
+    labels: [labels::Memory; 4],
     /// What the open menu is about.
     menu_of: Option<Outlined>,
+    /// The place that a drag in space turns about.
+    pivot: Option<glam::DVec3>,
+    /// What of the scene in space hides labels.
+    cover: space::Covering,
 }
 
 /// A view's camera with its place on the screen.
@@ -83,28 +93,77 @@ impl Frame {
 impl Views {
     /// Whether a mesh has been shown.
     pub fn has_shown(&self) -> bool {
-        self.seen_style.is_some()
+        self.plane.has_shown() || self.space.has_shown()
     }
 
     /// The main view.
     pub fn space(&mut self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());
-        let response = ui.interact(rect, ui.scope_id().with("space"), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, spoken(state)));
         let Some(moment) = state.moment.clone() else {
+            self.canvas(ui, rect, "space", state);
             ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
             return empty(ui, state, commands, palette);
         };
+        let look = state.look.take();
+        let on_surfaces = moment.mesh.ground().is_some();
+        match state.space.place {
+            Place::Plane => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
+            _ if !on_surfaces => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
+            Place::Space => self.in_space(ui, rect, look, state, &moment, commands, palette),
+            Place::Both => {
+                let middle = whole_pixels(rect, 1.0).center().x;
+                let (left, right) = rect.split_left_right_at_x(middle);
+                let right = right.with_min_x(middle + 2.0);
+                self.in_space(ui, left, look, state, &moment, commands, palette);
+                self.in_plane(ui, right, BESIDE, look, state, &moment, commands, palette);
+                ui.painter().vline(middle + 1.0, rect.y_range(), (2.0, ink(palette.line)));
+            }
+        }
+        if on_surfaces {
+            tools::show(ui, rect, state, commands, palette);
+        }
+    }
+
+    /// What is pointed at and dragged in a view.
+    fn canvas(&self, ui: &Ui, rect: Rect, name: &str, state: &State) -> egui::Response {
+        let response = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, spoken(state)));
+        response
+    }
+
+    /// The mesh in its plane.
+    fn in_plane(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        index: usize,
+        look: Option<Look>,
+        state: &mut State,
+        moment: &Moment,
+        commands: &mut Vec<Command>,
+        palette: &'static Palette,
+    ) {
+        let response = self.canvas(ui, rect, "plane", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        let mut camera = aim(state, &moment, size);
+        let mut camera = aim(state, moment, size, look);
         steer(ui, &response, &mut camera, rect);
         state.camera = Some(camera);
         let frame = Frame { camera, rect };
-        self.hover(ui, &response, state, &moment, &frame, commands);
-        self.update(state, &moment, palette, &frame);
-        self.paint(ui, 0, &frame, palette);
-        labels::show(ui, &frame, state, &moment, palette, labels::Which::Main, &mut self.labels[0]);
-        labels::shading(ui, &frame, &self.shading, palette);
+        let pointer = response.hover_pos().filter(|_| !response.dragged());
+        let hovered = pointer.and_then(|at| {
+            let p = frame.plane(at)?;
+            let project = |p: DVec2| frame.camera.project(p.extend(0.0), frame.size());
+            pick::pick(&moment.mesh, p, frame.inside(at), &project, self.hint)
+        });
+        self.hover(ui, &response, state, hovered, commands);
+        self.update(state, moment, palette, &frame, Form::Plane, true);
+        self.paint(ui, index, &frame, palette, 0.0, Form::Plane);
+        faces::show(ui, &frame, state, moment, palette);
+        let over = labels::Seen { frame: &frame, scene: &self.plane.scene, cover: None };
+        labels::show(ui, &over, state, moment, palette, labels::Which::Main, &mut self.labels[index]);
+        if index == 0 {
+            labels::shading(ui, &frame, &self.shading, palette);
+        }
     }
 
     /// Another view of the same scene.
@@ -130,10 +189,11 @@ impl Views {
             return;
         };
         let frame = Frame { camera, rect };
-        self.update(state, &moment, palette, &frame);
-        self.paint(ui, if lens == Lens::Metric { 1 } else { 2 }, &frame, palette);
-        let (which, k) = if lens == Lens::Metric { (labels::Which::Lens, 1) } else { (labels::Which::Whole, 2) };
-        labels::show(ui, &frame, state, &moment, palette, which, &mut self.labels[k]);
+        let (which, k) = if lens == Lens::Metric { (labels::Which::Lens, LENS) } else { (labels::Which::Whole, WHOLE) };
+        self.update(state, &moment, palette, &frame, Form::Plane, false);
+        self.paint(ui, k, &frame, palette, 0.0, Form::Plane);
+        let over = labels::Seen { frame: &frame, scene: &self.plane.scene, cover: None };
+        labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
     }
 
     fn hover(
@@ -141,23 +201,22 @@ impl Views {
         ui: &Ui,
         response: &egui::Response,
         state: &mut State,
-        moment: &Moment,
-        frame: &Frame,
+        hovered: Option<Outlined>,
         commands: &mut Vec<Command>,
     ) {
-        let pointer = response.hover_pos().filter(|_| !response.dragged());
-        let hovered = pointer.and_then(|at| {
-            let p = frame.plane(at)?;
-            let project = |p: DVec2| frame.camera.project(p.extend(0.0), frame.size());
-            pick::pick(&moment.mesh, p, frame.inside(at), &project, self.hint)
-        });
         if let Some(Outlined::Element(e)) = hovered {
             self.hint = Some(e);
         }
-        if (response.hovered() || response.dragged() || state.hover_from_view) && state.hovered != hovered {
+        // With two views only the one that the pointer is over says what is hovered.
+        let over = response.hovered() || response.dragged();
+        let elsewhere = state.is_in_space() && state.space.place == Place::Both && !over;
+        let told = over || state.hover_from_view && !elsewhere;
+        if told && state.hovered != hovered {
             state.hovered = hovered;
             state.hover_from_view = hovered.is_some();
             state.over_epoch += 1;
+            // A view that was drawn before this one shows it too.
+            ui.ctx().request_repaint();
         }
         if response.clicked() {
             commands.push(Command::Pick(hovered));
@@ -189,70 +248,41 @@ impl Views {
         }
     }
 
-    /// Brings the scene up to date with the state: by what changed, where it is only that.
-    fn update(&mut self, state: &mut State, moment: &Moment, palette: &Palette, frame: &Frame) {
-        let served = frame.camera.is_served_by(self.scene.anchor, frame.size());
-        let style = Some((state.style_epoch, palette.dark));
-        let main = state.camera == Some(frame.camera);
-        let again = self.seen_style != style || (main && !served);
-        if again || !state.changes.is_nothing() {
-            let by = state.kept.colour_by;
-            let range = self.shading.range;
-            if by != ColourBy::State || self.shading.by != by {
-                self.shading = Shading::of(&moment.mesh, by, &state.births(by, moment));
-            }
-            let drawn = Drawn {
-                mesh: &moment.mesh,
-                changed: &moment.changed,
-                shading: &self.shading,
-                layers: state.kept.layers,
-                palette,
-            };
-            let scene = Arc::make_mut(&mut self.scene);
-            match state.changes.take() {
-                Changes::Some { nodes, elements } if !again && self.shading.range == range => {
-                    scene.patch_mesh(&drawn, &nodes, &elements);
-                }
-                _ => {
-                    let keep = (served && self.seen_style.is_some()) || !main;
-                    scene.set_mesh(&drawn, if keep { scene.anchor } else { frame.camera.centre });
-                    self.seen_style = style;
-                }
-            }
-            self.seen_over = None;
-        }
-        if self.seen_over != Some(state.over_epoch) {
-            let background = state.opened.as_ref().filter(|_| state.kept.layers.background);
-            let overlay = Overlay {
-                mesh: &moment.mesh,
-                front: &moment.front,
-                changed: &moment.changed,
-                decision: Decision::of(&moment.phase),
-                refused: &refused(moment),
-                picked: state.kept.picked,
-                hovered: state.hovered,
-                lit: &state.lit,
-                background: background.map(|opened| &opened.background.mesh),
-            };
-            Arc::make_mut(&mut self.scene).set_overlay(&overlay, state.kept.layers, palette);
-            self.seen_over = Some(state.over_epoch);
-        }
+    /// Brings a scene up to date with the state: by what changed, where it is only that. `leads`: it is laid out for this view.
+    fn update(
+        &mut self,
+        state: &mut State,
+        moment: &Moment,
+        palette: &Palette,
+        frame: &Frame,
+        form: Form,
+        leads: bool,
+    ) {
+        let changes = state.changes.take();
+        let slots = moment.mesh.element_slots();
+        self.plane.note(&changes, slots);
+        self.space.note(&changes, slots);
+        let stage = if form.is_in_space() { &mut self.space } else { &mut self.plane };
+        stage.update(state, moment, palette, frame, form, leads, &mut self.shading);
     }
 
-    fn paint(&self, ui: &Ui, index: usize, frame: &Frame, palette: &Palette) {
-        let view =
-            View { camera: frame.camera, size: frame.size(), pixels: ui.pixels_per_point(), ground: palette.ground };
-        let picture = Picture { scene: self.scene.clone(), view, index };
+    /// Draws a view; `hidden`: how much is seen of covered lines.
+    fn paint(&self, ui: &Ui, index: usize, frame: &Frame, palette: &Palette, hidden: f32, form: Form) {
+        let (stage, light) = match form {
+            Form::Plane => (&self.plane, Light::NONE),
+            _ => (&self.space, Light::on_surfaces(palette.dark)),
+        };
+        let view = View {
+            camera: frame.camera,
+            size: frame.size(),
+            pixels: ui.pixels_per_point(),
+            ground: palette.ground,
+            light,
+            hidden,
+        };
+        let picture = Picture { scene: stage.scene.clone(), view, index };
         ui.painter().add(Callback::new_paint_callback(frame.rect, picture));
     }
-}
-
-/// Edges that were there and are not the side, while one is chosen.
-fn refused(moment: &Moment) -> Vec<[NodeId; 2]> {
-    let (Some(tried), Some([a, b])) = (&moment.candidates, Decision::of(&moment.phase).base) else { return Vec::new() };
-    let from = if tried.side == Side::Left { a } else { b };
-    let edges = tried.edges.iter().filter(|edge| edge.swap.is_none() && edge.passed == Some(Passed::Farther));
-    edges.map(|edge| [from, edge.node]).collect()
 }
 
 /// What screen readers hear of the view.

@@ -117,6 +117,7 @@ pub fn event(event: &Event) -> String {
             };
             format!("element {} folded over the surface: {how}", element.0)
         }
+        Event::FaceConverted { region } => format!("face {} is converted", region + 1),
         Event::Swept { looked, moved } => format!("{moved} of {looked} nodes smoothed by the energy"),
         Event::LastResort(outcome) => format!("last resort: {} triangles left over", grouped(outcome.triangles as u64)),
         Event::PostProcessed => "whole mesh cleaned up and smoothed".to_owned(),

@@ -20,8 +20,7 @@ use crate::core::metric::field::MetricSource;
 const ROUNDS: usize = 64;
 /// Two chords of a corner whose sine in space is below this are divided more finely.
 const LEAST_SINE: f64 = 0.02;
-/// So is a chord that leaves its curve by more than this part of its length times that sine: the surface would bulge out of the
-/// corner.
+/// So is a chord that leaves its curve by more than this part of the height of the triangle on it: the surface would bulge out.
 const MOST_BULGE: f64 = 0.25;
 
 /// A chord of a divided curve: the curve, and which of its chords.
@@ -382,37 +381,49 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Pairs of chords with a corner of a triangle between them that lies flat or turned over in space, along the normal of the
-    /// surface there: in a narrow corner between bent curves chords may cross in space that do not in the plane.
+    /// Chords of curves of sides with a corner of a triangle between them that lies flat or turned over in space, along the normal of
+    /// the surface there, and chords that leave their curve by much of the height of the triangle on them: between bent curves
+    /// that are near each other chords may cross in space that do not in the plane. (Smooth curves are left as they are: their sizes follow the surface.)
     fn folded(&self, triangles: &[[u32; 3]]) -> Vec<DividedChord> {
         let Some(spatial) = &self.domain.spatial else { return Vec::new() };
-        let chord = |a: u32, b: u32| self.chord_of.get(&(a.min(b), a.max(b))).copied();
+        let is_polygonal = |chord: &DividedChord| self.domain.curves[chord.0.index()].curve.polygonal();
+        let chord = |a: u32, b: u32| self.chord_of.get(&(a.min(b), a.max(b))).copied().filter(is_polygonal);
         let mut folded = Vec::new();
         for t in triangles {
+            let chords = [0, 1, 2].map(|k| chord(t[k], t[(k + 1) % 3]));
+            if chords.iter().all(Option::is_none) {
+                continue;
+            }
+            let p = t.map(|n| self.divided.xyz[n as usize]);
+            let area = (p[1] - p[0]).cross(p[2] - p[0]);
             for k in 0..3 {
-                let [at, next, previous] = [0, 1, 2].map(|i| t[(k + i) % 3]);
-                let (Some(one), Some(other)) = (chord(at, next), chord(previous, at)) else { continue };
-                let [p, q, r] = [at, next, previous].map(|n| self.divided.xyz[n as usize]);
-                let middle = t.iter().map(|&n| self.at(n)).sum::<DVec2>() / 3.0;
-                let normal = spatial.atlas.at(self.at(at).lerp(middle, 1e-3)).normal();
-                let (a, b) = (q - p, r - p);
-                let sine = a.cross(b).dot(normal) / (a.length() * b.length()).max(f64::MIN_POSITIVE);
-                if sine < LEAST_SINE {
-                    folded.extend([one, other]);
-                } else {
-                    folded.extend([one, other].into_iter().filter(|&chord| self.bulge(chord) > MOST_BULGE * sine));
+                let [one, other] = [chords[k], chords[(k + 2) % 3]];
+                let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+                match (one, other) {
+                    // Beside two chords that meet bluntly, most likely along one curve, the triangle tells nothing.
+                    (Some(one), Some(other)) if a.dot(b) > 0.0 => {
+                        let middle = t.iter().map(|&n| self.at(n)).sum::<DVec2>() / 3.0;
+                        let normal = spatial.atlas.at(self.at(t[k]).lerp(middle, 1e-3)).normal();
+                        let sine = area.dot(normal) / (a.length() * b.length()).max(f64::MIN_POSITIVE);
+                        let bulges = |&chord: &DividedChord| sine < LEAST_SINE || self.bulge(chord) > MOST_BULGE * sine;
+                        folded.extend([one, other].into_iter().filter(bulges));
+                    }
+                    (Some(one), None) if chords.iter().flatten().count() == 1 => {
+                        let height = area.length() / a.length_squared().max(f64::MIN_POSITIVE);
+                        if self.bulge(one) > MOST_BULGE * height {
+                            folded.push(one);
+                        }
+                    }
+                    _ => {}
                 }
             }
         }
         folded
     }
 
-    /// How far a chord of a curve of sides is from it in space, by its length; 0 for other curves, whose charts are smooth.
+    /// How far a chord of a curve of sides is from it in space, by its length.
     fn bulge(&self, (id, k): DividedChord) -> f64 {
         let (curve, Some(spatial)) = (&self.domain.curves[id.index()], &self.domain.spatial) else { return 0.0 };
-        if !curve.curve.polygonal() {
-            return 0.0;
-        }
         let [from, to] = [k, k + 1].map(|k| self.divided.parameters[id.index()][k as usize]);
         let [a, b] = [k, k + 1].map(|k| self.divided.xyz[self.divided.chains[id.index()][k as usize] as usize]);
         let along = b - a;

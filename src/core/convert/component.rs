@@ -25,11 +25,11 @@ impl Component {
     }
 }
 
-/// All live components of a mesh, by their least triangle. Live is what is a triangle still.
-pub fn live_components(mesh: &Mesh) -> Vec<Component> {
+/// All live components of a face, or of all, by their least triangle. Live is what is a triangle still.
+pub fn live_components(mesh: &Mesh, face: Option<u32>) -> Vec<Component> {
     let mut seen = vec![false; mesh.element_slots()];
     let mut components = Vec::new();
-    for first in mesh.elements() {
+    for first in mesh.elements_of(face) {
         if !mesh.is_triangle(first) || seen[first.index()] {
             continue;
         }

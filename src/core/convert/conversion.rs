@@ -94,7 +94,35 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
         DomainSource::Mesh { path, sol, taking } => from_mesh(case, path, sol.as_deref(), taking, watch)?,
     };
     refuse_needles(&made.mesh)?;
-    Ok(made)
+    chosen_faces(made, &case.parameters.faces)
+}
+
+/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for all faces.
+fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault> {
+    if names.is_empty() {
+        return Ok(made);
+    }
+    let mut regions = Vec::new();
+    for name in names {
+        let known = || made.regions.iter().map(|region| (strsim::damerau_levenshtein(name, region), region));
+        let own = made.regions.iter().zip(0..).filter(|(region, _)| *region == name || is_part_of(region, name));
+        let before = regions.len();
+        regions.extend(own.map(|(_, number)| number));
+        if regions.len() == before {
+            let fault = Fault::new(format!("There is no face \"{}\"", name.escape_debug()));
+            return Err(match known().min() {
+                Some((_, near)) => fault.remedy(format!("The nearest known name is \"{near}\"")),
+                None => fault,
+            });
+        }
+    }
+    let mesh = made.mesh.of_faces(&regions);
+    Ok(Background { mesh, ..made })
+}
+
+/// Whether a face is one of those that a region was divided into: "lid, part 2" of "lid".
+fn is_part_of(face: &str, region: &str) -> bool {
+    face.strip_prefix(region).is_some_and(|rest| rest.starts_with(", part "))
 }
 
 /// Converts a case: its background mesh, then the front and what closes it, then post-processing.
@@ -102,7 +130,7 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
 /// # Errors
 /// As [`background`]; and where a component cannot be converted, which its checks should have found.
 pub fn convert(case: &Case, watch: &mut dyn Watch) -> Result<Converted, Fault> {
-    convert_by(case, watch, &mut |converter, watch| converter.run(watch))
+    convert_by(case, watch, &mut |converter, watch| converter.run_by_faces(watch))
 }
 
 /// Converts a case as far as `drive` takes its converter.

@@ -64,13 +64,41 @@ pub struct Counts {
     pub removed: u64,
 }
 
+impl Counts {
+    /// The sums of two.
+    #[must_use]
+    pub fn plus(&self, other: &Counts) -> Counts {
+        Counts {
+            steps: self.steps + other.steps,
+            formed: self.formed + other.formed,
+            right_replaced: self.right_replaced + other.right_replaced,
+            rescued: self.rescued + other.rescued,
+            rolled_back: self.rolled_back + other.rolled_back,
+            deferred: self.deferred + other.deferred,
+            closed: self.closed + other.closed,
+            seamed: self.seamed + other.seamed,
+            transitions: self.transitions + other.transitions,
+            split: self.split + other.split,
+            enhanced: self.enhanced + other.enhanced,
+            removed: self.removed + other.removed,
+        }
+    }
+}
+
+/// Where the conversion of a face began.
+#[derive(Clone, Copy, Debug, Default)]
+struct Begun {
+    /// Quadrilaterals that stood.
+    stood: u64,
+    /// Quadrilaterals that front and last resort had made.
+    made: u64,
+}
+
 /// A conversion at some step.
 #[derive(Clone)]
 pub struct Converter<'a> {
     /// The mesh: live triangles and dead quadrilaterals.
     pub mesh: Mesh,
-    /// Quadrilaterals that stood at step 0.
-    pub(super) given: u64,
     /// What gives the metric anywhere.
     pub(super) source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Parameters; may be changed between two steps by [`Converter::set_parameters`].
@@ -88,6 +116,17 @@ pub struct Converter<'a> {
     step_mark: Mark,
     /// Whether the gates are wide: every segment was put off and taken up again.
     second_pass: bool,
+    /// On surfaces: the faces, which are converted one after another, by region. Else none, and all is converted together.
+    faces: Arc<[u32]>,
+    /// Which of them is being converted; past the last one, none.
+    face: usize,
+    /// Elements of the faces after each, at step 0.
+    waiting: Arc<[u64]>,
+    /// Elements at step 0, and, where this is one of several faces at the same time, of all together.
+    elements_at_first: u64,
+    total: u64,
+    /// What stood and had been counted when the face at hand was turned to.
+    begun: Begun,
     /// The base segment that a person picked for the next selection.
     picked: Option<[NodeId; 2]>,
     /// How often what happened.
@@ -98,14 +137,31 @@ pub struct Converter<'a> {
     pub finished: Finished,
     /// What it has under way.
     pub(super) finishing: Finishing<'a>,
+    /// That of the faces before, for whoever steps back.
+    finished_faces: Vec<Finishing<'a>>,
 }
 
 impl<'a> Converter<'a> {
     /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is lent
     /// (`&sizing`) or shared (`Arc<Sizing>`).
     pub fn new(mesh: Mesh, source: impl MetricSource + Send + Sync + 'a, parameters: Parameters) -> Self {
+        let faces = if mesh.ground().is_some() { mesh.faces() } else { Vec::new() };
+        let mut waiting = vec![0; faces.len()];
+        if !faces.is_empty() {
+            // Before each face, for now; then after it.
+            mesh.elements().for_each(|e| waiting[faces.partition_point(|&face| face < mesh.region(e))] += 1);
+            let mut after = 0;
+            waiting.iter_mut().rev().for_each(|own| (*own, after) = (after, after + *own));
+        }
+        let given = mesh.elements().filter(|&e| mesh.is_quad(e)).count() as u64;
         Converter {
-            given: mesh.elements().filter(|&e| mesh.is_quad(e)).count() as u64,
+            faces: faces.into(),
+            face: 0,
+            waiting: waiting.into(),
+            elements_at_first: mesh.element_count() as u64,
+            total: mesh.element_count() as u64,
+            begun: Begun { stood: given, made: 0 },
+            finished_faces: Vec::new(),
             mesh,
             source: Arc::new(source),
             parameters,
@@ -183,8 +239,15 @@ impl<'a> Converter<'a> {
         self.mesh.write_state(bytes);
         self.finishing.write_state(bytes);
         bytes.extend_from_slice(
-            format!("{:?} {:?} {:?} {:?}", self.phase.plain(), self.second_pass, self.picked, self.parameters)
-                .as_bytes(),
+            format!(
+                "{:?} {:?} {:?} {:?} {:?}",
+                self.phase.plain(),
+                self.second_pass,
+                self.face,
+                self.picked,
+                self.parameters
+            )
+            .as_bytes(),
         );
     }
 
@@ -196,7 +259,46 @@ impl<'a> Converter<'a> {
     }
 
     fn queue(&mut self) -> &mut Queue {
-        self.queue.get_or_insert_with(|| Queue::of(&self.mesh, &self.parameters))
+        let face = self.face();
+        self.queue.get_or_insert_with(|| Queue::of(&self.mesh, face, &self.parameters))
+    }
+
+    /// The number of quadrilaterals that stand.
+    pub fn standing(&self) -> u64 {
+        match &self.phase {
+            // Everything but the faces to come is a quadrilateral, also what clean-up has put in the place of others.
+            Phase::PostProcess { .. } | Phase::NextFace | Phase::Done => self.all_but_waiting(),
+            phase => {
+                let last = if let Phase::Patch { plan, patch, .. } = phase { plan.quads_before(*patch) } else { 0 };
+                self.begun.stood + self.made() - self.begun.made + last as u64
+            }
+        }
+    }
+
+    /// How much of the whole mesh the face at hand is, from 0 to 1: its share of what is bounded for the whole.
+    pub(super) fn share(&self) -> f64 {
+        let after = |face: usize| self.waiting.get(face).copied().unwrap_or(0);
+        let own = match self.face.checked_sub(1) {
+            _ if self.faces.is_empty() => self.total,
+            Some(before) => after(before) - after(self.face),
+            // The first face is what is left of all; of a face alone, that is the face.
+            None => self.elements_at_first - after(0),
+        };
+        own as f64 / self.total.max(1) as f64
+    }
+
+    /// Quadrilaterals that front and last resort have made so far.
+    fn made(&self) -> u64 {
+        self.counts.formed + self.counts.closed + self.last_resort.quads() as u64
+    }
+
+    fn all_but_waiting(&self) -> u64 {
+        self.mesh.element_count() as u64 - self.waiting.get(self.face).copied().unwrap_or(0)
+    }
+
+    /// The face that is being converted, by its region; none where all is converted together.
+    pub fn face(&self) -> Option<u32> {
+        self.faces.get(self.face).copied()
     }
 
     /// The queue taken out, so that it can be handed the mesh; it must be put back.
@@ -222,6 +324,61 @@ impl<'a> Converter<'a> {
             self.step()?;
         }
         Ok(())
+    }
+
+    /// Runs to the end, the faces at the same time: the same mesh to the last bit as one after another. Only from step 0, and where
+    /// no history is kept.
+    ///
+    /// # Errors
+    /// As [`Converter::step`].
+    pub fn run_by_faces(&mut self, watch: &mut dyn Watch) -> Result<(), Fault> {
+        if self.faces.len() < 2 || !self.mesh.is_dense() || self.counts.steps > 0 || self.keeps_journal() {
+            return self.run(watch);
+        }
+        let total = self.mesh.element_count() as u64;
+        watch.tell(Stage::Convert, 0, total);
+        let mut parts = self.mesh.parts();
+        let (sender, receiver) = std::sync::mpsc::channel();
+        let mut done: Vec<Option<Result<Converter<'a>, Fault>>> = parts.iter().map(|_| None).collect();
+        rayon::in_place_scope(|scope| {
+            for (k, part) in parts.iter_mut().enumerate() {
+                let (mesh, sender) = (std::mem::take(&mut part.mesh), sender.clone());
+                let (source, parameters) = (Arc::clone(&self.source), self.parameters.clone());
+                scope.spawn(move |_| {
+                    let mut converter = Converter { total, ..Converter::new(mesh, source, parameters) };
+                    let face = loop {
+                        match converter.step() {
+                            Ok(Event::FaceConverted { .. }) => break Ok(converter),
+                            Ok(_) => {}
+                            Err(fault) => break Err(fault),
+                        }
+                    };
+                    // Whoever listens stays until all are there.
+                    let _ = sender.send((k, face));
+                });
+            }
+            drop(sender);
+            let mut formed = 0;
+            for (k, face) in receiver {
+                if let Ok(converter) = &face {
+                    formed += converter.counts.formed;
+                    watch.tell(Stage::Convert, 2 * formed, total);
+                }
+                done[k] = Some(face);
+            }
+        });
+        for (part, face) in parts.iter_mut().zip(done) {
+            let Some(face) = face else { return Err(Fault::new("A face was not converted to its end")) };
+            let face = face?;
+            part.mesh = face.mesh;
+            self.counts = self.counts.plus(&face.counts);
+            self.last_resort = self.last_resort.plus(&face.last_resort);
+            self.finished = self.finished.plus(&face.finished);
+            self.phase = face.phase;
+        }
+        self.mesh.put_back(parts);
+        self.face = self.faces.len();
+        self.run(watch)
     }
 
     /// Does one elementary operation or decision.
@@ -256,6 +413,7 @@ impl<'a> Converter<'a> {
             Phase::Match { left, at } => self.step_match(left, at),
             Phase::Patch { left, at, plan, patch } => Ok(self.step_patch(left, at, plan, patch)),
             Phase::PostProcess { part } => Ok(self.step_post_process(part)),
+            Phase::NextFace => Ok(self.step_next_face()),
             Phase::Done => Ok((Phase::Done, Event::Finished)),
         }
     }
@@ -295,7 +453,7 @@ impl<'a> Converter<'a> {
                 self.second_pass = true;
                 return Ok((Phase::Select, Event::SecondPass));
             }
-            let mut components = live_components(&self.mesh);
+            let mut components = live_components(&self.mesh, self.face());
             components.reverse();
             return self.step_close(components, Vec::new());
         };
@@ -337,11 +495,33 @@ impl<'a> Converter<'a> {
         self.step_match(left.into(), 0)
     }
 
+    /// Turns to the next face; past the last one, what the faces have in common is looked at.
+    fn step_next_face(&mut self) -> (Phase, Event) {
+        let event = Event::FaceConverted { region: self.face().unwrap_or(0) };
+        self.begun = Begun { stood: self.all_but_waiting(), made: self.made() };
+        self.mesh.close_free_lists();
+        let finishing = std::mem::take(&mut self.finishing);
+        if self.keeps_history() {
+            self.finished_faces.push(finishing);
+        }
+        self.face += 1;
+        self.second_pass = false;
+        self.queue = None;
+        let next = match self.face() {
+            Some(_) => Phase::Select,
+            None if self.parameters.post_processing => Phase::PostProcess { part: Part::Unfolding },
+            None => Phase::Done,
+        };
+        (next, event)
+    }
+
     /// Matches the triangles of the next component that is left over (spec 2.10); past the last one all are converted.
     fn step_match(&mut self, left: Arc<[Component]>, at: usize) -> Result<(Phase, Event), Fault> {
         let Some(component) = left.get(at) else {
             let next = if self.parameters.post_processing {
                 Phase::PostProcess { part: Part::FirstSmoothing }
+            } else if self.face().is_some() {
+                Phase::NextFace
             } else {
                 Phase::Done
             };

@@ -379,7 +379,12 @@ pub enum Event {
         /// The least sine of its corners in space before, and of those around after.
         sine: [f64; 2],
     },
-    /// The whole mesh is cleaned up and smoothed (4.3.7).
+    /// A face is converted: the next one is turned to.
+    FaceConverted {
+        /// Its region.
+        region: u32,
+    },
+    /// The whole mesh, or the face at hand, is cleaned up and smoothed (4.3.7).
     PostProcessed,
     /// All is done.
     Finished,
@@ -414,6 +419,7 @@ impl Event {
         "cleaned",
         "swept",
         "unfolded",
+        "face_converted",
         "post_processed",
         "finished",
     ];
@@ -460,6 +466,7 @@ impl Event {
             Event::Cleaned { .. } => "cleaned",
             Event::Swept { .. } => "swept",
             Event::Unfolded { .. } => "unfolded",
+            Event::FaceConverted { .. } => "face_converted",
             Event::PostProcessed => "post_processed",
             Event::Finished => "finished",
         }

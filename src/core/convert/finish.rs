@@ -28,6 +28,18 @@ pub struct Finished {
     pub unfolded: Unfolded,
 }
 
+impl Finished {
+    /// The sums of two.
+    #[must_use]
+    pub fn plus(&self, other: &Finished) -> Finished {
+        Finished {
+            cleaned_up: self.cleaned_up.plus(&other.cleaned_up),
+            moves: self.moves + other.moves,
+            unfolded: self.unfolded.plus(&other.unfolded),
+        }
+    }
+}
+
 /// What the post-processing has under way: the parts that have begun. Those that are done are only there for whoever
 /// steps back.
 #[derive(Clone, Default)]
@@ -134,7 +146,7 @@ impl Converter<'_> {
                 Part::CleanUpByPairs if self.finishing.pairs_are_cut_short() => part = Part::LastSmoothing,
                 Part::CleanUpByPairs => part = Part::CleanUpBySequences,
                 Part::CleanUpBySequences => part = Part::LastSmoothing,
-                Part::LastSmoothing if self.mesh.ground().is_some() => part = Part::Unfolding,
+                Part::LastSmoothing if self.face().is_some() => return (Phase::NextFace, Event::PostProcessed),
                 Part::LastSmoothing | Part::Unfolding => return (Phase::Done, Event::PostProcessed),
             }
         }
@@ -143,9 +155,10 @@ impl Converter<'_> {
     /// The next change of structure within reach.
     fn clean_up(&mut self, reach: Reach) -> Option<Event> {
         let (recording, keep_journal) = (self.keeps_history(), self.keeps_journal());
+        let (face, share) = (self.face(), self.share());
         let (mesh, source, done) = (&mut self.mesh, Arc::clone(&self.source), self.finished.cleaned_up);
         let part = &mut self.finishing.clean_up[reach as usize];
-        let part = part.get_or_insert_with(|| CleanUp::begin(mesh, source, reach, done, recording));
+        let part = part.get_or_insert_with(|| CleanUp::begin(mesh, (face, share), source, reach, done, recording));
         let event = part.step(mesh, keep_journal);
         self.finished.cleaned_up = part.done();
         event
@@ -173,12 +186,13 @@ impl Converter<'_> {
     /// where no node waits any more.
     fn sweep(&mut self, part: Part) -> Option<Event> {
         let (recording, keep_journal) = (self.keeps_history(), self.keeps_journal());
+        let face = self.face();
         let mesh = &mut self.mesh;
         let list = match part {
             Part::FirstSmoothing => &mut self.finishing.first_smoothing,
             _ => &mut self.finishing.last_smoothing,
         };
-        let list = list.get_or_insert_with(|| every_free_node(mesh, recording));
+        let list = list.get_or_insert_with(|| every_free_node(mesh, face, recording));
         let (mut looked, mut moved) = (0, 0);
         for _ in 0..list.len() {
             let Some(node) = list.take() else { break };
@@ -201,8 +215,8 @@ impl Converter<'_> {
     }
 }
 
-fn every_free_node(mesh: &Mesh, recording: bool) -> Worklist {
-    let free = || mesh.nodes().filter(|&n| !mesh.is_fixed(n));
+fn every_free_node(mesh: &Mesh, face: Option<u32>, recording: bool) -> Worklist {
+    let free = || mesh.nodes_of(face).filter(|&n| !mesh.is_fixed(n));
     let mut list = Worklist::new(MOST_LOOKS * free().count(), recording);
     free().for_each(|node| list.add(node));
     list

@@ -52,6 +52,8 @@ pub struct Parameters {
     pub layers: u32,
     /// Curves on whose loops rows are offset; none: on all loops. Belongs to the case: later changes have no effect.
     pub layered_loops: Vec<String>,
+    /// Faces that are converted, and the others left out; none: all. Belongs to the case: later changes have no effect.
+    pub faces: Vec<String>,
     /// Order of base segments.
     pub selection: Selection,
     /// What is held against `c` times the smallest H-value.
@@ -89,6 +91,7 @@ impl Default for Parameters {
             eps2: 5.0,
             layers: 0,
             layered_loops: Vec::new(),
+            faces: Vec::new(),
             selection: Selection::Table1,
             selection_window: SelectionWindow::MetricLengthTimesH,
             bisector: true,
@@ -123,7 +126,7 @@ impl SelectionWindow {
 
 impl Parameters {
     /// The keys of files and of `--set`, in the order in which they are documented.
-    pub const KEYS: [&'static str; 21] = [
+    pub const KEYS: [&'static str; 22] = [
         "size_scale",
         "c",
         "theta_rect",
@@ -135,6 +138,7 @@ impl Parameters {
         "eps2",
         "layers",
         "layered_loops",
+        "faces",
         "selection",
         "selection_window",
         "bisector",
@@ -164,13 +168,14 @@ impl Parameters {
     }
 
     /// The paper's reading for the mesh that these parameters ask for: its size, its limit and the rows that are offset stay,
-    /// since they belong to the case.
+    /// and so do the faces: they belong to the case.
     #[must_use]
     pub fn read_as_paper(&self) -> Parameters {
         Parameters {
             size_scale: self.size_scale,
             layers: self.layers,
             layered_loops: self.layered_loops.clone(),
+            faces: self.faces.clone(),
             max_quads: self.max_quads,
             ..Parameters::paper()
         }
@@ -194,7 +199,8 @@ impl Parameters {
             "eps1" => self.eps1 = number(key, value, 0.0, 1.0)?,
             "eps2" => self.eps2 = number(key, value, 1.0, 1000.0)?,
             "layers" => self.layers = count(key, value, 0, 1000)? as u32,
-            "layered_loops" => self.layered_loops = names(value),
+            "layered_loops" => self.layered_loops = names(value, ','),
+            "faces" => self.faces = names(value, ';'),
             "selection" => self.selection = word(key, value, &Selection::WORDS)?,
             "selection_window" => self.selection_window = word(key, value, &SelectionWindow::WORDS)?,
             "bisector" => self.bisector = flag(key, value)?,
@@ -224,6 +230,7 @@ impl Parameters {
             "eps2" => self.eps2.to_string(),
             "layers" => self.layers.to_string(),
             "layered_loops" => self.layered_loops.join(", "),
+            "faces" => self.faces.join("; "),
             "selection" => said(self.selection, &Selection::WORDS),
             "selection_window" => said(self.selection_window, &SelectionWindow::WORDS),
             "bisector" => self.bisector.to_string(),
@@ -313,8 +320,9 @@ fn word<T: Copy>(key: &str, value: &str, words: &[(&str, T)]) -> Result<T, Fault
 }
 
 /// Names between commas.
-fn names(value: &str) -> Vec<String> {
-    value.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
+/// Names between separators: commas, but for names that have commas themselves.
+fn names(value: &str, separator: char) -> Vec<String> {
+    value.split(separator).map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
 }
 
 fn said<T: PartialEq>(value: T, words: &[(&'static str, T)]) -> String {

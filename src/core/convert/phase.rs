@@ -51,7 +51,7 @@ pub enum Part {
     CleanUpBySequences,
     /// Smoothing of the final structure.
     LastSmoothing,
-    /// Mending of what folds over its surface.
+    /// Mending of what folds over its surface, when every face is converted.
     Unfolding,
 }
 
@@ -167,6 +167,8 @@ pub enum Phase {
         /// Which part of it is under way.
         part: Part,
     },
+    /// The face at hand is converted; the next one is to be turned to.
+    NextFace,
     /// Nothing is left to do.
     Done,
 }
@@ -216,6 +218,7 @@ impl Phase {
             | Phase::Match { .. }
             | Phase::Patch { .. }
             | Phase::PostProcess { .. }
+            | Phase::NextFace
             | Phase::Done => None,
         }
     }
@@ -238,6 +241,7 @@ impl Phase {
             | Phase::Match { .. }
             | Phase::Patch { .. }
             | Phase::PostProcess { .. }
+            | Phase::NextFace
             | Phase::Done => {}
         }
         plain

@@ -34,7 +34,7 @@ const SAME_PLACE: f64 = 4e-9;
 /// How often the nodes at hand are moved in turn.
 const ROUNDS: usize = 4;
 /// How far the nodes of an inlaid quadrilateral lie from the corners towards the middle.
-const INLAID: [f64; 3] = [0.4, 0.6, 0.25];
+const INLAID: [f64; 5] = [0.4, 0.6, 0.25, 0.5, 0.33];
 /// Looks at one quadrilateral that folds at the start, on average: what was mended may send its neighbours to be looked at.
 const LOOKS: usize = 24;
 
@@ -51,6 +51,19 @@ pub struct Unfolded {
     pub pillowed: usize,
 }
 
+impl Unfolded {
+    /// The sums of two.
+    #[must_use]
+    pub fn plus(&self, other: &Unfolded) -> Unfolded {
+        Unfolded {
+            moved: self.moved + other.moved,
+            rotated: self.rotated + other.rotated,
+            collapsed: self.collapsed + other.collapsed,
+            pillowed: self.pillowed + other.pillowed,
+        }
+    }
+}
+
 /// The mending under way.
 #[derive(Clone)]
 pub(super) struct Unfolding<'a> {
@@ -63,6 +76,8 @@ pub(super) struct Unfolding<'a> {
     doubles: Vec<[PointId; 4]>,
     /// Free nodes at the place of another in space, ascending.
     coincident: Vec<NodeId>,
+    /// The nodes on borders by their points, ascending: they never change.
+    copies: Vec<(PointId, NodeId)>,
     /// Nodes of an element nearer than this in space are at one place.
     near: f64,
 }
@@ -72,7 +87,9 @@ impl<'a> Unfolding<'a> {
     pub fn begin(mesh: &Mesh, source: Arc<dyn MetricSource + Send + Sync + 'a>, recording: bool) -> Unfolding<'a> {
         let (doublets, (doubles, later), (coincident, near)) = (doublets(mesh), doubles(mesh), coincident(mesh));
         let list = Worklist::new(0, false);
-        let mut work = Unfolding { source, list, doublets, doubles, coincident, near };
+        let mut copies: Vec<_> = mesh.nodes().filter_map(|n| Some((mesh.point(n)?, n))).collect();
+        copies.sort_unstable();
+        let mut work = Unfolding { source, list, doublets, doubles, coincident, copies, near };
         let folded: Vec<ElementId> = mesh.elements().filter(|&e| work.folds(mesh, e)).collect();
         let all = folded.len() + later.len() + work.doublets.len() + work.coincident.len();
         work.list = Worklist::new(LOOKS * all, recording);
@@ -100,6 +117,7 @@ impl<'a> Unfolding<'a> {
         self.list.bytes()
             + size_of::<NodeId>() * (2 * self.doublets.capacity() + self.coincident.capacity())
             + size_of::<[PointId; 4]>() * self.doubles.capacity()
+            + size_of::<(PointId, NodeId)>() * self.copies.capacity()
     }
 
     /// Mends the next quadrilateral; what cannot be mended is passed over. None where nothing waits any more.
@@ -115,7 +133,7 @@ impl<'a> Unfolding<'a> {
             } else if before < FOLDED && self.moved(mesh, element) {
                 Some(Mending::Moved)
             } else if before < FOLDED
-                && let Some(new) = self.rotated(mesh, element)
+                && let Some(new) = self.rotated(mesh, element, None)
             {
                 nodes.extend(new);
                 Some(Mending::Rotated { new })
@@ -125,9 +143,15 @@ impl<'a> Unfolding<'a> {
                 nodes.retain(|&n| mesh.has_node(n));
                 Some(Mending::Collapsed { kept })
             } else {
-                self.pillowed(mesh, element).map(|inner| {
+                let pillowed = self.pillowed(mesh, element).map(|inner| {
                     nodes.extend(inner);
                     Mending::Pillowed { inner }
+                });
+                let is_doublet = before >= FOLDED && self.is_doublet(mesh, node);
+                pillowed.or_else(|| {
+                    let new = is_doublet.then(|| self.rotated(mesh, element, Some(node))).flatten()?;
+                    nodes.extend(new);
+                    Some(Mending::Rotated { new })
                 })
             };
             if how.is_some() {
@@ -161,9 +185,13 @@ impl<'a> Unfolding<'a> {
         if let Some(double) = quads().find(|&e| self.is_double(mesh, e)) {
             return Some((self.sine(mesh, double), double));
         }
-        let pair = self.doublets.binary_search_by_key(&node, |pair| pair[0]).ok().map(|k| self.doublets[k]);
-        let is_doublet = pair.is_some_and(|pair| pair.iter().all(|&n| mesh.fan(n).count() == 1));
+        let is_doublet = self.is_doublet(mesh, node);
         (is_doublet || self.coincident.binary_search(&node).is_ok()).then_some(worst)
+    }
+
+    fn is_doublet(&self, mesh: &Mesh, node: NodeId) -> bool {
+        let pair = self.doublets.binary_search_by_key(&node, |pair| pair[0]).ok().map(|k| self.doublets[k]);
+        pair.is_some_and(|pair| pair.iter().all(|&n| mesh.fan(n).count() == 1))
     }
 
     fn is_double(&self, mesh: &Mesh, e: ElementId) -> bool {
@@ -209,8 +237,9 @@ impl<'a> Unfolding<'a> {
         })
     }
 
-    /// Rotates an edge of a quadrilateral; the ends that it has then. None where not fewer elements around fold then.
-    fn rotated(&self, mesh: &mut Mesh, element: ElementId) -> Option<[NodeId; 2]> {
+    /// Rotates an edge of a quadrilateral; the ends that it has then. None where not fewer elements around fold then; for a node that
+    /// needs an edge more, where it gets none, or more fold.
+    fn rotated(&self, mesh: &mut Mesh, element: ElementId, needy: Option<NodeId>) -> Option<[NodeId; 2]> {
         for h in mesh.half_edges(element).collect::<Vec<_>>() {
             let Ok(ring) = mesh.hexagon(h) else { continue };
             let before = self.flaws(mesh, &ring);
@@ -221,7 +250,12 @@ impl<'a> Unfolding<'a> {
                     for _ in 0..ROUNDS {
                         core.iter().for_each(|&node| self.improve(mesh, node));
                     }
-                    if self.flaws(mesh, &ring) < before {
+                    let after = self.flaws(mesh, &ring);
+                    let is_better = match needy {
+                        None => after < before,
+                        Some(node) => after <= before && mesh.fan(node).count() > 1,
+                    };
+                    if is_better {
                         return Some([ring[by], ring[by + 3]]);
                     }
                 }
@@ -311,15 +345,32 @@ impl<'a> Unfolding<'a> {
         }
     }
 
+    /// Places in space of the free nodes around the copies of a node on other faces.
+    fn free_beside(&self, mesh: &Mesh, node: NodeId) -> Vec<DVec3> {
+        let Some(point) = mesh.point(node) else { return Vec::new() };
+        let copies = &self.copies[self.copies.partition_point(|copy| copy.0 < point)..];
+        let others = copies.iter().take_while(|copy| copy.0 == point).map(|copy| copy.1).filter(|&n| n != node);
+        let elements = others.flat_map(|n| mesh.fan(n).map(|h| h.element()));
+        let free = elements.flat_map(|e| mesh.corners(e)).filter(|&n| !mesh.is_fixed(n));
+        free.map(|n| mesh.xyz(n)).collect()
+    }
+
     /// Inlays a quadrilateral; its nodes. None where what comes of it would fold too.
     fn pillowed(&self, mesh: &mut Mesh, element: ElementId) -> Option<[NodeId; 4]> {
         let corners = mesh.quad(element);
         mesh.permit(Operation::Pillow, &corners).ok()?;
         let (p, region) = (corners.map(|n| mesh.uv(n)), mesh.region(element));
         let middle = p.iter().sum::<DVec2>() * 0.25;
+        // Where another sheet lies on this one, the inner nodes must not come to its own.
+        let beside: Vec<DVec3> = corners.iter().flat_map(|&n| self.free_beside(mesh, n)).collect();
         INLAID.iter().find_map(|&part| {
             let mark = mesh.mark();
             let places = p.map(|p| p.lerp(middle, part));
+            let ground = mesh.ground()?;
+            let lies_on = |place: &DVec2| beside.iter().any(|q| ground.atlas.xyz(*place).distance(*q) <= self.near);
+            if places.iter().any(lies_on) {
+                return None;
+            }
             let metrics = places.map(|place| self.source.metric(place).ok());
             let inner = match metrics {
                 [Some(a), Some(b), Some(c), Some(d)] => [a, b, c, d],
@@ -367,6 +418,7 @@ fn doublets(mesh: &Mesh) -> Vec<[NodeId; 2]> {
             found.extend([[a, b], [b, a]]);
         }
     }
+    found.sort_unstable();
     found
 }
 

@@ -49,7 +49,7 @@ impl FromStr for Stop {
 impl Stop {
     fn is_reached(self, converter: &Converter<'_>) -> bool {
         match self {
-            Stop::Quads(quads) => quads <= standing(converter) && !converter.phase().is_local_post_processing(),
+            Stop::Quads(quads) => quads <= converter.standing() && !converter.phase().is_local_post_processing(),
             Stop::Step(step) => step <= converter.counts.steps,
         }
     }
@@ -84,21 +84,6 @@ pub struct Told<'e> {
 
 /// Who is told of each step.
 pub type Tell<'t> = &'t mut dyn FnMut(&Told<'_>);
-
-/// The number of quadrilaterals that stand.
-pub fn standing(converter: &Converter<'_>) -> u64 {
-    match converter.phase() {
-        // Everything is a quadrilateral, also what clean-up has put in the place of others.
-        Phase::PostProcess { .. } | Phase::Done => converter.mesh.element_count() as u64,
-        phase => {
-            let last = if let Phase::Patch { plan, patch, .. } = phase { plan.quads_before(*patch) } else { 0 };
-            converter.given
-                + converter.counts.formed
-                + converter.counts.closed
-                + (converter.last_resort.quads() + last) as u64
-        }
-    }
-}
 
 /// Steps until `stop` is reached, or to the end where there is none; the same states as
 /// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What an event
@@ -144,7 +129,7 @@ pub fn walk_editing(
             None => (None, None, None),
         };
         let event = converter.step()?;
-        let nq = standing(converter);
+        let nq = converter.standing();
         if let Some(tell) = &mut tell {
             let quality = match (element, before) {
                 (Some(element), Some(before)) if event.is_local_change() => {
@@ -158,7 +143,8 @@ pub fn walk_editing(
             tell(&Told { step, nq, event: &event, candidates, crossings, loops, quality });
         }
         edit(converter)?;
-        if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::Done) {
+        if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::NextFace | Phase::Done)
+        {
             shown = nq;
             watch.tell(Stage::Convert, 2 * nq, total);
         }
@@ -167,7 +153,7 @@ pub fn walk_editing(
 }
 
 fn past_the_end(converter: &Converter<'_>) -> Fault {
-    let (steps, quads) = (converter.counts.steps, standing(converter));
+    let (steps, quads) = (converter.counts.steps, converter.standing());
     Fault::new(format!("The conversion ends after step {steps} with {quads} quadrilaterals, before it comes there"))
         .remedy(format!("Stop at step={steps} at the latest"))
 }

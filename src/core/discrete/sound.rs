@@ -10,8 +10,8 @@ use crate::core::io::mesh_file::MeshFile;
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
 const FLAT: f64 = 1e-6;
-/// Nor has one that is no higher than this part of the whole surface: it would not stand in the plane's coordinates.
-const LOW: f64 = 1e-10;
+/// Nor has one that is no higher than this part of the whole surface.
+const LOW: f64 = 1e-6;
 /// Turning the longest side of a flat triangle may leave another; so often it is tried.
 const ROUNDS: usize = 16;
 

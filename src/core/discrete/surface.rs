@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::chart::{Bound, Chart, charts};
 use super::edges::{Edge, Edges, Triangles};
@@ -24,6 +24,8 @@ use crate::core::metric::tensor::Metric3;
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
 /// Nor is it smaller than this part of the edges there, for that: the normals of slivers say little.
 const LEAST_SIZE: f64 = 1.0 / 6.0;
+/// Such elements leave the surface by no more than about this part of its size.
+const MOST_AWAY: f64 = 0.004;
 /// Growth of such sizes from one element to the next (spec 3).
 const GRADATION: f64 = 1.3;
 
@@ -129,11 +131,15 @@ impl Surface {
 }
 
 /// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the mean
-/// length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it), and growing by 1.3 at most from one element to the next.
+/// length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it) and what leaves the surface by 0.4 % of its size, and growing by 1.3 at most from one element to the next.
 pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     let edges = Edges::of(&mesh.triangles);
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
-    let mut most = vec![f64::INFINITY; mesh.points.len()];
+    // Bounds by how the surface turns, and by how far an element may leave it.
+    let mut most = vec![(f64::INFINITY, f64::INFINITY); mesh.points.len()];
+    let (low, high) =
+        mesh.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+    let away = MOST_AWAY * low.distance(high);
     let features = features(mesh, &edges, ANGLE);
     for edge in 0..edges.len() {
         let Edge { ends, sides } = edges.get(edge);
@@ -151,13 +157,16 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
             let way = 0.5 * (n.length() + m.length()) / long.max(f64::MIN_POSITIVE);
             let corners = [one, other].map(|side| mesh.triangles[side as usize / 3]);
             for node in corners.as_flattened() {
-                let bound = &mut most[*node as usize];
-                *bound = bound.min(way * MOST_TURN / turn.max(f64::MIN_POSITIVE));
+                let (by_turn, by_distance) = &mut most[*node as usize];
+                let turn = turn.max(f64::MIN_POSITIVE);
+                *by_turn = by_turn.min(way * MOST_TURN / turn);
+                // An element with a fold across its middle leaves it by a quarter of its size times the turn.
+                *by_distance = by_distance.min(4.0 * away / turn);
             }
         }
     }
-    let size = |((sum, count), most): (&(f64, f64), &f64)| match sum / count {
-        mean if *count > 0.0 => most.clamp(LEAST_SIZE * mean, mean),
+    let size = |((sum, count), (by_turn, by_distance)): (&(f64, f64), &(f64, f64))| match sum / count {
+        mean if *count > 0.0 => by_turn.clamp(LEAST_SIZE * mean, mean).min(*by_distance),
         _ => 1.0,
     };
     let mut sizes: Vec<Metric3> = sums.iter().zip(&most).map(size).map(Metric3::isotropic).collect();

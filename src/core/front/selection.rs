@@ -50,14 +50,16 @@ pub struct Queue {
     stamp: Vec<u32>,
     node_epoch: Vec<u32>,
     epoch: u32,
+    /// The face whose segments it holds; none: all.
+    face: Option<u32>,
 }
 
 impl Queue {
-    /// The queue of a state.
-    pub fn of(mesh: &Mesh, parameters: &Parameters) -> Queue {
-        let mut queue = Queue::default();
+    /// The queue of a state, of one face or of all.
+    pub fn of(mesh: &Mesh, face: Option<u32>, parameters: &Parameters) -> Queue {
+        let mut queue = Queue { face, ..Queue::default() };
         queue.grow(mesh);
-        for e in mesh.elements() {
+        for e in mesh.elements_of(face) {
             for h in mesh.half_edges(e) {
                 if mesh.is_front(h) && !mesh.is_deferred(h) {
                     queue.push(mesh, h, parameters);
@@ -206,7 +208,7 @@ impl Queue {
             self.push(mesh, h, parameters);
         }
         if self.heaps[3].len() > 64 + 3 * mesh.element_count() {
-            *self = Queue::of(mesh, parameters);
+            *self = Queue::of(mesh, self.face, parameters);
         }
     }
 

@@ -49,6 +49,11 @@ impl Atlas {
         self.begins.partition_point(|begin| *begin <= p.x)
     }
 
+    /// Whether the chart there is one of triangles.
+    pub fn is_of_facets(&self, p: DVec2) -> bool {
+        matches!(self.charts[self.chart_of(p)], Ground::Facets(_))
+    }
+
     /// The charts.
     pub fn charts(&self) -> &[Ground] {
         &self.charts

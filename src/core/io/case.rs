@@ -262,6 +262,10 @@ fn parameters(table: &Table<'_>) -> Result<Parameters, Fault> {
                 parameters.layered_loops = entry.texts()?;
                 continue;
             }
+            if entry.key() == "faces" {
+                parameters.faces = entry.texts()?;
+                continue;
+            }
             parameters.set(entry.key(), &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?;
         }
     }

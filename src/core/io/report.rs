@@ -238,6 +238,10 @@ fn parameters<S: Serializer>(parameters: &Parameters, serializer: S) -> Result<S
             map.serialize_entry(key, &parameters.layered_loops)?;
             continue;
         }
+        if key == "faces" {
+            map.serialize_entry(key, &parameters.faces)?;
+            continue;
+        }
         let text = parameters.text_of(key).unwrap_or_default();
         match (text.parse::<u64>(), text.parse::<f64>(), text.parse::<bool>()) {
             (Ok(count), ..) => map.serialize_entry(key, &count)?,

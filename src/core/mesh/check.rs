@@ -74,13 +74,17 @@ impl Mesh {
             .collect()
     }
 
-    /// The least sine of an element's corners, between straight sides in space, seen along the normal of the surface there and
-    /// along its own; 0 at most where a side is no longer than `near`. In the plane, where exact predicates say more, along z.
+    /// The least sine of an element's corners, between straight sides in space, seen along the normal of the surface there, and on
+    /// triangles, whose normals jump, along its own too; 0 at most where a side is no longer than `near`. In the plane, where exact
+    /// predicates say more, along z.
     pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
         if self.half_edges(e).any(|h| self.xyz(self.origin(h)).distance(self.xyz(self.target(h))) <= near) {
             return 0.0;
         }
-        self.corner_sines(e).map(|(surface, own)| surface.min(own)).fold(f64::INFINITY, f64::min)
+        let first = e.half_edge(0);
+        let jumps = self.ground().is_some_and(|ground| ground.atlas.is_of_facets(self.uv(self.origin(first))));
+        let sines = self.corner_sines(e).map(|(surface, own)| if jumps { surface.min(own) } else { surface });
+        sines.fold(f64::INFINITY, f64::min)
     }
 
     /// The sine of each corner as seen along the normal of the surface there, and along the element's own.

@@ -8,10 +8,12 @@
 //! `half_edge/taking_back.rs` puts it back. Public ways to change are the operators only (`operators.rs`).
 
 mod difference;
+mod faces;
 mod setters;
 mod taking_back;
 
 pub use difference::{Difference, FreeLists};
+pub use faces::Part;
 pub use taking_back::Undone;
 
 use std::sync::Arc;
@@ -51,6 +53,8 @@ pub struct Mesh {
     first_level: Vec<u16>,
     free_nodes: Vec<NodeId>,
     free_elements: Vec<ElementId>,
+    /// So many of the first free nodes and elements are not taken into use any more.
+    closed: [u32; 2],
     journal: Journal,
     pub(super) refusals: Option<Refusals>,
     /// The surfaces on which it lies; none in the plane.
@@ -137,6 +141,7 @@ impl Mesh {
             first_level: Vec::new(),
             free_nodes: Vec::new(),
             free_elements: Vec::new(),
+            closed: [0; 2],
             journal: Journal::default(),
             refusals: None,
             ground: None,
@@ -178,6 +183,17 @@ impl Mesh {
     /// Number of node slots, tombstones included.
     pub fn node_slots(&self) -> usize {
         self.uv.len()
+    }
+
+    /// All elements of one face (region), or all, by id.
+    pub fn elements_of(&self, face: Option<u32>) -> impl Iterator<Item = ElementId> + '_ {
+        self.elements().filter(move |&e| face.is_none_or(|face| self.region(e) == face))
+    }
+
+    /// All nodes of one face (region), or all, by id.
+    pub fn nodes_of(&self, face: Option<u32>) -> impl Iterator<Item = NodeId> + '_ {
+        let region = |n: NodeId| self.region[(self.anchor[n.index()] >> 2) as usize];
+        self.nodes().filter(move |&n| face.is_none_or(|face| region(n) == face))
     }
 
     /// Number of element slots, tombstones included.
@@ -531,6 +547,7 @@ impl Mesh {
             first_level: self.first_level.clone(),
             free_nodes: self.free_nodes.clone(),
             free_elements: self.free_elements.clone(),
+            closed: self.closed,
             refusals: self.refusals,
             journal: Journal::default(),
             ground: self.ground.clone(),
@@ -545,6 +562,7 @@ impl Mesh {
         number(self.sides.len() as u64);
         number(self.free_nodes.len() as u64);
         number(self.free_elements.len() as u64);
+        number(u64::from(self.closed[0]) << 32 | u64::from(self.closed[1]));
         for n in 0..self.uv.len() {
             number(self.uv[n].x.to_bits());
             number(self.uv[n].y.to_bits());

@@ -82,7 +82,11 @@ impl Touched {
             Entry::Region(e, _) | Entry::Level(e, _) | Entry::ElementTaken(e) => self.element(e),
             Entry::Uv(n, _) | Entry::Metric(n, _) | Entry::Anchor(n, _) | Entry::NodeTaken(n) => self.node(n),
             // What is appended or freed is named by the entries that fill or empty its slot.
-            Entry::NodeAppended | Entry::ElementAppended | Entry::NodeFreed | Entry::ElementFreed => {}
+            Entry::NodeAppended
+            | Entry::ElementAppended
+            | Entry::NodeFreed
+            | Entry::ElementFreed
+            | Entry::Closed(_) => {}
         }
     }
 

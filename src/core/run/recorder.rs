@@ -12,7 +12,6 @@ use super::timeline::{Measures, Sample};
 use crate::core::convert::converter::Converter;
 use crate::core::convert::event::Event;
 use crate::core::convert::phase::Phase;
-use crate::core::convert::walk::standing;
 use crate::core::fault::Fault;
 use crate::core::mesh::half_edge::{FreeLists, Mesh};
 use crate::core::mesh::ids::ElementId;
@@ -94,7 +93,7 @@ impl Recorder {
 
     /// A log with what is known of the state that it starts from.
     pub(super) fn begin(&mut self) -> Log {
-        let mut log = Log::beginning_with(standing(&self.converter));
+        let mut log = Log::beginning_with(self.converter.standing());
         log.push_front(self.step, self.front.count());
         log.push_sample(self.sample());
         log
@@ -103,7 +102,7 @@ impl Recorder {
     fn sample(&mut self) -> Sample {
         let mesh = &self.converter.mesh;
         let length = self.front.segments().map(|h| mesh.length(h)).sum();
-        self.measures.sample(mesh, self.step, standing(&self.converter), self.front.count(), length)
+        self.measures.sample(mesh, self.step, self.converter.standing(), self.front.count(), length)
     }
 
     /// The last step that it did.
@@ -163,7 +162,7 @@ impl Recorder {
             || *phase == Phase::Done
             || self.touched.nodes().len() > SWEPT + self.converter.mesh.node_slots() / 2;
         let can_be_kept = phase.mark().is_none();
-        stretch.log.push(event, standing(&self.converter), at_rest);
+        stretch.log.push(event, self.converter.standing(), at_rest);
         if can_be_kept {
             self.converter.mesh.commit();
             if is_due {

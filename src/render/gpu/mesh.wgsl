@@ -9,6 +9,12 @@ struct View {
     pixels: f32,
     // Points in a unit of the mesh.
     scale: f32,
+    // The turn of the mesh.
+    turn: mat3x3<f32>,
+    // How surfaces are lit (even, lit, shine), and how much is seen of lines that faces cover.
+    light: vec4<f32>,
+    // The depth of a point, and the least by which lines are pulled towards the eye.
+    depth: vec4<f32>,
 };
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -23,6 +29,11 @@ fn nowhere() -> vec4<f32> {
     return vec4<f32>(2.0, 2.0, 2.0, 1.0);
 }
 
+// What lies on faces is pulled so many points towards the eye.
+fn pull(points: f32) -> f32 {
+    return max(points * view.depth.x, view.depth.y);
+}
+
 // ---- faces ----
 
 struct FaceIn {
@@ -30,32 +41,52 @@ struct FaceIn {
     @location(1) p1: vec3<f32>,
     @location(2) p2: vec3<f32>,
     @location(3) p3: vec3<f32>,
-    @location(4) colour: vec4<f32>,
+    @location(4) n0: vec2<f32>,
+    @location(5) n1: vec2<f32>,
+    @location(6) n2: vec2<f32>,
+    @location(7) n3: vec2<f32>,
+    @location(8) colour: vec4<f32>,
 };
 
 struct FaceOut {
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) colour: vec4<f32>,
+    @location(1) normal: vec3<f32>,
 };
+
+// A normal from the unfolded octahedron.
+fn unfolded(n: vec2<f32>) -> vec3<f32> {
+    let z = 1.0 - abs(n.x) - abs(n.y);
+    let t = max(-z, 0.0);
+    return normalize(vec3<f32>(n.x - select(-t, t, n.x >= 0.0), n.y - select(-t, t, n.y >= 0.0), z));
+}
 
 @vertex
 fn face_vertex(@builtin(vertex_index) k: u32, in: FaceIn) -> FaceOut {
     var out: FaceOut;
     out.colour = in.colour;
     var p = in.p0;
-    if k == 1u { p = in.p1; }
-    if k == 2u || k == 4u { p = in.p2; }
-    if k == 5u { p = in.p3; }
+    var n = in.n0;
+    if k == 1u { p = in.p1; n = in.n1; }
+    if k == 2u || k == 4u { p = in.p2; n = in.n2; }
+    if k == 5u { p = in.p3; n = in.n3; }
     out.position = view.clip * vec4<f32>(p, 1.0);
-    // Faces lie behind the lines on them.
-    out.position.z += 0.0001;
+    out.normal = view.turn * unfolded(n);
     if in.colour.a == 0.0 { out.position = nowhere(); }
     return out;
 }
 
 @fragment
 fn face_fragment(in: FaceOut) -> @location(0) vec4<f32> {
-    return premultiplied(in.colour, 1.0);
+    // A lamp to the left above the eye; what is turned away is lit from behind it, a little less.
+    var n = normalize(in.normal);
+    let away = n.z < 0.0;
+    if away { n = -n; }
+    let lamp = normalize(vec3<f32>(-0.35, 0.45, 0.82));
+    var light = max(dot(n, lamp), 0.0);
+    if away { light *= 0.75; }
+    let colour = in.colour.rgb * (view.light.x + view.light.y * light) + vec3<f32>(view.light.z * light);
+    return premultiplied(vec4<f32>(min(colour, vec3<f32>(1.0)), in.colour.a), 1.0);
 }
 
 // ---- lines ----
@@ -99,7 +130,7 @@ fn line_vertex(@builtin(vertex_index) k: u32, in: LineIn) -> LineOut {
     let y = select(-half_width - soft, half_width + soft, left);
     let end = select(a, b, far);
     let offset = direction * select(-cap, cap, far) + across * y;
-    out.position = vec4<f32>(end.xy + offset / half_size, end.z, 1.0);
+    out.position = vec4<f32>(end.xy + offset / half_size, end.z - pull(1.0 + 1.5 * half_width), 1.0);
     out.place = vec2<f32>(x, y);
     out.shape = vec4<f32>(length, half_width, in.dash.x, in.dash.y);
     // Edges fade as their elements become small on the screen: 22 % at a height of 2 points, all of it at 9.
@@ -115,6 +146,16 @@ fn line_vertex(@builtin(vertex_index) k: u32, in: LineIn) -> LineOut {
 
 @fragment
 fn line_fragment(in: LineOut) -> @location(0) vec4<f32> {
+    return stroke(in);
+}
+
+// A line behind a face.
+@fragment
+fn hidden_fragment(in: LineOut) -> @location(0) vec4<f32> {
+    return stroke(in) * view.light.w;
+}
+
+fn stroke(in: LineOut) -> vec4<f32> {
     let length = in.shape.x;
     let beyond = max(max(-in.place.x, in.place.x - length), 0.0);
     let away = length2(vec2<f32>(beyond, in.place.y));
@@ -164,7 +205,7 @@ fn dot_vertex(@builtin(vertex_index) k: u32, in: DotIn) -> DotOut {
     let reach = radius + 1.0 / view.pixels;
     let centre = view.clip * vec4<f32>(in.at, 1.0);
     out.place = vec2<f32>(x, y) * reach;
-    out.position = vec4<f32>(centre.xy + out.place / (0.5 * view.size), centre.z, 1.0);
+    out.position = vec4<f32>(centre.xy + out.place / (0.5 * view.size), centre.z - pull(2.0 + 1.5 * radius), 1.0);
     out.fill = in.fill;
     out.ring = in.ring;
     out.shape = vec2<f32>(radius, in.ring_width);

@@ -34,6 +34,32 @@ pub struct View {
     pub pixels: f32,
     /// Colour where nothing is.
     pub ground: Rgba,
+    /// How surfaces are lit.
+    pub light: Light,
+    /// How much is seen of lines that faces cover: 0 to 1.
+    pub hidden: f32,
+}
+
+/// How surfaces are lit by a lamp beside the eye: a colour times `even` and `lit` by the angle to the lamp, and `shine` by the
+/// angle alone, which dark colours need.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// In the shadow.
+    pub even: f32,
+    /// More towards the lamp.
+    pub lit: f32,
+    /// What is added towards the lamp.
+    pub shine: f32,
+}
+
+impl Light {
+    /// Colours as they are: the plane.
+    pub const NONE: Light = Light { even: 1.0, lit: 0.0, shine: 0.0 };
+
+    /// For surfaces, by whether the theme is dark.
+    pub fn on_surfaces(dark: bool) -> Light {
+        if dark { Light { even: 0.62, lit: 0.7, shine: 0.09 } } else { Light { even: 0.72, lit: 0.3, shine: 0.0 } }
+    }
 }
 
 impl View {
@@ -52,11 +78,26 @@ struct Uniform {
     size: [f32; 2],
     pixels: f32,
     scale: f32,
+    turn: [[f32; 4]; 3],
+    /// Even, lit and shine; how much is seen of covered lines.
+    light: [f32; 4],
+    /// The depth of a point, and the least by which lines are pulled towards the eye.
+    depth: [f32; 4],
 }
 
-/// Draws one scene into any number of views.
+/// Lines lie on faces: they are pulled towards the eye by at least so much of the depth.
+const LEAST_PULL: f32 = 1e-6;
+
+/// Draws a scene in the plane and one in space into any number of views.
 pub struct Painter {
     pipelines: Pipelines,
+    lists: [Lists; 2],
+    targets: Vec<Option<Target>>,
+    most: u32,
+}
+
+/// A scene on the card.
+struct Lists {
     faces: Patched<Face>,
     edges: Patched<Line>,
     dots: Patched<Dot>,
@@ -65,15 +106,11 @@ pub struct Painter {
     over: Patched<Line>,
     over_dots: Patched<Dot>,
     generation: Option<u64>,
-    targets: Vec<Option<Target>>,
-    most: u32,
 }
 
-impl Painter {
-    /// A painter whose pictures are laid into targets of the format `window`, with so many samples a pixel (1 or 4).
-    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Painter {
-        Painter {
-            pipelines: Pipelines::new(device, window, samples),
+impl Lists {
+    fn new() -> Lists {
+        Lists {
             faces: Patched::new("faces"),
             edges: Patched::new("edges"),
             dots: Patched::new("dots"),
@@ -82,6 +119,40 @@ impl Painter {
             over: Patched::new("lines over the mesh"),
             over_dots: Patched::new("dots over the mesh"),
             generation: None,
+        }
+    }
+
+    /// Sends what has changed.
+    fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) {
+        let generation = scene.generation;
+        if self.generation.replace(generation) == Some(generation) {
+            return;
+        }
+        self.faces.set(device, queue, &scene.faces, generation);
+        self.edges.set(device, queue, &scene.edges, generation);
+        self.dots.set(device, queue, &scene.dots, generation);
+        self.under.set(device, queue, &scene.under, generation);
+        self.boundary.set(device, queue, &scene.boundary, generation);
+        self.over.set(device, queue, &scene.over, generation);
+        self.over_dots.set(device, queue, &scene.over_dots, generation);
+    }
+
+    fn lines(&self) -> [&Patched<Line>; 4] {
+        [&self.edges, &self.under, &self.boundary, &self.over]
+    }
+
+    fn sent(&self) -> u64 {
+        let lines: u64 = self.lines().iter().map(|lines| lines.sent).sum();
+        self.faces.sent + lines + self.dots.sent + self.over_dots.sent
+    }
+}
+
+impl Painter {
+    /// A painter whose pictures are laid into targets of the format `window`, with so many samples a pixel (1 or 4).
+    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Painter {
+        Painter {
+            pipelines: Pipelines::new(device, window, samples),
+            lists: [Lists::new(), Lists::new()],
             targets: Vec::new(),
             most: device.limits().max_texture_dimension_2d,
         }
@@ -97,17 +168,9 @@ impl Painter {
         view: &View,
         scene: &Scene,
     ) {
-        if self.generation != Some(scene.generation) {
-            self.generation = Some(scene.generation);
-            let generation = scene.generation;
-            self.faces.set(device, queue, &scene.faces, generation);
-            self.edges.set(device, queue, &scene.edges, generation);
-            self.dots.set(device, queue, &scene.dots, generation);
-            self.under.set(device, queue, &scene.under, generation);
-            self.boundary.set(device, queue, &scene.boundary, generation);
-            self.over.set(device, queue, &scene.over, generation);
-            self.over_dots.set(device, queue, &scene.over_dots, generation);
-        }
+        let in_space = scene.form().is_in_space();
+        let lists = &mut self.lists[usize::from(in_space)];
+        lists.set(device, queue, scene);
         if self.targets.len() <= index {
             self.targets.resize_with(index + 1, || None);
         }
@@ -122,8 +185,11 @@ impl Painter {
             size: view.size.as_vec2().to_array(),
             pixels: view.pixels,
             scale: view.camera.points_per_unit() as f32,
+            turn: glam::DMat3::from_quat(view.camera.turn).as_mat3().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]),
+            light: [view.light.even, view.light.lit, view.light.shine, view.hidden],
+            depth: [view.camera.depth_of_point() as f32, LEAST_PULL, 0.0, 0.0],
         };
-        let drawn = (scene.generation, uniform, view.ground);
+        let drawn = (in_space, scene.generation, uniform, view.ground);
         if target.drawn == Some(drawn) {
             return;
         }
@@ -133,13 +199,15 @@ impl Painter {
         let mut pass = target.begin(encoder, wgpu::Color { r, g, b, a: 1.0 });
         pass.set_bind_group(0, &target.view_group, &[]);
         pass.set_pipeline(&self.pipelines.faces);
-        self.faces.draw(&mut pass);
-        pass.set_pipeline(&self.pipelines.lines);
-        for lines in [&self.edges, &self.under, &self.boundary, &self.over] {
-            lines.draw(&mut pass);
+        lists.faces.draw(&mut pass);
+        if view.hidden > 0.0 {
+            pass.set_pipeline(&self.pipelines.hidden);
+            lists.lines().iter().for_each(|lines| lines.draw(&mut pass));
         }
+        pass.set_pipeline(&self.pipelines.lines);
+        lists.lines().iter().for_each(|lines| lines.draw(&mut pass));
         pass.set_pipeline(&self.pipelines.dots);
-        for dots in [&self.dots, &self.over_dots] {
+        for dots in [&lists.dots, &lists.over_dots] {
             dots.draw(&mut pass);
         }
     }
@@ -159,8 +227,7 @@ impl Painter {
 
     /// Bytes sent to the card for the scene's lists since the painter was made.
     pub fn bytes_sent(&self) -> u64 {
-        let lines = [&self.edges, &self.under, &self.boundary, &self.over].map(|lines| lines.sent);
-        self.faces.sent + lines.iter().sum::<u64>() + self.dots.sent + self.over_dots.sent
+        self.lists.iter().map(Lists::sent).sum()
     }
 }
 

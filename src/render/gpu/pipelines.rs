@@ -1,7 +1,7 @@
 //! Shaders and how they are fed.
 
 use super::super::scene::{Dot, Face, Line};
-use wgpu::VertexFormat::{Float32, Float32x2, Float32x3, Unorm8x4};
+use wgpu::VertexFormat::{Float32, Float32x2, Float32x3, Snorm16x2, Unorm8x4};
 
 /// Shaders for the mesh and for laying pictures into the window.
 pub(super) const MESH: &str = include_str!("mesh.wgsl");
@@ -12,7 +12,8 @@ pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Attributes of the instances, in the order of their fields.
-pub(super) const FACE: [wgpu::VertexFormat; 5] = [Float32x3, Float32x3, Float32x3, Float32x3, Unorm8x4];
+pub(super) const FACE: [wgpu::VertexFormat; 9] =
+    [Float32x3, Float32x3, Float32x3, Float32x3, Snorm16x2, Snorm16x2, Snorm16x2, Snorm16x2, Unorm8x4];
 pub(super) const LINE: [wgpu::VertexFormat; 6] = [Float32x3, Float32x3, Unorm8x4, Float32, Float32x2, Float32];
 pub(super) const DOT: [wgpu::VertexFormat; 7] = [Float32x3, Float32, Unorm8x4, Unorm8x4, Float32, Float32, Float32];
 
@@ -21,6 +22,8 @@ pub(super) struct Pipelines {
     pub samples: u32,
     pub faces: wgpu::RenderPipeline,
     pub lines: wgpu::RenderPipeline,
+    /// The parts of lines that faces cover.
+    pub hidden: wgpu::RenderPipeline,
     pub dots: wgpu::RenderPipeline,
     pub blit: wgpu::RenderPipeline,
     pub view_layout: wgpu::BindGroupLayout,
@@ -62,12 +65,15 @@ impl Pipelines {
             ],
         });
         let over_mesh = |name, formats: &[wgpu::VertexFormat], size, writes_depth| {
-            mesh_pipeline(device, &view_layout, &mesh, name, formats, size, writes_depth, samples)
+            let seen = Pass { writes_depth, compare: wgpu::CompareFunction::LessEqual, fragment: name };
+            mesh_pipeline(device, &view_layout, &mesh, name, formats, size, seen, samples)
         };
+        let covered = Pass { writes_depth: false, compare: wgpu::CompareFunction::Greater, fragment: "hidden" };
         Pipelines {
             samples,
             faces: over_mesh("face", &FACE, size_of::<Face>(), true),
             lines: over_mesh("line", &LINE, size_of::<Line>(), false),
+            hidden: mesh_pipeline(device, &view_layout, &mesh, "line", &LINE, size_of::<Line>(), covered, samples),
             dots: over_mesh("dot", &DOT, size_of::<Dot>(), false),
             blit: blit_pipeline(device, &blit_layout, &blit, window),
             view_layout,
@@ -99,6 +105,13 @@ fn attributes(formats: &[wgpu::VertexFormat]) -> Vec<wgpu::VertexAttribute> {
     formats.iter().enumerate().map(attribute).collect()
 }
 
+/// What a pipeline does with depths, and the shader that colours its pixels.
+struct Pass {
+    writes_depth: bool,
+    compare: wgpu::CompareFunction,
+    fragment: &'static str,
+}
+
 fn mesh_pipeline(
     device: &wgpu::Device,
     group: &wgpu::BindGroupLayout,
@@ -106,7 +119,7 @@ fn mesh_pipeline(
     name: &str,
     formats: &[wgpu::VertexFormat],
     size: usize,
-    writes_depth: bool,
+    pass: Pass,
     samples: u32,
 ) -> wgpu::RenderPipeline {
     let attributes = attributes(formats);
@@ -127,15 +140,15 @@ fn mesh_pipeline(
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH,
-            depth_write_enabled: Some(writes_depth),
-            depth_compare: Some(wgpu::CompareFunction::LessEqual),
+            depth_write_enabled: Some(pass.writes_depth),
+            depth_compare: Some(pass.compare),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState { count: samples, ..wgpu::MultisampleState::default() },
         fragment: Some(wgpu::FragmentState {
             module,
-            entry_point: Some(&format!("{name}_fragment")),
+            entry_point: Some(&format!("{}_fragment", pass.fragment)),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: COLOUR,

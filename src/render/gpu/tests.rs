@@ -32,6 +32,7 @@ fn scene() -> Scene {
     let face = |y: f32, colour: Rgba| Face {
         corners: [[-1.0, y, 0.0], [1.0, y, 0.0], [1.0, y + 0.5, 0.0], [-1.0, y + 0.5, 0.0]],
         colour: colour.packed(),
+        ..Face::default()
     };
     let line = |x: f32, dash: [f32; 2], room: f32| Line {
         ends: [[x, -1.0, 0.0], [x, 1.0, 0.0]],
@@ -51,7 +52,7 @@ fn scene() -> Scene {
 
 fn view() -> View {
     let camera = Camera::fit([-DVec2::ONE, DVec2::ONE], DVec2::splat(100.0), 0.0);
-    View { camera, size: DVec2::splat(100.0), pixels: 1.0, ground: DARK.ground }
+    View { camera, size: DVec2::splat(100.0), pixels: 1.0, ground: DARK.ground, light: Light::NONE, hidden: 0.0 }
 }
 
 #[test]
@@ -90,6 +91,62 @@ fn looks_right(bytes: &[u8]) {
     let dashed: Vec<bool> = (20..80).map(|y| at(75, y) == DARK.base).collect();
     assert!(dashed.contains(&true) && dashed.contains(&false), "a dashed line has gaps");
     assert_eq!(at(25, 60), DARK.ground, "an edge without room has faded away");
+}
+
+/// The window's scene of a whole sphere, of whose lines only the near or the far half is drawn.
+#[test]
+fn the_far_side_of_a_sphere_is_hidden_but_for_hidden_lines() {
+    use crate::core::io::built_in;
+    use crate::core::progress::Nobody;
+    use crate::core::run::{history::History, run::Run};
+    use crate::render::camera::Bearing;
+    use crate::render::scene::{Drawn, Form, Layers, Shading};
+    use glam::DVec3;
+
+    let Some((device, queue)) = device() else { return };
+    let mut case = built_in::named("sphere").unwrap().unwrap();
+    case.parameters.size_scale = 2.0;
+    let history = History::open(Run::of(case), &mut Nobody).unwrap();
+    let mesh = &history.state().mesh;
+    let camera =
+        Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Bearing::Iso.turn(), DVec2::splat(300.0), 20.0);
+    for form in [Form::Flat, Form::Curved] {
+        for samples in [1, 4] {
+            let draw = |half: f32, hidden: f32| {
+                let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, samples);
+                let mut scene = Scene::default();
+                let (shading, layers) = (Shading::default(), Layers::default());
+                let drawn = Drawn { mesh, changed: &[], shading: &shading, layers, palette: &DARK, form };
+                scene.set_mesh(&drawn, DVec3::ZERO);
+                // Only one half of the lines is drawn: that before the middle, or that behind it.
+                let mut lines = scene.edges.items().to_vec();
+                let towards = camera.towards().as_vec3();
+                let middle = camera.centre.as_vec3();
+                let radius = 0.5 * (300.0 - 40.0) / camera.scale as f32;
+                for line in &mut lines {
+                    let depth = line.ends.map(|p| (glam::Vec3::from_array(p) - middle).dot(towards) / radius);
+                    let shown = depth.iter().all(|z| z * half > 0.3);
+                    (line.colour, line.width) = (if shown { DARK.base.packed() } else { 0 }, 2.0);
+                    line.room = -1.0;
+                }
+                scene.edges.replace(&lines, 2);
+                scene.dots.replace(&[], 2);
+                scene.boundary.replace(&[], 2);
+                scene.generation = 2;
+                let light = Light::on_surfaces(true);
+                let view = View { camera, size: DVec2::splat(300.0), light, hidden, ..view() };
+                let bytes = pixels(&mut painter, &device, &queue, &view, &scene);
+                let [r, g, b, _] = DARK.base.0.map(i32::from);
+                let near =
+                    |p: &[u8]| (i32::from(p[0]) - r).abs() + (i32::from(p[1]) - g).abs() + (i32::from(p[2]) - b).abs();
+                bytes.chunks(4).filter(|p| near(p) < 60).count()
+            };
+            let (front, back) = (draw(1.0, 0.0), draw(-1.0, 0.0));
+            assert!(front > 3000, "the near half is drawn: {front}");
+            assert_eq!(back, 0, "{form:?} {samples}: nothing of the far half is");
+            assert!(draw(-1.0, 1.0) > 3000, "but for hidden lines");
+        }
+    }
 }
 
 #[test]

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-use super::{ColourBy, Dot, Face, Layers, Line, Scene, Shading, ink, relative};
+use super::placed::Places;
+use super::{ColourBy, Dot, Face, Form, Layers, Line, Scene, Shading, Spot, ink, relative};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::render::palette::Palette;
@@ -32,6 +33,8 @@ pub struct Drawn<'a> {
     pub layers: Layers,
     /// In which colours.
     pub palette: &'a Palette,
+    /// Where it is drawn; a scene that is patched stays where it is.
+    pub form: Form,
 }
 
 impl Scene {
@@ -39,7 +42,19 @@ impl Scene {
     pub fn set_mesh(&mut self, drawn: &Drawn<'_>, anchor: DVec3) {
         self.anchor = anchor;
         self.generation += 1;
+        let pieces = drawn.form.pieces(drawn.mesh.element_slots());
+        if pieces != self.pieces {
+            self.pieces = pieces;
+            (self.places, self.boundary_places) = (Places::of_chains(pieces), Places::of_chains(pieces));
+            self.edges.replace(&[], self.generation);
+            self.boundary.replace(&[], self.generation);
+        }
+        self.form = drawn.form;
         self.resize(drawn.mesh);
+        self.copies.clear();
+        for node in drawn.mesh.nodes() {
+            self.set_spot(drawn.mesh, node);
+        }
         let slots = (0..drawn.mesh.element_slots() as u32).map(ElementId);
         slots.clone().for_each(|e| self.leave_places(drawn.mesh, e));
         slots.for_each(|e| self.set_element(drawn, e));
@@ -56,6 +71,9 @@ impl Scene {
         self.generation += 1;
         self.resize(mesh);
         let moved = nodes.iter().copied().filter(|n| mesh.has_node(*n));
+        for node in moved.clone() {
+            self.set_spot(mesh, node);
+        }
         let mut around: Vec<ElementId> = moved.flat_map(|n| mesh.fan(n)).map(HalfEdgeId::element).collect();
         around.extend(elements.iter().copied().filter(|e| e.index() < mesh.element_slots()));
         around.sort_unstable();
@@ -76,7 +94,8 @@ impl Scene {
 
     fn resize(&mut self, mesh: &Mesh) {
         let generation = self.generation;
-        self.faces.resize(mesh.element_slots(), Face::default(), generation);
+        self.faces.resize(self.faces_per_element() * mesh.element_slots(), Face::default(), generation);
+        self.spots.resize(mesh.node_slots(), Spot::default());
         self.dots.resize(mesh.node_slots(), NO_DOT, generation);
         self.places.resize(4 * mesh.element_slots(), &mut self.edges, generation);
         self.boundary_places.resize(4 * mesh.element_slots(), &mut self.boundary, generation);
@@ -87,10 +106,10 @@ impl Scene {
         for h in (0..4).map(|corner| e.half_edge(corner)) {
             let twin = side(mesh, h).map(|h| mesh.twin(h));
             if twin.is_none_or(|twin| twin.is_some_and(|t| t < h)) {
-                self.places.put(h.index(), None, &mut self.edges, self.generation);
+                self.places.put(h.index(), &[], &mut self.edges, self.generation);
             }
             if twin != Some(None) {
-                self.boundary_places.put(h.index(), None, &mut self.boundary, self.generation);
+                self.boundary_places.put(h.index(), &[], &mut self.boundary, self.generation);
             }
         }
     }
@@ -98,34 +117,43 @@ impl Scene {
     /// The face of an element slot, or nothing where it is a tombstone, and the edges around it.
     fn set_element(&mut self, drawn: &Drawn<'_>, e: ElementId) {
         let mesh = drawn.mesh;
-        self.faces.set(e.index(), self.face(drawn, e, 0.0), self.generation);
+        self.set_faces(drawn, e, 0.0);
         for h in mesh.half_edges(e) {
             // Of the two half-edges of an edge the one with the smaller id has its place.
             let twin = mesh.twin(h);
             let first = twin.map_or(h, |t| t.min(h));
-            self.places.put(first.index(), self.edge(drawn, first), &mut self.edges, self.generation);
+            let edge = self.edge(drawn, first);
+            self.places.put(first.index(), &edge, &mut self.edges, self.generation);
             if twin.is_none() {
                 let line = self.boundary_line(drawn, h);
-                self.boundary_places.put(h.index(), line, &mut self.boundary, self.generation);
+                self.boundary_places.put(h.index(), &line, &mut self.boundary, self.generation);
             }
         }
     }
 
-    /// The face of an element, with so much of the colour of what has just changed.
-    fn face(&self, drawn: &Drawn<'_>, e: ElementId, change: f32) -> Face {
+    fn set_faces(&mut self, drawn: &Drawn<'_>, e: ElementId, change: f32) {
+        let faces = self.faces_of(drawn, e, change);
+        let count = self.faces_per_element();
+        for k in 0..count {
+            self.faces.set(count * e.index() + k, faces.get(k).copied().unwrap_or_default(), self.generation);
+        }
+    }
+
+    /// The faces of an element, with so much of the colour of what has just changed; none where it is not drawn.
+    fn faces_of(&self, drawn: &Drawn<'_>, e: ElementId, change: f32) -> Vec<Face> {
         let Drawn { mesh, shading, layers, palette, .. } = *drawn;
         if !mesh.has_element(e) {
-            return Face::default();
+            return Vec::new();
         }
         let (shown, plain) = if mesh.is_quad(e) { (layers.dead, palette.dead) } else { (layers.live, palette.live) };
         if !shown && change == 0.0 {
-            return Face::default();
+            return Vec::new();
         }
         let colour = match shading.by {
             ColourBy::State => plain.mixed(palette.changed, change),
             _ => shading.colour(e).unwrap_or(plain),
         };
-        Face { corners: corners(mesh, e, self.anchor), colour: ink(colour) }
+        self.element_faces(mesh, e, ink(colour))
     }
 
     /// Faces that stand out as just changed get their colour, those that did before lose it.
@@ -133,45 +161,50 @@ impl Scene {
         let mesh = drawn.mesh;
         for e in std::mem::take(&mut self.standing_out) {
             if e.index() < mesh.element_slots() {
-                self.faces.set(e.index(), self.face(drawn, e, 0.0), self.generation);
+                self.set_faces(drawn, e, 0.0);
             }
         }
         for (changed, fade) in drawn.changed.iter().zip(FADES).rev() {
             for &e in changed.iter().filter(|e| mesh.has_element(**e)) {
-                self.faces.set(e.index(), self.face(drawn, e, fade), self.generation);
+                self.set_faces(drawn, e, fade);
                 self.standing_out.push(e);
             }
         }
     }
 
-    fn edge(&self, drawn: &Drawn<'_>, h: HalfEdgeId) -> Option<Line> {
+    fn edge(&self, drawn: &Drawn<'_>, h: HalfEdgeId) -> Vec<Line> {
         let Drawn { mesh, layers, palette, .. } = *drawn;
         let sides = [Some(h), mesh.twin(h)];
         let dead = sides.iter().flatten().any(|h| mesh.is_quad(h.element()));
         let shown = sides.iter().flatten().any(|h| if mesh.is_quad(h.element()) { layers.dead } else { layers.live });
         if !shown {
-            return None;
+            return Vec::new();
         }
-        let [a, b] = [mesh.origin(h), mesh.target(h)].map(|n| mesh.uv(n));
-        let heights = sides.iter().flatten().map(|h| room_over(mesh, *h, a, b));
-        Some(Line {
-            ends: [a, b].map(|p| relative(p, self.anchor)),
+        let ends = [mesh.origin(h), mesh.target(h)];
+        let heights = sides.iter().flatten().map(|h| self.room_over(mesh, *h, ends));
+        let line = Line {
+            ends: Default::default(),
             colour: ink(if dead { palette.dead_edge } else { palette.live_edge }),
             width: EDGES[usize::from(dead)],
             dash: [0.0; 2],
             room: heights.fold(f64::INFINITY, f64::min) as f32,
-        })
+        };
+        self.chain(mesh, ends, line).collect()
     }
 
-    fn boundary_line(&self, drawn: &Drawn<'_>, h: HalfEdgeId) -> Option<Line> {
+    fn boundary_line(&self, drawn: &Drawn<'_>, h: HalfEdgeId) -> Vec<Line> {
         let mesh = drawn.mesh;
-        drawn.layers.boundary.then(|| Line {
-            ends: [mesh.origin(h), mesh.target(h)].map(|n| relative(mesh.uv(n), self.anchor)),
+        if !drawn.layers.boundary {
+            return Vec::new();
+        }
+        let line = Line {
+            ends: Default::default(),
             colour: ink(drawn.palette.boundary),
             width: 1.75,
             dash: [0.0; 2],
             room: -1.0,
-        })
+        };
+        self.chain(mesh, [mesh.origin(h), mesh.target(h)], line).collect()
     }
 
     fn set_node(&mut self, drawn: &Drawn<'_>, node: NodeId) {
@@ -179,8 +212,8 @@ impl Scene {
         if !layers.nodes || !mesh.has_node(node) {
             return self.dots.set(node.index(), NO_DOT, self.generation);
         }
-        let p = mesh.uv(node);
-        let nearest = mesh.neighbours(node).map(|n| mesh.uv(n).distance_squared(p)).fold(f64::INFINITY, f64::min);
+        let p = self.at(node);
+        let nearest = mesh.neighbours(node).map(|n| self.at(n).distance_squared(p)).fold(f64::INFINITY, f64::min);
         let front = mesh.fan(node).any(|h| mesh.is_front(h) || mesh.is_front(mesh.previous(h)));
         let dot = Dot {
             at: relative(p, self.anchor),
@@ -193,6 +226,15 @@ impl Scene {
         };
         self.dots.set(node.index(), dot, self.generation);
     }
+
+    /// The height over the side `h` of its element, which has these ends: of a quadrilateral the mean of its two other corners.
+    fn room_over(&self, mesh: &Mesh, h: HalfEdgeId, ends: [NodeId; 2]) -> f64 {
+        let [a, b] = ends.map(|n| self.at(n));
+        let along = (b - a).normalize_or_zero();
+        let height = |h: HalfEdgeId| along.cross(self.at(mesh.origin(h)) - a).length();
+        let last = mesh.previous(h);
+        if mesh.is_triangle(h.element()) { height(last) } else { 0.5 * (height(last) + height(mesh.previous(last))) }
+    }
 }
 
 /// The half-edge in a slot, where it is a side of its element.
@@ -200,25 +242,10 @@ fn side(mesh: &Mesh, h: HalfEdgeId) -> Option<HalfEdgeId> {
     ((h.corner() as usize) < mesh.sides(h.element())).then_some(h)
 }
 
-fn corners(mesh: &Mesh, e: ElementId, anchor: DVec3) -> [[f32; 3]; 4] {
-    let mut corners = [[0.0; 3]; 4];
-    for k in 0..4 {
-        let corner = (k as u32).min(mesh.sides(e) as u32 - 1);
-        corners[k] = relative(mesh.uv(mesh.origin(e.half_edge(corner))), anchor);
-    }
-    corners
-}
-
-/// The height over the side `h` from `a` to `b` of its element: of a quadrilateral the mean of its two other corners.
-fn room_over(mesh: &Mesh, h: HalfEdgeId, a: DVec2, b: DVec2) -> f64 {
-    let along = b - a;
-    let height = |h: HalfEdgeId| (along.perp_dot(mesh.uv(mesh.origin(h)) - a) / along.length()).abs();
-    let last = mesh.previous(h);
-    if mesh.is_triangle(h.element()) { height(last) } else { 0.5 * (height(last) + height(mesh.previous(last))) }
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
     use crate::core::io::built_in;
     use crate::core::mesh::ids::PointId;
@@ -244,7 +271,8 @@ mod tests {
     }
 
     fn draw(mesh: &Mesh, scene: &mut Scene, layers: Layers) {
-        let drawn = Drawn { mesh, changed: &[], shading: &Shading::default(), layers, palette: &DARK };
+        let drawn =
+            Drawn { mesh, changed: &[], shading: &Shading::default(), layers, palette: &DARK, form: Form::Plane };
         scene.set_mesh(&drawn, DVec3::ZERO);
     }
 
@@ -292,8 +320,18 @@ mod tests {
 
     #[test]
     fn a_scene_that_follows_what_changes_is_that_of_the_state_and_costs_what_changed() {
-        let mut case = built_in::named("example1").unwrap().unwrap();
-        case.parameters.size_scale = 2.0;
+        follows("example1", 2.0, Form::Plane);
+    }
+
+    #[test]
+    fn so_does_one_in_space_with_flat_and_with_curved_elements() {
+        follows("example2", 2.5, Form::Flat);
+        follows("sphere", 2.5, Form::Curved);
+    }
+
+    fn follows(name: &str, size_scale: f64, form: Form) {
+        let mut case = built_in::named(name).unwrap().unwrap();
+        case.parameters.size_scale = size_scale;
         let mut history = History::open(Run::of(case), &mut Nobody).unwrap();
         history.extend(u64::MAX);
         let end = history.end().unwrap();
@@ -309,7 +347,8 @@ mod tests {
             };
             let changed = [Arc::from(changed)];
             let shading = Shading::default();
-            let drawn = Drawn { mesh, changed: &changed, shading: &shading, layers: Layers::default(), palette: &DARK };
+            let (layers, palette) = (Layers::default(), &DARK);
+            let drawn = Drawn { mesh, changed: &changed, shading: &shading, layers, palette, form };
             match &changes {
                 Changes::Everything => scene.set_mesh(&drawn, DVec3::ZERO),
                 Changes::Some { nodes, elements } => {

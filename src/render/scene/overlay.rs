@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::mesh::FADES;
-use super::{Dot, Layers, Line, Scene, ink, relative};
+use super::{Dot, Layers, Line, Scene, Spot, ink, relative};
 use crate::core::convert::parameters::Parameters;
 use crate::core::convert::phase::Phase;
 use crate::core::front::segment::Segment;
@@ -101,15 +101,13 @@ impl Scene {
         self.over_dots.replace(&dots, self.generation);
     }
 
-    fn line(&self, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32, dash: [f32; 2]) -> Option<Line> {
-        let here = ends.iter().all(|n| mesh.has_node(*n));
-        here.then(|| Line {
-            ends: ends.map(|n| relative(mesh.uv(n), self.anchor)),
-            colour: ink(colour),
-            width,
-            dash,
-            room: -1.0,
-        })
+    /// A line between nodes, along the surface where elements are curved; none where they are not there.
+    fn line(&self, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32, dash: [f32; 2]) -> Vec<Line> {
+        if !ends.iter().all(|n| mesh.has_node(*n) && n.index() < self.spots.len()) {
+            return Vec::new();
+        }
+        let line = Line { ends: Default::default(), colour: ink(colour), width, dash, room: -1.0 };
+        self.chain(mesh, ends, line).collect()
     }
 
     fn add(&self, over: &mut Vec<Line>, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32) {
@@ -119,8 +117,11 @@ impl Scene {
     fn add_background(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, palette: &Palette) {
         let Some(background) = overlay.background else { return };
         for h in background.edges() {
-            let ends = [background.origin(h), background.target(h)];
-            self.add(over, background, ends, palette.hint.faded(0.5), 0.6);
+            // Its nodes are not those of the scene.
+            let place = |n: NodeId| relative(Spot::of(background, n, self.form).at, self.anchor);
+            let ends = [background.origin(h), background.target(h)].map(place);
+            let colour = ink(palette.hint.faded(0.5));
+            over.push(Line { ends, colour, width: 0.6, dash: [0.0; 2], room: -1.0 });
         }
     }
 
@@ -176,7 +177,7 @@ impl Scene {
                 }
             }
             Some(Outlined::Node(node)) if mesh.has_node(node) => {
-                self.add_dot(dots, mesh, node, 7.0, Rgba::default(), palette.hover, 2.0)
+                self.add_dot(dots, node, 7.0, Rgba::default(), palette.hover, 2.0)
             }
             _ => {}
         }
@@ -210,7 +211,7 @@ impl Scene {
                 }
             }
             Some(Outlined::Node(node)) if mesh.has_node(node) => {
-                self.add_dot(dots, mesh, node, 7.5, Rgba::default(), palette.selection, 1.5);
+                self.add_dot(dots, node, 7.5, Rgba::default(), palette.selection, 1.5);
             }
             _ => {}
         }
@@ -237,22 +238,13 @@ impl Scene {
         self.add(over, mesh, [a, b], palette.ground.faded(0.9), BASE + 2.8);
         self.add(over, mesh, [a, b], palette.base, BASE);
         for (node, _) in overlay.decision.letters().filter(|(n, _)| mesh.has_node(*n)).collect::<Vec<_>>() {
-            self.add_dot(dots, mesh, node, 4.9, palette.ground, palette.base, 2.0);
+            self.add_dot(dots, node, 4.9, palette.ground, palette.base, 2.0);
         }
     }
 
-    fn add_dot(
-        &self,
-        dots: &mut Vec<Dot>,
-        mesh: &Mesh,
-        node: NodeId,
-        radius: f32,
-        fill: Rgba,
-        ring: Rgba,
-        ring_width: f32,
-    ) {
+    fn add_dot(&self, dots: &mut Vec<Dot>, node: NodeId, radius: f32, fill: Rgba, ring: Rgba, ring_width: f32) {
         dots.push(Dot {
-            at: relative(mesh.uv(node), self.anchor),
+            at: relative(self.at(node), self.anchor),
             radius,
             fill: ink(fill),
             ring: ink(ring),
@@ -270,7 +262,8 @@ mod tests {
     use crate::core::mesh::triangle_set::TriangleSet;
     use crate::core::metric::tensor::Metric2;
     use crate::render::palette::DARK;
-    use glam::DVec2;
+    use crate::render::scene::{Drawn, Form, Shading};
+    use glam::{DVec2, DVec3};
 
     fn square() -> Mesh {
         let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
@@ -283,6 +276,14 @@ mod tests {
             ..TriangleSet::default()
         };
         Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4])
+    }
+
+    fn drawn(mesh: &Mesh) -> Scene {
+        let mut scene = Scene::default();
+        let (shading, layers) = (Shading::default(), Layers::default());
+        let drawn = Drawn { mesh, changed: &[], shading: &shading, layers, palette: &DARK, form: Form::Plane };
+        scene.set_mesh(&drawn, DVec3::ZERO);
+        scene
     }
 
     #[test]
@@ -301,7 +302,7 @@ mod tests {
             lit: &[],
             background: None,
         };
-        let mut scene = Scene::default();
+        let mut scene = drawn(&mesh);
         scene.set_overlay(&overlay, Layers::default(), &DARK);
         let last = |colour: Rgba| scene.over.items().iter().rposition(|l| l.colour == colour.packed()).unwrap();
         let order = [DARK.front[0], DARK.refused, DARK.side, DARK.base].map(last);
@@ -325,7 +326,7 @@ mod tests {
             lit: &[Outlined::Element(ElementId(5)), Outlined::Edge([NodeId(8), NodeId(9)])],
             background: None,
         };
-        let mut scene = Scene::default();
+        let mut scene = drawn(&mesh);
         scene.set_overlay(&overlay, Layers { boundary: false, ..Layers::default() }, &DARK);
         assert!([&scene.over, &scene.under].iter().all(|list| list.items().is_empty()));
         assert!(scene.over_dots.items().is_empty());

@@ -21,6 +21,11 @@ impl<T: Copy + PartialEq> Placed<T> {
         &self.items
     }
 
+    /// The generation of the last change to what is there.
+    pub fn newest(&self) -> u64 {
+        self.changed.iter().copied().max().unwrap_or_default()
+    }
+
     /// The stretches that were changed after a generation, as starts and ends; neighbours go together.
     pub fn newer_than(&self, generation: u64) -> Vec<[usize; 2]> {
         let mut found: Vec<[usize; 2]> = Vec::new();
@@ -80,39 +85,43 @@ pub(super) struct Places {
     place: Vec<u32>,
     /// Places that nobody uses.
     free: Vec<u32>,
+    /// Lines in a place, less one: an edge that is drawn curved is a chain of them.
+    more: usize,
 }
 
 impl Places {
+    /// Places for chains of so many lines.
+    pub fn of_chains(lines: usize) -> Places {
+        Places { more: lines.saturating_sub(1), ..Places::default() }
+    }
+
     /// Makes room for so many half-edge slots; edges of slots that go leave their places.
     pub fn resize(&mut self, slots: usize, list: &mut Placed<Line>, generation: u64) {
         for slot in slots..self.place.len() {
-            self.put(slot, None, list, generation);
+            self.put(slot, &[], list, generation);
         }
         self.place.resize(slots, NOWHERE);
     }
 
     /// Puts the edge of a half-edge where it has its place, or into one that is free; takes it away where it is none.
-    pub fn put(&mut self, slot: usize, line: Option<Line>, list: &mut Placed<Line>, generation: u64) {
-        let place = self.place[slot];
-        match line {
-            Some(line) => {
-                let place = if place != NOWHERE {
-                    place
-                } else {
-                    self.free.pop().unwrap_or_else(|| {
-                        list.resize(list.items.len() + 1, Line::default(), generation);
-                        list.items.len() as u32 - 1
-                    })
-                };
-                self.place[slot] = place;
-                list.set(place as usize, line, generation);
+    pub fn put(&mut self, slot: usize, lines: &[Line], list: &mut Placed<Line>, generation: u64) {
+        let length = self.more + 1;
+        let mut place = self.place[slot];
+        if place == NOWHERE {
+            if lines.is_empty() {
+                return;
             }
-            None if place != NOWHERE => {
-                list.set(place as usize, Line::default(), generation);
-                self.free.push(place);
-                self.place[slot] = NOWHERE;
-            }
-            None => {}
+            place = self.free.pop().unwrap_or_else(|| {
+                list.resize(list.items.len() + length, Line::default(), generation);
+                (list.items.len() / length) as u32 - 1
+            });
+            self.place[slot] = place;
+        } else if lines.is_empty() {
+            self.free.push(place);
+            self.place[slot] = NOWHERE;
+        }
+        for k in 0..length {
+            list.set(place as usize * length + k, lines.get(k).copied().unwrap_or_default(), generation);
         }
     }
 }
@@ -145,13 +154,13 @@ mod tests {
     #[test]
     fn an_edge_keeps_its_place_and_one_that_goes_leaves_it_to_the_next() {
         let (mut places, mut list) = (Places::default(), Placed::default());
-        let line = |width| Some(Line { width, colour: 1, ..Line::default() });
+        let line = |width| [Line { width, colour: 1, ..Line::default() }];
         places.resize(8, &mut list, 1);
         for slot in [0, 2, 5] {
-            places.put(slot, line(slot as f32), &mut list, 1);
+            places.put(slot, &line(slot as f32), &mut list, 1);
         }
-        places.put(2, None, &mut list, 2);
-        places.put(7, line(7.0), &mut list, 2);
+        places.put(2, &[], &mut list, 2);
+        places.put(7, &line(7.0), &mut list, 2);
         let widths: Vec<f32> = list.items().iter().map(|line| line.width).collect();
         assert_eq!(widths, [0.0, 7.0, 5.0]);
         places.resize(4, &mut list, 3);

@@ -41,7 +41,9 @@ impl Over<'_> {
             Side::Right => (segment.b, mesh.target(mesh.front_after(h)), segment.a),
         };
         let centre = self.place(at)?;
-        Some((centre, [self.place(from)? - centre, self.place(to)? - centre]))
+        let legs = [self.place(from)? - centre, self.place(to)? - centre];
+        // Seen from behind, the mesh runs the other way round.
+        Some((centre, if self.is_behind(at) { [legs[1], legs[0]] } else { legs }))
     }
 
     fn wedge(&self, segment: &Segment, side: Side) {

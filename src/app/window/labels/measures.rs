@@ -5,10 +5,11 @@ use eframe::egui::{Align2, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::DVec2;
 
 use super::{ELLIPSE, MOST_ELLIPSES, Over};
-use crate::app::window::state::State;
+use crate::app::window::state::{Place, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::viewport::{self, Frame};
 use crate::app::window::words;
+use crate::core::mesh::ids::NodeId;
 use crate::render::palette::Palette;
 use crate::render::scene::{ColourBy, Shading};
 
@@ -17,27 +18,55 @@ impl Over<'_> {
         let mesh = &self.moment.mesh;
         let mut shown = 0;
         for node in mesh.nodes() {
-            let p = mesh.uv(node);
-            if !self.frame.rect.contains(self.frame.place(p)) {
+            let Some(centre) = self.place(node).filter(|at| self.frame.rect.contains(*at)) else { continue };
+            let ellipse = self.ellipse(node, ELLIPSE);
+            let quarter = ellipse.len() / 4;
+            if [0, quarter].iter().any(|k| ellipse[*k].distance(centre) < 4.0) {
                 continue;
             }
-            let ([small, large], [along, across]) = mesh.metric(node).eigen();
-            let axes = [along * (ELLIPSE / small.sqrt()), across * (ELLIPSE / large.sqrt())];
-            let centre = self.frame.place(p);
-            if axes.iter().any(|axis| self.frame.place(p + *axis).distance(centre) < 4.0) {
-                continue;
-            }
-            let point = |k: i32| {
-                let t = f64::from(k) * std::f64::consts::TAU / 48.0;
-                self.frame.place(p + axes[0] * libm::cos(t) + axes[1] * libm::sin(t))
-            };
             let stroke = Stroke::new(1.0, ink(self.palette.ellipse));
-            self.painter.add(Shape::closed_line((0..48).map(point).collect(), stroke));
+            self.painter.add(Shape::closed_line(ellipse, stroke));
             shown += 1;
             if shown == MOST_ELLIPSES {
                 break;
             }
         }
+    }
+
+    /// The metric ellipse of a node on the screen, at a share of the unit length; in space it lies in the tangent plane.
+    fn ellipse(&self, node: NodeId, share: f64) -> Vec<Pos2> {
+        let mesh = &self.moment.mesh;
+        let p = mesh.uv(node);
+        let ([small, large], [along, across]) = mesh.metric(node).eigen();
+        let axes = [along * (share / small.sqrt()), across * (share / large.sqrt())];
+        let (centre, axes) = match mesh.ground() {
+            Some(ground) if self.scene.form().is_in_space() => {
+                let at = ground.atlas.at(p);
+                (at.xyz, axes.map(|axis| at.j[0] * axis.x + at.j[1] * axis.y))
+            }
+            _ => (p.extend(0.0), axes.map(|axis| axis.extend(0.0))),
+        };
+        let place = |q: glam::DVec3| {
+            let at = self.frame.camera.project(q, self.frame.size());
+            self.frame.rect.min + Vec2::new(at.x as f32, at.y as f32)
+        };
+        let point = |k: i32| {
+            let t = f64::from(k) * std::f64::consts::TAU / 48.0;
+            place(centre + axes[0] * libm::cos(t) + axes[1] * libm::sin(t))
+        };
+        (0..48).map(point).collect()
+    }
+
+    /// What the metric lens shows as a unit circle, at its place on the surface.
+    pub(super) fn lens_in_space(&self, state: &State) {
+        let Some((node, _)) = viewport::lens_node(state, self.moment).filter(|lens| self.place(lens.0).is_some())
+        else {
+            return;
+        };
+        let mut ellipse = self.ellipse(node, 1.0);
+        ellipse.push(ellipse[0]);
+        let stroke = Stroke::new(1.0, ink(self.palette.accent));
+        self.painter.extend(Shape::dashed_line(&ellipse, stroke, 4.0, 4.0));
     }
 
     /// The unit circle around the node of the lens, dashed, over a unit grid.
@@ -67,7 +96,8 @@ impl Over<'_> {
 
     /// What the main view shows, as a frame; only where it is smaller than this view.
     pub(super) fn main_frame(&self, state: &State) {
-        let Some(camera) = state.camera.filter(|_| !state.fitted) else { return };
+        let in_plane = !(state.is_in_space() && state.space.place == Place::Space);
+        let Some(camera) = state.camera.filter(|_| in_plane && !state.fitted) else { return };
         let size = state.view_size;
         let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), size, DVec2::new(0.0, size.y)];
         let corners = corners.map(|at| camera.unproject(at, size).map(|p| self.frame.place(p)));
@@ -100,7 +130,10 @@ impl Over<'_> {
         let stroke = Stroke::new(1.0, ink(self.palette.weak));
         let centre = self.frame.camera.centre;
         let at = |p: glam::DVec3| self.frame.camera.project(p, self.frame.size());
-        for (axis, name) in [(glam::DVec3::X, "x"), (glam::DVec3::Y, "y")] {
+        let axes = [(glam::DVec3::X, "x"), (glam::DVec3::Y, "y"), (glam::DVec3::Z, "z")];
+        // The plane has two.
+        let count = if self.scene.form().is_in_space() { 3 } else { 2 };
+        for (axis, name) in axes.into_iter().take(count) {
             let d = (at(centre + axis) - at(centre)) / self.frame.camera.scale;
             let d = Vec2::new(d.x as f32, d.y as f32);
             self.painter.line_segment([origin, origin + 24.0 * d], stroke);

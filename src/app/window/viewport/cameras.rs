@@ -15,10 +15,10 @@ const MARGIN: f64 = 34.0;
 /// Points for a unit in the metric lens.
 const LENS: f64 = 92.0;
 /// Points for the base segment when the decision is looked at.
-const DECISION: f64 = 180.0;
+pub(super) const DECISION: f64 = 180.0;
 
 /// The camera of the main view, after what was asked of it.
-pub(super) fn aim(state: &mut State, moment: &Moment, size: DVec2) -> Camera {
+pub(super) fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<Look>) -> Camera {
     let bounds = scene::bounds(&moment.mesh).unwrap_or([DVec2::ZERO, DVec2::ONE]);
     let fitted = Camera::fit(bounds, size, MARGIN);
     let mut camera = state.camera.unwrap_or(fitted);
@@ -27,8 +27,9 @@ pub(super) fn aim(state: &mut State, moment: &Moment, size: DVec2) -> Camera {
         camera = fitted;
     }
     state.view_size = size;
-    match state.look.take() {
-        None => {}
+    match look {
+        // A side is one of space.
+        None | Some(Look::From(_)) => {}
         Some(Look::Fit) => (camera, state.fitted) = (fitted, true),
         Some(Look::Decision) => {
             if let Some([a, b]) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
@@ -36,6 +37,8 @@ pub(super) fn aim(state: &mut State, moment: &Moment, size: DVec2) -> Camera {
                 state.fitted = false;
             }
         }
+        // One that was kept of space is not one of the plane.
+        Some(Look::Kept(_)) if moment.mesh.ground().is_some() && state.is_in_space() => {}
         Some(Look::Kept(kept)) => {
             camera.take_up(&kept, size);
             state.fitted = false;

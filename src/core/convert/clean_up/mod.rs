@@ -68,6 +68,23 @@ pub struct CleanedUp {
     pub refused: usize,
 }
 
+impl CleanedUp {
+    /// The sums of two.
+    #[must_use]
+    pub fn plus(&self, other: &CleanedUp) -> CleanedUp {
+        CleanedUp {
+            collapses: self.collapses + other.collapses,
+            rotations: self.rotations + other.rotations,
+            openings: self.openings + other.openings,
+            doublets: self.doublets + other.doublets,
+            pairs: self.pairs + other.pairs,
+            longer: self.longer + other.longer,
+            trials: self.trials + other.trials,
+            refused: self.refused + other.refused,
+        }
+    }
+}
+
 /// How far a clean-up looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reach {
@@ -160,34 +177,36 @@ pub(super) struct CleanUp<'a> {
 }
 
 impl<'a> CleanUp<'a> {
-    /// A clean-up at its beginning, whose list writes down what it needs to be taken back where `recording`. It goes on
-    /// counting where `done` stands.
+    /// A clean-up of a face, which is that share of the whole, or of all, at its beginning. Its list writes down what it needs to
+    /// be taken back where `recording`. It goes on counting where `done` stands.
     pub fn begin(
         mesh: &Mesh,
+        (face, share): (Option<u32>, f64),
         source: Arc<dyn MetricSource + Send + Sync + 'a>,
         reach: Reach,
         done: CleanedUp,
         recording: bool,
     ) -> CleanUp<'a> {
+        let of_all = |trials: usize| (trials as f64 * share).ceil() as usize;
         let most_trials = match reach {
             Reach::Singles => usize::MAX,
-            Reach::Pairs => done.trials + PAIR_TRIALS + mesh.element_count() / ELEMENTS_A_PAIR_TRIAL,
-            Reach::Longer => done.trials + LONGER_TRIALS,
+            Reach::Pairs => done.trials + of_all(PAIR_TRIALS) + mesh.elements_of(face).count() / ELEMENTS_A_PAIR_TRIAL,
+            Reach::Longer => done.trials + of_all(LONGER_TRIALS),
         };
         let mut work = CleanUp {
             source,
             reach,
             valences: Valences::of(mesh),
             // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
-            list: Worklist::new(20 * mesh.node_count() + 1000, recording),
+            list: Worklist::new(20 * mesh.nodes_of(face).count() + 1000, recording),
             most_trials,
             before: Region::default(),
             after: Region::default(),
             done,
         };
         match reach {
-            Reach::Singles => mesh.nodes().for_each(|node| work.enqueue(mesh, node)),
-            Reach::Pairs | Reach::Longer => work.enqueue_worst_first(mesh),
+            Reach::Singles => mesh.nodes_of(face).for_each(|node| work.enqueue(mesh, node)),
+            Reach::Pairs | Reach::Longer => work.enqueue_worst_first(mesh, face),
         }
         work
     }
@@ -255,10 +274,10 @@ impl<'a> CleanUp<'a> {
         }
     }
 
-    /// All irregular nodes, those with the greatest energy around them first.
-    fn enqueue_worst_first(&mut self, mesh: &Mesh) {
+    /// All irregular nodes of a face, or of all, those with the greatest energy around them first.
+    fn enqueue_worst_first(&mut self, mesh: &Mesh, face: Option<u32>) {
         let mut nodes: Vec<(f64, NodeId)> = mesh
-            .nodes()
+            .nodes_of(face)
             .filter(|&n| self.valences.excess(mesh, n) != 0)
             .map(|n| (mesh.fan(n).map(|h| energy::judge(mesh, h.element()).0).sum::<f64>(), n))
             .collect();

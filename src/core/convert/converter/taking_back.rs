@@ -1,6 +1,6 @@
 //! The steps of a converter taken back: what each needs for that, and what of it is kept.
 
-use super::{Converter, Counts};
+use super::{Begun, Converter, Counts};
 use crate::core::convert::component::Component;
 use crate::core::convert::finish::{Finished, PartMarks};
 use crate::core::convert::last_resort::Outcome;
@@ -15,6 +15,8 @@ use crate::core::mesh::touched::Touched;
 pub(super) struct Record {
     phase: Phase,
     second_pass: bool,
+    face: usize,
+    begun: Begun,
     picked: Option<[NodeId; 2]>,
     counts: Counts,
     last_resort: Outcome,
@@ -38,6 +40,8 @@ impl<'a> Converter<'a> {
         self.keeps_history().then(|| Record {
             phase: self.phase.clone(),
             second_pass: self.second_pass,
+            face: self.face,
+            begun: self.begun,
             picked: self.picked,
             counts: self.counts,
             last_resort: self.last_resort,
@@ -73,6 +77,10 @@ impl<'a> Converter<'a> {
         }
         self.phase = record.phase;
         self.second_pass = record.second_pass;
+        if record.face != self.face {
+            (self.face, self.begun) = (record.face, record.begun);
+            self.finishing = self.finished_faces.pop().unwrap_or_default();
+        }
         self.picked = record.picked;
         self.counts = record.counts;
         self.last_resort = record.last_resort;

@@ -368,11 +368,11 @@ fn components_are_told_apart_and_counted() {
     uv.extend([DVec2::new(9.0, 0.0), DVec2::new(10.0, 0.0), DVec2::new(9.0, 1.0)]);
     triangles.push([8, 9, 10]);
     let mut mesh = mesh_of(uv, triangles);
-    let components = live_components(&mesh);
+    let components = live_components(&mesh, None);
     let sizes: Vec<_> = components.iter().map(|c| (c.triangles.len(), c.boundary, c.is_even())).collect();
     assert_eq!(sizes, [(2, 4, true), (2, 4, true), (1, 3, false)]);
     last_resort(&mut mesh, &components[1].triangles, &Uniform).expect("two is even");
-    assert_eq!(live_components(&mesh).len(), 2, "a quadrilateral is live no more");
+    assert_eq!(live_components(&mesh, None).len(), 2, "a quadrilateral is live no more");
 }
 
 #[test]

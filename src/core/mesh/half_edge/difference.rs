@@ -33,6 +33,7 @@ pub struct Difference {
     elements: Box<[(ElementId, Element)]>,
     free_nodes: Tail<NodeId>,
     free_elements: Tail<ElementId>,
+    closed: [u32; 2],
 }
 
 /// A list of which the beginning stayed.
@@ -91,6 +92,7 @@ impl Difference {
             elements: newest(&self.elements, &later.elements),
             free_nodes: self.free_nodes.and(&later.free_nodes),
             free_elements: self.free_elements.and(&later.free_elements),
+            closed: later.closed,
         }
     }
 }
@@ -144,6 +146,7 @@ impl Mesh {
             elements: elements.into_iter().map(|e| (e, self.element_slot(e))).collect(),
             free_nodes: Tail::between(&free.nodes, &self.free_nodes),
             free_elements: Tail::between(&free.elements, &self.free_elements),
+            closed: self.closed,
         }
     }
 
@@ -165,6 +168,7 @@ impl Mesh {
             first_level,
             free_nodes,
             free_elements,
+            closed,
             journal: _,
             refusals,
             ground,
@@ -183,6 +187,7 @@ impl Mesh {
         self.first_level.clone_from(first_level);
         self.free_nodes.clone_from(free_nodes);
         self.free_elements.clone_from(free_elements);
+        self.closed = *closed;
         self.journal = Journal::default();
         self.refusals.clone_from(refusals);
     }
@@ -217,6 +222,7 @@ impl Mesh {
         }
         self.free_nodes.clone_from(&other.free_nodes);
         self.free_elements.clone_from(&other.free_elements);
+        self.closed = other.closed;
         self.journal = Journal::default();
     }
 
@@ -246,6 +252,7 @@ impl Mesh {
         }
         difference.free_nodes.apply(&mut self.free_nodes);
         difference.free_elements.apply(&mut self.free_elements);
+        self.closed = difference.closed;
     }
 
     fn node_slot(&self, n: NodeId) -> Node {

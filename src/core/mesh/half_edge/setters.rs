@@ -102,7 +102,9 @@ impl Mesh {
 
     /// Makes a free node that no element uses yet.
     pub(in crate::core::mesh) fn new_node(&mut self, uv: DVec2, metric: Metric2) -> NodeId {
-        if let Some(node) = self.free_nodes.pop() {
+        if self.free_nodes.len() > self.closed[0] as usize
+            && let Some(node) = self.free_nodes.pop()
+        {
             self.journal.note(Entry::NodeTaken(node));
             self.set_place(node, uv, metric);
             return node;
@@ -122,7 +124,9 @@ impl Mesh {
 
     /// Makes an element without nodes or twins yet.
     pub(in crate::core::mesh) fn new_element(&mut self, sides: u8, region: u32) -> ElementId {
-        if let Some(e) = self.free_elements.pop() {
+        if self.free_elements.len() > self.closed[1] as usize
+            && let Some(e) = self.free_elements.pop()
+        {
             self.journal.note(Entry::ElementTaken(e));
             self.set_sides(e, sides);
             self.set_region(e, region);
@@ -139,5 +143,13 @@ impl Mesh {
         self.set_sides(e, 0);
         self.free_elements.push(e);
         self.journal.note(Entry::ElementFreed);
+    }
+
+    /// Lets what is free now stay so: what is made from now on gets slots of its own. So a face that is converted after another has
+    /// the ids that it would have alone, in their order.
+    pub(in crate::core) fn close_free_lists(&mut self) {
+        let closed = [self.free_nodes.len() as u32, self.free_elements.len() as u32];
+        let old = std::mem::replace(&mut self.closed, closed);
+        self.journal.note(Entry::Closed(old));
     }
 }

@@ -125,6 +125,7 @@ impl Mesh {
             Entry::Deferred(h, old) => Entry::Deferred(h, replace(&mut self.deferred[h.index()], old)),
             Entry::Uv(n, old) => Entry::Uv(n, replace(&mut self.uv[n.index()], old)),
             Entry::Metric(n, old) => Entry::Metric(n, replace(&mut self.metric[n.index()], old)),
+            Entry::Closed(old) => Entry::Closed(replace(&mut self.closed, old)),
             Entry::Anchor(n, old) => Entry::Anchor(n, replace(&mut self.anchor[n.index()], old)),
             Entry::NodeAppended => {
                 let last = self.uv.len() - 1;

@@ -8,7 +8,6 @@ use super::super::Told;
 use super::super::moment::{Moment, Verdict, segment};
 use super::{RECENT, Worker};
 use crate::core::convert::candidates::Candidates;
-use crate::core::convert::walk::standing;
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::ElementId;
 use crate::core::run::explain::SegmentTold;
@@ -85,7 +84,7 @@ impl Worker {
         };
         Ok(Moment {
             step,
-            standing: standing(state),
+            standing: state.standing(),
             phase: state.phase().plain(),
             event,
             mesh: self.copies.of(&state.mesh),

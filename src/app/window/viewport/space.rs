@@ -1,0 +1,169 @@
+//! The mesh in space: orbit, pan, zoom, and what is under the pointer, front to back.
+
+use eframe::egui::{self, PointerButton, Rect, Ui};
+use glam::{DQuat, DVec2, DVec3};
+
+use super::{Frame, Views};
+use crate::app::window::command::Command;
+use crate::app::window::labels;
+use crate::app::window::session::Moment;
+use crate::app::window::state::{Look, State};
+use crate::core::mesh::ids::NodeId;
+use crate::render::camera::{Bearing, Camera};
+use crate::render::palette::Palette;
+use crate::render::pick::{self, Cover};
+use crate::render::scene::{Decision, Outlined};
+
+/// Points left free around a fitted mesh.
+const MARGIN: f64 = 44.0;
+
+/// The last cover, and what it is of.
+#[derive(Default)]
+pub(super) struct Covering {
+    of: Option<(u64, Camera, DVec2)>,
+    cover: Cover,
+}
+
+impl Views {
+    /// The mesh in space.
+    pub(super) fn in_space(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        look: Option<Look>,
+        state: &mut State,
+        moment: &Moment,
+        commands: &mut Vec<Command>,
+        palette: &'static Palette,
+    ) {
+        let response = self.canvas(ui, rect, "space", state);
+        let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
+        let mut camera = aim(state, moment, size, look);
+        if self.steer(ui, &response, &mut camera, rect, moment) {
+            state.space.fitted = false;
+        }
+        state.space.camera = Some(camera);
+        let frame = Frame { camera, rect };
+        let pointer = response.hover_pos().filter(|_| !response.dragged());
+        // Before the scene follows the state there may be other elements in it.
+        let form = state.space.form();
+        self.update(state, moment, palette, &frame, form, true);
+        let hovered = pointer
+            .and_then(|at| pick::pick_in_space(&self.space.scene, &moment.mesh, &camera, size, frame.inside(at)));
+        self.hover(ui, &response, state, hovered, commands);
+        self.update(state, moment, palette, &frame, form, true);
+        self.paint(ui, 0, &frame, palette, state.space.hidden.share(), form);
+        let of = Some((self.space.scene.shape(), camera, size));
+        if self.cover.of != of {
+            self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
+        }
+        let over = labels::Seen { frame: &frame, scene: &self.space.scene, cover: Some(&self.cover.cover) };
+        labels::show(ui, &over, state, moment, palette, labels::Which::Main, &mut self.labels[0]);
+        labels::shading(ui, &frame, &self.shading, palette);
+    }
+
+    /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two fingers. Tells
+    /// whether the camera has moved.
+    fn steer(&mut self, ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect, moment: &Moment) -> bool {
+        let before = *camera;
+        let frame = Frame { camera: *camera, rect };
+        let drag = response.drag_delta();
+        let by = DVec2::new(f64::from(drag.x), f64::from(drag.y));
+        let shift = ui.input(|input| input.modifiers.shift);
+        if response.drag_started() {
+            // What is grabbed stays under the pointer; beside the mesh it turns about its middle.
+            let press = ui.input(|input| input.pointer.press_origin());
+            let hit = press.and_then(|at| pick::hit(&self.space.scene, camera, frame.size(), frame.inside(at)));
+            self.pivot = hit.map(|hit| hit.place).or_else(|| middle_of(moment));
+        }
+        if response.dragged_by(PointerButton::Primary) && !shift {
+            camera.orbit_about(by, self.pivot.unwrap_or(camera.centre));
+        } else if response.dragged() {
+            camera.pan(by);
+        }
+        if let Some(at) = response.hover_pos() {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
+            if factor != 1.0 {
+                camera.zoom(factor, frame.inside(at), frame.size());
+            }
+        }
+        *camera != before
+    }
+}
+
+fn fit(moment: &Moment, turn: DQuat, size: DVec2) -> Camera {
+    Camera::fit_in_space(moment.mesh.nodes().map(|n| moment.mesh.xyz(n)), turn, size, MARGIN)
+}
+
+fn middle_of(moment: &Moment) -> Option<DVec3> {
+    let ends = moment.mesh.nodes().map(|n| moment.mesh.xyz(n)).map(|p| [p, p]);
+    ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).map(|[low, high]| 0.5 * (low + high))
+}
+
+/// The camera, after what was asked of it.
+fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<Look>) -> Camera {
+    let space = &mut state.space;
+    let mut camera = match space.camera {
+        None => {
+            space.fitted = true;
+            fit(moment, Bearing::Iso.turn(), size)
+        }
+        // A view that still shows the whole mesh goes on doing so when its size changes.
+        Some(camera) if space.fitted && space.size != size => fit(moment, camera.turn, size),
+        Some(camera) => camera,
+    };
+    space.size = size;
+    match look {
+        None => {}
+        Some(Look::Fit) => (camera, space.fitted) = (fit(moment, camera.turn, size), true),
+        Some(Look::From(side)) => (camera, space.fitted) = (fit(moment, side.turn(), size), true),
+        Some(Look::Kept(kept)) => {
+            // A camera of the plane looks straight down at it.
+            if kept.target[2] != 0.0 || kept.turn != [0.0, 0.0, 0.0, 1.0] {
+                camera.take_up(&kept, size);
+                space.fitted = false;
+            }
+        }
+        Some(Look::Decision) => {
+            if let Some(ends) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
+                near(&mut camera, moment, ends);
+                state.space.fitted = false;
+            }
+        }
+        Some(Look::At(what)) => {
+            if let Some((place, _)) = place_of(moment, what) {
+                camera.centre_on(place);
+                state.space.fitted = false;
+            }
+        }
+    }
+    camera
+}
+
+/// Where something stands in space, and the normal there.
+fn place_of(moment: &Moment, what: Outlined) -> Option<(DVec3, DVec3)> {
+    let mesh = &moment.mesh;
+    let nodes: Vec<NodeId> = match what {
+        Outlined::Node(node) => vec![node],
+        Outlined::Edge(ends) => ends.to_vec(),
+        Outlined::Element(e) if mesh.has_element(e) => mesh.corners(e).collect(),
+        Outlined::Element(_) => return None,
+    };
+    if !nodes.iter().all(|n| mesh.has_node(*n)) {
+        return None;
+    }
+    let sum = nodes.iter().map(|n| mesh.xyz(*n)).sum::<DVec3>();
+    let normal = nodes.iter().map(|n| mesh.normal(*n)).sum::<DVec3>();
+    Some((sum / nodes.len() as f64, normal.normalize_or(DVec3::Z)))
+}
+
+/// Shows an edge from near; from before it where it lies on the other side.
+fn near(camera: &mut Camera, moment: &Moment, ends: [NodeId; 2]) {
+    let Some((place, normal)) = place_of(moment, Outlined::Edge(ends)) else { return };
+    let [a, b] = ends.map(|n| moment.mesh.xyz(n));
+    if normal.dot(camera.towards()) < 0.3 {
+        camera.face(normal);
+    }
+    camera.look_at_place(place, super::cameras::DECISION / a.distance(b).max(f64::MIN_POSITIVE));
+}

@@ -1,0 +1,111 @@
+//! A scene with what of the state it has seen.
+
+use std::sync::Arc;
+
+use super::Frame;
+use crate::app::window::session::Moment;
+use crate::app::window::state::State;
+use crate::core::convert::candidates::Passed;
+use crate::core::front::sector::Side;
+use crate::core::mesh::ids::NodeId;
+use crate::core::run::copies::Since;
+use crate::core::run::history::Changes;
+use crate::render::palette::Palette;
+use crate::render::scene::{ColourBy, Decision, Drawn, Form, Overlay, Scene, Shading};
+
+/// A scene that follows the state.
+pub(super) struct Stage {
+    pub scene: Arc<Scene>,
+    /// What is other in the state than in the one that it shows.
+    changes: Since,
+    /// The style, the theme and the form in which it shows it.
+    style: Option<(u64, bool, Form)>,
+    /// The range of what elements are coloured by.
+    range: [f64; 2],
+    over: Option<u64>,
+}
+
+impl Default for Stage {
+    fn default() -> Self {
+        Stage { scene: Arc::default(), changes: Since::everything(), style: None, range: [0.0; 2], over: None }
+    }
+}
+
+impl Stage {
+    /// Whether it has shown a mesh.
+    pub fn has_shown(&self) -> bool {
+        self.style.is_some()
+    }
+
+    /// Takes note of what has changed.
+    pub fn note(&mut self, changes: &Changes, slots: usize) {
+        self.changes.note(changes, slots);
+    }
+
+    /// Brings the scene up to date.
+    pub fn update(
+        &mut self,
+        state: &State,
+        moment: &Moment,
+        palette: &Palette,
+        frame: &Frame,
+        form: Form,
+        leads: bool,
+        shading: &mut Shading,
+    ) {
+        let served = frame.camera.is_served_by(self.scene.anchor, frame.size());
+        let style = Some((state.style_epoch, palette.dark, form));
+        let again = self.style != style || (leads && !served);
+        if again || !self.changes.is_nothing() {
+            let by = state.kept.colour_by;
+            if by != ColourBy::State || shading.by != by {
+                *shading = Shading::of(&moment.mesh, by, &state.births(by, moment));
+            }
+            let drawn = Drawn {
+                mesh: &moment.mesh,
+                changed: &moment.changed,
+                shading,
+                layers: state.kept.layers,
+                palette,
+                form,
+            };
+            let scene = Arc::make_mut(&mut self.scene);
+            match self.changes.take() {
+                Changes::Some { nodes, elements } if !again && shading.range == self.range => {
+                    scene.patch_mesh(&drawn, &nodes, &elements);
+                }
+                _ => {
+                    let keep = (served && self.style.is_some()) || !leads;
+                    scene.set_mesh(&drawn, if keep { scene.anchor } else { frame.camera.centre });
+                    self.style = style;
+                    self.range = shading.range;
+                }
+            }
+            self.over = None;
+        }
+        if self.over != Some(state.over_epoch) {
+            let background = state.opened.as_ref().filter(|_| state.kept.layers.background);
+            let overlay = Overlay {
+                mesh: &moment.mesh,
+                front: &moment.front,
+                changed: &moment.changed,
+                decision: Decision::of(&moment.phase),
+                refused: &refused(moment),
+                picked: state.kept.picked,
+                hovered: state.hovered,
+                lit: &state.lit,
+                background: background.map(|opened| &opened.background.mesh),
+            };
+            Arc::make_mut(&mut self.scene).set_overlay(&overlay, state.kept.layers, palette);
+            self.over = Some(state.over_epoch);
+        }
+    }
+}
+
+/// Edges that were there and are not the side, while one is chosen.
+fn refused(moment: &Moment) -> Vec<[NodeId; 2]> {
+    let (Some(tried), Some([a, b])) = (&moment.candidates, Decision::of(&moment.phase).base) else { return Vec::new() };
+    let from = if tried.side == Side::Left { a } else { b };
+    let edges = tried.edges.iter().filter(|edge| edge.swap.is_none() && edge.passed == Some(Passed::Farther));
+    edges.map(|edge| [from, edge.node]).collect()
+}

@@ -1,0 +1,47 @@
+//! Buttons over a view of surfaces: space, plane or both, standard views, hidden lines, curved elements.
+
+use eframe::egui::{Align, Frame, Layout, Margin, Rect, RichText, Role, Ui, UiBuilder, Vec2, WidgetInfo};
+
+use crate::app::window::command::Command;
+use crate::app::window::state::{HiddenLines, Place, State};
+use crate::app::window::theme::{self, ink};
+use crate::render::camera::Bearing;
+use crate::render::palette::Palette;
+
+/// Shows the buttons in the upper right corner.
+pub(super) fn show(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let corner = Rect::from_min_max(rect.min + Vec2::new(8.0, 8.0), rect.right_top() + Vec2::new(-8.0, 36.0));
+    if corner.width() < 120.0 || rect.height() < 80.0 {
+        return;
+    }
+    ui.scope_builder(UiBuilder::new().max_rect(corner).layout(Layout::right_to_left(Align::Min)), |ui| {
+        let plate = Frame::NONE.fill(ink(palette.label_plate)).corner_radius(4.0).inner_margin(Margin::symmetric(4, 2));
+        plate.show(ui, |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            let mut button = |ui: &mut Ui, on: bool, text: &str, command: Command| {
+                let response = ui.selectable_label(on, RichText::new(text).font(theme::regular(theme::HEAD)));
+                response.widget_info(|| WidgetInfo::selected(Role::Button, true, on, command.name()));
+                if response.on_hover_text(command.tip()).clicked() {
+                    commands.push(command);
+                }
+            };
+            // From the right.
+            let place = state.space.place;
+            for (shown, text) in [(Place::Plane, "Plane"), (Place::Both, "Both"), (Place::Space, "Space")] {
+                button(ui, place == shown, text, Command::Place(shown));
+            }
+            if place == Place::Plane || corner.width() < 380.0 {
+                return;
+            }
+            ui.separator();
+            let hidden = state.space.hidden;
+            let text = format!("Hidden {}", hidden.name());
+            button(ui, hidden != HiddenLines::Off, &text, Command::HiddenLines);
+            button(ui, state.space.curved, "Curved", Command::ToggleCurved);
+            ui.separator();
+            for (side, text) in [(Bearing::Z, "Z"), (Bearing::Y, "Y"), (Bearing::X, "X"), (Bearing::Iso, "Iso")] {
+                button(ui, false, text, Command::LookFrom(side));
+            }
+        });
+    });
+}
