@@ -31,7 +31,7 @@ check:
 
 bench:
 	@tools/setup build
-	cargo bench --locked --no-default-features --bench background --bench conversion --bench history
+	cargo bench --locked --no-default-features --bench background --bench conversion --bench history --bench loading
 
 experiments:
 	@tools/setup build

@@ -20,8 +20,8 @@ static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Memory while a file is read, over its size.
 const MOST: usize = 16;
-/// What any file may take: messages, and the first rooms of lists.
-const LITTLE: usize = 64 << 10;
+/// What any file may take, however small: messages, the first rooms of lists, the rooms of the parser of PLY (200 kB).
+const LITTLE: usize = 256 << 10;
 /// Nothing takes as long as this.
 const HANGS: Duration = Duration::from_secs(20);
 

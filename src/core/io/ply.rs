@@ -15,7 +15,7 @@ use super::scan::shown;
 use crate::core::fault::Fault;
 
 /// So many elements are parsed at a time, so that what the parser makes of them does not add up.
-const AT_A_TIME: usize = 4096;
+const AT_A_TIME: usize = 256;
 
 /// Reads a mesh from the bytes of a PLY file: points, triangles, quadrilaterals and polygons. A property `region` of the faces
 /// (which [`write`](fn@write) writes) becomes their tag.
