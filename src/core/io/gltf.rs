@@ -49,6 +49,8 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>) -> Result<MeshFile,
         scene.nodes(&document, document.nodes().filter(|node| !parented.contains(&node.index())))?;
     }
     let mut mesh = scene.mesh;
+    // Their bytes are not needed beside what welding needs.
+    drop(scene.buffers);
     let (points, standing) = weld(&mesh.points, SINGLE);
     mesh.points = points;
     mesh.triangles.iter_mut().flatten().for_each(|corner| *corner = standing[*corner as usize]);

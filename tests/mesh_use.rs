@@ -1,0 +1,189 @@
+//! Two ways to use a mesh: its triangles as they are, or its shape meshed anew; in the plane and in space, by words of a case.
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+
+use glam::DVec3;
+use quadfront::core::convert::conversion::convert;
+use quadfront::core::fault::Fault;
+use quadfront::core::io::case::Case;
+use quadfront::core::io::export::Export;
+use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh, write_to};
+use quadfront::core::io::mesh_file::{Group, MeshFile};
+use quadfront::core::mesh::soundness::{Allow, examine};
+use quadfront::core::progress::Nobody;
+
+/// A plate of `n` by `n` squares of two regions, bent up along a parabola.
+fn plate(n: u32, height: f64) -> MeshFile {
+    let mut mesh = MeshFile::default();
+    for k in 0..(n + 1) * (n + 1) {
+        let (x, y) = (f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n));
+        mesh.points.push(DVec3::new(x, y, height * x * x));
+    }
+    for k in 0..n * n {
+        let a = k % n + k / n * (n + 1);
+        mesh.triangles.extend([[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]);
+        mesh.triangle_tags.extend([if k % n < n / 2 { 7 } else { 9 }; 2]);
+    }
+    for (tag, name) in [(7, "left plate"), (9, "right")] {
+        mesh.groups.push(Group { dimension: 2, tag, name: name.to_owned() });
+    }
+    mesh
+}
+
+/// A cube of `n` by `n` squares a side, blown up to a ball.
+fn ball(n: u32) -> MeshFile {
+    let (mut corners, mut mesh) = (Vec::new(), MeshFile::default());
+    for (normal, s) in [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::Z), (DVec3::Z, DVec3::X)] {
+        for (normal, s) in [(normal, s), (-normal, s)] {
+            let t = normal.cross(s);
+            let at = |i: u32, j: u32| {
+                let [u, v] = [i, j].map(|k| 2.0 * f64::from(k) / f64::from(n) - 1.0);
+                normal + s * u + t * v
+            };
+            for (i, j) in (0..n * n).map(|k| (k % n, k / n)) {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                corners.extend([a, b, c, a, c, d]);
+            }
+        }
+    }
+    let mut number = |p: DVec3| {
+        let known = mesh.points.iter().position(|q: &DVec3| q.distance(p) < 1e-9);
+        known.unwrap_or_else(|| {
+            mesh.points.push(p);
+            mesh.points.len() - 1
+        }) as u32
+    };
+    let numbers: Vec<u32> = corners.into_iter().map(&mut number).collect();
+    mesh.triangles = numbers.as_chunks().0.to_vec();
+    mesh.points.iter_mut().for_each(|p| *p = p.normalize());
+    mesh
+}
+
+/// The quadrilaterals of a mesh that is used as some lines of a case say.
+fn used(mesh: &MeshFile, lines: &str) -> Result<MeshFile, Fault> {
+    let folder = tempfile::tempdir().unwrap();
+    write_mesh(&folder.path().join("a.msh"), Format::Msh, mesh, WriteOptions::default()).unwrap();
+    let text = format!("version = 1\nmesh = \"a.msh\"\n{lines}\n");
+    let case = Case::parse(&text, "a", "a.toml", folder.path()).unwrap();
+    let done = convert(&case, &mut Nobody)?;
+    let file = Export::of(&done.mesh, &done.regions).file;
+    assert!(file.triangles.is_empty());
+    examine(&file).verdict(Allow::default()).unwrap();
+    assert!(done.mesh.folded().is_empty());
+    Ok(file)
+}
+
+fn has(mesh: &MeshFile, p: DVec3) -> bool {
+    mesh.points.iter().any(|q| q.distance(p) < 1e-12)
+}
+
+#[test]
+fn the_triangles_of_a_mesh_in_space_are_converted_with_its_border_as_it_is() {
+    let given = plate(8, 0.4);
+    let quads = used(&given, "use = \"triangles\"").unwrap();
+    assert!((quads.quads.len() as f64 / 64.0 - 1.0).abs() < 0.3, "{}", quads.quads.len());
+    for p in given.points.iter().filter(|p| p.x * p.y * (1.0 - p.x) * (1.0 - p.y) == 0.0) {
+        assert!(has(&quads, *p), "{p} is lost");
+    }
+    // Every node lies on a triangle that was given: between the parabola and its chords.
+    let within = |p: &DVec3| (-1e-12..=0.4 / 256.0 + 1e-12).contains(&(p.z - 0.4 * p.x * p.x));
+    assert!(quads.points.iter().all(within));
+}
+
+#[test]
+fn the_triangles_of_a_closed_surface_are_converted() {
+    let given = ball(7);
+    let quads = used(&given, "use = \"triangles\"").unwrap();
+    assert!((quads.quads.len() as f64 / (0.5 * given.triangles.len() as f64) - 1.0).abs() < 0.3);
+    let mut sides: Vec<[u32; 2]> =
+        quads.quads.iter().flat_map(|q| [0, 1, 2, 3].map(|k| [q[k], q[(k + 1) % 4]])).collect();
+    sides.iter_mut().for_each(|s| s.sort_unstable());
+    sides.sort_unstable();
+    assert!(sides.chunk_by(|a, b| a == b).all(|same| same.len() == 2), "it is closed");
+}
+
+#[test]
+fn the_shape_of_a_mesh_in_the_plane_is_meshed_anew() {
+    let given = plate(3, 0.0);
+    let count = |lines: &str| used(&given, lines).unwrap().quads.len() as f64;
+    let sized = |h: f64| count(&format!("use = \"shape\"\n[[metric]]\nkind = \"uniform\"\nh = {h}"));
+    for h in [0.1, 0.05] {
+        assert!((sized(h) * h * h - 1.0).abs() < 0.2, "{h}: {}", sized(h));
+    }
+    // Its triangles as they are have no more than the file.
+    assert!(used(&plate(8, 0.0), "").unwrap().quads.len() < 100);
+}
+
+#[test]
+fn sizes_follow_the_curvature_of_a_mesh_in_space_and_its_scale() {
+    let ball = ball(10);
+    // A chord of 2 sqrt(eps (2 - eps)) over a unit radius.
+    let by = |chord: f64| {
+        let lines = format!("[[metric]]\nkind = \"curvature\"\nchord = {chord}\nleast = 0.01\nfar = 10.0");
+        used(&ball, &lines).unwrap().quads.len() as f64
+    };
+    for chord in [0.02, 0.005] {
+        let h = 2.0 * f64::sqrt(chord * (2.0 - chord));
+        let expected = 4.0 * std::f64::consts::PI / (h * h);
+        assert!((by(chord) / expected - 1.0).abs() < 0.3, "{chord}: {} and {expected}", by(chord));
+    }
+    let large = used(&plate(4, 0.3), "scale = 10.0\n[[metric]]\nkind = \"uniform\"\nh = 1.0").unwrap();
+    assert!(large.points.iter().any(|p| p.x == 10.0) && large.quads.len() > 80);
+}
+
+#[test]
+fn names_of_regions_survive_into_every_format_that_has_names() {
+    for lines in ["use = \"triangles\"", "use = \"shape\""] {
+        let quads = used(&plate(6, 0.3), lines).unwrap();
+        for (format, options) in [(Format::Msh, false), (Format::Msh, true), (Format::Obj, false)]
+            .map(|(f, msh2)| (f, WriteOptions { msh2 }))
+        {
+            let mut bytes = Vec::new();
+            write_to(&mut bytes, format, &quads, options).unwrap();
+            let back = read_bytes("a", &bytes, format).unwrap();
+            let of = |name: &str| {
+                let tag = back.groups.iter().find(|group| group.dimension == 2 && group.name == name).unwrap().tag;
+                let own = back.quads.iter().zip(&back.quad_tags).filter(|(_, t)| **t == tag);
+                own.flat_map(|(q, _)| q.map(|k| back.points[k as usize].x)).collect::<Vec<_>>()
+            };
+            let left = of(if format == Format::Obj { "left_plate" } else { "left plate" });
+            assert!(!left.is_empty() && left.iter().all(|&x| x <= 0.5 + 1e-9), "{format:?}");
+            assert!(of("right").iter().all(|&x| x >= 0.5 - 1e-9), "{format:?}");
+        }
+        let mut inp = Vec::new();
+        write_to(&mut inp, Format::Inp, &quads, WriteOptions::default()).unwrap();
+        assert!(String::from_utf8(inp).unwrap().contains("ELSET=right"));
+    }
+}
+
+#[test]
+fn an_open_part_with_an_odd_count_is_refused_and_words_that_are_none_are_named() {
+    let mut given = plate(4, 0.3);
+    given.triangles.pop();
+    given.triangle_tags.pop();
+    let fault = used(&given, "use = \"triangles\"").unwrap_err();
+    assert!(fault.what.contains("even count") && !fault.remedy.is_empty(), "{fault}");
+    assert!(used(&given, "use = \"triangles\"\nsplit_odd = true").is_ok());
+    for (line, told) in [
+        ("mesh = \"a.msh\"\nuse = \"wobble\"", "shape"),
+        ("mesh = \"a.msh\"\nfeature_angle = 0", "degrees"),
+        ("mesh = \"a.msh\"\nscale = -1", "factor"),
+        ("use = \"shape\"", "without mesh"),
+    ] {
+        let fault = Case::parse(&format!("version = 1\n{line}\n"), "a", "a.toml", Path::new("")).unwrap_err();
+        assert!(fault.to_string().contains(told), "{fault}");
+    }
+}
+
+#[test]
+fn what_is_written_of_a_surface_reads_back_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let quads = used(&ball(4), "use = \"shape\"").unwrap();
+    for format in Format::written() {
+        let path = folder.path().join("a").with_extension(format.extension());
+        write_mesh(&path, format, &quads, WriteOptions::default()).unwrap();
+        let back = read_mesh(&path, None).unwrap();
+        assert_eq!((&back.points, &back.quads), (&quads.points, &quads.quads), "{format:?}");
+    }
+}
