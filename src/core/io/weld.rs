@@ -11,7 +11,8 @@ pub const SINGLE: f64 = 4.0 * f32::EPSILON as f64;
 /// compared with the ones that stay.
 pub struct Welder {
     near: f64,
-    /// Side of the cells that points are found by, much larger than the distance: a point seldom has to look beyond its own.
+    /// Side of the cells that points are found by: larger than the distance, so that a point seldom has to look beyond its own, but no
+    /// more than a few hundred points that stay have room in one.
     cell: f64,
     kept: Vec<DVec3>,
     /// The last point of each cell, and for each point the one before it in its cell.
@@ -23,7 +24,7 @@ impl Welder {
     /// A welder within `relative` times the largest coordinate, whichever sign it has.
     pub fn new(relative: f64, largest: f64) -> Welder {
         let near = (relative * largest).max(f64::MIN_POSITIVE);
-        Welder { near, cell: 64.0 * near, kept: Vec::new(), last: FxHashMap::default(), before: Vec::new() }
+        Welder { near, cell: 8.0 * near, kept: Vec::new(), last: FxHashMap::default(), before: Vec::new() }
     }
 
     /// The place of the point that stands for `p` among those that stay: an earlier one, or itself.
@@ -83,12 +84,26 @@ mod tests {
 
     #[test]
     fn a_point_finds_its_like_across_the_border_of_a_cell() {
-        let cell = 64.0 * SINGLE;
+        let cell = 8.0 * SINGLE;
         for offset in [0.0, 1.0, -1.0, 7.0] {
             let border = DVec3::new(offset * cell, 0.0, 0.0);
             let points = [DVec3::ONE, border - 0.2 * SINGLE, border + 0.2 * SINGLE];
             assert_eq!(weld(&points, SINGLE).1, [0, 1, 1], "{offset}");
         }
+    }
+
+    #[test]
+    fn many_points_that_barely_stay_apart_beside_one_far_away_take_no_square_of_their_number() {
+        // A coordinate gone astray sets the distance by which points are told apart.
+        let near = SINGLE * 1e4;
+        let mut points = vec![DVec3::new(1e4, 0.0, 0.0)];
+        points.extend((0..70 * 70 * 40).map(|k| {
+            let at = [k % 70, k / 70 % 70, k / 4900].map(f64::from);
+            DVec3::from_array(at) * (1.1 * near)
+        }));
+        let begin = std::time::Instant::now();
+        assert_eq!(weld(&points, SINGLE).0.len(), points.len());
+        assert!(begin.elapsed().as_secs() < 5, "{:?}", begin.elapsed());
     }
 
     #[test]
