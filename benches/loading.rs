@@ -68,7 +68,8 @@ fn files(mesh: &MeshFile) -> impl Iterator<Item = (String, Format, Vec<u8>)> + '
         write_to(&mut bytes, format, mesh, WriteOptions { msh2 }).unwrap();
         (format!("{}{}", format.extension(), if msh2 { " 2.2" } else { "" }), format, bytes)
     });
-    let others: [(&str, Format, fn(&MeshFile) -> Vec<u8>); 4] = [
+    type Written = fn(&MeshFile) -> Vec<u8>;
+    let others: [(&str, Format, Written); 4] = [
         ("stl binary", Format::Stl, stl_binary),
         ("stl text", Format::Stl, stl_text),
         ("ply binary", Format::Ply, ply_binary),

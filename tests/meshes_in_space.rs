@@ -294,7 +294,7 @@ fn narrow_corners_and_spikes_are_sound() {
     converted("leaf", &leaf, Allow::default());
     // A ball with spikes.
     let spiky = grid(36, 18, [true, true], |u, v| {
-        let far = if (7 * (36.0 * u) as u32 + 5 * (18.0 * v) as u32) % 11 == 0 { 1.25 } else { 1.0 };
+        let far = if (7 * (36.0 * u) as u32 + 5 * (18.0 * v) as u32).is_multiple_of(11) { 1.25 } else { 1.0 };
         let r = 2.0 + 0.7 * far * on_circle(v).x;
         (on_circle(u) * r).extend(0.7 * far * on_circle(v).y)
     });

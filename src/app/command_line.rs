@@ -76,9 +76,9 @@ pub(super) struct MeshOptions {
     pub used: Option<String>,
     /// Size of elements on MESH, everywhere; with --curvature where it is flat
     #[arg(long, value_name = "H")]
-    pub size: Option<f64>,
+    pub mesh_size: Option<f64>,
     /// Smaller elements where MESH is curved: how far a chord may be from its arc, over the radius (0.01)
-    #[arg(long, value_name = "ERR", requires = "size")]
+    #[arg(long, value_name = "ERR", requires = "mesh_size")]
     pub curvature: Option<f64>,
     /// Folds of MESH beyond this angle in degrees are edges to keep (default 40)
     #[arg(long, value_name = "DEGREES")]
@@ -210,7 +210,7 @@ mod tests {
             "quadfront convert example1 --out example1.msh --report example1.json",
             "quadfront convert - -o - --format msh --from toml --set size_scale=0.5 --set c=1.5 --msh2 --quiet",
             "quadfront convert plate.mesh --sol plate.sol --split-odd -o quads.vtu --picture quads.svg",
-            "quadfront convert bracket.stl --use shape --size 2 --curvature 0.01 --scale 0.001 -o quads.obj",
+            "quadfront convert bracket.stl --use shape --mesh-size 2 --curvature 0.01 --scale 0.001 -o quads.obj",
             "quadfront convert bracket.stl --use triangles --feature-angle 30 --chart-stretch 2 -o quads.obj",
             "quadfront convert example1 --paper --events example1.jsonl --at nq=100 -o front.vtu",
             "quadfront render example1 --at step=812 -o front.svg",

@@ -19,7 +19,7 @@ use crate::core::io::save::load;
 use crate::core::run::run::Run;
 use crate::core::run::shown::Shown;
 
-/// With --curvature the finest elements have the size of --size over this.
+/// With --curvature the finest elements have the size of --mesh-size over this.
 const FINEST: f64 = 100.0;
 
 /// How messages call standard input.
@@ -205,7 +205,7 @@ fn mesh_words(options: &MeshOptions) -> Vec<MeshWord> {
     word("--feature-angle", "feature_angle", number(options.feature_angle));
     word("--chart-stretch", "chart_stretch", number(options.chart_stretch));
     word("--scale", "scale", number(options.scale));
-    if let Some(h) = options.size {
+    if let Some(h) = options.mesh_size {
         let line = match options.curvature {
             None => format!("[[metric]]\nkind = \"uniform\"\nh = {h:?}"),
             Some(chord) => {
@@ -213,7 +213,7 @@ fn mesh_words(options: &MeshOptions) -> Vec<MeshWord> {
                 format!("[[metric]]\nkind = \"curvature\"\nchord = {chord:?}\nleast = {least:?}\nfar = {h:?}")
             }
         };
-        words.push(MeshWord { option: "--size", key: "[[metric]]", line });
+        words.push(MeshWord { option: "--mesh-size", key: "[[metric]]", line });
     }
     words
 }

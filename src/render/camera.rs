@@ -357,8 +357,8 @@ mod tests {
 
     #[test]
     fn in_space_all_places_are_seen_and_what_is_grabbed_stays_where_it_is() {
-        let places: Vec<DVec3> =
-            (0..60).map(|k| f64::from(k)).map(|k| DVec3::new(k.sin(), 9.0 * k.cos(), 0.1 * k)).collect();
+        let place = |(sin, cos): (f64, f64), k: u32| DVec3::new(sin, 9.0 * cos, 0.1 * f64::from(k));
+        let places: Vec<DVec3> = (0..60).map(|k| place(libm::sincos(f64::from(k)), k)).collect();
         let mut camera = Camera::fit_in_space(places.iter().copied(), Bearing::Iso.turn(), SIZE, 20.0);
         for p in &places {
             let at = camera.seen(*p, SIZE);

@@ -292,6 +292,7 @@ impl Command {
             Command::ShowTimes,
             Command::Measure,
         ]);
+        all.extend(Place::ALL.map(Command::Place));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
         all.extend(KINDS.iter().flat_map(|k| [true, false].map(|f| Command::Go(Goal::Kind(k, f)))));
         all.extend(built_in::all().map(|case| Command::Open(Source::BuiltIn(case.0.to_owned()))));

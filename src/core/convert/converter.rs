@@ -332,7 +332,12 @@ impl<'a> Converter<'a> {
     /// # Errors
     /// As [`Converter::step`].
     pub fn run_by_faces(&mut self, watch: &mut dyn Watch) -> Result<(), Fault> {
-        if self.faces.len() < 2 || !self.mesh.is_dense() || self.counts.steps > 0 || self.keeps_journal() {
+        if self.faces.len() < 2
+            || !self.mesh.is_dense()
+            || self.counts.steps > 0
+            || self.picked.is_some()
+            || self.keeps_journal()
+        {
             return self.run(watch);
         }
         let total = self.mesh.element_count() as u64;

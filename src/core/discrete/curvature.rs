@@ -13,10 +13,10 @@ use crate::core::metric::tensor::Metric3;
 /// The symmetric tensors are summed as xx, xy, xz, yy, yz, zz.
 type Sum = [f64; 6];
 
-/// Sizes by curvature at the points of a surface (see [`Curvature`]); folds beyond `angle` (radians) are no curvature.
+/// Sizes by curvature at the points of a surface (as the field of kind "curvature"); folds beyond `angle` (radians) are no curvature.
 ///
 /// # Errors
-/// What [`Curvature::new`] refuses.
+/// A chord or sizes that are no positive numbers.
 pub fn curvature_sizes(mesh: &Triangles, angle: f64, [chord, least, far]: [f64; 3]) -> Result<Vec<Metric3>, Fault> {
     let by = Curvature::new(chord, least, far)?;
     Ok(bends(mesh, angle).iter().map(|bend| by.metric(bend.as_ref())).collect())

@@ -25,7 +25,7 @@ const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
 /// Nor is it smaller than this part of the edges there, for that: the normals of slivers say little.
 const LEAST_SIZE: f64 = 1.0 / 6.0;
 /// Such elements leave the surface by no more than about this part of its size.
-const MOST_AWAY: f64 = 0.004;
+const MOST_AWAY: f64 = 0.003;
 /// Growth of such sizes from one element to the next (spec 3).
 const GRADATION: f64 = 1.3;
 
@@ -131,7 +131,7 @@ impl Surface {
 }
 
 /// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the mean
-/// length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it) and what leaves the surface by 0.4 % of its size, and growing by 1.3 at most from one element to the next.
+/// length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it) and what leaves the surface by 0.3 % of its size, and growing by 1.3 at most from one element to the next.
 pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     let edges = Edges::of(&mesh.triangles);
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];

@@ -48,7 +48,7 @@ fn nearness([a, b, c]: &[DVec3; 3], at: DVec2) -> Option<f64> {
     }
     let (u, v) = ((q - at).perp_dot(r - at) / area, (r - at).perp_dot(p - at) / area);
     let w = 1.0 - u - v;
-    (u >= 0.0 && v >= 0.0 && w >= 0.0).then(|| u * a.z + v * b.z + w * c.z)
+    (u >= 0.0 && v >= 0.0 && w >= 0.0).then_some(u * a.z + v * b.z + w * c.z)
 }
 
 /// The triangles near a place of the screen.

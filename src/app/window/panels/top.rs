@@ -5,9 +5,10 @@ use eframe::egui::{self, Align, Align2, Button, Layout, MenuBar, RichText, Role,
 use crate::app::window::command::{Command, LAYERS};
 use crate::app::window::icons;
 use crate::app::window::session::{Goal, Source};
-use crate::app::window::state::State;
+use crate::app::window::state::{Place, State};
 use crate::app::window::theme::{self, ink};
 use crate::core::io::built_in;
+use crate::render::camera::Bearing;
 use crate::render::palette::Palette;
 use crate::render::scene::ColourBy;
 
@@ -87,6 +88,17 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         item(ui, Command::ShowDecision, commands);
         item(ui, Command::ToggleTheme, commands);
         item(ui, Command::ResetLayout, commands);
+        ui.separator();
+        ui.menu_button("Surfaces", |ui| {
+            Place::ALL.into_iter().for_each(|place| item(ui, Command::Place(place), commands));
+            ui.separator();
+            for bearing in [Bearing::Iso, Bearing::X, Bearing::Y, Bearing::Z] {
+                item(ui, Command::LookFrom(bearing), commands);
+            }
+            ui.separator();
+            item(ui, Command::HiddenLines, commands);
+            item(ui, Command::ToggleCurved, commands);
+        });
         ui.separator();
         for k in 0..LAYERS.len() {
             item(ui, Command::Layer(k), commands);

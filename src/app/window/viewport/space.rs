@@ -118,12 +118,11 @@ fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<Look>) -> C
         None => {}
         Some(Look::Fit) => (camera, space.fitted) = (fit(moment, camera.turn, size), true),
         Some(Look::From(side)) => (camera, space.fitted) = (fit(moment, side.turn(), size), true),
+        // A camera of the plane looks straight down at it.
+        Some(Look::Kept(kept)) if kept.target[2] == 0.0 && kept.turn == [0.0, 0.0, 0.0, 1.0] => {}
         Some(Look::Kept(kept)) => {
-            // A camera of the plane looks straight down at it.
-            if kept.target[2] != 0.0 || kept.turn != [0.0, 0.0, 0.0, 1.0] {
-                camera.take_up(&kept, size);
-                space.fitted = false;
-            }
+            camera.take_up(&kept, size);
+            space.fitted = false;
         }
         Some(Look::Decision) => {
             if let Some(ends) = Decision::of(&moment.phase).base.or(state.picked_segment()) {

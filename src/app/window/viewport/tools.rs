@@ -15,7 +15,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Co
         return;
     }
     ui.scope_builder(UiBuilder::new().max_rect(corner).layout(Layout::right_to_left(Align::Min)), |ui| {
-        let plate = Frame::NONE.fill(ink(palette.label_plate)).corner_radius(4.0).inner_margin(Margin::symmetric(4, 2));
+        let plate = Frame::NONE.fill(ink(palette.ground)).corner_radius(4.0).inner_margin(Margin::symmetric(4, 2));
         plate.show(ui, |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             let mut button = |ui: &mut Ui, on: bool, text: &str, command: Command| {
