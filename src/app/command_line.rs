@@ -50,6 +50,26 @@ pub(super) struct Source {
     /// The metric at the nodes of MESH (Medit)
     #[arg(long, value_name = "FILE")]
     pub sol: Option<PathBuf>,
+    /// Set a parameter of the case, for example size_scale=0.5 (may be given several times)
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+    /// Convert this face only and leave the others out (may be given several times)
+    #[arg(long = "face", value_name = "NAME")]
+    pub faces: Vec<String>,
+    /// The paper's own reading of every parameter of the front, in place of the case's; --set comes after it
+    #[arg(long)]
+    pub paper: bool,
+    /// Give a boundary of a fixed odd count of segments one segment more instead of refusing it
+    #[arg(long)]
+    pub split_odd: bool,
+    /// No progress and no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// How a mesh that is given is used.
+#[derive(Args, Default)]
+pub(super) struct MeshOptions {
     /// What MESH is used for: its triangles, converted as they are (what a mesh in the plane is used for where nothing is said), or
     /// its shape, meshed anew (a mesh in space)
     #[arg(long = "use", value_name = "triangles|shape", value_parser = ["triangles", "shape"], hide_possible_values = true)]
@@ -69,21 +89,6 @@ pub(super) struct Source {
     /// Multiply the coordinates of MESH (0.001: from millimetres to metres)
     #[arg(long, value_name = "FACTOR")]
     pub scale: Option<f64>,
-    /// Convert this face only and leave the others out (may be given several times)
-    #[arg(long = "face", value_name = "NAME")]
-    pub faces: Vec<String>,
-    /// Set a parameter of the case, for example size_scale=0.5 (may be given several times)
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
-    pub set: Vec<(String, String)>,
-    /// The paper's own reading of every parameter of the front, in place of the case's; --set comes after it
-    #[arg(long)]
-    pub paper: bool,
-    /// Give a boundary of a fixed odd count of segments one segment more instead of refusing it
-    #[arg(long)]
-    pub split_odd: bool,
-    /// No progress and no summary
-    #[arg(short, long)]
-    pub quiet: bool,
 }
 
 /// Where a mesh goes.
@@ -115,6 +120,8 @@ pub(super) struct ConvertArguments {
     #[command(flatten)]
     pub source: Source,
     #[command(flatten)]
+    pub mesh: MeshOptions,
+    #[command(flatten)]
     pub destination: Destination,
     /// The report as JSON, or - for standard output
     #[arg(long, value_name = "FILE")]
@@ -132,6 +139,8 @@ pub(super) struct ConvertArguments {
 pub(super) struct BackgroundArguments {
     #[command(flatten)]
     pub source: Source,
+    #[command(flatten)]
+    pub mesh: MeshOptions,
     #[command(flatten)]
     pub destination: Destination,
 }

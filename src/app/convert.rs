@@ -27,7 +27,7 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     let output_taken = output::check(&targets, destination.picture.as_ref())?;
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
-    let input = input::read(source)?;
+    let input = input::read(source, &arguments.mesh)?;
     let shown = input.figure.as_ref().and_then(Shown::state);
     let at = match (arguments.at, shown) {
         (Some(Until::Stop(stop)), _) => Some(stop),
@@ -75,7 +75,7 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     mesh_target.as_ref().map_or(Ok(()), |target| target.spare(source.sol.as_deref()))?;
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
-    let input = input::read(source)?;
+    let input = input::read(source, &arguments.mesh)?;
     let triangles = work::background(&input.run.case, &mut progress)?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &triangles.file)?;

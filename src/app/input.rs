@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use super::command_line::Source;
+use super::command_line::{MeshOptions, Source};
 use crate::core::convert::parameters::nearest;
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
@@ -119,8 +119,8 @@ impl Input {
 }
 
 /// The run of the arguments, with what they set.
-pub(super) fn read(source: &Source) -> Result<Input, Fault> {
-    let Input { mut run, figure, folder } = read_plain(source)?;
+pub(super) fn read(source: &Source, mesh: &MeshOptions) -> Result<Input, Fault> {
+    let Input { mut run, figure, folder } = read_plain(source, mesh)?;
     let parameters = &mut run.parameters;
     if source.paper {
         *parameters = parameters.read_as_paper();
@@ -144,12 +144,12 @@ pub(super) fn run_of(path: &Path) -> Result<Run, Fault> {
         return Err(Fault::new("The window opens files").at(input).remedy("Name a case, a mesh or a run file"));
     }
     let source = Source { input, quiet: true, ..Source::default() };
-    let mut input = read(&source)?;
+    let mut input = read(&source, &MeshOptions::default())?;
     input.run.shown = input.figure;
     Ok(input.run)
 }
 
-fn read_plain(source: &Source) -> Result<Input, Fault> {
+fn read_plain(source: &Source, mesh: &MeshOptions) -> Result<Input, Fault> {
     let name = source.input.as_str();
     let alone = |case| Input::of(Run::of(case), None);
     let run = match kind(name, source.from)? {
@@ -163,10 +163,10 @@ fn read_plain(source: &Source) -> Result<Input, Fault> {
             let folder = tempfile::tempdir().map_err(refuse)?;
             let path = folder.path().join("standard-input").with_extension(format.extension());
             std::fs::write(&path, standard_input()?).map_err(refuse)?;
-            let run = Run::of(mesh_case(path, source)?);
+            let run = Run::of(mesh_case(path, source, mesh)?);
             return Ok(Input::of(run, Some(folder)));
         }
-        Kind::File(path, InputFormat::Mesh(_)) => return Ok(alone(mesh_case(path, source)?)),
+        Kind::File(path, InputFormat::Mesh(_)) => return Ok(alone(mesh_case(path, source, mesh)?)),
         Kind::Figure(path) => figure::read(&path)?,
         Kind::File(path, InputFormat::Case) => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -178,7 +178,7 @@ fn read_plain(source: &Source) -> Result<Input, Fault> {
             .at(name)
             .remedy("Write mesh = \"...\" and sol = \"...\" in the case, or leave --sol out"));
     }
-    if let Some((option, key)) = mesh_words(source).first().map(|word| (word.option, word.key)) {
+    if let Some((option, key)) = mesh_words(mesh).first().map(|word| (word.option, word.key)) {
         return Err(Fault::new(format!("{option} goes with a mesh, and this is a case"))
             .at(name)
             .remedy(format!("Write {key} in the case, or leave {option} out")));
@@ -194,19 +194,19 @@ struct MeshWord {
 }
 
 /// What the options say of how a mesh is used.
-fn mesh_words(source: &Source) -> Vec<MeshWord> {
+fn mesh_words(options: &MeshOptions) -> Vec<MeshWord> {
     let mut words = Vec::new();
     let mut word = |option, key, value: Option<String>| {
         words.extend(value.map(|value| MeshWord { option, key, line: format!("{key} = {value}") }));
     };
     // In every case TOML needs a point in what may not be whole.
     let number = |value: Option<f64>| value.map(|value| format!("{value:?}"));
-    word("--use", "use", source.used.as_ref().map(|word| format!("\"{word}\"")));
-    word("--feature-angle", "feature_angle", number(source.feature_angle));
-    word("--chart-stretch", "chart_stretch", number(source.chart_stretch));
-    word("--scale", "scale", number(source.scale));
-    if let Some(h) = source.mesh_size {
-        let line = match source.curvature {
+    word("--use", "use", options.used.as_ref().map(|word| format!("\"{word}\"")));
+    word("--feature-angle", "feature_angle", number(options.feature_angle));
+    word("--chart-stretch", "chart_stretch", number(options.chart_stretch));
+    word("--scale", "scale", number(options.scale));
+    if let Some(h) = options.mesh_size {
+        let line = match options.curvature {
             None => format!("[[metric]]\nkind = \"uniform\"\nh = {h:?}"),
             Some(chord) => {
                 let least = h / FINEST;
@@ -220,8 +220,8 @@ fn mesh_words(source: &Source) -> Vec<MeshWord> {
 
 /// The case of a mesh. Where options say how it is used it gets a text that says the same, so that reports, run files and figures
 /// tell it.
-fn mesh_case(path: PathBuf, source: &Source) -> Result<Case, Fault> {
-    let words = mesh_words(source);
+fn mesh_case(path: PathBuf, source: &Source, options: &MeshOptions) -> Result<Case, Fault> {
+    let words = mesh_words(options);
     let plain = Case::of_mesh(path, source.sol.clone());
     if words.is_empty() {
         return Ok(plain);

@@ -1,6 +1,6 @@
 //! `render`: a mesh as it is, the mesh of a case, or a conversion on the way, as a figure.
 
-use super::command_line::RenderArguments;
+use super::command_line::{MeshOptions, RenderArguments};
 use super::figure::{self, Figure, Wanted};
 use super::input;
 use super::output::{self, tell};
@@ -23,7 +23,7 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
     }
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
-    let input = input::read(source)?;
+    let input = input::read(source, &MeshOptions::default())?;
     let shown = input.figure.as_ref();
     let options = arguments.figure.or(shown).map_err(|fault| fault.at(source.input.clone()))?;
     let wanted: Vec<Wanted> = match (&arguments.at, shown) {
