@@ -85,10 +85,11 @@ pub(super) struct Unfolding<'a> {
 impl<'a> Unfolding<'a> {
     /// The mending at its beginning.
     pub fn begin(mesh: &Mesh, source: Arc<dyn MetricSource + Send + Sync + 'a>, recording: bool) -> Unfolding<'a> {
-        let (doublets, (doubles, later), (coincident, near)) = (doublets(mesh), doubles(mesh), coincident(mesh));
-        let list = Worklist::new(0, false);
         let mut copies: Vec<_> = mesh.nodes().filter_map(|n| Some((mesh.point(n)?, n))).collect();
         copies.sort_unstable();
+        let (doublets, (doubles, later)) = (doublets(mesh, &copies), doubles(mesh));
+        let (coincident, near) = coincident(mesh, &copies);
+        let list = Worklist::new(0, false);
         let mut work = Unfolding { source, list, doublets, doubles, coincident, copies, near };
         let folded: Vec<ElementId> = mesh.elements().filter(|&e| work.folds(mesh, e)).collect();
         let all = folded.len() + later.len() + work.doublets.len() + work.coincident.len();
@@ -403,11 +404,9 @@ impl<'a> Unfolding<'a> {
 }
 
 /// Nodes between two faces, each with one quadrilateral there, that have but two edges in space: each copy with the other, ascending.
-fn doublets(mesh: &Mesh) -> Vec<[NodeId; 2]> {
-    let mut at_point: Vec<(u32, NodeId)> = mesh.nodes().filter_map(|n| Some((mesh.point(n)?.0, n))).collect();
-    at_point.sort_unstable();
+fn doublets(mesh: &Mesh, copies: &[(PointId, NodeId)]) -> Vec<[NodeId; 2]> {
     let mut found = Vec::new();
-    for copies in at_point.chunk_by(|a, b| a.0 == b.0) {
+    for copies in copies.chunk_by(|a, b| a.0 == b.0) {
         let &[(_, a), (_, b)] = copies else { continue };
         let others = |n: NodeId| {
             let mut points: Vec<_> = mesh.neighbours(n).map(|n| mesh.point(n)).collect();
@@ -440,20 +439,9 @@ fn doubles(mesh: &Mesh) -> (Vec<[PointId; 4]>, Vec<ElementId>) {
 
 /// Free nodes at the place of another node in space, ascending: two sheets of the surface lie on each other there. And how near
 /// that is.
-fn coincident(mesh: &Mesh) -> (Vec<NodeId>, f64) {
-    let mut seen: Vec<Option<PointId>> = Vec::new();
+fn coincident(mesh: &Mesh, copies: &[(PointId, NodeId)]) -> (Vec<NodeId>, f64) {
     // Fixed nodes first, so that free ones are found to be where those are; of several at one point only the first.
-    let mut nodes: Vec<NodeId> = Vec::new();
-    for node in mesh.nodes() {
-        if let Some(point) = mesh.point(node) {
-            if seen.len() <= point.index() {
-                seen.resize(point.index() + 1, None);
-            }
-            if seen[point.index()].replace(point).is_none() {
-                nodes.push(node);
-            }
-        }
-    }
+    let mut nodes: Vec<NodeId> = copies.chunk_by(|a, b| a.0 == b.0).map(|at_point| at_point[0].1).collect();
     nodes.extend(mesh.nodes().filter(|&n| !mesh.is_fixed(n)));
     let places: Vec<DVec3> = nodes.iter().map(|&n| mesh.xyz(n)).collect();
     let standing = weld(&places, SAME_PLACE).1;

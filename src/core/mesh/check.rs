@@ -78,11 +78,12 @@ impl Mesh {
     /// triangles, whose normals jump, along its own too; 0 at most where a side is no longer than `near`. In the plane, where exact
     /// predicates say more, along z.
     pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
-        if self.half_edges(e).any(|h| self.xyz(self.origin(h)).distance(self.xyz(self.target(h))) <= near) {
+        let xyz: SmallVec<[DVec3; 4]> = self.corners(e).map(|n| self.xyz(n)).collect();
+        if (0..xyz.len()).any(|k| xyz[k].distance(xyz[(k + 1) % xyz.len()]) <= near) {
             return 0.0;
         }
-        let first = e.half_edge(0);
-        let jumps = self.ground().is_some_and(|ground| ground.atlas.is_of_facets(self.uv(self.origin(first))));
+        let first = self.uv(self.origin(e.half_edge(0)));
+        let jumps = self.ground().is_some_and(|ground| ground.atlas.is_of_facets(first));
         let sines = self.corner_sines(e).map(|(surface, own)| if jumps { surface.min(own) } else { surface });
         sines.fold(f64::INFINITY, f64::min)
     }

@@ -7,24 +7,25 @@
 //! All changes go through the setters (`half_edge/setters.rs`), which write the old value into the journal;
 //! `half_edge/taking_back.rs` puts it back. Public ways to change are the operators only (`operators.rs`).
 
+mod copies;
 mod difference;
 mod faces;
+mod ground;
 mod setters;
 mod taking_back;
 
 pub use difference::{Difference, FreeLists};
 pub use faces::Part;
+pub use ground::Ground;
 pub use taking_back::Undone;
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
-use super::order::{grouped, hilbert_order};
 use super::refusals::Refusals;
 use super::triangle_set::TriangleSet;
-use crate::core::geometry::atlas::Atlas;
 use crate::core::journal::Journal;
 use crate::core::metric::tensor::Metric2;
 
@@ -59,15 +60,6 @@ pub struct Mesh {
     pub(super) refusals: Option<Refusals>,
     /// The surfaces on which it lies; none in the plane.
     ground: Option<Arc<Ground>>,
-}
-
-/// The surfaces on which a mesh lies, and where its points on curves are in space: the same for all faces that share them.
-#[derive(Debug)]
-pub struct Ground {
-    /// The charts of all faces.
-    pub atlas: Arc<Atlas>,
-    /// The place of each point of a fixed node.
-    pub points: Vec<DVec3>,
 }
 
 /// An element to be made: its nodes anticlockwise (three or four) and its region.
@@ -422,171 +414,6 @@ impl Mesh {
     pub fn point(&self, node: NodeId) -> Option<PointId> {
         let p = self.point[node.index()];
         (p != NONE).then_some(PointId(p))
-    }
-
-    // ---- surfaces ----
-
-    /// Lays the mesh on surfaces.
-    pub fn set_ground(&mut self, ground: Arc<Ground>) {
-        self.ground = Some(ground);
-    }
-
-    /// The surfaces on which it lies; none in the plane.
-    pub fn ground(&self) -> Option<&Arc<Ground>> {
-        self.ground.as_ref()
-    }
-
-    /// The place of a node in space; z is 0 in the plane.
-    pub fn xyz(&self, node: NodeId) -> DVec3 {
-        match (&self.ground, self.point(node)) {
-            (None, _) => self.uv(node).extend(0.0),
-            (Some(ground), Some(point)) => ground.points[point.index()],
-            (Some(ground), None) => ground.atlas.xyz(self.uv(node)),
-        }
-    }
-
-    /// The unit normal of the surface at a node; z in the plane.
-    pub fn normal(&self, node: NodeId) -> DVec3 {
-        self.ground.as_ref().map_or(DVec3::Z, |ground| ground.atlas.at(self.uv(node)).normal())
-    }
-
-    /// The smallest target size at a node, in units of length: on surfaces that of the intrinsic eigenvalues, of M
-    /// against `J^T J` (spec 1, on eq. 6).
-    #[inline]
-    pub fn smallest_size(&self, node: NodeId) -> f64 {
-        match &self.ground {
-            None => self.metric_ref(node).min_size(),
-            Some(ground) => self.metric_ref(node).min_size_against(&ground.atlas.at(self.uv(node)).first_form()),
-        }
-    }
-
-    /// The distance of two nodes in space.
-    pub fn physical_distance(&self, a: NodeId, b: NodeId) -> f64 {
-        match &self.ground {
-            None => self.uv(a).distance(self.uv(b)),
-            Some(_) => self.xyz(a).distance(self.xyz(b)),
-        }
-    }
-
-    // ---- order ----
-
-    /// The same mesh without tombstones, its nodes and elements along a Hilbert curve: neighbours in the plane become
-    /// neighbours in memory, which is most of the speed of large meshes. The journal starts empty, and records where this
-    /// mesh's does.
-    #[must_use]
-    pub fn reordered(&self) -> Mesh {
-        let nodes = hilbert_order(&self.nodes().map(|n| (n.0, self.uv(n))).collect::<Vec<_>>());
-        let mut new_node = vec![NONE; self.uv.len()];
-        for (new, &old) in nodes.iter().enumerate() {
-            new_node[old as usize] = new as u32;
-        }
-        // Elements follow their first node.
-        let first_node = |e: ElementId| self.corners(e).map(|n| new_node[n.index()]).min().unwrap_or(NONE);
-        let elements: Vec<(u32, u32)> = self.elements().map(|e| (first_node(e), e.0)).collect();
-        let elements: Vec<u32> = grouped(nodes.len(), &elements, |e| e.0).into_iter().map(|(_, old)| old).collect();
-        let mut new_element = vec![NONE; self.sides.len()];
-        for (new, &old) in elements.iter().enumerate() {
-            new_element[old as usize] = new as u32;
-        }
-        let half_edge = |h: u32| if h == NONE { NONE } else { new_element[(h >> 2) as usize] << 2 | (h & 3) };
-        let slots = 4 * elements.len();
-        let (mut origin, mut twin) = (Vec::with_capacity(slots), Vec::with_capacity(slots));
-        let mut deferred = Vec::with_capacity(slots);
-        for &old in &elements {
-            let first = 4 * old as usize;
-            let sides = self.sides[old as usize] as usize;
-            for slot in first..first + 4 {
-                let used = slot < first + sides;
-                origin.push(if used { new_node[self.origin[slot] as usize] } else { NONE });
-                twin.push(if used { half_edge(self.twin[slot]) } else { NONE });
-            }
-            deferred.extend_from_slice(&self.deferred[first..first + 4]);
-        }
-        let mut journal = Journal::default();
-        journal.set_recording(self.journal.is_recording());
-        Mesh {
-            uv: nodes.iter().map(|&n| self.uv[n as usize]).collect(),
-            metric: nodes.iter().map(|&n| self.metric[n as usize]).collect(),
-            anchor: nodes.iter().map(|&n| half_edge(self.anchor[n as usize])).collect(),
-            point: nodes.iter().map(|&n| self.point[n as usize]).collect(),
-            origin,
-            twin,
-            sides: elements.iter().map(|&e| self.sides[e as usize]).collect(),
-            region: elements.iter().map(|&e| self.region[e as usize]).collect(),
-            level: elements.iter().map(|&e| self.level[e as usize]).collect(),
-            deferred,
-            first_level: self.first_level_in(&nodes),
-            journal,
-            refusals: self.refusals,
-            ground: self.ground.clone(),
-            ..Mesh::default()
-        }
-    }
-
-    fn first_level_in(&self, nodes: &[u32]) -> Vec<u16> {
-        if self.first_level.is_empty() {
-            return Vec::new();
-        }
-        nodes.iter().map(|&n| self.first_level(NodeId(n))).collect()
-    }
-
-    /// A copy for looking at: without the journal, which may be many times as large.
-    #[must_use]
-    pub fn without_journal(&self) -> Mesh {
-        Mesh {
-            uv: self.uv.clone(),
-            metric: self.metric.clone(),
-            anchor: self.anchor.clone(),
-            point: self.point.clone(),
-            origin: self.origin.clone(),
-            twin: self.twin.clone(),
-            sides: self.sides.clone(),
-            region: self.region.clone(),
-            level: self.level.clone(),
-            deferred: self.deferred.clone(),
-            first_level: self.first_level.clone(),
-            free_nodes: self.free_nodes.clone(),
-            free_elements: self.free_elements.clone(),
-            closed: self.closed,
-            refusals: self.refusals,
-            journal: Journal::default(),
-            ground: self.ground.clone(),
-        }
-    }
-
-    /// Appends the canonical serialisation of the state: every array and both free lists, little-endian. Two meshes are
-    /// the same state exactly where these bytes are equal. (The journal is history, not state.)
-    pub fn write_state(&self, bytes: &mut Vec<u8>) {
-        let mut number = |n: u64| bytes.extend_from_slice(&n.to_le_bytes());
-        number(self.uv.len() as u64);
-        number(self.sides.len() as u64);
-        number(self.free_nodes.len() as u64);
-        number(self.free_elements.len() as u64);
-        number(u64::from(self.closed[0]) << 32 | u64::from(self.closed[1]));
-        for n in 0..self.uv.len() {
-            number(self.uv[n].x.to_bits());
-            number(self.uv[n].y.to_bits());
-            number(self.metric[n].uu.to_bits());
-            number(self.metric[n].uv.to_bits());
-            number(self.metric[n].vv.to_bits());
-            number(u64::from(self.anchor[n]) << 32 | u64::from(self.point[n]));
-        }
-        for h in 0..self.origin.len() {
-            number(u64::from(self.origin[h]) << 32 | u64::from(self.twin[h]));
-        }
-        for e in 0..self.sides.len() {
-            let deferred = (0..4).map(|k| u64::from(self.deferred[4 * e + k]) << k).sum::<u64>();
-            number(
-                u64::from(self.region[e]) << 28
-                    | u64::from(self.level[e]) << 12
-                    | deferred << 8
-                    | u64::from(self.sides[e]),
-            );
-        }
-        self.free_nodes.iter().for_each(|n| number(u64::from(n.0)));
-        self.free_elements.iter().for_each(|e| number(u64::from(e.0)));
-        self.first_level.iter().for_each(|&level| number(u64::from(level)));
-        self.first_level.iter().for_each(|&level| number(u64::from(level)));
     }
 }
 

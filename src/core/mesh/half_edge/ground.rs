@@ -1,0 +1,62 @@
+//! What a mesh lies on: the surfaces of its faces, and places, normals and sizes in space.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::Mesh;
+use crate::core::geometry::atlas::Atlas;
+use crate::core::mesh::ids::NodeId;
+
+/// The surfaces on which a mesh lies, and where its points on curves are in space: the same for all faces that share them.
+#[derive(Debug)]
+pub struct Ground {
+    /// The charts of all faces.
+    pub atlas: Arc<Atlas>,
+    /// The place of each point of a fixed node.
+    pub points: Vec<DVec3>,
+}
+
+impl Mesh {
+    /// Lays the mesh on surfaces.
+    pub fn set_ground(&mut self, ground: Arc<Ground>) {
+        self.ground = Some(ground);
+    }
+
+    /// The surfaces on which it lies; none in the plane.
+    pub fn ground(&self) -> Option<&Arc<Ground>> {
+        self.ground.as_ref()
+    }
+
+    /// The place of a node in space; z is 0 in the plane.
+    pub fn xyz(&self, node: NodeId) -> DVec3 {
+        match (&self.ground, self.point(node)) {
+            (None, _) => self.uv(node).extend(0.0),
+            (Some(ground), Some(point)) => ground.points[point.index()],
+            (Some(ground), None) => ground.atlas.xyz(self.uv(node)),
+        }
+    }
+
+    /// The unit normal of the surface at a node; z in the plane.
+    pub fn normal(&self, node: NodeId) -> DVec3 {
+        self.ground.as_ref().map_or(DVec3::Z, |ground| ground.atlas.at(self.uv(node)).normal())
+    }
+
+    /// The smallest target size at a node, in units of length: on surfaces that of the intrinsic eigenvalues, of M
+    /// against `J^T J` (spec 1, on eq. 6).
+    #[inline]
+    pub fn smallest_size(&self, node: NodeId) -> f64 {
+        match &self.ground {
+            None => self.metric_ref(node).min_size(),
+            Some(ground) => self.metric_ref(node).min_size_against(&ground.atlas.at(self.uv(node)).first_form()),
+        }
+    }
+
+    /// The distance of two nodes in space.
+    pub fn physical_distance(&self, a: NodeId, b: NodeId) -> f64 {
+        match &self.ground {
+            None => self.uv(a).distance(self.uv(b)),
+            Some(_) => self.xyz(a).distance(self.xyz(b)),
+        }
+    }
+}
