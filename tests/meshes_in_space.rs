@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use quadfront::core::convert::conversion::convert;
+use quadfront::core::convert::conversion::{convert, convert_by};
 use quadfront::core::io::case::Case;
 use quadfront::core::io::export::Export;
 use quadfront::core::io::format::{Format, WriteOptions, write_mesh};
@@ -207,6 +207,14 @@ fn what_branches_or_has_one_side_or_is_turned_is_taken_as_it_is() {
 #[test]
 fn the_same_mesh_gives_the_same_bytes() {
     assert_eq!(converted("once", &bumps(), Allow::default()), converted("again", &bumps(), Allow::default()));
+    // Charts one after another, as the debugger goes through them, and at the same time.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("torus.ply");
+    write_mesh(&path, Format::Ply, &torus(), WriteOptions::default()).unwrap();
+    let made =
+        convert_by(&Case::of_mesh(path, None), &mut Nobody, &mut |converter, watch| converter.run(watch)).unwrap();
+    assert!(made.regions.len() > 1);
+    assert_eq!(Export::of(&made.mesh, &made.regions).file, converted("together", &torus(), Allow::default()));
 }
 
 #[test]

@@ -107,13 +107,14 @@ fn three_faces_share_the_nodes_of_the_line_from_which_they_branch() {
 }
 
 #[test]
-fn the_area_of_meshes_converges_to_the_closed_form_with_second_order() {
+fn areas_and_arc_lengths_of_meshes_converge_to_the_closed_form_with_second_order() {
     use std::f64::consts::PI;
-    for (name, text, area) in [
-        ("sphere", "kind = \"sphere\"\nradius = 1", 4.0 * PI),
-        ("cylinder", "kind = \"cylinder\"\nradius = 1\nheight = 2", 4.0 * PI),
-        ("cone", "kind = \"cone\"\nradius = 1\nheight = 1.5", PI * libm::hypot(1.0, 1.5)),
-        ("torus", "kind = \"torus\"\nradius = 2\ntube = 0.7", 4.0 * PI * PI * 1.4),
+    // The arc length is that of the rims.
+    for (name, text, area, rims) in [
+        ("sphere", "kind = \"sphere\"\nradius = 1", 4.0 * PI, 0.0),
+        ("cylinder", "kind = \"cylinder\"\nradius = 1\nheight = 2", 4.0 * PI, 4.0 * PI),
+        ("cone", "kind = \"cone\"\nradius = 1\nheight = 1.5", PI * libm::hypot(1.0, 1.5), 2.0 * PI),
+        ("torus", "kind = \"torus\"\nradius = 2\ntube = 0.7", 4.0 * PI * PI * 1.4, 0.0),
     ] {
         let error = |h: f64| {
             let case = parsed(&format!(
@@ -122,12 +123,33 @@ fn the_area_of_meshes_converges_to_the_closed_form_with_second_order() {
             ));
             let made = make(&case);
             made.assert_sound(name);
-            (1.0 - made.sound.area / area).abs()
+            assert_eq!(made.sound.boundary_edges > 0, rims > 0.0, "{name}");
+            let arc = if rims > 0.0 { 1.0 - made.sound.boundary_length / rims } else { 0.0 };
+            [(1.0 - made.sound.area / area).abs(), arc]
         };
         let (coarse, fine) = (error(0.25), error(0.08));
-        let order = libm::log(coarse / fine) / libm::log(0.25 / 0.08);
-        assert!(order > 1.7 && fine < 3e-3, "{name}: {coarse} {fine}, order {order}");
+        for (coarse, fine) in coarse.into_iter().zip(fine).take(if rims > 0.0 { 2 } else { 1 }) {
+            let order = libm::log(coarse / fine) / libm::log(0.25 / 0.08);
+            assert!(order > 1.7 && fine < 3e-3, "{name}: {coarse} {fine}, order {order}");
+        }
     }
+}
+
+#[test]
+fn chosen_faces_are_converted_as_they_are_among_all_and_the_others_left_out() {
+    let all = make(&built_in("example6", &[("size_scale", "2")]));
+    let flange = make(&built_in("example6", &[("size_scale", "2"), ("faces", "top flange")]));
+    flange.assert_sound("top flange");
+    let of = |made: &Made, name: &str| {
+        let region = made.converted.regions.iter().position(|region| region == name).unwrap() as u32;
+        made.converted.mesh.elements_of(Some(region)).count()
+    };
+    // The curves are divided as for all faces; alone it has all trials of the clean-up.
+    let (alone, among) = (of(&flange, "top flange") as f64, of(&all, "top flange") as f64);
+    assert!((alone / among - 1.0).abs() < 0.1, "{alone} {among}");
+    assert_eq!(flange.converted.mesh.faces().len(), 1);
+    let fault = convert(&built_in("example6", &[("faces", "top flanje")]), &mut Nobody).err().unwrap().to_string();
+    assert!(fault.contains("no face \"top flanje\"") && fault.contains("top flange"), "{fault}");
 }
 
 const UNIFORM: &str = "[[metric]]\nkind = \"uniform\"\nh = 0.2\n";

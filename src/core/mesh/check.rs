@@ -70,7 +70,7 @@ impl Mesh {
             return Vec::new();
         }
         self.elements()
-            .filter(|&e| self.corner_sines(e).any(|(surface, _)| surface.is_nan() || surface <= 0.0))
+            .filter(|&e| self.corner_sines(e, &self.places(e)).any(|(surface, _)| surface.is_nan() || surface <= 0.0))
             .collect()
     }
 
@@ -78,20 +78,25 @@ impl Mesh {
     /// triangles, whose normals jump, along its own too; 0 at most where a side is no longer than `near`. In the plane, where exact
     /// predicates say more, along z.
     pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
-        let xyz: SmallVec<[DVec3; 4]> = self.corners(e).map(|n| self.xyz(n)).collect();
+        let xyz = self.places(e);
         if (0..xyz.len()).any(|k| xyz[k].distance(xyz[(k + 1) % xyz.len()]) <= near) {
             return 0.0;
         }
         let first = self.uv(self.origin(e.half_edge(0)));
         let jumps = self.ground().is_some_and(|ground| ground.atlas.is_of_facets(first));
-        let sines = self.corner_sines(e).map(|(surface, own)| if jumps { surface.min(own) } else { surface });
+        let sines = self.corner_sines(e, &xyz).map(|(surface, own)| if jumps { surface.min(own) } else { surface });
         sines.fold(f64::INFINITY, f64::min)
     }
 
+    /// The places of an element's corners in space.
+    fn places(&self, e: ElementId) -> SmallVec<[DVec3; 4]> {
+        self.corners(e).map(|n| self.xyz(n)).collect()
+    }
+
     /// The sine of each corner as seen along the normal of the surface there, and along the element's own.
-    fn corner_sines(&self, e: ElementId) -> impl Iterator<Item = (f64, f64)> + '_ {
+    /// Its corners stand at `xyz`.
+    fn corner_sines<'a>(&'a self, e: ElementId, xyz: &'a [DVec3]) -> impl Iterator<Item = (f64, f64)> + 'a {
         let nodes: SmallVec<[NodeId; 4]> = self.corners(e).collect();
-        let xyz: SmallVec<[DVec3; 4]> = nodes.iter().map(|&n| self.xyz(n)).collect();
         let count = nodes.len();
         let middle = nodes.iter().map(|&n| self.uv(n)).sum::<DVec2>() / count as f64;
         // Twice the mean area of a quadrilateral as a vector; of a triangle too.
