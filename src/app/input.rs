@@ -16,6 +16,7 @@ use crate::core::io::format::{self, Format};
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::io::run_file;
 use crate::core::io::save::load;
+use crate::core::progress::Watch;
 use crate::core::run::run::Run;
 use crate::core::run::shown::Shown;
 
@@ -255,12 +256,16 @@ fn case_or_run(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Ru
 }
 
 /// The mesh of a file or of standard input as it is; `None` where the input is a case.
-pub(super) fn read_mesh(name: &str, from: Option<InputFormat>) -> Result<Option<MeshFile>, Fault> {
+pub(super) fn read_mesh(
+    name: &str,
+    from: Option<InputFormat>,
+    watch: &mut dyn Watch,
+) -> Result<Option<MeshFile>, Fault> {
     match kind(name, from)? {
         Kind::StandardInput(InputFormat::Mesh(format)) => {
             format::read_bytes(STANDARD_INPUT, &standard_input()?, format).map(Some)
         }
-        Kind::File(path, InputFormat::Mesh(_)) => format::read_mesh(&path, None).map(Some),
+        Kind::File(path, InputFormat::Mesh(_)) => format::read_mesh_watched(&path, None, watch).map(Some),
         _ => Ok(None),
     }
 }

@@ -15,19 +15,23 @@ pub mod window;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser;
 
 use crate::core::fault::Fault;
 use crate::core::io::save;
 use command_line::{Cli, Command};
+use progress::INTERRUPT;
 
 /// A checked mesh falls short.
 const FALLS_SHORT: u8 = 1;
 /// Bad input or usage.
 const BAD_INPUT: u8 = 2;
 /// Ctrl-C, as shells tell it.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED: u8 = 130;
+/// So long work has to end by itself.
+const GRACE: Duration = Duration::from_millis(500);
 
 /// Runs the program with the process's own arguments.
 pub fn run() -> ExitCode {
@@ -43,7 +47,10 @@ pub fn run() -> ExitCode {
     // handler (no system refuses one) Ctrl-C would end the process all the same and leave a temporary file.
     let _ = ctrlc::set_handler(|| {
         save::abandon();
-        std::process::exit(INTERRUPTED);
+        INTERRUPT.ask();
+        // Work that hears of it ends by itself, and takes with it what it has put down elsewhere.
+        std::thread::sleep(GRACE);
+        std::process::exit(i32::from(INTERRUPTED));
     });
     let done = match cli
         .command
@@ -57,6 +64,9 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
         Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),
     };
+    if INTERRUPT.is_asked() {
+        return ExitCode::from(INTERRUPTED);
+    }
     done.unwrap_or_else(|fault| {
         complain(&fault);
         ExitCode::from(BAD_INPUT)

@@ -19,6 +19,7 @@ use crate::core::geometry::space_curve::SpaceCurve;
 use crate::core::metric::field::Field;
 use crate::core::metric::gradation::bound_gradation;
 use crate::core::metric::tensor::Metric3;
+use crate::core::progress::Watch;
 
 /// An element turns by no more than this where its size is not given (radians).
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
@@ -58,11 +59,18 @@ struct Link {
 /// names of its regions, and `bound` is how much a chart may be stretched.
 ///
 /// # Errors
-/// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that.
-pub fn surface(mesh: &Triangles, regions: &[String], angle: f64, bound: Bound) -> Result<Surface, Fault> {
+/// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that. [`Fault::stopped`].
+pub fn surface(
+    mesh: &Triangles,
+    regions: &[String],
+    angle: f64,
+    bound: Bound,
+    watch: &mut dyn Watch,
+) -> Result<Surface, Fault> {
     let edges = Edges::of(&mesh.triangles);
     let features = features(mesh, &edges, angle);
-    let charts = charts(mesh, &edges, &features, bound);
+    let charts = charts(mesh, &edges, &features, bound, watch)?;
+    let cancel = watch.cancel();
     let is_feature = |edge: usize| features[edge].is_some();
     let (chains, links) = chains(mesh, &edges, &charts, &is_feature);
     let mut vertices = Vec::new();
@@ -90,6 +98,7 @@ pub fn surface(mesh: &Triangles, regions: &[String], angle: f64, bound: Bound) -
     let (mut specs, mut lifts) = (Vec::new(), Vec::new());
     let mut parts = vec![0_u32; regions.len()];
     for chart in &charts {
+        cancel.check()?;
         let region = mesh.region[chart.triangles[0] as usize] as usize;
         parts[region] += 1;
         let xyz = chart.points.iter().map(|&p| mesh.points[p as usize]).collect();
@@ -314,6 +323,7 @@ fn pieces(
 mod tests {
     use super::*;
     use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
+    use crate::core::progress::Nobody;
 
     #[test]
     fn surfaces_become_domains_whose_curves_are_shared() {
@@ -325,12 +335,12 @@ mod tests {
             (three_half_planes(), 3, 4),
             (plate(10, 0.1), 1, 1),
         ] {
-            let found = surface(&mesh, &names, ANGLE, Bound::default()).unwrap();
+            let found = surface(&mesh, &names, ANGLE, Bound::default(), &mut Nobody).unwrap();
             let domain = &found.domain;
             let own = domain.curves.iter().enumerate().filter(|(k, curve)| curve.first.index() == *k).count();
             assert_eq!((domain.faces.len(), own), (faces, curves));
             assert!(found.table(&implied_sizes(&mesh)).is_ok());
         }
-        assert!(surface(&torus(30, 20), &names, ANGLE, Bound::default()).is_ok());
+        assert!(surface(&torus(30, 20), &names, ANGLE, Bound::default(), &mut Nobody).is_ok());
     }
 }

@@ -10,6 +10,7 @@ use super::numbering::{Numbering, sort_by_number};
 use super::save::Shortest;
 use super::scan::{Scanner, parse_integer, parse_real, shown};
 use crate::core::fault::Fault;
+use crate::core::progress::Pace;
 
 /// Writes nodes (numbered from 1), triangles as S3 and quadrilaterals as S4 (numbered from 1, triangles first), an ELSET
 /// for each group of elements and an NSET for each group of lines.
@@ -126,8 +127,8 @@ enum Section {
 ///
 /// # Errors
 /// A fault with the line for a malformed node or element, an element of higher order, and numbers that come twice.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
-    let mut s = Scanner::new(name, bytes);
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).watched(pace);
     let mut mesh = MeshFile::default();
     let (mut node_numbers, mut triangle_numbers, mut quad_numbers) = (Vec::new(), Vec::new(), Vec::new());
     let mut nodes: Option<Numbering> = None;

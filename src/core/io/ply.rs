@@ -13,6 +13,7 @@ use super::mesh_file::{MeshFile, tag_of};
 use super::save::Shortest;
 use super::scan::shown;
 use crate::core::fault::Fault;
+use crate::core::progress::Pace;
 
 /// So many elements are parsed at a time, so that what the parser makes of them does not add up.
 const AT_A_TIME: usize = 256;
@@ -22,11 +23,12 @@ const AT_A_TIME: usize = 256;
 ///
 /// # Errors
 /// What is wrong with the file, with the line where it is text; and faces whose vertex does not exist.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut reader = Reader::new(bytes);
     let header = Parser::<Passed>::new().read_header(&mut reader).map_err(|error| told(name, &error, true))?;
     check_counts(name, &header, reader.get_ref().len())?;
     let mut mesh = MeshFile::default();
+    let mut go_on = |reader: &Reader<&[u8]>| pace.goes_on(bytes.len() - reader.get_ref().len(), bytes.len());
     for (kind, element) in &header.elements {
         match kind.as_str() {
             "vertex" => {
@@ -38,7 +40,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
                     }
                 }
                 mesh.points.reserve_exact(element.count);
-                each(name, &header, element, &mut reader, |vertex: Vertex| {
+                each(name, &header, element, &mut reader, &mut go_on, |vertex: Vertex| {
                     if vertex.0.is_finite() {
                         mesh.points.push(vertex.0);
                         return Ok(());
@@ -50,14 +52,14 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
             "face" => {
                 let tagged = element.properties.contains_key("region");
                 let mut count = 0;
-                each(name, &header, element, &mut reader, |face: Face| {
+                each(name, &header, element, &mut reader, &mut go_on, |face: Face| {
                     count += 1;
                     face.into_mesh(&mut mesh, tagged)
                         .map_err(|what| Fault::new(format!("Face {count} {what}")).at(name))
                 })?;
             }
             _ => {
-                each(name, &header, element, &mut reader, |_: Passed| Ok(()))?;
+                each(name, &header, element, &mut reader, &mut go_on, |_: Passed| Ok(()))?;
                 if kind == "tristrips" {
                     mesh.skipped.push(("triangle strip".to_owned(), element.count));
                 }
@@ -113,12 +115,13 @@ fn each<E: PropertyAccess>(
     header: &Header,
     element: &ElementDef,
     reader: &mut Reader<&[u8]>,
+    go_on: &mut dyn FnMut(&Reader<&[u8]>) -> bool,
     mut take: impl FnMut(E) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     let parser = Parser::<E>::new();
     let mut part = element.clone();
     let mut left = element.count;
-    while left > 0 {
+    while left > 0 && go_on(reader) {
         part.count = left.min(AT_A_TIME);
         left -= part.count;
         let text = header.encoding == Encoding::Ascii;

@@ -13,6 +13,7 @@ use super::save::Shortest;
 use super::scan::{Scanner, shown};
 use crate::core::fault::Fault;
 use crate::core::metric::tensor::Metric3;
+use crate::core::progress::Pace;
 
 /// The name of the point data that holds a metric, nine components a point in rows.
 const METRIC: &str = "metric";
@@ -157,8 +158,8 @@ struct Array {
 ///
 /// # Errors
 /// A fault with the line for what is not such a file.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
-    let mut s = Scanner::new(name, bytes);
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).watched(pace);
     let mut arrays = Vec::new();
     let mut room = String::new();
     let (mut is_grid, mut pieces) = (false, 0);
