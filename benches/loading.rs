@@ -88,7 +88,7 @@ fn told(name: &str, work: &dyn Fn(&mut dyn Watch) -> Result<(), Fault>) {
 }
 
 /// Moments at which work is told to end.
-const MOMENTS: u32 = 20;
+const MOMENTS: u32 = 10;
 
 struct Patient(Cancel);
 

@@ -28,7 +28,7 @@ impl Triangles {
         let used: Vec<u32> = (0..self.points.len() as u32).filter(|&k| is_used[k as usize]).collect();
         let places: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
         let (kept, standing) = weld(&places, SAME_PLACE, cancel);
-        if kept.len() == places.len() {
+        if kept.len() == places.len() || cancel.is_asked() {
             return 0;
         }
         // The first point of each place, by the order in which places were kept.

@@ -14,5 +14,6 @@ pub mod rigid;
 pub mod surface;
 pub mod curvature;
 pub mod given;
+pub mod census;
 #[cfg(test)]
 mod fixtures;

@@ -55,6 +55,7 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
     // Their bytes are not needed beside what welding needs.
     drop(scene.buffers);
     let (points, standing) = weld(&mesh.points, SINGLE, pace.cancel());
+    pace.cancel().check()?;
     mesh.points = points;
     mesh.triangles.iter_mut().flatten().for_each(|corner| *corner = standing[*corner as usize]);
     // Strips turn corners with triangles of no area, which are no triangles.

@@ -66,13 +66,14 @@ impl Welder {
 }
 
 /// Joins points within `relative` times the largest coordinate. Returns the points that stay, and for each point given the place
-/// of the one that stands for it. Told to end, it leaves all as they are.
+/// of the one that stands for it. Told to end, it
+/// returns nothing.
 pub fn weld(points: &[DVec3], relative: f64, cancel: &Cancel) -> (Vec<DVec3>, Vec<u32>) {
     let mut welder = Welder::new(relative, points.iter().fold(0.0, |largest, p| p.abs().max_element().max(largest)));
     let mut standing = Vec::with_capacity(points.len());
     for part in points.chunks(AT_A_TIME) {
         if cancel.is_asked() {
-            return (points.to_vec(), (0..points.len() as u32).collect());
+            return (Vec::new(), Vec::new());
         }
         standing.extend(part.iter().map(|&p| welder.weld(p)));
     }
