@@ -68,8 +68,8 @@ pub(super) struct Source {
 }
 
 /// How a mesh that is given is used.
-#[derive(Args, Default)]
-pub(super) struct MeshOptions {
+#[derive(Args, Clone, Debug, Default, PartialEq)]
+pub struct MeshOptions {
     /// What MESH is used for: its triangles, converted as they are (what a mesh in the plane is used for where nothing is said), or
     /// its shape, meshed anew (a mesh in space)
     #[arg(long = "use", value_name = "triangles|shape", value_parser = ["triangles", "shape"], hide_possible_values = true)]
@@ -113,6 +113,9 @@ pub(super) struct OpenArguments {
     /// A built-in case, a case file or a run file (.toml), a mesh, or a figure, which opens at the state that it shows
     #[arg(value_name = "CASE|MESH|FIGURE", default_value = "example1")]
     pub input: String,
+    /// Where one of these is given, a mesh is converted at once; else the window asks, and shows what the mesh is like
+    #[command(flatten)]
+    pub mesh: MeshOptions,
 }
 
 #[derive(Args)]
@@ -227,6 +230,7 @@ mod tests {
             "quadfront",
             "quadfront open",
             "quadfront open plate.toml",
+            "quadfront open bracket.stl --use shape --feature-angle 30",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }

@@ -10,6 +10,8 @@ use crate::core::convert::parameters::nearest;
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
+#[cfg(feature = "window")]
+use crate::core::io::case::Taking;
 use crate::core::io::case::{self, Case};
 use crate::core::io::figure;
 use crate::core::io::format::{self, Format};
@@ -139,13 +141,13 @@ pub(super) fn read(source: &Source, mesh: &MeshOptions) -> Result<Input, Fault> 
 
 /// The run of a file: a case or a mesh from its beginning, a run file, or what a figure carries.
 #[cfg(feature = "window")]
-pub(super) fn run_of(path: &Path) -> Result<Run, Fault> {
+pub(super) fn run_of(path: &Path, mesh: &MeshOptions) -> Result<Run, Fault> {
     let input = path.display().to_string();
     if input == "-" {
         return Err(Fault::new("The window opens files").at(input).remedy("Name a case, a mesh or a run file"));
     }
     let source = Source { input, quiet: true, ..Source::default() };
-    let mut input = read(&source, &MeshOptions::default())?;
+    let mut input = read(&source, mesh)?;
     input.run.shown = input.figure;
     Ok(input.run)
 }
@@ -185,6 +187,18 @@ fn read_plain(source: &Source, mesh: &MeshOptions) -> Result<Input, Fault> {
             .remedy(format!("Write {key} in the case, or leave {option} out")));
     }
     Ok(Input::of(run, None))
+}
+
+/// How the options say that a mesh is taken.
+///
+/// # Errors
+/// Options that no case could have.
+#[cfg(feature = "window")]
+pub(super) fn taking_of(path: &Path, options: &MeshOptions) -> Result<Taking, Fault> {
+    match mesh_case(path.to_path_buf(), &Source::default(), options)?.domain {
+        case::DomainSource::Mesh { taking, .. } => Ok(taking),
+        _ => Ok(Taking::default()),
+    }
 }
 
 /// An option for meshes, as the line of a case that says the same.

@@ -21,7 +21,7 @@ use clap::Parser;
 
 use crate::core::fault::Fault;
 use crate::core::io::save;
-use command_line::{Cli, Command};
+use command_line::{Cli, Command, OpenArguments};
 use progress::INTERRUPT;
 
 /// A checked mesh falls short.
@@ -55,9 +55,9 @@ pub fn run() -> ExitCode {
     let done = match cli
         .command
         .as_ref()
-        .unwrap_or(&Command::Open(command_line::OpenArguments { input: "example1".to_owned() }))
+        .unwrap_or(&Command::Open(OpenArguments { input: "example1".to_owned(), mesh: Default::default() }))
     {
-        Command::Open(arguments) => open(&arguments.input),
+        Command::Open(arguments) => open(arguments),
         Command::Convert(arguments) => convert::convert(arguments),
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
         Command::Check(arguments) => check::check(arguments),
@@ -75,17 +75,22 @@ pub fn run() -> ExitCode {
 
 /// Opens the window.
 #[cfg(feature = "window")]
-fn open(input: &str) -> Result<ExitCode, Fault> {
-    // What does not exist is said where the command was given.
-    let source = window::Source::named(input);
+fn open(arguments: &OpenArguments) -> Result<ExitCode, Fault> {
+    let OpenArguments { input, mesh } = arguments;
+    let mut source = window::Source::named(input);
+    // What does not exist, and options that do not fit, are said where the command was given.
+    input::run_of(std::path::Path::new(input), mesh)?;
     if let window::Source::File(path) = &source {
-        input::run_of(path)?;
+        save::find(path)?;
+        if *mesh != Default::default() {
+            source = window::Source::Mesh(path.clone(), mesh.clone());
+        }
     }
     window::open(source)
 }
 
 #[cfg(not(feature = "window"))]
-fn open(_: &str) -> Result<ExitCode, Fault> {
+fn open(_: &OpenArguments) -> Result<ExitCode, Fault> {
     Err(Fault::new("This quadfront was built without its window")
         .remedy("Build it with the feature \"window\", or use quadfront convert and quadfront render"))
 }

@@ -123,6 +123,18 @@ fn buffered<W: Write>(out: W, write: impl FnOnce(&mut dyn Write) -> io::Result<(
     out.into_inner().map_err(|unwritten| unwritten.into_error())
 }
 
+/// Whether there is such a file and it may be read.
+///
+/// # Errors
+/// As [`load`].
+pub fn find(path: &Path) -> Result<(), Fault> {
+    match File::open(path).and_then(|file| file.metadata()) {
+        Ok(meta) if meta.is_dir() => Err(explain(path, "read", &ErrorKind::IsADirectory.into())),
+        Ok(_) => Ok(()),
+        Err(error) => Err(explain(path, "read", &error)),
+    }
+}
+
 /// Reads a whole file.
 ///
 /// # Errors
