@@ -83,7 +83,8 @@ fn open(harness: &mut Harness<'static, App>, path: &Path) {
 
 /// Waits for the picture that the panel asks for.
 fn shown(harness: &mut Harness<'static, App>) {
-    harness.run_steps(2);
+    // A click takes a frame, what it asks for another.
+    harness.run_steps(4);
     until(harness, "shown", |app| app.state.import.as_ref().is_some_and(|import| !import.is_behind()));
 }
 
@@ -298,4 +299,30 @@ fn of_many_settings_the_newest_is_shown() {
     shown(&mut harness);
     let import = harness.state().state.import.as_ref().unwrap();
     assert_eq!(import.shown.as_ref().unwrap().wanted.feature_angle, 58.0_f64.to_radians());
+}
+
+#[test]
+fn look_temporary() {
+    let Some(mut harness) = window() else { return };
+    for (k, path) in
+        std::env::var("QUADFRONT_LOOK").unwrap_or_default().split(':').filter(|p| !p.is_empty()).enumerate()
+    {
+        let begin = Instant::now();
+        open(&mut harness, Path::new(path));
+        println!("{path} shown after {:?}", begin.elapsed());
+        picture(&mut harness, &format!("look{k}"));
+        harness.state_mut().apply(Command::ToggleTheme);
+        harness.run_steps(3);
+        shown(&mut harness);
+        picture(&mut harness, &format!("look{k}-light"));
+        harness.get_by_label("Convert").click();
+        harness.run_steps(20);
+        std::thread::sleep(Duration::from_millis(700));
+        harness.run_steps(2);
+        picture(&mut harness, &format!("look{k}-converting"));
+        harness.state_mut().apply(Command::ToggleTheme);
+        harness.run_steps(3);
+        harness.state_mut().apply(Command::CancelImport);
+        until(&mut harness, "stopped", |app| !app.state.is_opening());
+    }
 }

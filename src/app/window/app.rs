@@ -308,7 +308,6 @@ impl eframe::App for App {
         self.state.times.frame(std::mem::take(&mut self.moving));
         self.state.times.first(self.views.has_shown());
         self.state.hear();
-        self.state.look_at_import(context.theme() == egui::Theme::Dark);
         self.graphics(&context);
         self.measure(&context, frame);
         self.keys(&context);
@@ -320,6 +319,7 @@ impl eframe::App for App {
             let dark = context.theme() == egui::Theme::Dark;
             context.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
         }
+        self.state.look_at_import(context.theme() == egui::Theme::Dark);
         self.play(&context);
         self.state.hear_soon();
         self.files(&context);
@@ -335,7 +335,7 @@ impl eframe::App for App {
         if state.import.is_some() {
             panels::offer::show(ui, state, commands, palette);
             panels::messages::show(ui, state, palette);
-            panels::import::show(ui, state, commands, palette);
+            panels::import::show(ui, state, plain, commands, palette);
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
                 self.views.given(ui, state, commands, palette);
             });

@@ -174,3 +174,42 @@ impl Import {
         news
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drag_is_taken_back_as_one_and_what_follows_for_itself() {
+        let mut import = Import::begin(PathBuf::from("no such.stl"), MeshOptions::default(), 0, Arc::new(|| {}));
+        let angle = |degrees: f64| MeshOptions { feature_angle: Some(degrees), ..MeshOptions::default() };
+        for degrees in [30.0, 31.0, 32.0] {
+            import.set(angle(degrees), true);
+        }
+        // Let go.
+        import.set(angle(32.0), false);
+        import.set(angle(50.0), true);
+        assert_eq!(import.taking().feature_angle, 50.0_f64.to_radians());
+        let mut back = || {
+            import.take_back(true);
+            import.options.feature_angle
+        };
+        assert_eq!([back(), back(), back()], [Some(32.0), None, None]);
+        import.take_back(false);
+        assert_eq!(import.options.feature_angle, Some(32.0));
+    }
+
+    #[test]
+    fn a_mesh_that_is_not_there_is_refused_with_its_name() {
+        let mut import = Import::begin(PathBuf::from("no such.stl"), MeshOptions::default(), 0, Arc::new(|| {}));
+        let begin = std::time::Instant::now();
+        let fault = loop {
+            if let News::Refused(fault) = import.look(true) {
+                break fault;
+            }
+            assert!(begin.elapsed().as_secs() < 20);
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        };
+        assert!(fault.to_string().starts_with("no such.stl: There is no such file"), "{fault}");
+    }
+}

@@ -1,8 +1,8 @@
 //! How a mesh file is taken, and what it is like: the words of the command line as a form, counts, what was mended.
 
 use eframe::egui::{
-    self, Align, Button, ComboBox, DragValue, Grid, Layout, Panel, ProgressBar, Response, RichText, Role, ScrollArea,
-    Sense, Slider, Ui, Vec2, WidgetInfo,
+    self, Align, Button, ComboBox, DragValue, Frame, Grid, Layout, Panel, ProgressBar, Response, RichText, Role,
+    ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo,
 };
 
 use super::{heading, inset, note};
@@ -27,12 +27,12 @@ const NAMES: f32 = 92.0;
 const CHORD: f64 = 0.01;
 
 /// Shows it at the left of the view.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, plain: Frame, commands: &mut Vec<Command>, palette: &Palette) {
     let is_opening = state.is_opening();
     let opening = state.progress.clone().filter(|_| is_opening);
     let Some(import) = &state.import else { return };
     let progress = if is_opening { opening } else { import.progress.clone() };
-    Panel::left("import").exact_size(WIDTH).resizable(false).frame(egui::Frame::NONE).show(ui, |ui| {
+    Panel::left("import").exact_size(WIDTH).resizable(false).frame(plain).show(ui, |ui| {
         Panel::bottom("import buttons").resizable(false).frame(inset()).show(ui, |ui| {
             under_way(ui, import, is_opening, progress.as_ref(), palette);
             buttons(ui, import, is_opening, commands);
@@ -235,22 +235,25 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     let census = loaded.census;
     let extent = loaded.extent * import.taking().scale;
     let named = |n: usize, one: &str, several: &str| format!("{} {}", grouped(n), if n == 1 { one } else { several });
-    Grid::new("counts").num_columns(2).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES).show(ui, |ui| {
-        let mut line = |name: &str, value: String| {
-            ui.label(note(name, palette));
-            let text = RichText::new(value).font(theme::regular(theme::TABLE)).color(ink(palette.text));
-            ui.add(egui::Label::new(text).wrap());
-            ui.end_row();
-        };
-        line("extent", [extent.x, extent.y, extent.z].map(three_digits).join(" × "));
-        line("nodes", grouped(census.nodes));
-        line("triangles", grouped(census.triangles));
-        line("components", grouped(census.components));
-        line("boundary loops", grouped(census.border_loops));
-        if loaded.regions.len() > 1 {
-            line("regions", grouped(loaded.regions.len()));
-        }
-    });
+    Grid::new("counts").num_columns(2).striped(false).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES).show(
+        ui,
+        |ui| {
+            let mut line = |name: &str, value: String| {
+                ui.label(note(name, palette));
+                let text = RichText::new(value).font(theme::regular(theme::TABLE)).color(ink(palette.text));
+                ui.add(egui::Label::new(text).wrap());
+                ui.end_row();
+            };
+            line("extent", [extent.x, extent.y, extent.z].map(three_digits).join(" × "));
+            line("nodes", grouped(census.nodes));
+            line("triangles", grouped(census.triangles));
+            line("components", grouped(census.components));
+            line("boundary loops", grouped(census.border_loops));
+            if loaded.regions.len() > 1 {
+                line("regions", grouped(loaded.regions.len()));
+            }
+        },
+    );
     let Some(shown) = &import.shown else { return };
     ui.add_space(6.0);
     let features = &shown.features;
