@@ -286,6 +286,36 @@ fn reading_and_converting_are_cancelled_and_the_window_goes_on() {
 }
 
 #[test]
+fn how_a_mesh_was_taken_is_kept_and_offered_again() {
+    if !has_adapter() {
+        return;
+    }
+    let (folder, kept) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let path = stl(folder.path(), "tube.stl", &tube(4));
+    let begin = |folder: &Path| {
+        let folder = folder.to_path_buf();
+        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
+        let mut harness = builder.build_eframe(|cc| App::new(cc, None).keeping(Some(folder)));
+        harness.run_steps(2);
+        harness
+    };
+    let mut harness = begin(kept.path());
+    open(&mut harness, &path);
+    enter(&mut harness, "Feature angle", "60");
+    harness.get_by_label("Convert").click();
+    converted(&mut harness);
+    let text = harness.state().state.run().unwrap().case.text;
+    harness.run_steps(4);
+    drop(harness);
+    let mut harness = begin(kept.path());
+    until(&mut harness, "offered", |app| app.state.autosave.as_ref().is_some_and(|kept| kept.offer().is_some()));
+    harness.get_by_label("Open it").click();
+    converted(&mut harness);
+    assert_eq!(harness.state().state.run().unwrap().case.text, text);
+    assert!(text.contains("feature_angle = 60.0"), "{text}");
+}
+
+#[test]
 fn of_many_settings_the_newest_is_shown() {
     let Some(mut harness) = window() else { return };
     let folder = tempfile::tempdir().unwrap();
@@ -299,30 +329,4 @@ fn of_many_settings_the_newest_is_shown() {
     shown(&mut harness);
     let import = harness.state().state.import.as_ref().unwrap();
     assert_eq!(import.shown.as_ref().unwrap().wanted.feature_angle, 58.0_f64.to_radians());
-}
-
-#[test]
-fn look_temporary() {
-    let Some(mut harness) = window() else { return };
-    for (k, path) in
-        std::env::var("QUADFRONT_LOOK").unwrap_or_default().split(':').filter(|p| !p.is_empty()).enumerate()
-    {
-        let begin = Instant::now();
-        open(&mut harness, Path::new(path));
-        println!("{path} shown after {:?}", begin.elapsed());
-        picture(&mut harness, &format!("look{k}"));
-        harness.state_mut().apply(Command::ToggleTheme);
-        harness.run_steps(3);
-        shown(&mut harness);
-        picture(&mut harness, &format!("look{k}-light"));
-        harness.get_by_label("Convert").click();
-        harness.run_steps(20);
-        std::thread::sleep(Duration::from_millis(700));
-        harness.run_steps(2);
-        picture(&mut harness, &format!("look{k}-converting"));
-        harness.state_mut().apply(Command::ToggleTheme);
-        harness.run_steps(3);
-        harness.state_mut().apply(Command::CancelImport);
-        until(&mut harness, "stopped", |app| !app.state.is_opening());
-    }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-pub use preview::{Loaded, Shown};
+pub use preview::{KINDS, Loaded, Shown};
 use preview::{Preview, Told, Wanted};
 
 use super::session::Wake;

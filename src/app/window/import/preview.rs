@@ -12,7 +12,7 @@ use crate::app::window::session::{EVERY, Wake, words_of};
 use crate::app::window::state::Progress;
 use crate::app::window::theme;
 use crate::core::background::import::is_plane;
-use crate::core::discrete::census::{Census, Division};
+use crate::core::discrete::census::{Census, Division, count_of};
 use crate::core::discrete::chart::{Bound, charts};
 use crate::core::discrete::edges::{Edges, Triangles};
 use crate::core::discrete::features::{Feature, features};
@@ -21,6 +21,10 @@ use crate::core::fault::Fault;
 use crate::core::io::format::read_mesh_watched;
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::render::scene::{Given, Scene};
+
+/// Kinds of features, in the order in which they are told.
+pub const KINDS: [Feature; 5] =
+    [Feature::Fold, Feature::Region, Feature::Boundary, Feature::Branching, Feature::Conflict];
 
 /// A surface of more triangles than this is shown with its features before its charts are known.
 const LARGE: usize = 20_000;
@@ -57,7 +61,8 @@ pub struct Wanted {
 /// A picture, with what it shows.
 pub struct Shown {
     pub wanted: Wanted,
-    pub features: Arc<[Option<Feature>]>,
+    /// How many edges are features of each kind, as [`KINDS`] has them.
+    pub counts: [usize; 5],
     /// The charts; none where they are not known yet, or there are none.
     pub division: Option<Arc<Division>>,
     pub scene: Arc<Scene>,
@@ -213,8 +218,8 @@ impl Work {
             let palette = theme::palette(wanted.dark);
             let given = Given { mesh, edges, features: &features, division: division.as_deref(), palette };
             let scene = Scene::of_given(&given, generation, cancel).ok_or_else(Fault::stopped)?;
-            let (wanted, features) = (wanted.clone(), features.clone());
-            Ok::<_, Fault>(Shown { wanted, features, division, scene: Arc::new(scene) })
+            let counts = KINDS.map(|kind| count_of(&features, kind));
+            Ok::<_, Fault>(Shown { wanted: wanted.clone(), counts, division, scene: Arc::new(scene) })
         };
         let division = match (&self.division, wanted.bound) {
             (_, None) => None,
@@ -285,7 +290,7 @@ mod tests {
         });
         let Some(Told::Shown(last)) = last else { panic!("no picture of the last wish") };
         assert_eq!((last.scene.generation, last.division.as_ref().unwrap().charts > 1), (300, true));
-        assert!(last.features.iter().all(Option::is_none), "no fold is beyond 150 degrees");
+        assert_eq!(last.counts, [0; 5], "no fold is beyond 150 degrees");
         assert!(shown < 150, "{shown}");
     }
 

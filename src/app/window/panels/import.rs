@@ -9,11 +9,10 @@ use super::{heading, inset, note};
 use crate::app::command_line::MeshOptions;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
-use crate::app::window::import::{Import, UNITS};
+use crate::app::window::import::{Import, KINDS, UNITS};
 use crate::app::window::state::{Progress, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::discrete::census::count_of;
 use crate::core::discrete::features::Feature;
 use crate::core::io::case::{MeshUse, Taking};
 use crate::core::io::save::Shortest;
@@ -256,16 +255,14 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     );
     let Some(shown) = &import.shown else { return };
     ui.add_space(6.0);
-    let features = &shown.features;
-    let kinds = [
-        (Feature::Fold, "folded edge", "folded edges"),
-        (Feature::Region, "edge between regions", "edges between regions"),
-        (Feature::Boundary, "edge of the boundary", "edges of the boundary"),
-        (Feature::Branching, "edge of three triangles or more", "edges of three triangles or more"),
-        (Feature::Conflict, "edge whose triangles disagree", "edges whose triangles disagree"),
-    ];
-    for (kind, one, several) in kinds {
-        let count = count_of(features, kind);
+    for (kind, count) in KINDS.into_iter().zip(shown.counts) {
+        let (one, several) = match kind {
+            Feature::Fold => ("folded edge", "folded edges"),
+            Feature::Region => ("edge between regions", "edges between regions"),
+            Feature::Boundary => ("edge of the boundary", "edges of the boundary"),
+            Feature::Branching => ("edge of three triangles or more", "edges of three triangles or more"),
+            Feature::Conflict => ("edge whose triangles disagree", "edges whose triangles disagree"),
+        };
         if count > 0 || kind == Feature::Fold {
             swatch(ui, feature_line(palette, kind), named(count, one, several), palette);
         }
@@ -326,7 +323,9 @@ fn three_digits(value: f64) -> String {
     Shortest(format!("{value:.2e}").parse().unwrap_or(value)).to_string()
 }
 
+/// How far the work is. The room is there when nothing is under way too, so that no button moves from under the pointer.
 fn under_way(ui: &mut Ui, import: &Import, is_opening: bool, progress: Option<&Progress>, palette: &Palette) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 30.0), Sense::hover());
     let text = match progress {
         Some(progress) => words::progress(progress),
         None if is_opening => "Converting".to_owned(),
@@ -337,11 +336,11 @@ fn under_way(ui: &mut Ui, import: &Import, is_opening: bool, progress: Option<&P
         Some(Progress { done, total, .. }) if *total > 0 => (*done as f32 / *total as f32).clamp(0.0, 1.0),
         _ => 0.0,
     };
-    ui.add_space(2.0);
-    ui.label(note(text, palette));
-    let bar = ProgressBar::new(share).desired_height(3.0).corner_radius(0.0).fill(ink(palette.base));
-    ui.add(bar).widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, "How far it is"));
-    ui.add_space(4.0);
+    ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+        ui.label(note(text, palette));
+        let bar = ProgressBar::new(share).desired_height(3.0).corner_radius(0.0).fill(ink(palette.base));
+        ui.add(bar).widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, "How far it is"));
+    });
 }
 
 fn buttons(ui: &mut Ui, import: &Import, is_opening: bool, commands: &mut Vec<Command>) {
