@@ -23,7 +23,8 @@ pub(super) struct Cli {
 
 #[derive(Subcommand)]
 pub(super) enum Command {
-    /// Open the window: step through a conversion, forward and back
+    /// Open the window: step through a conversion, forward and back. Of a mesh it shows first what it is like and asks how it is
+    /// taken, unless one of the options below says it
     Open(OpenArguments),
     /// Make an all-quadrilateral mesh of a case or of a triangle mesh
     Convert(ConvertArguments),
@@ -113,7 +114,6 @@ pub(super) struct OpenArguments {
     /// A built-in case, a case file or a run file (.toml), a mesh, or a figure, which opens at the state that it shows
     #[arg(value_name = "CASE|MESH|FIGURE", default_value = "example1")]
     pub input: String,
-    /// Where one of these is given, a mesh is converted at once; else the window asks, and shows what the mesh is like
     #[command(flatten)]
     pub mesh: MeshOptions,
 }

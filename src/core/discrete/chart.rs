@@ -83,12 +83,18 @@ pub fn charts(
     let surface = Surface::new(mesh, edges, features, cancel.clone());
     let all = Part::of((0..mesh.triangles.len() as u32).collect());
     let mut waiting = surface.connected(&all);
-    let (mut charts, mut done) = (Vec::new(), 0);
+    let (mut charts, mut done, mut told) = (Vec::new(), 0, 0);
     while let Some(part) = waiting.pop() {
         // What comes from work that was told to end is of no use.
         cancel.check()?;
-        watch.tell(Stage::Chart, done, total);
-        match surface.chart(&part, bound) {
+        told = told.max(done);
+        watch.tell(Stage::Chart, told, total);
+        let mut tell = |share: f64| {
+            // It may have to be cut yet; what was told once is not taken back.
+            told = told.max(done + (0.5 * share * part.triangles.len() as f64) as u64);
+            watch.tell(Stage::Chart, told, total);
+        };
+        match surface.chart(&part, bound, &mut tell) {
             Next::Taken(chart) => {
                 done += chart.triangles.len() as u64;
                 charts.push(*chart);
@@ -196,8 +202,8 @@ impl<'a> Surface<'a> {
         pieces
     }
 
-    /// The chart of a part, or what else has to be done with it.
-    fn chart(&self, part: &Part, bound: Bound) -> Next {
+    /// The chart of a part, or what else has to be done with it; tells how far it is, from 0 to 1.
+    fn chart(&self, part: &Part, bound: Bound, tell: &mut dyn FnMut(f64)) -> Next {
         let mut chart = self.nodes(part);
         if self.cancel.is_asked() {
             return Next::Cut;
@@ -211,7 +217,7 @@ impl<'a> Surface<'a> {
             return Next::Cut;
         }
         let xyz: Vec<DVec3> = chart.points.iter().map(|&p| self.mesh.points[p as usize]).collect();
-        let rigid = rigid::map(&xyz, &chart.local, &chart.loops, self.grid, &self.cancel);
+        let rigid = rigid::map(&xyz, &chart.local, &chart.loops, self.grid, &self.cancel, tell);
         let mapped = match rigid {
             None if holes == 0 => tutte::map(&xyz, &chart.local, chart.loops[0] as usize, self.grid, &self.cancel),
             found => found,

@@ -13,16 +13,27 @@ use crate::core::progress::Cancel;
 
 /// Rounds of turning and following.
 const ROUNDS: usize = 40;
+/// Steps of the solver that a round takes on a large surface, about.
+const STEPS: f64 = 400.0;
+/// So many rows of the matrix are gone through before that is told.
+const TELL: usize = 1 << 20;
 /// Nodes that move by less than this part of the size are at rest.
 const AT_REST: f64 = 1e-4;
 /// The least weight of an edge, as a part of that between equilateral triangles: blunt angles would pull backwards.
 const LEAST_WEIGHT: f64 = 1e-2;
 
 /// Where the nodes lie in the plane; those of the border loops (so many each) come first, with the triangles to their left. `None`
-/// where that is not one to one, or where the work is told to end.
+/// where that is not one to one, or where the work is told to end. `tell` is told how far it is, from 0 to 1.
 ///
 /// Coordinates are multiples of `grid`, a power of two: so they stay what they are when charts are laid side by side.
-pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32], grid: f64, cancel: &Cancel) -> Option<Vec<DVec2>> {
+pub fn map(
+    xyz: &[DVec3],
+    triangles: &[[u32; 3]],
+    loops: &[u32],
+    grid: f64,
+    cancel: &Cancel,
+    tell: &mut dyn FnMut(f64),
+) -> Option<Vec<DVec2>> {
     let go_on = || (!cancel.is_asked()).then_some(());
     let flat: Vec<[DVec2; 3]> = triangles.iter().map(|t| flattened(t.map(|k| xyz[k as usize]))).collect();
     let weights: Vec<[f64; 3]> = flat.iter().map(weights).collect();
@@ -55,7 +66,18 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32], grid: f64, canc
     let solver = means.factored();
     let origin = uv[0];
     uv.iter_mut().for_each(|p| *p -= origin);
-    for _ in 0..ROUNDS {
+    let mut work = 0;
+    for round in 0..ROUNDS {
+        let mut steps = 0.0;
+        let mut goes_on = || {
+            (steps, work) = (steps + 1.0, work + n);
+            if work > TELL {
+                work = 0;
+                // Nobody knows how many steps a round takes.
+                tell((round as f64 + steps / (steps + STEPS)) / ROUNDS as f64);
+            }
+            !cancel.is_asked()
+        };
         let mut right = vec![DVec2::ZERO; n];
         for ((t, q), w) in triangles.iter().zip(&flat).zip(&weights) {
             // The turn that brings the triangle nearest to where it lies: from the sums of u.q and u x q over its sides.
@@ -73,9 +95,9 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32], grid: f64, canc
                 right[t[i] as usize] -= side;
             }
         }
-        let side = |axis: usize| -> Option<Vec<f64>> {
+        let mut side = |axis: usize| -> Option<Vec<f64>> {
             let b: Vec<f64> = (1..n).map(|i| right[i][axis] / sums[i]).collect();
-            solver.solve(&b, uv[1..].iter().map(|p| p[axis]).collect(), 1e-9 * size, cancel)
+            solver.solve(&b, uv[1..].iter().map(|p| p[axis]).collect(), 1e-9 * size, &mut goes_on)
         };
         let (x, y) = (side(0)?, side(1)?);
         let mut moved = 0.0_f64;

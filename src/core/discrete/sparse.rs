@@ -3,8 +3,6 @@
 //! for such matrices. Plain loops in one order: the same numbers on every machine, which libraries that choose their
 //! arithmetic by the processor do not promise.
 
-use crate::core::progress::Cancel;
-
 /// The matrix I - W, row by row: columns ascending, the diagonal among them.
 pub struct Means {
     start: Vec<u32>,
@@ -25,9 +23,9 @@ pub struct Solver {
 
 impl Solver {
     /// The solution for a right side, sought from `x` on until no equation misses by more than `near`, or as near as rounding lets it;
-    /// `None` where there is none, or where the work is told to end.
-    pub fn solve(&self, b: &[f64], x: Vec<f64>, near: f64, cancel: &Cancel) -> Option<Vec<f64>> {
-        self.means.solve(&self.factors, b, x, near, cancel)
+    /// `None` where there is none, or where `goes_on`, which is asked before each step, does not want it any more.
+    pub fn solve(&self, b: &[f64], x: Vec<f64>, near: f64, goes_on: &mut dyn FnMut() -> bool) -> Option<Vec<f64>> {
+        self.means.solve(&self.factors, b, x, near, goes_on)
     }
 }
 
@@ -106,7 +104,14 @@ impl Means {
         Solver { means: self, factors }
     }
 
-    fn solve(&self, factors: &[f64], b: &[f64], mut x: Vec<f64>, near: f64, cancel: &Cancel) -> Option<Vec<f64>> {
+    fn solve(
+        &self,
+        factors: &[f64],
+        b: &[f64],
+        mut x: Vec<f64>,
+        near: f64,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Vec<f64>> {
         let n = self.rows();
         let mut work = vec![0.0; n];
         let (mut p, mut v) = (vec![0.0; n], vec![0.0; n]);
@@ -123,7 +128,7 @@ impl Means {
             p.fill(0.0);
             v.fill(0.0);
             for _ in 0..MOST_STEPS {
-                if cancel.is_asked() {
+                if !goes_on() {
                     return None;
                 }
                 let new = dot(&shadow, &residual);
@@ -194,10 +199,8 @@ mod tests {
             };
             let mut b = vec![0.0; n as usize];
             b[n as usize - 1] = 1.0 - pull;
-            let x = Means::new((0..n).map(row))
-                .factored()
-                .solve(&b, vec![0.0; n as usize], 1e-13, &Cancel::default())
-                .unwrap();
+            let x =
+                Means::new((0..n).map(row)).factored().solve(&b, vec![0.0; n as usize], 1e-13, &mut || true).unwrap();
             for i in 0..n as usize {
                 let before = if i == 0 { 0.0 } else { x[i - 1] };
                 let after = if i + 1 == n as usize { 1.0 } else { x[i + 1] };

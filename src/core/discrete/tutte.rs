@@ -58,7 +58,7 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
             rows.push(inside);
         }
         let solver = Means::new(rows.into_iter()).factored();
-        let [x, y] = right.map(|b| solver.solve(&b, b.clone(), NEAR, cancel));
+        let [x, y] = right.map(|b| solver.solve(&b, b.clone(), NEAR, &mut || !cancel.is_asked()));
         let (x, y) = (x?, y?);
         uv.extend(x.into_iter().zip(y).map(|(x, y)| DVec2::new(x, y) * radius));
     }
