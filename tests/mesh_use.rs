@@ -5,6 +5,10 @@ use std::path::Path;
 
 use glam::DVec3;
 use quadfront::core::convert::conversion::convert;
+use quadfront::core::discrete::chart::{Bound, charts};
+use quadfront::core::discrete::edges::Edges;
+use quadfront::core::discrete::features::{ANGLE, features};
+use quadfront::core::discrete::sound::sound;
 use quadfront::core::fault::Fault;
 use quadfront::core::io::case::Case;
 use quadfront::core::io::export::Export;
@@ -186,4 +190,53 @@ fn what_is_written_of_a_surface_reads_back_the_same() {
         let back = read_mesh(&path, None).unwrap();
         assert_eq!((&back.points, &back.quads), (&quads.points, &quads.quads), "{format:?}");
     }
+}
+
+/// A vase: `n` by `n` squares around and along, as OBJ with the texture of its unrolled side, torn at the angle `seam` (in squares).
+fn vase(n: u32, seam: u32, texture: bool) -> Vec<u8> {
+    let mut text = String::new();
+    for k in 0..n * (n + 1) {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k % n) / f64::from(n));
+        let z = f64::from(k / n) / f64::from(n);
+        let r = 0.4 + 0.1 * libm::sin(4.0 * z);
+        text += &format!("v {} {} {}\n", r * cos, r * sin, 2.0 * z);
+    }
+    for k in 0..(n + 1) * (n + 1) {
+        text += &format!("vt {} {}\n", f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n));
+    }
+    for k in 0..n * n {
+        let corner = |i: u32, j: u32| {
+            let (across, along) = (k % n + i, k / n + j);
+            let point = along * n + across % n + 1;
+            let place = along * (n + 1) + (k % n + n - seam) % n + i + 1;
+            if texture { format!("{point}/{place}") } else { point.to_string() }
+        };
+        text += &format!("f {} {} {} {}\n", corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1));
+    }
+    text.into_bytes()
+}
+
+#[test]
+fn the_texture_of_a_file_lays_its_charts_where_it_is_one_to_one() {
+    let n = 24;
+    let vertical = |bytes: &[u8], seam: u32| {
+        let given = read_bytes("a.obj", bytes, Format::Obj).unwrap();
+        let laid = sound(&given).unwrap();
+        let edges = Edges::of(&laid.mesh.triangles);
+        let features = features(&laid.mesh, &edges, ANGLE);
+        let found = charts(&laid.mesh, &edges, &features, Bound::default());
+        assert_eq!(found.len(), 1);
+        // Points that are there twice: those of the slit.
+        let mut points = found[0].points.clone();
+        points.sort_unstable();
+        let twice: Vec<u32> = points.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0] % n).collect();
+        assert_eq!(twice.len(), n as usize + 1);
+        assert!(used(&given, "use = \"shape\"").unwrap().quads.len() > 200);
+        twice.iter().all(|&at| at == seam)
+    };
+    assert!([5, 17].iter().all(|&seam| vertical(&vase(n, seam, true), seam)));
+    assert!(![5, 17].iter().all(|&seam| vertical(&vase(n, seam, false), seam)));
+    // Numbers that lead nowhere are passed over.
+    let damaged = String::from_utf8(vase(n, 5, true)).unwrap().replace("/1 ", "/999999 ");
+    assert!(!vertical(damaged.replace("vt 0 1\n", "vt nan\n").as_bytes(), 17));
 }

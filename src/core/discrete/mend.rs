@@ -56,6 +56,7 @@ impl Triangles {
                 let in_side = of_triangle.iter().filter(|h| h.0 == side).map(|h| h.2);
                 let [a, b] = self.side(side);
                 let apex = self.triangles[t][(side as usize + 2) % 3];
+                self.forget_texture(t);
                 let along: Vec<u32> = [a].into_iter().chain(in_side).chain([b]).collect();
                 stitched += along.len() - 2;
                 for (k, piece) in along.windows(2).enumerate() {
@@ -65,6 +66,9 @@ impl Triangles {
                     } else {
                         self.triangles.push(piece);
                         self.region.push(self.region[t]);
+                        if !self.texture.is_empty() {
+                            self.texture.push(None);
+                        }
                     }
                 }
             }

@@ -11,6 +11,7 @@ pub mod chart;
 pub mod sparse;
 pub mod tutte;
 pub mod rigid;
+pub mod texture;
 pub mod surface;
 pub mod curvature;
 pub mod given;

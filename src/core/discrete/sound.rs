@@ -70,7 +70,10 @@ pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
     let name = |&tag: &u32| file.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned);
     let regions = tags.iter().map(name).collect();
     let region = (0..file.triangles.len()).map(|i| tags.partition_point(|&t| t < tag(i)) as u32).collect();
-    let mut mesh = Triangles { points: file.points, triangles: file.triangles, region };
+    let texture = file.texture.as_ref().map_or_else(Vec::new, |texture| {
+        (0..file.triangles.len()).map(|triangle| texture.of_triangle(triangle)).collect()
+    });
+    let mut mesh = Triangles { points: file.points, triangles: file.triangles, region, texture };
     let welded = mesh.weld();
     tell(welded, "point lay on another and was made one with it", "points lay on others and were made one with them");
     let stitched = mesh.stitch();
@@ -99,6 +102,15 @@ impl Triangles {
         self.triangles.retain(|_| at.next() != Some(&false));
         let mut at = keep.iter();
         self.region.retain(|_| at.next() != Some(&false));
+        let mut at = keep.iter();
+        self.texture.retain(|_| at.next() != Some(&false));
+    }
+
+    /// Lets a triangle that was changed lie nowhere on the texture.
+    pub(super) fn forget_texture(&mut self, triangle: usize) {
+        if let Some(places) = self.texture.get_mut(triangle) {
+            *places = None;
+        }
     }
 
     /// Takes out triangles with the nodes of an earlier one. How many those were.
@@ -169,6 +181,8 @@ impl Triangles {
                         self.triangles[o] = [a, nodes[apex], far];
                         self.triangles[t] = [nodes[apex], b, far];
                         self.region[t] = self.region[o];
+                        self.forget_texture(t);
+                        self.forget_texture(o);
                         (touched[o], touched[t]) = (true, true);
                         taken += 1;
                         continue;
@@ -220,6 +234,9 @@ impl Triangles {
                 turned[t] = Some(turn);
                 if turn {
                     self.triangles[t].swap(1, 2);
+                    if let Some(Some(places)) = self.texture.get_mut(t) {
+                        places.swap(1, 2);
+                    }
                     count += 1;
                 }
             }

@@ -1,6 +1,6 @@
 //! A mesh as files know it: points and elements by index, with tags, groups and data; no connectivity.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::core::metric::tensor::Metric3;
 
@@ -57,8 +57,62 @@ pub struct MeshFile {
     pub point_data: Vec<Data>,
     /// Numbers at elements (triangles first, then quadrilaterals).
     pub element_data: Vec<Data>,
+    /// Texture coordinates, where the file has them.
+    pub texture: Option<Texture>,
     /// Element types that the file has and that are not read, with their counts ("tetrahedron", 12).
     pub skipped: Vec<(String, usize)>,
+}
+
+/// Where the corners of elements lie on a texture, by the number of the place: a point may lie at several places, one for each
+/// side of a seam. Numbers may lead nowhere.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Texture {
+    /// The places.
+    pub places: Vec<DVec2>,
+    /// For each triangle the places of its corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// Likewise for each quadrilateral.
+    pub quads: Vec<[u32; 4]>,
+    /// And for each polygon.
+    pub polygons: Vec<Vec<u32>>,
+}
+
+impl Texture {
+    /// The number of no place.
+    pub const NOWHERE: u32 = u32::MAX;
+
+    /// Takes in the places of a triangle's corners; nothing where the file has no places so far.
+    pub(super) fn place_triangle(&mut self, triangle: usize, places: [u32; 3]) {
+        if !self.places.is_empty() {
+            self.triangles.resize(triangle, [Self::NOWHERE; 3]);
+            self.triangles.push(places);
+        }
+    }
+
+    /// Likewise of a quadrilateral.
+    pub(super) fn place_quad(&mut self, quad: usize, places: [u32; 4]) {
+        if !self.places.is_empty() {
+            self.quads.resize(quad, [Self::NOWHERE; 4]);
+            self.quads.push(places);
+        }
+    }
+
+    /// The texture with something said of every element of a mesh; none where it has no places.
+    pub(super) fn of_all(mut self, mesh: &MeshFile) -> Option<Texture> {
+        self.triangles.resize(mesh.triangles.len(), [Self::NOWHERE; 3]);
+        self.quads.resize(mesh.quads.len(), [Self::NOWHERE; 4]);
+        self.polygons.resize(mesh.polygons.len(), Vec::new());
+        (!self.places.is_empty()).then_some(self)
+    }
+
+    /// Where the corners of a triangle lie, if all lie somewhere.
+    pub fn of_triangle(&self, triangle: usize) -> Option<[DVec2; 3]> {
+        let place = |k: usize| {
+            let place = self.triangles.get(triangle)?[k];
+            self.places.get(place as usize).copied().filter(|p| p.is_finite() && p.abs().max_element() < 1e9)
+        };
+        Some([place(0)?, place(1)?, place(2)?])
+    }
 }
 
 impl MeshFile {

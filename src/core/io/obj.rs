@@ -1,12 +1,12 @@
-//! Wavefront OBJ: vertices, faces, and their groups or objects. Deliberately absent: everything else (texture coordinates, normals,
-//! materials, lines) is passed over.
+//! Wavefront OBJ: vertices, faces with their texture coordinates, and their groups or objects. Deliberately absent: everything
+//! else (normals, materials, lines) is passed over.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::mesh_file::{Group, MeshFile, tag_of};
+use super::mesh_file::{Group, MeshFile, Texture, tag_of};
 use super::save::Shortest;
 use super::scan::{Scanner, parse_integer, parse_real, shown};
 use crate::core::fault::Fault;
@@ -22,6 +22,8 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
     // A face may stand before its vertices: the largest vertex and where it stands are checked at the end.
     let mut largest = (0, 0);
     let mut names = Names::default();
+    let mut texture = Texture::default();
+    let mut places: Vec<u32> = Vec::new();
     while let Some(line) = s.line() {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         match words.next() {
@@ -36,8 +38,14 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
                 }
                 mesh.points.push(p);
             }
+            Some(b"vt") => {
+                // One that is no place on a texture is none: the faces there have no texture then.
+                let mut coordinate = || words.next().and_then(parse_real).unwrap_or(f64::NAN);
+                texture.places.push(DVec2::new(coordinate(), coordinate()));
+            }
             Some(b"f") => {
                 corners.clear();
+                places.clear();
                 for word in words {
                     let vertex = corner(word, mesh.points.len()).ok_or_else(|| {
                         s.fault(format!("\"{}\" stands where a vertex of the face is expected", shown(word)))
@@ -46,21 +54,25 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
                         largest = (vertex as usize + 1, s.mark());
                     }
                     corners.push(vertex);
+                    places.push(place(word, texture.places.len()));
                 }
                 let tag = names.tag(&mut mesh);
                 match corners[..] {
                     [a, b, c] => {
                         mesh.triangles.push([a, b, c]);
                         mesh.triangle_tags.push(tag);
+                        texture.place_triangle(mesh.triangles.len() - 1, [places[0], places[1], places[2]]);
                     }
                     [a, b, c, d] => {
                         mesh.quads.push([a, b, c, d]);
                         mesh.quad_tags.push(tag);
+                        texture.place_quad(mesh.quads.len() - 1, [places[0], places[1], places[2], places[3]]);
                     }
                     [] | [_] | [_, _] => return Err(s.fault("A face has fewer than three vertices")),
                     _ => {
                         mesh.polygons.push(corners.clone());
                         mesh.polygon_tags.push(tag);
+                        texture.polygons.push(places.clone());
                     }
                 }
             }
@@ -73,6 +85,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
         let what = format!("A face has the vertex {}, and there are {}", largest.0, mesh.points.len());
         return Err(s.fault_at(largest.1, what));
     }
+    mesh.texture = texture.of_all(&mesh);
     if mesh.groups.is_empty() {
         mesh.triangle_tags.clear();
         mesh.quad_tags.clear();
@@ -109,6 +122,13 @@ fn corner(word: &[u8], so_far: usize) -> Option<u32> {
     let vertex = parse_integer(word.split(|&b| b == b'/').next()?)?;
     let index = if vertex < 0 { vertex.checked_add(so_far as i64)? } else { vertex - 1 };
     u32::try_from(index).ok().filter(|&index| index < u32::MAX)
+}
+
+/// The zero-based texture coordinate of `v/vt` or `v/vt/vn`; [`Texture::NOWHERE`] where there is none.
+fn place(word: &[u8], so_far: usize) -> u32 {
+    let place = word.split(|&b| b == b'/').nth(1).unwrap_or_default();
+    // Numbered as vertices are.
+    corner(place, so_far).unwrap_or(Texture::NOWHERE)
 }
 
 /// Writes points, triangles and quadrilaterals, in groups where they have names.
