@@ -369,7 +369,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Where a triangle of the part lies beyond a side.
-    fn neighbour(&self, part: &Part, side: Corner) -> Option<usize> {
+    pub fn neighbour(&self, part: &Part, side: Corner) -> Option<usize> {
         let beyond = self.beyond[side as usize]?;
         let at = part.triangles.binary_search(&(beyond / 3)).ok()?;
         (part.slits.is_empty() || part.slits.binary_search(&side).is_err()).then_some(at)

@@ -11,9 +11,18 @@ use super::tutte::{stands, stretch};
 /// A texture in more pieces than one for so many triangles, and one more, is no map of the surface: it would be cut to shreds.
 const TRIANGLES_A_PIECE: usize = 64;
 
+impl Chart {
+    /// Whether it has so many border loops, and is a part of the plane as to how it hangs together.
+    fn is_planar_with(&self, loops: usize) -> bool {
+        let edges = Edges::of(&self.local).len();
+        self.loops.len() == loops && loops > 0 && self.points.len() + self.local.len() + loops == edges + 2
+    }
+}
+
 impl Surface<'_> {
     /// The charts of a part by its texture, cut where that is torn. None where a triangle lies nowhere on it, or in more pieces than
-    /// are of use, or a piece is not one to one or stretched beyond the bound.
+    /// are of use, or a piece is not one to one or stretched beyond the bound; nor where it tears a disc, which is laid into the
+    /// plane whole without it.
     pub fn textured(&self, part: &Part, bound: Bound) -> Option<Vec<Chart>> {
         let triangles = &part.triangles;
         if !triangles.iter().all(|&t| self.places(t).is_some()) {
@@ -22,6 +31,10 @@ impl Surface<'_> {
         let mut slits: Vec<Corner> =
             triangles.iter().flat_map(|&t| Self::sides(t)).filter(|&side| self.is_torn(side)).collect();
         slits.sort_unstable();
+        let is_whole = slits.iter().all(|&side| self.neighbour(part, side).is_none());
+        if !is_whole && self.nodes(part).is_planar_with(1) {
+            return None;
+        }
         let pieces = self.connected(&Part { triangles: triangles.clone(), slits });
         if pieces.len() > 1 + triangles.len() / TRIANGLES_A_PIECE {
             return None;
@@ -46,9 +59,7 @@ impl Surface<'_> {
     /// The chart of a piece that its texture does not tear.
     fn by_texture(&self, piece: &Part, bound: Bound) -> Option<Chart> {
         let mut chart = self.nodes(piece);
-        let edges = Edges::of(&chart.local);
-        let euler = chart.points.len() as i64 - edges.len() as i64 + chart.local.len() as i64;
-        if chart.loops.is_empty() || euler != 2 - chart.loops.len() as i64 {
+        if !chart.is_planar_with(chart.loops.len()) {
             return None;
         }
         let mut uv = vec![DVec2::ZERO; chart.points.len()];
