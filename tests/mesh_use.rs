@@ -67,7 +67,7 @@ fn used(mesh: &MeshFile, lines: &str) -> Result<MeshFile, Fault> {
     let text = format!("version = 1\nmesh = \"a.msh\"\n{lines}\n");
     let case = Case::parse(&text, "a", "a.toml", folder.path()).unwrap();
     let done = convert(&case, &mut Nobody)?;
-    let file = Export::of(&done.mesh, &done.regions).file;
+    let file = Export::of(&done.mesh, &done.names).file;
     assert!(file.triangles.is_empty());
     examine(&file).verdict(Allow::default()).unwrap();
     assert!(done.mesh.folded().is_empty());

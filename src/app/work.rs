@@ -17,6 +17,7 @@ use crate::core::io::mesh_file::MeshFile;
 use crate::core::io::report::{CaseTold, LastResort, Program, Report};
 use crate::core::io::statistics::{Measured, Statistics};
 use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::names::Names;
 use crate::core::mesh::soundness::{Allow, examine};
 use crate::core::mesh::touched::Touched;
 use crate::core::metric::field::Sizing;
@@ -62,7 +63,7 @@ pub(super) struct Quads {
 
 /// Makes the triangles of a case.
 pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
-    let Background { mesh, sizing, regions, repairs, .. } = conversion::background(case, watch)?;
+    let Background { mesh, sizing, names, repairs, .. } = conversion::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
     let frame = {
         let (parameters, phase) = (&case.parameters, &Phase::Select);
@@ -70,7 +71,7 @@ pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles
         let seen = Seen { mesh: &mesh, parameters, phase, changed: &[], from: Bearing::Iso };
         Frame { picture: Picture::of_state(&seen, Layers::default()), shown, statistics: None }
     };
-    let mut export = Export::of(&mesh, &regions);
+    let mut export = Export::of(&mesh, &names);
     let statistics = Statistics::measure(export.measured(), &sizing)?;
     export.file.metric = Some(export.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
     Ok(Triangles { frame, file: export.file, statistics, repairs })
@@ -125,7 +126,7 @@ pub(super) fn convert(
     })?;
     watch.tell(Stage::Check, 0, 0);
     let of = if at.is_some() { Export::of_state } else { Export::of };
-    let export = of(&converted.mesh, &converted.regions);
+    let export = of(&converted.mesh, &converted.names);
     // On the way there are triangles; both sides of a crack lie at the same place.
     let branching = converted.mesh.ground().is_some();
     let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, branching });
@@ -135,7 +136,7 @@ pub(super) fn convert(
         case: CaseTold::of(case),
         parameters: case.parameters.clone(),
         background_triangles: converted.triangles,
-        regions: converted.regions.len(),
+        regions: converted.names.faces.len(),
         valid: flaw.is_none(),
         mesh: Statistics::measure(export.measured(), &converted.sizing)?,
         on_surfaces: converted.mesh.ground().is_some(),
@@ -204,7 +205,7 @@ pub(super) fn frames(
             let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
             frames.push(Frame { picture: Picture::of_state(&seen, layers), shown, statistics: None });
             if plotted {
-                meshes.push(Export::of(mesh, &[]));
+                meshes.push(Export::of(mesh, &Names::default()));
             }
         }
         Ok(())

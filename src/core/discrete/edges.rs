@@ -11,6 +11,8 @@ pub struct Triangles {
     pub triangles: Vec<[u32; 3]>,
     /// The region of each triangle.
     pub region: Vec<u32>,
+    /// Edges on lines that are kept whatever the shape is there: their ends, the smaller one first, and the number of the line; by ascending ends.
+    pub lines: Vec<([u32; 2], u32)>,
 }
 
 /// A side of a triangle: the one that begins at corner `corner % 3` of triangle `corner / 3`.

@@ -1,7 +1,10 @@
 //! A mesh as files know it: points and elements by index, with tags, groups and data; no connectivity.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
+use crate::core::mesh::names::Named;
 use crate::core::metric::tensor::Metric3;
 
 /// The name of the group of lines that are the merging front of a mesh on the way.
@@ -74,9 +77,26 @@ impl MeshFile {
             .find(|group| group.dimension == dimension && group.tag == tag)
             .map(|group| group.name.as_str())
     }
-}
 
-impl MeshFile {
+    /// What the region of a tag is called.
+    pub fn region(&self, tag: u32) -> Named {
+        Named::tagged(self.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned), tag)
+    }
+
+    /// The groups of lines by number, and the number of that of each line: none for lines without a tag, and for the merging front
+    /// of a state, which says nothing about the shape.
+    pub fn line_groups(&self) -> (Vec<Named>, Vec<Option<u32>>) {
+        let tags: Vec<u32> = (0..self.lines.len()).map(|i| tag_of(&self.line_tags, i)).collect();
+        let is_group = |tag: &u32| *tag > 0 && self.group_name(1, *tag) != Some(FRONT);
+        let known: Vec<u32> = tags.iter().copied().filter(is_group).collect::<BTreeSet<u32>>().into_iter().collect();
+        let name = |&tag: &u32| {
+            Named::tagged(self.group_name(1, tag).map_or_else(|| format!("line {tag}"), str::to_owned), tag)
+        };
+        (
+            known.iter().map(name).collect(),
+            tags.iter().map(|tag| known.binary_search(tag).ok().map(|k| k as u32)).collect(),
+        )
+    }
     /// The lines of the merging front, by their place in `lines`; none in a mesh that is no state of a conversion.
     pub fn front_lines(&self) -> impl Iterator<Item = usize> + '_ {
         let group = self.groups.iter().find(|group| group.dimension == 1 && group.name == FRONT);
