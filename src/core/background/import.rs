@@ -350,7 +350,7 @@ impl<'a> Import<'a> {
         self.uv.push(middle);
         self.origin.push([a, b]);
         if let Some(&group) = self.lines.get(&(a.min(b), a.max(b))) {
-            [a, b].iter().for_each(|&end| drop(self.lines.insert((end, m), group)));
+            self.lines.extend([a, b].map(|end| ((end, m), group)));
         }
         for side in sides {
             let given = side.corner as usize / 3;

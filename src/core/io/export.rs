@@ -6,12 +6,15 @@ use std::sync::Arc;
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
-use super::mesh_file::{Data, FRONT, Group, MeshFile};
+use super::mesh_file::{BUILT_IN, Data, FRONT, Group, MeshFile};
 use super::statistics::Measured;
+use crate::core::fault::Fault;
 use crate::core::geometry::atlas::Atlas;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, PointId};
 use crate::core::mesh::names::{Named, Names};
+use crate::core::metric::field::Sizing;
+use crate::core::run::births::Births;
 
 /// Tag, where no line of a file has it, of lines with elements on one side: the boundary, and both sides of a crack.
 const BOUNDARY: u32 = 1;
@@ -79,6 +82,34 @@ impl Export {
         export
     }
 
+    /// Gives elements and points what a reader may look at: elements `quality` (in the metric, spec 2.1.5) and `face` (its number from
+    /// 1), and where they come from a run (`births`) `level` and `step`, the step that made them, -1 for triangles; points the
+    /// metric and their place in the parametric plane (of a point on several faces, that in the first).
+    ///
+    /// # Errors
+    /// Where there is no metric at a point.
+    pub fn describe(&mut self, mesh: &Mesh, sizing: &Sizing, births: Option<&Births>) -> Result<(), Fault> {
+        let (live, dead): (Vec<ElementId>, Vec<ElementId>) = mesh.elements().partition(|e| mesh.is_triangle(*e));
+        let data = &mut self.file.element_data;
+        let mut add = |name: &str, value: &dyn Fn(ElementId) -> f64| {
+            if data.iter().all(|data| data.name != name) {
+                data.push(Data {
+                    name: name.to_owned(),
+                    values: live.iter().chain(&dead).map(|e| value(*e)).collect(),
+                });
+            }
+        };
+        add("quality", &|e| mesh.quality(e));
+        add("face", &|e| f64::from(mesh.region(e) + 1));
+        if let Some(births) = births {
+            add("level", &|e| f64::from(mesh.level(e)));
+            add("step", &|e| births.step(e).map_or(-1.0, |step| step as f64));
+        }
+        self.file.metric = Some(self.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
+        self.file.uv = Some(self.chart.clone());
+        Ok(())
+    }
+
     /// The arrays, and the place in them of each node.
     fn with_nodes(mesh: &Mesh, names: &Names) -> (Export, Vec<u32>) {
         let atlas = mesh.ground().map(|ground| Arc::clone(&ground.atlas));
@@ -143,7 +174,7 @@ impl Export {
             file.lines.push(same[0].1);
             file.line_tags.push(named.unwrap_or(if same.len() == 1 { boundary } else { inside }));
         }
-        let built_in = [(boundary, "boundary"), (inside, "inside")];
+        let built_in = [boundary, inside].into_iter().zip(BUILT_IN);
         let lines = of_line.iter().copied().zip(names.lines.iter().map(|line| line.name.as_str())).chain(built_in);
         let faces = tags.iter().copied().zip(names.faces.iter().map(|face| face.name.as_str()));
         let has_line: BTreeSet<u32> = file.line_tags.iter().copied().collect();

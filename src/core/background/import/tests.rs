@@ -259,14 +259,12 @@ fn odd_parts_on_both_sides_of_a_line_are_made_even_by_dividing_it() {
     );
     file.lines = vec![[3, 4], [4, 5], [5, 3]];
     file.line_tags = vec![1; 3];
-    // The three outside are parts of their own, each odd: they meet in points only.
-    assert!(refusal(&file).contains("triangles"));
-    let Imported { set, .. } = import(&file, true).unwrap();
-    let mut sides: Vec<_> = set.lines.iter().map(|(ends, _)| [ends[0].min(ends[1]), ends[0].max(ends[1])]).collect();
-    sides.sort_unstable();
-    sides.dedup();
-    assert_eq!(set.triangles.len() % 2, 0);
-    assert!(sides.len() >= 3 && set.lines.iter().all(|line| line.1 == 0));
+    // The three outside are parts of their own, since they meet in points only: each shares a side with the one within.
+    let Imported { set, repairs, .. } = import(&file, false).unwrap();
+    assert_eq!((set.triangles.len(), set.lines.len()), (10, 12));
+    assert!(repairs[0].starts_with("3 "), "{repairs:?}");
+    let firm = |t: &[u32; 3]| firm(set.uv[t[0] as usize], set.uv[t[1] as usize], set.uv[t[2] as usize]);
+    assert!(set.triangles.iter().all(firm) && set.lines.iter().all(|line| line.1 == 0));
     // Two parts, both odd: the side between them is divided, and that without leave.
     let mut file = star();
     file.triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 5, 4], [5, 6, 4], [6, 0, 4]];
