@@ -305,7 +305,7 @@ fn examples_3_to_6_keep_the_papers_share_of_quadrilaterals_and_are_sound() {
             count[mesh.region(e) as usize] += 1.0;
         }
         for (face, (count, area)) in made.converted.names.faces.iter().zip(count.iter().zip(&area)) {
-            assert!((count / area - 1.0_f64).abs() < 0.25, "{name}, {face}: {count} for {area}");
+            assert!((count / area - 1.0_f64).abs() < 0.25, "{name}, {face:?}: {count} for {area}");
         }
         let front = made.converted.counts.formed + made.converted.counts.closed;
         let resort = made.converted.last_resort.quads() as f64;
