@@ -12,7 +12,7 @@ use quadfront::core::discrete::sound::sound;
 use quadfront::core::fault::Fault;
 use quadfront::core::io::case::Case;
 use quadfront::core::io::export::Export;
-use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh, write_to};
+use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
 use quadfront::core::io::mesh_file::{Group, MeshFile};
 use quadfront::core::mesh::soundness::{Allow, examine};
 use quadfront::core::progress::Nobody;
@@ -71,7 +71,7 @@ fn used(mesh: &MeshFile, lines: &str) -> Result<MeshFile, Fault> {
     let text = format!("version = 1\nmesh = \"a.msh\"\n{lines}\n");
     let case = Case::parse(&text, "a", "a.toml", folder.path()).unwrap();
     let done = convert(&case, &mut Nobody)?;
-    let file = Export::of(&done.mesh, &done.regions).file;
+    let file = Export::of(&done.mesh, &done.names).file;
     assert!(file.triangles.is_empty());
     examine(&file).verdict(Allow::default()).unwrap();
     assert!(done.mesh.folded().is_empty());
@@ -134,31 +134,6 @@ fn sizes_follow_the_curvature_of_a_mesh_in_space_and_its_scale() {
     }
     let large = used(&plate(4, 0.3), "scale = 10.0\n[[metric]]\nkind = \"uniform\"\nh = 1.0").unwrap();
     assert!(large.points.iter().any(|p| p.x == 10.0) && large.quads.len() > 80);
-}
-
-#[test]
-fn names_of_regions_survive_into_every_format_that_has_names() {
-    for lines in ["use = \"triangles\"", "use = \"shape\""] {
-        let quads = used(&plate(6, 0.3), lines).unwrap();
-        for (format, options) in [(Format::Msh, false), (Format::Msh, true), (Format::Obj, false)]
-            .map(|(f, msh2)| (f, WriteOptions { msh2 }))
-        {
-            let mut bytes = Vec::new();
-            write_to(&mut bytes, format, &quads, options).unwrap();
-            let back = read_bytes("a", &bytes, format).unwrap();
-            let of = |name: &str| {
-                let tag = back.groups.iter().find(|group| group.dimension == 2 && group.name == name).unwrap().tag;
-                let own = back.quads.iter().zip(&back.quad_tags).filter(|(_, t)| **t == tag);
-                own.flat_map(|(q, _)| q.map(|k| back.points[k as usize].x)).collect::<Vec<_>>()
-            };
-            let left = of(if format == Format::Obj { "left_plate" } else { "left plate" });
-            assert!(!left.is_empty() && left.iter().all(|&x| x <= 0.5 + 1e-9), "{format:?}");
-            assert!(of("right").iter().all(|&x| x >= 0.5 - 1e-9), "{format:?}");
-        }
-        let mut inp = Vec::new();
-        write_to(&mut inp, Format::Inp, &quads, WriteOptions::default()).unwrap();
-        assert!(String::from_utf8(inp).unwrap().contains("ELSET=right"));
-    }
 }
 
 #[test]

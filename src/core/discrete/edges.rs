@@ -13,6 +13,8 @@ pub struct Triangles {
     pub region: Vec<u32>,
     /// Where the corners of each triangle lie on a texture, if they do; empty where there is none.
     pub texture: Vec<Option<[DVec2; 3]>>,
+    /// Edges on lines that are kept whatever the shape is there: their ends, the smaller one first, and the number of the line; by ascending ends.
+    pub lines: Vec<([u32; 2], u32)>,
 }
 
 /// A side of a triangle: the one that begins at corner `corner % 3` of triangle `corner / 3`.

@@ -10,9 +10,9 @@ use crate::core::background::cut::Sets;
 use crate::core::io::weld::weld;
 
 /// Points nearer than this part of the largest coordinate are at one place.
-const SAME_PLACE: f64 = 1e-9;
+pub(super) const SAME_PLACE: f64 = 1e-9;
 /// A point nearer to a side than this part of the side's length hangs in it.
-const IN_SIDE: f64 = 1e-6;
+pub(super) const IN_SIDE: f64 = 1e-6;
 /// Parts that touch in a point are set apart by this part of the size, and by no more than this part of an edge there.
 const APART: f64 = 1e-6;
 const APART_OF_EDGE: f64 = 1e-2;

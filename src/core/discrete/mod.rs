@@ -5,6 +5,7 @@
 
 pub mod edges;
 pub mod mend;
+pub mod lines;
 pub mod sound;
 pub mod features;
 pub mod chart;

@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::edges::{Edges, Triangles};
+use super::lines::on_edges;
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
+use crate::core::mesh::names::Named;
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
 const FLAT: f64 = 1e-6;
@@ -23,14 +25,17 @@ pub struct Sound {
     /// The points that the mesh has beyond the file's, by those that they were.
     pub copied: Vec<u32>,
     /// Names of the regions by number.
-    pub regions: Vec<String>,
+    pub regions: Vec<Named>,
+    /// Names of the lines by number.
+    pub lines: Vec<Named>,
     /// What was mended, sentences without a full stop.
     pub repairs: Vec<String>,
 }
 
 /// The triangles of a file: quadrilaterals and polygons cut; points at one place used as one, and points that hang in sides of
 /// the border taken into them; triangles with a node twice or without area, and duplicates, taken out; all
-/// turned so that neighbours agree on which side is outside, where that can be; parts that touch in a point set apart.
+/// turned so that neighbours agree on which side is outside, where that can be; parts that touch in a point set apart. Lines that
+/// are in a group become those of the edges that they lie on.
 ///
 /// # Errors
 /// No triangles; points that are not finite or beyond 1e100; points that are not there.
@@ -67,13 +72,15 @@ pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
     }
     let tag = |i: usize| file.triangle_tags.get(i).copied().unwrap_or(0);
     let tags: Vec<u32> = (0..file.triangles.len()).map(tag).collect::<BTreeSet<u32>>().into_iter().collect();
-    let name = |&tag: &u32| file.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned);
-    let regions = tags.iter().map(name).collect();
+    let regions = tags.iter().map(|&tag| file.region(tag)).collect();
     let region = (0..file.triangles.len()).map(|i| tags.partition_point(|&t| t < tag(i)) as u32).collect();
     let texture = file.texture.as_ref().map_or_else(Vec::new, |texture| {
         (0..file.triangles.len()).map(|triangle| texture.of_triangle(triangle)).collect()
     });
-    let mut mesh = Triangles { points: file.points, triangles: file.triangles, region, texture };
+    let (lines, line_of) = file.line_groups();
+    let segments: Vec<([u32; 2], u32)> =
+        file.lines.iter().zip(line_of).filter_map(|(&ends, line)| Some((ends, line?))).collect();
+    let mut mesh = Triangles { points: file.points, triangles: file.triangles, region, lines: Vec::new(), texture };
     let welded = mesh.weld();
     tell(welded, "point lay on another and was made one with it", "points lay on others and were made one with them");
     let stitched = mesh.stitch();
@@ -93,7 +100,14 @@ pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
     }
     let (copied, parted) = mesh.part();
     tell(parted, "point in which parts touched was parted", "points in which parts touched were parted");
-    Ok(Sound { mesh, regions, copied, repairs })
+    let lost;
+    (mesh.lines, lost) = on_edges(&segments, &mesh, &copied);
+    tell(
+        lost,
+        "line is on no edge of the mesh and was left out",
+        "lines are on no edges of the mesh and were left out",
+    );
+    Ok(Sound { mesh, regions, lines, copied, repairs })
 }
 
 impl Triangles {

@@ -1,5 +1,5 @@
-//! Wavefront OBJ: vertices, faces with their texture coordinates, and their groups or objects. Deliberately absent: everything
-//! else (normals, materials, lines) is passed over.
+//! Wavefront OBJ: vertices, faces with their texture coordinates and lines, and their groups or objects. Deliberately absent:
+//! everything else (normals, materials) is passed over.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -21,7 +21,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
     let mut corners: Vec<u32> = Vec::new();
     // A face may stand before its vertices: the largest vertex and where it stands are checked at the end.
     let mut largest = (0, 0);
-    let mut names = Names::default();
+    let (mut names, mut line_names) = (Names::of(2), Names::of(1));
     let mut texture = Texture::default();
     let mut places: Vec<u32> = Vec::new();
     while let Some(line) = s.line() {
@@ -77,40 +77,70 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
                 }
             }
             // A group within an object is the finer of the two; a face in several groups is in the first.
-            Some(b"g" | b"o") => names.next = words.next().map(|name| String::from_utf8_lossy(name).into_owned()),
+            Some(b"g" | b"o") => {
+                names.next = words.next().map(|name| String::from_utf8_lossy(name).into_owned());
+                line_names.next.clone_from(&names.next);
+            }
+            Some(b"l") => {
+                corners.clear();
+                for word in words {
+                    let vertex = corner(word, mesh.points.len()).ok_or_else(|| {
+                        s.fault(format!("\"{}\" stands where a vertex of the line is expected", shown(word)))
+                    })?;
+                    if vertex as usize >= largest.0 {
+                        largest = (vertex as usize + 1, s.mark());
+                    }
+                    corners.push(vertex);
+                }
+                let tag = line_names.tag(&mut mesh);
+                for ends in corners.windows(2) {
+                    mesh.lines.push([ends[0], ends[1]]);
+                    mesh.line_tags.push(tag);
+                }
+            }
             _ => {}
         }
     }
     if largest.0 > mesh.points.len() {
-        let what = format!("A face has the vertex {}, and there are {}", largest.0, mesh.points.len());
+        let what = format!("A face or line has the vertex {}, and there are {}", largest.0, mesh.points.len());
         return Err(s.fault_at(largest.1, what));
     }
     mesh.texture = texture.of_all(&mesh);
-    if mesh.groups.is_empty() {
+    let has = |dimension| mesh.groups.iter().any(|group| group.dimension == dimension);
+    let (faces, lines) = (has(2), has(1));
+    if !faces {
         mesh.triangle_tags.clear();
         mesh.quad_tags.clear();
         mesh.polygon_tags.clear();
     }
+    if !lines {
+        mesh.line_tags.clear();
+    }
+    mesh.groups.sort_by_key(|group| (group.dimension, group.tag));
     Ok(mesh)
 }
 
-/// The groups that have faces, by the order of their first ones.
-#[derive(Default)]
+/// The groups that have faces, or lines, by the order of their first ones.
 struct Names {
+    dimension: u8,
     tags: BTreeMap<String, u32>,
-    /// The group of the faces that follow, until the first of them is read.
+    /// The group of those that follow, until the first of them is read.
     next: Option<String>,
     now: u32,
 }
 
 impl Names {
-    /// The tag of a face; a group that had none comes to the mesh's groups.
+    fn of(dimension: u8) -> Self {
+        Names { dimension, tags: BTreeMap::new(), next: None, now: 0 }
+    }
+
+    /// The tag of a face or line; a group that had none comes to the mesh's groups.
     fn tag(&mut self, mesh: &mut MeshFile) -> u32 {
         if let Some(name) = self.next.take() {
             let new = self.tags.len() as u32 + 1;
             self.now = *self.tags.entry(name.clone()).or_insert(new);
             if self.now == new {
-                mesh.groups.push(Group { dimension: 2, tag: new, name });
+                mesh.groups.push(Group { dimension: self.dimension, tag: new, name });
             }
         }
         self.now
@@ -131,7 +161,7 @@ fn place(word: &[u8], so_far: usize) -> u32 {
     corner(place, so_far).unwrap_or(Texture::NOWHERE)
 }
 
-/// Writes points, triangles and quadrilaterals, in groups where they have names.
+/// Writes points, triangles and quadrilaterals, and the lines that are in a group of their own, in groups where they have names.
 ///
 /// # Errors
 /// What `out` says.
@@ -143,18 +173,31 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     let quads = mesh.quads.iter().enumerate().map(|(i, q)| (&q[..], tag_of(&mesh.quad_tags, i)));
     let mut group = None;
     for (face, tag) in triangles.chain(quads) {
-        let name = mesh.group_name(2, tag);
-        if name.is_some() && name != group {
-            // White space would part it into several groups.
-            let name: String = name.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join("_");
-            writeln!(out, "g {name}")?;
-            group = mesh.group_name(2, tag);
-        }
-        write!(out, "f")?;
-        for &corner in face {
-            write!(out, " {}", u64::from(corner) + 1)?;
-        }
-        writeln!(out)?;
+        enter(out, &mut group, mesh.group_name(2, tag))?;
+        write_corners(out, "f", face)?;
+    }
+    group = None;
+    for i in mesh.own_lines() {
+        enter(out, &mut group, mesh.group_name(1, tag_of(&mesh.line_tags, i)))?;
+        write_corners(out, "l", &mesh.lines[i])?;
     }
     Ok(())
+}
+
+/// Begins a group, unless it is the one at hand.
+fn enter<'n>(out: &mut dyn Write, group: &mut Option<&'n str>, name: Option<&'n str>) -> io::Result<()> {
+    if let Some(name) = name.filter(|name| *group != Some(*name)) {
+        *group = Some(name);
+        // White space would part it into several groups.
+        writeln!(out, "g {}", name.split_whitespace().collect::<Vec<_>>().join("_"))?;
+    }
+    Ok(())
+}
+
+fn write_corners(out: &mut dyn Write, word: &str, corners: &[u32]) -> io::Result<()> {
+    write!(out, "{word}")?;
+    for &corner in corners {
+        write!(out, " {}", u64::from(corner) + 1)?;
+    }
+    writeln!(out)
 }

@@ -99,7 +99,7 @@ fn triangles_without_area_and_single_ones_have_charts_too() {
         points: mesh.points[..3].to_vec(),
         triangles: vec![[0, 1, 2]],
         region: vec![0],
-        texture: Vec::new(),
+        ..Triangles::default()
     };
     assert_eq!(sound(&single, ANGLE, Bound::default()).len(), 1);
 }
