@@ -31,9 +31,9 @@ fn main() {
 
 /// Measures a case and prints its row; gives its number of triangles and seconds.
 fn row(case: &Case, runs: usize, before: Option<(usize, f64)>) -> (usize, f64) {
-    let (Background { mesh, sizing, regions, .. }, seconds) =
+    let (Background { mesh, sizing, names, .. }, seconds) =
         meter::median_of(runs, || background(case, &mut Nobody).unwrap());
-    let told = Statistics::measure(Export::of(&mesh, &regions).measured(), &sizing).unwrap();
+    let told = Statistics::measure(Export::of(&mesh, &names).measured(), &sizing).unwrap();
     let n = told.triangles;
     let exponent = before.map_or(String::new(), |(m, s)| format!("{:.2}", meter::exponent([m, n], [s, seconds])));
     let quality = told.quality.unwrap();

@@ -17,7 +17,12 @@ fn main() {
         "case           quads   front: s    quads/s  exponent  and finish: s    quads/s  exponent  peak bytes/quad"
     );
     // Scales that give about 10,000, 100,000 and 1,000,000 quadrilaterals.
-    for (name, scales) in [("uniform", [0.2, 0.0633, 0.0197]), ("example1", [0.163, 0.0516, 0.0161])] {
+    let cases = [
+        ("uniform", [0.2, 0.0633, 0.0197]),
+        ("example1", [0.163, 0.0516, 0.0161]),
+        ("example2", [0.154, 0.0475, 0.0148]),
+    ];
+    for (name, scales) in cases {
         let mut before: Option<(usize, [f64; 2])> = None;
         for scale in scales {
             let mut case = built_in::named(name).unwrap().unwrap();

@@ -13,7 +13,7 @@ use quadfront::core::progress::Nobody;
 fn statistics(case: &Case) -> Statistics {
     let made = background(case, &mut Nobody).unwrap();
     made.mesh.check().unwrap();
-    let export = Export::of(&made.mesh, &made.regions);
+    let export = Export::of(&made.mesh, &made.names);
     Statistics::measure(export.measured(), &made.sizing).unwrap()
 }
 

@@ -5,10 +5,14 @@ use std::path::Path;
 
 use glam::DVec3;
 use quadfront::core::convert::conversion::convert;
+use quadfront::core::discrete::chart::{Bound, charts};
+use quadfront::core::discrete::edges::Edges;
+use quadfront::core::discrete::features::{ANGLE, features};
+use quadfront::core::discrete::sound::sound;
 use quadfront::core::fault::Fault;
 use quadfront::core::io::case::Case;
 use quadfront::core::io::export::Export;
-use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh, write_to};
+use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
 use quadfront::core::io::mesh_file::{Group, MeshFile};
 use quadfront::core::mesh::soundness::{Allow, examine};
 use quadfront::core::progress::Nobody;
@@ -67,7 +71,7 @@ fn used(mesh: &MeshFile, lines: &str) -> Result<MeshFile, Fault> {
     let text = format!("version = 1\nmesh = \"a.msh\"\n{lines}\n");
     let case = Case::parse(&text, "a", "a.toml", folder.path()).unwrap();
     let done = convert(&case, &mut Nobody)?;
-    let file = Export::of(&done.mesh, &done.regions).file;
+    let file = Export::of(&done.mesh, &done.names).file;
     assert!(file.triangles.is_empty());
     examine(&file).verdict(Allow::default()).unwrap();
     assert!(done.mesh.folded().is_empty());
@@ -133,31 +137,6 @@ fn sizes_follow_the_curvature_of_a_mesh_in_space_and_its_scale() {
 }
 
 #[test]
-fn names_of_regions_survive_into_every_format_that_has_names() {
-    for lines in ["use = \"triangles\"", "use = \"shape\""] {
-        let quads = used(&plate(6, 0.3), lines).unwrap();
-        for (format, options) in [(Format::Msh, false), (Format::Msh, true), (Format::Obj, false)]
-            .map(|(f, msh2)| (f, WriteOptions { msh2 }))
-        {
-            let mut bytes = Vec::new();
-            write_to(&mut bytes, format, &quads, options).unwrap();
-            let back = read_bytes("a", &bytes, format).unwrap();
-            let of = |name: &str| {
-                let tag = back.groups.iter().find(|group| group.dimension == 2 && group.name == name).unwrap().tag;
-                let own = back.quads.iter().zip(&back.quad_tags).filter(|(_, t)| **t == tag);
-                own.flat_map(|(q, _)| q.map(|k| back.points[k as usize].x)).collect::<Vec<_>>()
-            };
-            let left = of(if format == Format::Obj { "left_plate" } else { "left plate" });
-            assert!(!left.is_empty() && left.iter().all(|&x| x <= 0.5 + 1e-9), "{format:?}");
-            assert!(of("right").iter().all(|&x| x >= 0.5 - 1e-9), "{format:?}");
-        }
-        let mut inp = Vec::new();
-        write_to(&mut inp, Format::Inp, &quads, WriteOptions::default()).unwrap();
-        assert!(String::from_utf8(inp).unwrap().contains("ELSET=right"));
-    }
-}
-
-#[test]
 fn an_open_part_with_an_odd_count_is_refused_and_words_that_are_none_are_named() {
     let mut given = plate(4, 0.3);
     given.triangles.pop();
@@ -186,4 +165,53 @@ fn what_is_written_of_a_surface_reads_back_the_same() {
         let back = read_mesh(&path, None).unwrap();
         assert_eq!((&back.points, &back.quads), (&quads.points, &quads.quads), "{format:?}");
     }
+}
+
+/// A vase: `n` by `n` squares around and along, as OBJ with the texture of its unrolled side, torn at the angle `seam` (in squares).
+fn vase(n: u32, seam: u32, texture: bool) -> Vec<u8> {
+    let mut text = String::new();
+    for k in 0..n * (n + 1) {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k % n) / f64::from(n));
+        let z = f64::from(k / n) / f64::from(n);
+        let r = 0.4 + 0.1 * libm::sin(4.0 * z);
+        text += &format!("v {} {} {}\n", r * cos, r * sin, 2.0 * z);
+    }
+    for k in 0..(n + 1) * (n + 1) {
+        text += &format!("vt {} {}\n", f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n));
+    }
+    for k in 0..n * n {
+        let corner = |i: u32, j: u32| {
+            let (across, along) = (k % n + i, k / n + j);
+            let point = along * n + across % n + 1;
+            let place = along * (n + 1) + (k % n + n - seam) % n + i + 1;
+            if texture { format!("{point}/{place}") } else { point.to_string() }
+        };
+        text += &format!("f {} {} {} {}\n", corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1));
+    }
+    text.into_bytes()
+}
+
+#[test]
+fn the_texture_of_a_file_lays_its_charts_where_it_is_one_to_one() {
+    let n = 24;
+    let vertical = |bytes: &[u8], seam: u32| {
+        let given = read_bytes("a.obj", bytes, Format::Obj).unwrap();
+        let laid = sound(&given, &mut Nobody).unwrap();
+        let edges = Edges::of(&laid.mesh.triangles);
+        let features = features(&laid.mesh, &edges, ANGLE);
+        let found = charts(&laid.mesh, &edges, &features, Bound::default(), &mut Nobody).unwrap();
+        assert_eq!(found.len(), 1);
+        // Points that are there twice: those of the slit.
+        let mut points = found[0].points.clone();
+        points.sort_unstable();
+        let twice: Vec<u32> = points.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0] % n).collect();
+        assert_eq!(twice.len(), n as usize + 1);
+        assert!(used(&given, "use = \"shape\"").unwrap().quads.len() > 200);
+        twice.iter().all(|&at| at == seam)
+    };
+    assert!([5, 17].iter().all(|&seam| vertical(&vase(n, seam, true), seam)));
+    assert!(![5, 17].iter().all(|&seam| vertical(&vase(n, seam, false), seam)));
+    // Numbers that lead nowhere are passed over.
+    let damaged = String::from_utf8(vase(n, 5, true)).unwrap().replace("/1 ", "/999999 ");
+    assert!(!vertical(damaged.replace("vt 0 1\n", "vt nan\n").as_bytes(), 17));
 }

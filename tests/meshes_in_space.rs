@@ -51,7 +51,7 @@ fn converted(name: &str, file: &MeshFile, allow: Allow) -> MeshFile {
     let path = folder.path().join("mesh.ply");
     write_mesh(&path, Format::Ply, file, WriteOptions::default()).unwrap();
     let done = convert(&Case::of_mesh(path, None), &mut Nobody).unwrap_or_else(|fault| panic!("{name}: {fault}"));
-    let mesh = Export::of(&done.mesh, &done.regions).file;
+    let mesh = Export::of(&done.mesh, &done.names).file;
     assert!(mesh.triangles.is_empty() && !mesh.quads.is_empty(), "{name}");
     let found = examine(&mesh);
     assert!(found.verdict(allow).is_ok(), "{name}: {:?}", found.verdict(allow));
@@ -200,7 +200,7 @@ fn what_branches_or_has_one_side_or_is_turned_is_taken_as_it_is() {
     let path = folder.path().join("moebius.ply");
     write_mesh(&path, Format::Ply, &moebius, WriteOptions::default()).unwrap();
     let done = convert(&Case::of_mesh(path, None), &mut Nobody).unwrap();
-    let mesh = Export::of(&done.mesh, &done.regions).file;
+    let mesh = Export::of(&done.mesh, &done.names).file;
     assert_eq!(euler(&mesh), 0);
 }
 
@@ -213,8 +213,8 @@ fn the_same_mesh_gives_the_same_bytes() {
     write_mesh(&path, Format::Ply, &torus(), WriteOptions::default()).unwrap();
     let made =
         convert_by(&Case::of_mesh(path, None), &mut Nobody, &mut |converter, watch| converter.run(watch)).unwrap();
-    assert!(made.regions.len() > 1);
-    assert_eq!(Export::of(&made.mesh, &made.regions).file, converted("together", &torus(), Allow::default()));
+    assert!(made.names.faces.len() > 1);
+    assert_eq!(Export::of(&made.mesh, &made.names).file, converted("together", &torus(), Allow::default()));
 }
 
 #[test]

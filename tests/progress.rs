@@ -157,7 +157,7 @@ fn faces_at_the_same_time_are_told_of_while_they_are_converted() {
     case.parameters.size_scale = 1.0;
     let mut witness = Witness::default();
     let converted = conversion::convert(&case, &mut witness).unwrap();
-    let faces = converted.regions.len();
+    let faces = converted.names.faces.len();
     let told: Vec<u64> = witness.told.iter().filter(|told| told.0 == Stage::Convert).map(|told| told.1).collect();
     assert!(told.len() > 2 * faces + 2, "{} times for {faces} faces", told.len());
     assert!(told.is_sorted(), "{told:?}");

@@ -44,7 +44,7 @@ pub fn convert(background: &Background, parameters: &Parameters) -> Outcome {
 
 fn measure(mesh: &Mesh, background: &Background) -> Result<Statistics, String> {
     mesh.check().map_err(|what| format!("not valid: {what}"))?;
-    let export = Export::of(mesh, &background.regions);
+    let export = Export::of(mesh, &background.names);
     if !export.triangles.is_empty() {
         return Err(format!("{} triangles are left", export.triangles.len()));
     }

@@ -35,7 +35,8 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
         // A figure stands for the state that it shows.
         (None, shown) => shown.and_then(|shown| shown.at.map(|_| Stop::Step(shown.step))),
     };
-    let mut quads = work::convert_telling(&input.run, at, arguments.events.as_ref(), &mut progress)
+    let shows_data = mesh_target.as_ref().is_some_and(MeshTarget::shows_data);
+    let mut quads = work::convert_telling(&input.run, at, arguments.events.as_ref(), shows_data, &mut progress)
         .map_err(|fault| if shown.is_some() { fault.at(source.input.clone()) } else { fault })?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &quads.file)?;
@@ -76,7 +77,8 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
     let input = input::read(source, &arguments.mesh)?;
-    let triangles = work::background(&input.run.case, &mut progress)?;
+    let shows_data = mesh_target.as_ref().is_some_and(MeshTarget::shows_data);
+    let triangles = work::background(&input.run.case, shows_data, &mut progress)?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &triangles.file)?;
     if let Some(target) = &destination.picture {

@@ -112,6 +112,11 @@ impl MeshTarget {
             .remedy("Name the mesh otherwise: its metric goes to the .sol of the same name"))
     }
 
+    /// Whether the format is for looking at what there is besides the mesh: data of elements and points.
+    pub fn shows_data(&self) -> bool {
+        self.format == Format::Vtu
+    }
+
     /// Why the metric is not written with the mesh, where it is not.
     pub fn lacks_metric(&self) -> Option<String> {
         match (&self.target, self.format) {

@@ -5,7 +5,7 @@ use std::io;
 
 use crate::core::background::adapt::Adapted;
 use crate::core::convert::conversion::{self, Background, Converted};
-use crate::core::convert::converter::Counts;
+use crate::core::convert::converter::{Converter, Counts};
 use crate::core::convert::parameters::Parameters;
 use crate::core::convert::phase::Phase;
 use crate::core::convert::walk::{Stop, Tell, Told, walk_editing};
@@ -17,10 +17,12 @@ use crate::core::io::mesh_file::MeshFile;
 use crate::core::io::report::{CaseTold, LastResort, Program, Report};
 use crate::core::io::statistics::{Measured, Statistics};
 use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::names::Names;
 use crate::core::mesh::soundness::{Allow, examine};
 use crate::core::mesh::touched::Touched;
 use crate::core::metric::field::Sizing;
 use crate::core::progress::{Stage, Watch};
+use crate::core::run::births::Births;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{ShownState, fingerprint};
 use crate::render::camera::Bearing;
@@ -60,9 +62,9 @@ pub(super) struct Quads {
     pub flaw: Option<Fault>,
 }
 
-/// Makes the triangles of a case.
-pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
-    let Background { mesh, sizing, regions, repairs, .. } = conversion::background(case, watch)?;
+/// Makes the triangles of a case; with the data that are to be looked at where these are shown.
+pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
+    let Background { mesh, sizing, names, repairs, .. } = conversion::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
     let frame = {
         let (parameters, phase) = (&case.parameters, &Phase::Select);
@@ -70,9 +72,13 @@ pub(super) fn background(case: &Case, watch: &mut dyn Watch) -> Result<Triangles
         let seen = Seen { mesh: &mesh, parameters, phase, changed: &[], from: Bearing::Iso };
         Frame { picture: Picture::of_state(&seen, Layers::default()), shown, statistics: None }
     };
-    let mut export = Export::of(&mesh, &regions);
+    let mut export = Export::of(&mesh, &names);
     let statistics = Statistics::measure(export.measured(), &sizing)?;
-    export.file.metric = Some(export.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
+    if shows_data {
+        export.describe(&mesh, &sizing, None)?;
+    } else {
+        export.file.metric = Some(export.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
+    }
     Ok(Triangles { frame, file: export.file, statistics, repairs })
 }
 
@@ -81,9 +87,10 @@ pub(super) fn convert_telling(
     run: &Run,
     at: Option<Stop>,
     events: Option<&Target>,
+    shows_data: bool,
     watch: &mut dyn Watch,
 ) -> Result<Quads, Fault> {
-    let Some(events) = events else { return convert(run, at, None, watch) };
+    let Some(events) = events else { return convert(run, at, None, shows_data, watch) };
     let mut quads = None;
     let written = events.write(|out| {
         let mut written = Ok(());
@@ -92,7 +99,7 @@ pub(super) fn convert_telling(
                 written = serde_json::to_writer(&mut *out, told).map_err(io::Error::from).and_then(|()| writeln!(out));
             }
         };
-        let done = quads.insert(convert(run, at, Some(&mut tell), watch));
+        let done = quads.insert(convert(run, at, Some(&mut tell), shows_data, watch));
         // What went wrong with the conversion is told in its own words; no file is left of it.
         if done.is_err() { Err(io::Error::other("the conversion failed")) } else { written }
     });
@@ -104,28 +111,46 @@ pub(super) fn convert_telling(
     }
 }
 
-/// Converts the case of a run to its end or to a stop, with the run's edits, checks and measures the result.
+/// Converts the case of a run to its end or to a stop, with the run's edits, checks and measures the result; where its data are shown,
+/// with these, for which the faces go one after another.
 pub(super) fn convert(
     run: &Run,
     at: Option<Stop>,
     mut tell: Option<Tell<'_>>,
+    shows_data: bool,
     watch: &mut dyn Watch,
 ) -> Result<Quads, Fault> {
     let case = &run.case;
     let mut end = (Phase::Done, case.parameters.clone());
+    let mut births = None;
     let converted = conversion::convert_by(case, watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
         match tell.take() {
             // Nobody looks on the way: the faces go at the same time, to the same state.
-            None if at.is_none() && run.edits().is_empty() => converter.run_by_faces(watch)?,
-            tell => walk_editing(converter, at, watch, tell, &mut |c| run.make_edits(c, c.counts.steps))?,
+            None if at.is_none() && run.edits().is_empty() && !shows_data => converter.run_by_faces(watch)?,
+            tell => {
+                if shows_data {
+                    converter.keep_history();
+                    births = Some(Births::of(&converter.mesh));
+                }
+                walk_editing(converter, at, watch, tell, &mut |c| {
+                    if let Some(births) = &mut births {
+                        births.note(c);
+                        shorten(c);
+                    }
+                    run.make_edits(c, c.counts.steps)
+                })?;
+            }
         }
         end = (converter.phase().plain(), converter.parameters().clone());
         Ok(())
     })?;
     watch.tell(Stage::Check, 0, 0);
     let of = if at.is_some() { Export::of_state } else { Export::of };
-    let export = of(&converted.mesh, &converted.regions);
+    let mut export = of(&converted.mesh, &converted.names);
+    if shows_data {
+        export.describe(&converted.mesh, &converted.sizing, births.as_ref())?;
+    }
     // On the way there are triangles; both sides of a crack lie at the same place.
     let branching = converted.mesh.ground().is_some();
     let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, branching });
@@ -135,7 +160,7 @@ pub(super) fn convert(
         case: CaseTold::of(case),
         parameters: case.parameters.clone(),
         background_triangles: converted.triangles,
-        regions: converted.regions.len(),
+        regions: converted.names.faces.len(),
         valid: flaw.is_none(),
         mesh: Statistics::measure(export.measured(), &converted.sizing)?,
         on_surfaces: converted.mesh.ground().is_some(),
@@ -191,9 +216,7 @@ pub(super) fn frames(
         }
         for wanted in wanted {
             walk_editing(converter, wanted.stop, watch, None, &mut |c| {
-                if c.history_len() > HISTORY {
-                    c.shorten_history(1);
-                }
+                shorten(c);
                 run.make_edits(c, c.counts.steps)
             })?;
             let mut changed = Touched::default();
@@ -204,7 +227,7 @@ pub(super) fn frames(
             let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
             frames.push(Frame { picture: Picture::of_state(&seen, layers), shown, statistics: None });
             if plotted {
-                meshes.push(Export::of(mesh, &[]));
+                meshes.push(Export::of(mesh, &Names::default()));
             }
         }
         Ok(())
@@ -213,6 +236,13 @@ pub(super) fn frames(
         frame.statistics = Some(statistics(export, &converted.sizing)?);
     }
     Ok(frames)
+}
+
+/// Forgets all but the last step now and then, where a history is kept for that one alone.
+fn shorten(converter: &mut Converter<'_>) {
+    if converter.history_len() > HISTORY {
+        converter.shorten_history(1);
+    }
 }
 
 /// What a state is like: its quadrilaterals, where there are any, and else its triangles.

@@ -17,6 +17,7 @@ use crate::core::io::export::Export;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::names::Names;
 
 /// Metric ellipses are drawn at this share of unit length.
 const ELLIPSE: f64 = 0.25;
@@ -238,7 +239,7 @@ impl Picture {
     /// drawn in planar domains only.
     fn of_state_in_space(seen: &Seen<'_>, layers: Layers) -> Picture {
         let Seen { mesh, parameters, phase, from, .. } = *seen;
-        let file = Export::of(mesh, &[]).file;
+        let file = Export::of(mesh, &Names::default()).file;
         let mut picture = Picture::of_mesh_from(&file, from);
         let base = Decision::of(phase).base.and_then(|[a, b]| mesh.front_between(a, b));
         // Seen like the mesh itself.
@@ -267,7 +268,7 @@ impl Picture {
         if mesh.ground().is_some() {
             return Picture::of_state_in_space(seen, layers);
         }
-        let mut picture = Picture::of_mesh(&Export::of(mesh, &[]).file);
+        let mut picture = Picture::of_mesh(&Export::of(mesh, &Names::default()).file);
         if layers.has(Layer::Changed) {
             changed.iter().filter(|e| mesh.has_element(**e)).for_each(|e| picture.add_changed(mesh, *e));
         }

@@ -33,8 +33,14 @@ fn a_knot_vector_that_decreases_or_a_weight_that_is_not_positive_names_the_surfa
     };
     let ones = "[[1, 1], [1, 1]]";
     assert_says(&surface("[0, 0, 1, 0.5]", ones), &["sheet", "along u", "Knot 4", "less than the one before"]);
-    assert_says(&surface("[0, 0, 0, 1]", ones), &["sheet"]);
+    assert_says(&surface("[0, 0, 0, 1]", ones), &["sheet", "along u", "leave the NURBS no length"]);
+    let more = |knots: &str| {
+        surface(knots, "[[1, 1], [1, 1], [1, 1], [1, 1]]")
+            .replace("[[1, 0, 0], [1, 1, 1]]", "[[1, 0, 0], [1, 1, 1]], [[2, 0, 0], [2, 1, 1]], [[3, 0, 0], [3, 1, 0]]")
+    };
+    assert_says(&more("[0, 0, 0.5, 0.5, 1, 1]"), &["sheet", "along u", "0.5 is repeated 2 times", "degree 1"]);
     assert_says(&surface("[0, 0, 1, 1]", "[[1, 1], [0, 1]]"), &["sheet", "Weight 3 is 0"]);
+    assert_says(&surface("[0, 0, 1, 1]", "[[1, -2.5], [1, 1]]"), &["sheet", "Weight 2 is -2.5"]);
 }
 
 #[test]
@@ -71,6 +77,15 @@ fn trims_that_cross_are_named() {
                 [[curve]]\nname = \"two\"\nkind = \"circle\"\non = \"s\"\ncentre = [2.5, 2]\nradius = 0.7\n\
                 [[face]]\nname = \"f\"\nsurface = \"s\"\nholes = [[\"one\"], [\"two\"]]\n";
     assert_says(text, &["\"one\" and \"two\" cross"]);
+}
+
+#[test]
+fn a_trim_that_crosses_itself_is_named_with_its_face_and_place() {
+    let text = "[[surface]]\nname = \"s\"\nkind = \"plane\"\nu = [4, 0, 1]\nv = [0, 4, 0]\n\
+                [[curve]]\nname = \"bow\"\nkind = \"polyline\"\non = \"s\"\n\
+                points = [[1, 1], [3, 3], [3, 1], [1, 3], [1, 1]]\n\
+                [[face]]\nname = \"f\"\nsurface = \"s\"\nholes = [[\"bow\"]]\n";
+    assert_says(text, &["\"bow\"", "cross", "\"f\"", "2"]);
 }
 
 #[test]

@@ -32,7 +32,7 @@ pub(crate) struct Made {
 
 pub(crate) fn make(case: &Case) -> Made {
     let converted = convert(case, &mut Nobody).unwrap();
-    let export = Export::of(&converted.mesh, &converted.regions);
+    let export = Export::of(&converted.mesh, &converted.names);
     let sound = examine(&export.file);
     Made { converted, export, sound }
 }
@@ -141,7 +141,7 @@ fn chosen_faces_are_converted_as_they_are_among_all_and_the_others_left_out() {
     let flange = make(&built_in("example6", &[("size_scale", "2"), ("faces", "top flange")]));
     flange.assert_sound("top flange");
     let of = |made: &Made, name: &str| {
-        let region = made.converted.regions.iter().position(|region| region == name).unwrap() as u32;
+        let region = made.converted.names.faces.iter().position(|face| face.name == name).unwrap() as u32;
         made.converted.mesh.elements_of(Some(region)).count()
     };
     // The curves are divided as for all faces; alone it has all trials of the clean-up.
@@ -287,7 +287,7 @@ fn examples_3_to_6_keep_the_papers_share_of_quadrilaterals_and_are_sound() {
         let share = made.sound.quads as f64 / before;
         assert!((0.42..=0.66).contains(&share), "{name}: {share}");
         // The grading is kept: each face has as many quadrilaterals as its metric area says, within a quarter.
-        let mut area = vec![0.0; made.converted.regions.len()];
+        let mut area = vec![0.0; made.converted.names.faces.len()];
         let (mesh, sizing) = (&made.converted.mesh, &made.converted.sizing);
         let mut count = vec![0.0; area.len()];
         for e in mesh.elements() {
@@ -304,8 +304,8 @@ fn examples_3_to_6_keep_the_papers_share_of_quadrilaterals_and_are_sound() {
             }
             count[mesh.region(e) as usize] += 1.0;
         }
-        for (face, (count, area)) in made.converted.regions.iter().zip(count.iter().zip(&area)) {
-            assert!((count / area - 1.0_f64).abs() < 0.25, "{name}, {face}: {count} for {area}");
+        for (face, (count, area)) in made.converted.names.faces.iter().zip(count.iter().zip(&area)) {
+            assert!((count / area - 1.0_f64).abs() < 0.25, "{name}, {face:?}: {count} for {area}");
         }
         let front = made.converted.counts.formed + made.converted.counts.closed;
         let resort = made.converted.last_resort.quads() as f64;

@@ -87,3 +87,93 @@ fn random_fans_of_planes_share_their_line_whatever_their_number() {
         Ok(())
     });
 }
+
+/// A node of a grid of cells, by its three numbers.
+type Node = [usize; 3];
+
+/// The sides of the cells of a grid of 2 x 2 x 2 whose nodes are moved: each four nodes in order.
+fn sides_of_cells() -> Vec<[Node; 4]> {
+    let mut sides = Vec::new();
+    for axis in 0..3 {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        for k in 0..27 {
+            let corner: Node = [k % 3, k / 3 % 3, k / 9];
+            if corner[i] < 2 && corner[j] < 2 {
+                let at = |a: usize, b: usize| {
+                    let mut node = corner;
+                    node[i] += a;
+                    node[j] += b;
+                    node
+                };
+                sides.push([at(0, 0), at(1, 0), at(1, 1), at(0, 1)]);
+            }
+        }
+    }
+    sides
+}
+
+/// Twisted sides of a grid's cells, any of them left out, with up to six faces at an edge, cells closed and open; some edges
+/// with a given number of segments, odd or even, some faces with a hole. Where the given numbers cannot be even on all
+/// faces the fault says so and names a loop; all else converts.
+#[test]
+fn random_complexes_of_twisted_faces_are_sound_or_their_odd_loop_is_named() {
+    let sides = sides_of_cells();
+    let moved = prop::collection::vec((-0.25..0.25f64, -0.25..0.25f64, -0.25..0.25f64), 27);
+    let taken = prop::collection::vec(prop::bool::weighted(0.4), sides.len());
+    let given = prop::collection::vec(prop::option::weighted(0.25, 2..6u32), 54);
+    let holes = prop::collection::vec(prop::bool::weighted(0.2), sides.len());
+    run(24, &(moved, taken, given, holes, 0.2..0.5f64), |(moved, taken, given, holes, h)| {
+        let place = |n: Node| {
+            let (a, b, c) = moved[n[0] + 3 * n[1] + 9 * n[2]];
+            format!("[{}, {}, {}]", n[0] as f64 + a, n[1] as f64 + b, n[2] as f64 + c)
+        };
+        let mut edges: Vec<[Node; 2]> = Vec::new();
+        let mut faces = String::new();
+        for (k, side) in sides.iter().enumerate().filter(|(k, _)| taken[*k]) {
+            let outer: Vec<String> = (0..4)
+                .map(|i| {
+                    let mut edge = [side[i], side[(i + 1) % 4]];
+                    edge.sort_unstable();
+                    let found = edges.iter().position(|e| *e == edge).unwrap_or_else(|| {
+                        edges.push(edge);
+                        edges.len() - 1
+                    });
+                    format!("\"e{found}\"")
+                })
+                .collect();
+            let [a, b, c, d] = side.map(place);
+            faces += &format!("[[surface]]\nname = \"s{k}\"\nkind = \"bezier\"\npoints = [[{a}, {d}], [{b}, {c}]]\n");
+            let mut hole = "";
+            let text;
+            if holes[k] {
+                faces += &format!(
+                    "[[curve]]\nname = \"h{k}\"\nkind = \"circle\"\non = \"s{k}\"\ncentre = [0.5, 0.45]\nradius = 0.2\n"
+                );
+                text = format!("holes = [[\"h{k}\"]]\n");
+                hole = &text;
+            }
+            faces += &format!("[[face]]\nname = \"f{k}\"\nsurface = \"s{k}\"\nouter = [{}]\n{hole}", outer.join(", "));
+        }
+        if edges.is_empty() {
+            return Ok(());
+        }
+        let mut text = "version = 1\n".to_owned();
+        for (k, [a, b]) in edges.iter().enumerate() {
+            let (a, b) = (place(*a), place(*b));
+            text += &format!("[[curve]]\nname = \"e{k}\"\nkind = \"segment\"\nfrom = {a}\nto = {b}\n");
+            if let Some(count) = given[k] {
+                text += &format!("segments = {count}\n");
+            }
+        }
+        text += &format!("{faces}[[metric]]\nkind = \"uniform\"\nh = {h}\n");
+        let case = parsed(&text);
+        match background(&case, &mut Nobody) {
+            Ok(_) => make(&case).assert_sound(&text),
+            Err(fault) => {
+                let said = fault.to_string();
+                prop_assert!(said.contains("even") && said.contains("loop of \"f"), "{said}\n{text}");
+            }
+        }
+        Ok(())
+    });
+}

@@ -15,6 +15,7 @@ use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::export::Export;
 use crate::core::io::{run_file, save};
+use crate::core::mesh::names::Names;
 use crate::core::progress::Nobody;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{Shown, ShownState, fingerprint};
@@ -283,7 +284,7 @@ fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &Fig
     let Moment { mesh, parameters, phase, just_changed, .. } = moment.as_ref();
     let seen = Seen { mesh, parameters, phase, changed: just_changed, from: options.bearing() };
     let statistics = match options.plot {
-        Some(_) => Some(work::statistics(&Export::of(mesh, &[]), &opened.background.sizing)?),
+        Some(_) => Some(work::statistics(&Export::of(mesh, &Names::default()), &opened.background.sizing)?),
         None => None,
     };
     let frame =

@@ -1,22 +1,24 @@
 //! An existing triangle mesh as background: checked, repaired where nothing is lost by it, and cut apart between regions.
 //!
 //! What is refused: curved meshes, meshes of quadrilaterals alone, triangles without room, edges of three triangles, overlaps, and parts
-//! with an odd number of triangles. Nodes at the same place are kept apart as the file has them: they are the two sides
+//! with an odd number of triangles. Lines that are in a group stay, also inside regions. Nodes at the same place are kept apart as the file has them: they are the two sides
 //! of a crack. Deliberately absent: reading files (`core/io`).
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use super::cut::{CutMesh, Sets, Side, cut, sorted_sides};
+use super::cut::{Cut, CutMesh, Sets, Side, cut, sorted_sides};
+use super::parity::toggles;
 use super::triangulate::too_thin;
 use crate::core::fault::Fault;
 use crate::core::geometry::place::{number, told};
 use crate::core::geometry::predicates::{firm, orient};
 use crate::core::io::mesh_file::MeshFile;
+use crate::core::mesh::names::Named;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::spectrum::{LogMetric2, LogMetric3};
 use crate::core::metric::tensor::{Metric2, Metric3};
@@ -30,7 +32,9 @@ pub struct Imported {
     /// got its middle.
     pub origin: Vec<[u32; 2]>,
     /// Names of the regions by number: those of the file's groups, or their tags.
-    pub regions: Vec<String>,
+    pub regions: Vec<Named>,
+    /// Names of the lines by number, likewise.
+    pub lines: Vec<Named>,
     /// What was repaired or left out, sentences without a full stop.
     pub repairs: Vec<String>,
 }
@@ -46,9 +50,10 @@ impl Imported {
     }
 }
 
-/// Takes in a planar triangle mesh. Regions are the tags of the triangles in ascending order. A part (triangles of one
-/// region that hang together by edges) with an odd number of triangles is refused, or where `split_odd` allows, its
-/// longest boundary segment that no other region shares is divided.
+/// Takes in a planar triangle mesh. Regions are the tags of the triangles in ascending order. Of parts (triangles of one
+/// region that hang together by edges on no line) with an odd number of triangles two are made even by dividing the longest
+/// side on a line between them; one for which that is no way is refused, or where `split_odd` allows, its longest boundary segment
+/// that no other region shares is divided.
 ///
 /// # Errors
 /// All that the module's doc says, with the numbers of the triangles (from 1, in the order of the file) and places.
@@ -101,6 +106,9 @@ struct Import<'a> {
     number: Vec<u32>,
     tags: Vec<u32>,
     sides: Vec<Side>,
+    /// The groups of lines, and the group of each side in one, by its nodes in ascending order.
+    groups: Vec<Named>,
+    lines: FxHashMap<(u32, u32), u32>,
     repairs: Vec<String>,
     coincident: usize,
 }
@@ -163,6 +171,11 @@ impl<'a> Import<'a> {
         let tag = |i: usize| file.triangle_tags.get(i).copied().unwrap_or(0);
         let tags: Vec<u32> = (0..n).map(tag).collect::<BTreeSet<u32>>().into_iter().collect();
         let index: FxHashMap<u32, u32> = tags.iter().copied().zip(0..).collect();
+        let (groups, group_of) = file.line_groups();
+        let mut lines = FxHashMap::default();
+        for (&[a, b], group) in file.lines.iter().zip(group_of).filter_map(|(line, group)| Some((line, group?))) {
+            lines.entry((a.min(b), a.max(b))).or_insert(group);
+        }
         let mut repairs = Vec::new();
         let orphans = used.iter().filter(|u| !**u).count();
         tell(&mut repairs, orphans, "point without triangles was left out", "points without triangles were left out");
@@ -175,6 +188,8 @@ impl<'a> Import<'a> {
             number: (1..=n as u32).collect(),
             tags,
             sides: Vec::new(),
+            groups,
+            lines,
             repairs,
             coincident: 0,
         };
@@ -264,12 +279,15 @@ impl<'a> Import<'a> {
         Ok(())
     }
 
-    /// Every part has an even number of triangles, if need be after dividing a boundary segment.
+    /// Every part has an even number of triangles, if need be after dividing sides.
     fn even_parts(&mut self, split_odd: bool) -> Result<(), Fault> {
         let mut parts = Sets::new(self.triangles.len());
+        let on_line = |side: &Side| self.lines.contains_key(&(side.low, side.high));
+        let one_region = |a: &Side, b: &Side| self.region[a.corner as usize / 3] == self.region[b.corner as usize / 3];
         for pair in self.sides.chunk_by(same_edge) {
             if let [a, b] = pair
-                && self.region[a.corner as usize / 3] == self.region[b.corner as usize / 3]
+                && one_region(a, b)
+                && !on_line(a)
             {
                 parts.join(a.corner / 3, b.corner / 3);
             }
@@ -277,29 +295,46 @@ impl<'a> Import<'a> {
         let part: Vec<u32> = (0..self.triangles.len() as u32).map(|t| parts.find(t)).collect();
         let mut count = vec![0_u32; part.len()];
         part.iter().for_each(|&p| count[p as usize] += 1);
-        // The longest segment of each odd part that lies on no other region.
-        let mut longest: Vec<Option<(f64, u32)>> = vec![None; part.len()];
-        let odd: Vec<u32> = (0..part.len() as u32).filter(|&p| count[p as usize] % 2 == 1).collect();
-        let Some(&first) = odd.first() else { return Ok(()) };
-        if !split_odd {
-            return Err(self.odd_fault(&part, first, count[first as usize]));
-        }
-        for side in self.sides.chunk_by(same_edge).filter(|g| g.len() == 1).map(|g| g[0]) {
-            let p = part[side.corner as usize / 3] as usize;
-            let length = self.uv[side.low as usize].distance(self.uv[side.high as usize]);
-            if count[p] % 2 == 1 && longest[p].is_none_or(|(l, _)| length > l) {
-                longest[p] = Some((length, side.corner));
+        let Some(first) = (0..part.len()).find(|&p| count[p] % 2 == 1) else { return Ok(()) };
+        // The longest side at the boundary of each part, and on lines between each two.
+        let mut longest: BTreeMap<_, (f64, &[Side])> = BTreeMap::new();
+        for group in self.sides.chunk_by(same_edge) {
+            let at = |side: &Side| part[side.corner as usize / 3];
+            let between = match group {
+                [a] if split_odd => (at(a), None),
+                [a, b] if at(a) != at(b) && one_region(a, b) => (at(a).min(at(b)), Some(at(a).max(at(b)))),
+                _ => continue,
+            };
+            let length = self.uv[group[0].low as usize].distance(self.uv[group[0].high as usize]);
+            let known = longest.entry(between).or_insert((length, group));
+            if length > known.0 {
+                *known = (length, group);
             }
         }
-        for &p in &odd {
-            let Some((_, corner)) = longest[p as usize] else {
-                return Err(self.odd_fault(&part, p, count[p as usize]));
-            };
-            self.divide(corner)?;
+        let mut rows: Vec<Vec<u32>> = vec![Vec::new(); part.len()];
+        for (column, (one, other)) in (0..).zip(longest.keys()) {
+            [Some(*one), *other].into_iter().flatten().for_each(|p| rows[p as usize].push(column));
+        }
+        let odd: Vec<bool> = count.iter().map(|n| n % 2 == 1).collect();
+        let cost: Vec<Option<f64>> =
+            longest.values().map(|(length, _)| Some(1.0 / length.max(f64::MIN_POSITIVE))).collect();
+        let toggled = toggles(&rows, &odd, &cost).map_err(|blamed| {
+            let named = blamed.iter().copied().find(|&p| odd[p as usize]).unwrap_or(first as u32);
+            self.odd_fault(&part, named, count[named as usize])
+        })?;
+        let chosen: Vec<Vec<Side>> = longest
+            .values()
+            .zip(toggled)
+            .filter(|(_, toggled)| *toggled)
+            .map(|((_, group), _)| group.to_vec())
+            .collect();
+        let mut halves = FxHashMap::default();
+        for sides in &chosen {
+            self.divide(sides, &mut halves)?;
         }
         tell(
             &mut self.repairs,
-            odd.len(),
+            chosen.len(),
             "boundary segment was divided, so that its part has an even number of triangles",
             "boundary segments were divided, so that their parts have even numbers of triangles",
         );
@@ -307,24 +342,35 @@ impl<'a> Import<'a> {
         Ok(())
     }
 
-    /// Divides the side that starts at a corner, and its triangle with it.
-    fn divide(&mut self, corner: u32) -> Result<(), Fault> {
-        let (t, k) = (corner as usize / 3, corner as usize % 3);
-        let [a, b, c] = [0, 1, 2].map(|i| self.triangles[t][(k + i) % 3]);
+    /// Divides the sides on one edge, and their triangles with them. `halves` has the triangles that came from each by dividing.
+    fn divide(&mut self, sides: &[Side], halves: &mut FxHashMap<usize, Vec<usize>>) -> Result<(), Fault> {
+        let [a, b] = [sides[0].low, sides[0].high];
         let middle = self.uv[a as usize].midpoint(self.uv[b as usize]);
         let m = self.uv.len() as u32;
         self.uv.push(middle);
         self.origin.push([a, b]);
-        let halves = [[a, m, c], [m, b, c]];
-        if halves.iter().any(|&h| !self.firm(h)) {
-            return Err(Fault::new(format!("Triangle {} is too thin to be divided", self.number[t]))
-                .at(format!("at {}", told(middle)))
-                .remedy("Divide another boundary segment of its part in the mesh"));
+        if let Some(&group) = self.lines.get(&(a.min(b), a.max(b))) {
+            self.lines.extend([a, b].map(|end| ((end, m), group)));
         }
-        self.triangles[t] = halves[0];
-        self.triangles.push(halves[1]);
-        self.region.push(self.region[t]);
-        self.number.push(self.number[t]);
+        for side in sides {
+            let given = side.corner as usize / 3;
+            let others = halves.entry(given).or_default();
+            let has_both = |t: &usize| [a, b].iter().all(|end| self.triangles[*t].contains(end));
+            let t = others.iter().copied().find(has_both).unwrap_or(given);
+            let k = (0..3).find(|&k| ![a, b].contains(&self.triangles[t][(k + 2) % 3])).unwrap_or(0);
+            let [a, b, c] = [0, 1, 2].map(|i| self.triangles[t][(k + i) % 3]);
+            let parts = [[a, m, c], [m, b, c]];
+            if parts.iter().any(|&h| !self.firm(h)) {
+                return Err(Fault::new(format!("Triangle {} is too thin to be divided", self.number[t]))
+                    .at(format!("at {}", told(middle)))
+                    .remedy("Divide another boundary segment of its part in the mesh"));
+            }
+            others.push(self.triangles.len());
+            self.triangles[t] = parts[0];
+            self.triangles.push(parts[1]);
+            self.region.push(self.region[t]);
+            self.number.push(self.number[t]);
+        }
         Ok(())
     }
 
@@ -336,7 +382,7 @@ impl<'a> Import<'a> {
         let found = loops.iter().find(|l| l.len() % 2 == 1);
         let segments = found.map_or(0, Vec::len);
         let place = found.map_or(DVec2::ZERO, |l| mesh.set.uv[l[0] as usize]);
-        let region = self.region_name(self.region[odd as usize]);
+        let region = self.region_name(self.region[odd as usize]).name;
         let remedy = if self.coincident > 0 {
             "Divide one boundary segment of this part; or merge points that stand at the same place, if the mesh ought to hang together there"
         } else {
@@ -349,9 +395,8 @@ impl<'a> Import<'a> {
         .remedy(remedy)
     }
 
-    fn region_name(&self, region: u32) -> String {
-        let tag = self.tags[region as usize];
-        self.file.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned)
+    fn region_name(&self, region: u32) -> Named {
+        self.file.region(self.tags[region as usize])
     }
 
     fn finish(mut self) -> Imported {
@@ -360,15 +405,24 @@ impl<'a> Import<'a> {
             _ => false,
         };
         let lines: BTreeSet<(u32, u32)> = self.file.lines.iter().map(|&[a, b]| (a.min(b), a.max(b))).collect();
-        let lost = if lines.is_empty() {
-            0
-        } else {
-            self.sides.chunk_by(same_edge).filter(|g| inner(g) && lines.contains(&(g[0].low, g[0].high))).count()
-        };
-        tell(&mut self.repairs, lost, "line inside a region is not kept", "lines inside regions are not kept");
+        let (mut kept, mut lost) = (Vec::new(), 0);
+        for group in self.sides.chunk_by(same_edge).filter(|group| inner(group)) {
+            let ends = (group[0].low, group[0].high);
+            if self.lines.contains_key(&ends) {
+                kept.push(([ends.0, ends.1], Cut::Repeated));
+            } else if lines.contains(&ends) {
+                lost += 1;
+            }
+        }
+        tell(
+            &mut self.repairs,
+            lost,
+            "line inside a region that is in no group is not kept",
+            "lines inside regions that are in no group are not kept",
+        );
         let names = (0..self.tags.len() as u32).map(|r| self.region_name(r)).collect();
-        let single = self.tags.len() == 1;
-        let CutMesh { set, origin, .. } = cut(&self.uv, self.triangles, self.region, &[]);
+        let single = self.tags.len() == 1 && kept.is_empty();
+        let CutMesh { mut set, origin, sides } = cut(&self.uv, self.triangles, self.region, &kept);
         if single {
             // Within one region only a pinched node becomes several.
             let pinched = origin.windows(2).filter(|w| w[0] == w[1]).count();
@@ -379,8 +433,14 @@ impl<'a> Import<'a> {
                 "nodes were split where triangles meet in a point only",
             );
         }
+        for ends in sides {
+            let [a, b] = ends.map(|node| origin[node as usize]);
+            if let Some(&group) = self.lines.get(&(a.min(b), a.max(b))) {
+                set.lines.push((ends.map(|node| set.point[node as usize]), group));
+            }
+        }
         let origin = origin.into_iter().map(|n| self.origin[n as usize]).collect();
-        Imported { set, origin, regions: names, repairs: self.repairs }
+        Imported { set, origin, regions: names, lines: self.groups, repairs: self.repairs }
     }
 }
 

@@ -13,6 +13,7 @@ use crate::core::geometry::crossing::crossing_of;
 use crate::core::geometry::domain::{CurveId, CurveKind, Domain};
 use crate::core::geometry::place::{number, told};
 use crate::core::geometry::predicates::{firm, orient, positive};
+use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::MetricSource;
 
@@ -155,6 +156,7 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<(CutMesh, Vec<D
     if domain.spatial.is_some() {
         mesh.join_in_space(&divided.joined, &divided.xyz);
     }
+    mesh.set.lines = edges.lines(&mesh);
     Ok((mesh, folded))
 }
 
@@ -228,6 +230,16 @@ impl<'a> Edges<'a> {
 
     fn at(&self, node: u32) -> DVec2 {
         self.divided.nodes[node as usize]
+    }
+
+    /// The sides of the triangles along curves, each by the first image of its curve.
+    fn lines(&self, mesh: &CutMesh) -> Vec<([PointId; 2], u32)> {
+        let on_curve = |ends: &[u32; 2]| {
+            let [a, b] = ends.map(|node| mesh.origin[node as usize]);
+            let (id, _) = self.chord_of.get(&(a.min(b), a.max(b)))?;
+            Some((ends.map(|node| mesh.set.point[node as usize]), self.domain.curves[id.index()].first.0))
+        };
+        mesh.sides.iter().filter_map(on_curve).collect()
     }
 
     /// Makes every edge an edge of the triangulation.

@@ -26,7 +26,8 @@ use crate::core::io::case::{Case, DomainSource, MeshUse, Taking};
 use crate::core::io::format::read_mesh_watched;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::half_edge::{Ground, Mesh, NewElement};
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::ids::{ElementId, NodeId, PointId};
+use crate::core::mesh::names::{Named, Names};
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::metric::gradation::bound_gradation;
@@ -44,8 +45,8 @@ pub struct Background {
     pub mesh: Mesh,
     /// What gives the metric anywhere.
     pub sizing: Sizing,
-    /// Names of the regions.
-    pub regions: Vec<String>,
+    /// What its faces and lines are called.
+    pub names: Names,
     /// What the adaptation did; nothing for a mesh that was given.
     pub adapted: Adapted,
     /// What was mended in a mesh that was given, for people.
@@ -59,8 +60,8 @@ pub struct Converted {
     pub mesh: Mesh,
     /// What gives the metric anywhere.
     pub sizing: Sizing,
-    /// Names of the regions.
-    pub regions: Vec<String>,
+    /// What its faces and lines are called.
+    pub names: Names,
     /// Number of triangles of the background mesh.
     pub triangles: usize,
     /// What the adaptation of the background did.
@@ -87,9 +88,9 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     }
     let made = match &case.domain {
         DomainSource::Curves { curves, faces } => {
-            from_domain(case, Domain::build(curves.clone(), faces.clone())?, None, watch)?
+            from_domain(case, Domain::build(curves.clone(), faces.clone())?, None, Lines::default(), watch)?
         }
-        DomainSource::Surfaces(spec) => from_domain(case, complex::build(spec)?, None, watch)?,
+        DomainSource::Surfaces(spec) => from_domain(case, complex::build(spec)?, None, Lines::default(), watch)?,
         DomainSource::Elements { points, triangles, quads } => from_elements(case, points, triangles, quads)?,
         DomainSource::Mesh { path, sol, taking } => from_mesh(case, path, sol.as_deref(), taking, watch)?,
     };
@@ -105,8 +106,9 @@ fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault>
     }
     let mut regions = Vec::new();
     for name in names {
-        let known = || made.regions.iter().map(|region| (strsim::damerau_levenshtein(name, region), region));
-        let own = made.regions.iter().zip(0..).filter(|(region, _)| *region == name || is_part_of(region, name));
+        let faces = || made.names.faces.iter().map(|face| &face.name);
+        let known = || faces().map(|face| (strsim::damerau_levenshtein(name, face), face));
+        let own = faces().zip(0..).filter(|(face, _)| *face == name || is_part_of(face, name));
         let before = regions.len();
         regions.extend(own.map(|(_, number)| number));
         if regions.len() == before {
@@ -143,14 +145,14 @@ pub fn convert_by(
     watch: &mut dyn Watch,
     drive: &mut dyn FnMut(&mut Converter<'_>, &mut dyn Watch) -> Result<(), Fault>,
 ) -> Result<Converted, Fault> {
-    let Background { mesh, sizing, regions, adapted, repairs } = background(case, watch)?;
+    let Background { mesh, sizing, names, adapted, repairs } = background(case, watch)?;
     let triangles = mesh.element_count();
     let (mesh, counts, last_resort, finished) = {
         let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());
         drive(&mut converter, watch)?;
         (converter.mesh, converter.counts, converter.last_resort, converter.finished)
     };
-    Ok(Converted { mesh, sizing, regions, triangles, adapted, repairs, counts, last_resort, finished })
+    Ok(Converted { mesh, sizing, names, triangles, adapted, repairs, counts, last_resort, finished })
 }
 
 /// The background mesh of a domain of curves, in the plane or on surfaces; where the case bounds the gradation, a first mesh
@@ -159,6 +161,7 @@ fn from_domain(
     case: &Case,
     domain: Domain,
     own: Option<Vec<Field>>,
+    lines: Lines,
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     watch.tell(Stage::Divide, 0, 0);
@@ -171,16 +174,20 @@ fn from_domain(
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
     let layered = layers::layered_curves(&domain, &case.parameters)?;
-    let (mut mesh, mut adapted, mut divided) = adapted_mesh(case, &domain, &sizing, watch)?;
+    let mut made = adapted_mesh(case, &domain, &sizing, watch)?;
     if let Some(beta) = case.gradation {
-        sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0).on(atlas);
-        (mesh, adapted, divided) = adapted_mesh(case, &domain, &sizing, watch)?;
+        sizing = Sizing::new(vec![bounded(&made.mesh, &sizing, beta)?], 1.0).on(atlas);
+        made = adapted_mesh(case, &domain, &sizing, watch)?;
     }
     if let Some(curves) = layered {
-        layers::offset_only(&mut mesh, &divided, &curves, case.parameters.layers);
+        layers::offset_only(&mut made.mesh, &made.divided, &curves, case.parameters.layers);
     }
-    let regions = domain.faces.iter().map(|face| face.name.clone()).collect();
-    Ok(Background { mesh, sizing, regions, adapted, repairs: Vec::new() })
+    let faces = domain.faces.iter().map(|face| Named::new(&face.name)).collect();
+    // Of curves only those that carry lines of a file give their names to what is written.
+    let on_line = |&(ends, curve): &([PointId; 2], u32)| Some((ends, lines.of_curve.get(curve as usize).copied()??));
+    let sides = made.lines.iter().filter_map(on_line).collect();
+    let names = Names::of_faces(faces).with_lines(lines.names, sides);
+    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs: Vec::new() })
 }
 
 /// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The metric is that
@@ -231,13 +238,14 @@ fn from_mesh(
         sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0);
         mesh = meshed(&sizing)?;
     }
-    Ok(Background { mesh, sizing, regions: imported.regions, adapted: Adapted::default(), repairs: imported.repairs })
+    let names = Names::of_faces(imported.regions).with_lines(imported.lines, imported.set.lines);
+    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
 /// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
 /// case's fields; where there are none those given at its points, or those that its triangles have.
 fn from_surface(case: &Case, file: &MeshFile, taking: &Taking, watch: &mut dyn Watch) -> Result<Background, Fault> {
-    let Sound { mesh, copied, regions, mut repairs } = sound(file, watch)?;
+    let Sound { mesh, copied, regions, lines, mut repairs } = sound(file, watch)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch)?;
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
@@ -260,13 +268,15 @@ fn from_surface(case: &Case, file: &MeshFile, taking: &Taking, watch: &mut dyn W
             None => surface.table(&implied_sizes(&mesh))?,
         });
     }
-    let names = surface.regions.clone();
-    let made = if converts {
-        from_laid_out(case, &mesh, &surface, fields, &mut repairs)?
+    let faces = surface.regions.clone();
+    let lines = Lines { names: lines, of_curve: surface.lines.clone() };
+    let mut made = if converts {
+        from_laid_out(case, &mesh, &surface, fields, lines, &mut repairs)?
     } else {
-        from_domain(case, surface.domain, Some(fields), watch)?
+        from_domain(case, surface.domain, Some(fields), lines, watch)?
     };
-    Ok(Background { repairs, regions: names, ..made })
+    made.names.faces = faces;
+    Ok(Background { repairs, ..made })
 }
 
 /// The triangles of a surface as they are, laid flat chart by chart.
@@ -275,6 +285,7 @@ fn from_laid_out(
     surface: &Triangles,
     laid: &Surface,
     fields: Vec<Field>,
+    lines: Lines,
     repairs: &mut Vec<String>,
 ) -> Result<Background, Fault> {
     let (set, divided) = laid.triangles(surface, case.split_odd)?;
@@ -300,7 +311,8 @@ fn from_laid_out(
         sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0).on(atlas);
         mesh = meshed(&sizing)?;
     }
-    Ok(Background { mesh, sizing, regions: Vec::new(), adapted: Adapted::default(), repairs: Vec::new() })
+    let names = Names::default().with_lines(lines.names, set.lines);
+    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: Vec::new() })
 }
 
 /// A small mesh that the case itself holds, as it is: nodes keep its numbers, and its quadrilaterals stand already.
@@ -344,15 +356,29 @@ fn from_elements(
         mesh.replace(&[ElementId(first + 1), ElementId(first)], &[NewElement::quad([a, b, c, d], 0)]);
     }
     mesh.commit();
-    Ok(Background { mesh, sizing, regions: imported.regions, adapted: Adapted::default(), repairs: Vec::new() })
+    let names = Names::of_faces(imported.regions);
+    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: Vec::new() })
 }
 
-fn adapted_mesh(
-    case: &Case,
-    domain: &Domain,
-    sizing: &Sizing,
-    watch: &mut dyn Watch,
-) -> Result<(Mesh, Adapted, DividedDomain), Fault> {
+/// The lines of a file that a domain was made from.
+#[derive(Default)]
+struct Lines {
+    /// Their names by number.
+    names: Vec<Named>,
+    /// The line on which each curve of the domain lies, if on one.
+    of_curve: Vec<Option<u32>>,
+}
+
+/// The background mesh of a domain.
+struct AdaptedMesh {
+    mesh: Mesh,
+    adapted: Adapted,
+    divided: DividedDomain,
+    /// The sides along curves, by points and curve.
+    lines: Vec<([PointId; 2], u32)>,
+}
+
+fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn Watch) -> Result<AdaptedMesh, Fault> {
     watch.tell(Stage::Triangulate, 0, 0);
     let (divided, set) = divide_and_triangulate(domain, sizing)?;
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
@@ -365,7 +391,7 @@ fn adapted_mesh(
         mesh.set_ground(Arc::new(Ground { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
     }
     let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
-    Ok((mesh, adapted, divided))
+    Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines })
 }
 
 /// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is the

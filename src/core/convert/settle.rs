@@ -11,7 +11,7 @@ use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::metric::field::MetricSource;
 
 /// Rounds of relaxation of the nodes around a trial.
-const RELAX_ROUNDS: usize = 4;
+pub const RELAX_ROUNDS: usize = 4;
 /// Rounds of moving nodes to the middle of their neighbours.
 const UNTANGLE_ROUNDS: usize = 3;
 
@@ -32,9 +32,19 @@ pub fn put(mesh: &mut Mesh, source: &dyn MetricSource, node: NodeId, uv: DVec2) 
 /// Relaxes the free ones of some nodes, all of whose elements must be quadrilaterals; where elements are inverted first
 /// moves them to the middle of their neighbours. True when every element around is strictly convex in the end.
 pub fn settle(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes) -> bool {
+    let convex = untangle(mesh, source, core);
+    if convex {
+        relax(mesh, source, core, RELAX_ROUNDS);
+    }
+    convex
+}
+
+/// Moves the free ones of some nodes to the middle of their neighbours where elements around are inverted. True when every
+/// element around is strictly convex in the end.
+pub fn untangle(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes) -> bool {
     for _ in 0..UNTANGLE_ROUNDS {
         if all_convex(mesh, core) {
-            break;
+            return true;
         }
         for &node in core.iter().filter(|&&n| !mesh.is_fixed(n)).collect::<SmallVec<[_; 12]>>() {
             let around: Nodes = mesh.neighbours(node).collect();
@@ -44,10 +54,12 @@ pub fn settle(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes) -> bool 
             }
         }
     }
-    if !all_convex(mesh, core) {
-        return false;
-    }
-    for _ in 0..RELAX_ROUNDS {
+    all_convex(mesh, core)
+}
+
+/// Relaxes the free ones of some nodes, so many rounds at the most.
+pub fn relax(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes, rounds: usize) {
+    for _ in 0..rounds {
         let mut moved: f64 = 0.0;
         for &node in core {
             moved = moved.max(energy::relax(mesh, node, source));
@@ -56,7 +68,6 @@ pub fn settle(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes) -> bool 
             break;
         }
     }
-    true
 }
 
 /// The elements at some nodes, each once.

@@ -3,7 +3,8 @@
 //! The features divide the surface into parts. A part with holes that does not lie flat enough is slit from one border to another
 //! along the shortest way; one that is no disc for another reason, or that the plane would stretch too much, is cut in two
 //! between the two of its triangles that lie farthest apart, until all are good. Where a chart is slit, or a feature ends within
-//! it, it has two nodes at each point.
+//! it, it has two nodes at each point. Where the file lays a part into the plane itself, and that is good enough, its charts are
+//! those of its texture.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -84,6 +85,14 @@ pub fn charts(
     let all = Part::of((0..mesh.triangles.len() as u32).collect());
     let mut waiting = surface.connected(&all);
     let (mut charts, mut done, mut told) = (Vec::new(), 0, 0);
+    waiting.retain(|part| match surface.textured(part, bound) {
+        Some(found) => {
+            done += part.triangles.len() as u64;
+            charts.extend(found);
+            false
+        }
+        None => true,
+    });
     while let Some(part) = waiting.pop() {
         // What comes from work that was told to end is of no use.
         cancel.check()?;
@@ -113,7 +122,7 @@ pub fn charts(
 }
 
 impl Bound {
-    fn allows(self, stretch: Stretch) -> bool {
+    pub(super) fn allows(self, stretch: Stretch) -> bool {
         stretch.shape <= self.shape && stretch.area <= self.area
     }
 }
@@ -130,9 +139,9 @@ enum Next {
 
 /// Triangles that hang together, ascending, and the sides (both of an edge) along which they are slit, ascending.
 #[derive(Debug)]
-struct Part {
-    triangles: Vec<u32>,
-    slits: Vec<Corner>,
+pub(super) struct Part {
+    pub triangles: Vec<u32>,
+    pub slits: Vec<Corner>,
 }
 
 impl Part {
@@ -142,12 +151,12 @@ impl Part {
 }
 
 /// The surface with the triangles beyond each side that no feature parts from it.
-struct Surface<'a> {
-    mesh: &'a Triangles,
-    beyond: Vec<Option<Corner>>,
+pub(super) struct Surface<'a> {
+    pub mesh: &'a Triangles,
+    pub beyond: Vec<Option<Corner>>,
     centre: Vec<DVec3>,
     /// Coordinates in the plane are multiples of this.
-    grid: f64,
+    pub grid: f64,
     cancel: Cancel,
 }
 
@@ -170,12 +179,12 @@ impl<'a> Surface<'a> {
     }
 
     /// The sides of a triangle.
-    fn sides(triangle: u32) -> [Corner; 3] {
+    pub fn sides(triangle: u32) -> [Corner; 3] {
         [3 * triangle, 3 * triangle + 1, 3 * triangle + 2]
     }
 
     /// The pieces into which triangles fall, each ascending; the one with the least triangle comes last.
-    fn connected(&self, part: &Part) -> Vec<Part> {
+    pub fn connected(&self, part: &Part) -> Vec<Part> {
         let triangles = &part.triangles;
         let mut left = vec![true; triangles.len()];
         let mut pieces = Vec::new();
@@ -196,7 +205,9 @@ impl<'a> Surface<'a> {
             }
             piece.sort_unstable();
             piece.iter_mut().for_each(|at| *at = triangles[*at as usize]);
-            pieces.push(Part::of(piece));
+            let in_piece = |side: &Corner| piece.binary_search(&(side / 3)).is_ok();
+            let slits = part.slits.iter().copied().filter(in_piece).collect();
+            pieces.push(Part { triangles: piece, slits });
         }
         pieces.reverse();
         pieces
@@ -238,7 +249,7 @@ impl<'a> Surface<'a> {
     }
 
     /// The nodes of a part: corners that are held together by its edges.
-    fn nodes(&self, part: &Part) -> Chart {
+    pub fn nodes(&self, part: &Part) -> Chart {
         let triangles = &part.triangles;
         let mut nodes = Sets::new(3 * triangles.len());
         let mut border_sides: Vec<Corner> = Vec::new();
@@ -391,7 +402,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Where a triangle of the part lies beyond a side.
-    fn neighbour(&self, part: &Part, side: Corner) -> Option<usize> {
+    pub fn neighbour(&self, part: &Part, side: Corner) -> Option<usize> {
         let beyond = self.beyond[side as usize]?;
         let at = part.triangles.binary_search(&(beyond / 3)).ok()?;
         (part.slits.is_empty() || part.slits.binary_search(&side).is_err()).then_some(at)

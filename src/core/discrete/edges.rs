@@ -1,6 +1,6 @@
 //! Edges of a list of triangles, with the triangles at each: no matter how many, and which way they turn.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Triangles in space by the places of their corners in a list of points; whoever makes one has checked the places.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,6 +11,10 @@ pub struct Triangles {
     pub triangles: Vec<[u32; 3]>,
     /// The region of each triangle.
     pub region: Vec<u32>,
+    /// Where the corners of each triangle lie on a texture, if they do; empty where there is none.
+    pub texture: Vec<Option<[DVec2; 3]>>,
+    /// Edges on lines that are kept whatever the shape is there: their ends, the smaller one first, and the number of the line; by ascending ends.
+    pub lines: Vec<([u32; 2], u32)>,
 }
 
 /// A side of a triangle: the one that begins at corner `corner % 3` of triangle `corner / 3`.

@@ -1,6 +1,6 @@
 //! Feature edges: those that the mesh of quadrilaterals must keep (spec 4). An edge is one where the surface ends (one triangle),
-//! where it branches (three or more), where its regions meet, where it is folded by more than an angle, or where its two
-//! triangles disagree on which side is outside.
+//! where it branches (three or more), where its regions meet, where it is folded by more than an angle, where its two
+//! triangles disagree on which side is outside, or where it lies on a line that the file has a group for.
 
 use super::edges::{Edge, Edges, Triangles};
 
@@ -17,16 +17,26 @@ pub enum Feature {
     Region,
     /// Folded by more than the angle.
     Fold,
+    /// It lies on a line of the file.
+    Line,
 }
 
 /// The folds that are features where nothing else is said (spec 4).
 pub const ANGLE: f64 = 40.0 / 180.0 * std::f64::consts::PI;
 
-/// What kind of feature each edge is, if it is one; `angle` is the fold (in radians: 0 where the surface is plane) beyond
+/// What kind of feature each edge is by the shape alone, if it is one; `angle` is the fold (in radians: 0 where the surface is plane) beyond
 /// which an edge is one.
 pub fn features(mesh: &Triangles, edges: &Edges, angle: f64) -> Vec<Option<Feature>> {
     let least_cosine = libm::cos(angle);
     (0..edges.len()).map(|edge| feature(mesh, edges.get(edge), least_cosine)).collect()
+}
+
+/// Makes features of the edges that lie on lines.
+pub fn with_lines(mut features: Vec<Option<Feature>>, mesh: &Triangles, edges: &Edges) -> Vec<Option<Feature>> {
+    for edge in mesh.lines.iter().filter_map(|(ends, _)| edges.between(*ends)) {
+        features[edge].get_or_insert(Feature::Line);
+    }
+    features
 }
 
 fn feature(mesh: &Triangles, edge: Edge, least_cosine: f64) -> Option<Feature> {

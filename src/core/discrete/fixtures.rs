@@ -8,7 +8,7 @@ use super::edges::Triangles;
 
 fn whole(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Triangles {
     let region = vec![0; triangles.len()];
-    Triangles { points, triangles, region }
+    Triangles { points, triangles, region, ..Triangles::default() }
 }
 
 /// The unit cube, each side divided into `n` by `n` squares of two triangles.

@@ -39,9 +39,15 @@ impl Surface {
         let mut charts: Vec<Laid> = self.charts.iter().enumerate().map(laid).collect();
         let mut points = mesh.points.clone();
         let divided = divide_odd(mesh, &self.charts, split_odd)?;
+        let mut lines = mesh.lines.clone();
         for &[a, b] in &divided {
             let middle = points.len() as u32;
             points.push(0.5 * (points[a as usize] + points[b as usize]));
+            if let Ok(k) = mesh.lines.binary_search_by_key(&[a, b], |line| line.0) {
+                let line = lines[k].1;
+                lines[k].0 = [a, middle];
+                lines.push(([b, middle], line));
+            }
             charts.iter_mut().for_each(|chart| chart.divide([a, b], middle));
         }
         let mut set = TriangleSet::default();
@@ -69,6 +75,11 @@ impl Surface {
                 set.region.push(k as u32);
             }
         }
+        let numbered = |(ends, line): &([u32; 2], u32)| {
+            let ends = ends.map(|end| number[end as usize]);
+            ends.iter().all(|end| *end != u32::MAX).then(|| (ends.map(PointId), *line))
+        };
+        set.lines = lines.iter().filter_map(numbered).collect();
         Ok((set, divided.len()))
     }
 }
@@ -200,12 +211,13 @@ mod tests {
     use crate::core::discrete::features::ANGLE;
     use crate::core::discrete::fixtures::{cube, plate, sphere, torus};
     use crate::core::discrete::surface::surface;
+    use crate::core::mesh::names::Named;
     use crate::core::progress::Nobody;
 
     #[test]
     fn charts_of_closed_surfaces_are_made_even_and_nothing_else_is_changed() {
         for mesh in [cube(3), sphere(5), torus(15, 9)] {
-            let laid = surface(&mesh, &["all".to_owned()], ANGLE, Bound::default(), &mut Nobody).unwrap();
+            let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
             let (set, divided) = laid.triangles(&mesh, false).unwrap();
             assert_eq!(set.xyz.len(), mesh.points.len() + divided);
             assert_eq!(set.triangles.len(), mesh.triangles.len() + 2 * divided);
@@ -220,7 +232,7 @@ mod tests {
         let mut mesh = plate(3, 0.2);
         mesh.triangles.pop();
         mesh.region.pop();
-        let laid = surface(&mesh, &["all".to_owned()], ANGLE, Bound::default(), &mut Nobody).unwrap();
+        let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
         assert!(laid.triangles(&mesh, false).unwrap_err().what.contains("17 triangles"));
         assert_eq!(laid.triangles(&mesh, true).unwrap().0.triangles.len(), 18);
     }

@@ -11,9 +11,9 @@ use crate::core::io::weld::weld;
 use crate::core::progress::Cancel;
 
 /// Points nearer than this part of the largest coordinate are at one place.
-const SAME_PLACE: f64 = 1e-9;
+pub(super) const SAME_PLACE: f64 = 1e-9;
 /// A point nearer to a side than this part of the side's length hangs in it.
-const IN_SIDE: f64 = 1e-6;
+pub(super) const IN_SIDE: f64 = 1e-6;
 /// Parts that touch in a point are set apart by this part of the size, and by no more than this part of an edge there.
 const APART: f64 = 1e-6;
 const APART_OF_EDGE: f64 = 1e-2;
@@ -57,6 +57,7 @@ impl Triangles {
                 let in_side = of_triangle.iter().filter(|h| h.0 == side).map(|h| h.2);
                 let [a, b] = self.side(side);
                 let apex = self.triangles[t][(side as usize + 2) % 3];
+                self.forget_texture(t);
                 let along: Vec<u32> = [a].into_iter().chain(in_side).chain([b]).collect();
                 stitched += along.len() - 2;
                 for (k, piece) in along.windows(2).enumerate() {
@@ -66,6 +67,9 @@ impl Triangles {
                     } else {
                         self.triangles.push(piece);
                         self.region.push(self.region[t]);
+                        if !self.texture.is_empty() {
+                            self.texture.push(None);
+                        }
                     }
                 }
             }

@@ -5,12 +5,14 @@
 
 pub mod edges;
 pub mod mend;
+pub mod lines;
 pub mod sound;
 pub mod features;
 pub mod chart;
 pub mod sparse;
 pub mod tutte;
 pub mod rigid;
+pub mod texture;
 pub mod surface;
 pub mod curvature;
 pub mod given;

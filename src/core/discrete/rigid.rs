@@ -177,7 +177,7 @@ fn unrolled(triangles: &[[u32; 3]], flat: &[[DVec2; 3]], nodes: usize) -> Vec<DV
 /// Whether the border loops bound one region of the plane to their left: none crosses or touches itself or another, and one
 /// alone runs anticlockwise. Then triangles that all lie the right way round cover each place once: the times that they cover a place are
 /// the turns of the loops around it, 1 within the one and 0 in its holes. By exact predicates.
-fn is_embedded(uv: &[DVec2], loops: &[u32]) -> bool {
+pub fn is_embedded(uv: &[DVec2], loops: &[u32]) -> bool {
     let mut next: Vec<u32> = Vec::new();
     let mut anticlockwise = 0;
     for &long in loops {

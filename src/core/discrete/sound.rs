@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::edges::{Edges, Groups, Triangles};
+use super::lines::on_edges;
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
+use crate::core::mesh::names::Named;
 use crate::core::progress::{Stage, Watch};
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
@@ -26,14 +28,17 @@ pub struct Sound {
     /// The points that the mesh has beyond the file's, by those that they were.
     pub copied: Vec<u32>,
     /// Names of the regions by number.
-    pub regions: Vec<String>,
+    pub regions: Vec<Named>,
+    /// Names of the lines by number.
+    pub lines: Vec<Named>,
     /// What was mended, sentences without a full stop.
     pub repairs: Vec<String>,
 }
 
 /// The triangles of a file: quadrilaterals and polygons cut; points at one place used as one, and points that hang in sides of
 /// the border taken into them; triangles with a node twice or without area, and duplicates, taken out; all
-/// turned so that neighbours agree on which side is outside, where that can be; parts that touch in a point set apart.
+/// turned so that neighbours agree on which side is outside, where that can be; parts that touch in a point set apart. Lines that
+/// are in a group become those of the edges that they lie on.
 ///
 /// # Errors
 /// No triangles; points that are not finite or beyond 1e100; points that are not there; [`Fault::stopped`].
@@ -77,10 +82,15 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     }
     let tag = |i: usize| file.triangle_tags.get(i).copied().unwrap_or(0);
     let tags: Vec<u32> = (0..file.triangles.len()).map(tag).collect::<BTreeSet<u32>>().into_iter().collect();
-    let name = |&tag: &u32| file.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned);
-    let regions = tags.iter().map(name).collect();
+    let regions = tags.iter().map(|&tag| file.region(tag)).collect();
     let region = (0..file.triangles.len()).map(|i| tags.partition_point(|&t| t < tag(i)) as u32).collect();
-    let mut mesh = Triangles { points: file.points, triangles: file.triangles, region };
+    let texture = file.texture.as_ref().map_or_else(Vec::new, |texture| {
+        (0..file.triangles.len()).map(|triangle| texture.of_triangle(triangle)).collect()
+    });
+    let (lines, line_of) = file.line_groups();
+    let segments: Vec<([u32; 2], u32)> =
+        file.lines.iter().zip(line_of).filter_map(|(&ends, line)| Some((ends, line?))).collect();
+    let mut mesh = Triangles { points: file.points, triangles: file.triangles, region, lines: Vec::new(), texture };
     begin(2)?;
     let welded = mesh.weld(&cancel);
     begin(3)?;
@@ -107,7 +117,14 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     let (copied, parted) = mesh.part();
     begin(STEPS)?;
     tell(parted, "point in which parts touched was parted", "points in which parts touched were parted");
-    Ok(Sound { mesh, regions, copied, repairs })
+    let lost;
+    (mesh.lines, lost) = on_edges(&segments, &mesh, &copied);
+    tell(
+        lost,
+        "line is on no edge of the mesh and was left out",
+        "lines are on no edges of the mesh and were left out",
+    );
+    Ok(Sound { mesh, regions, lines, copied, repairs })
 }
 
 impl Triangles {
@@ -116,6 +133,15 @@ impl Triangles {
         self.triangles.retain(|_| at.next() != Some(&false));
         let mut at = keep.iter();
         self.region.retain(|_| at.next() != Some(&false));
+        let mut at = keep.iter();
+        self.texture.retain(|_| at.next() != Some(&false));
+    }
+
+    /// Lets a triangle that was changed lie nowhere on the texture.
+    pub(super) fn forget_texture(&mut self, triangle: usize) {
+        if let Some(places) = self.texture.get_mut(triangle) {
+            *places = None;
+        }
     }
 
     /// Takes out triangles with the nodes of an earlier one. How many those were.
@@ -187,6 +213,8 @@ impl Triangles {
                         self.triangles[o] = [a, nodes[apex], far];
                         self.triangles[t] = [nodes[apex], b, far];
                         self.region[t] = self.region[o];
+                        self.forget_texture(t);
+                        self.forget_texture(o);
                         (touched[o], touched[t]) = (true, true);
                         taken += 1;
                         continue;
@@ -238,6 +266,9 @@ impl Triangles {
                 turned[t] = Some(turn);
                 if turn {
                     self.triangles[t].swap(1, 2);
+                    if let Some(Some(places)) = self.texture.get_mut(t) {
+                        places.swap(1, 2);
+                    }
                     count += 1;
                 }
             }

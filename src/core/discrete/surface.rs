@@ -4,10 +4,11 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use rustc_hash::FxHashMap;
 
 use super::chart::{Bound, Chart, charts};
 use super::edges::{Edge, Edges, Triangles};
-use super::features::{ANGLE, features};
+use super::features::{ANGLE, features, with_lines};
 use crate::core::fault::Fault;
 use crate::core::geometry::complex::{Lifted, Named, assemble};
 use crate::core::geometry::domain::{Domain, FaceSpec};
@@ -16,6 +17,7 @@ use crate::core::geometry::ground::Ground;
 use crate::core::geometry::image::Image;
 use crate::core::geometry::lifting::Piece;
 use crate::core::geometry::space_curve::SpaceCurve;
+use crate::core::mesh::names;
 use crate::core::metric::field::Field;
 use crate::core::metric::gradation::bound_gradation;
 use crate::core::metric::tensor::Metric3;
@@ -37,7 +39,9 @@ pub struct Surface {
     pub domain: Domain,
     pub(super) charts: Vec<Chart>,
     /// The region of each face, by its name.
-    pub regions: Vec<String>,
+    pub regions: Vec<names::Named>,
+    /// The line on which each curve of the domain lies, if on one.
+    pub lines: Vec<Option<u32>>,
 }
 
 /// Sides of triangles from one meeting point to the next, or all around.
@@ -46,6 +50,8 @@ struct Chain {
     points: Vec<u32>,
     /// Whether they are features, and not only where the surface is cut for the plane.
     feature: bool,
+    /// The line on which they lie, if on one.
+    line: Option<u32>,
 }
 
 /// Where a side of the border lies in the chains.
@@ -62,17 +68,21 @@ struct Link {
 /// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that. [`Fault::stopped`].
 pub fn surface(
     mesh: &Triangles,
-    regions: &[String],
+    regions: &[names::Named],
     angle: f64,
     bound: Bound,
     watch: &mut dyn Watch,
 ) -> Result<Surface, Fault> {
     let edges = Edges::of(&mesh.triangles);
-    let features = features(mesh, &edges, angle);
+    let features = with_lines(features(mesh, &edges, angle), mesh, &edges);
     let charts = charts(mesh, &edges, &features, bound, watch)?;
     let cancel = watch.cancel();
-    let is_feature = |edge: usize| features[edge].is_some();
-    let (chains, links) = chains(mesh, &edges, &charts, &is_feature);
+    let mut line_of: Vec<Option<u32>> = vec![None; edges.len()];
+    for (edge, line) in mesh.lines.iter().filter_map(|(ends, line)| Some((edges.between(*ends)?, *line))) {
+        line_of[edge].get_or_insert(line);
+    }
+    let kind = |edge: usize| (features[edge].is_some(), line_of[edge]);
+    let (chains, links) = chains(mesh, &edges, &charts, &kind);
     let mut vertices = Vec::new();
     let mut vertex_of = vec![u32::MAX; mesh.points.len()];
     let mut curves = Vec::with_capacity(chains.len());
@@ -106,7 +116,7 @@ pub fn surface(
         let loops = pieces(chart, &facets, &edges, &chains, &links, &curves);
         let named = |pieces: &Vec<Piece>| pieces.iter().map(|piece| curves[piece.curve].name.clone()).collect();
         specs.push(FaceSpec {
-            name: format!("{}, part {}", regions[region], parts[region]),
+            name: format!("{}, part {}", regions[region].name, parts[region]),
             outer: named(&loops[0]),
             holes: loops[1..].iter().map(named).collect(),
             cracks: Vec::new(),
@@ -118,7 +128,10 @@ pub fn surface(
     let domain = assemble(&curves, &vertices, &specs, lifts)?;
     let region = |chart: &Chart| regions[mesh.region[chart.triangles[0] as usize] as usize].clone();
     let regions = charts.iter().map(region).collect();
-    Ok(Surface { domain, charts, regions })
+    let by_name: FxHashMap<&str, Option<u32>> =
+        curves.iter().zip(&chains).map(|(curve, chain)| (curve.name.as_str(), chain.line)).collect();
+    let lines = domain.curves.iter().map(|curve| by_name.get(curve.name.as_str()).copied().flatten()).collect();
+    Ok(Surface { domain, charts, regions, lines })
 }
 
 impl Surface {
@@ -195,12 +208,12 @@ fn sides(chart: &Chart) -> impl Iterator<Item = Vec<[u32; 2]>> + '_ {
 }
 
 /// The chains of all borders, and for each edge of the surface that lies on one where. A chain goes on through a point where just two
-/// border edges meet that are shared by the same charts and are both features or both not.
+/// border edges meet that are shared by the same charts, are both features or both not, and lie on the same line or on none.
 fn chains(
     mesh: &Triangles,
     edges: &Edges,
     charts: &[Chart],
-    is_feature: &dyn Fn(usize) -> bool,
+    kind: &dyn Fn(usize) -> (bool, Option<u32>),
 ) -> (Vec<Chain>, Vec<Option<Link>>) {
     // The charts on each border edge, ascending.
     let mut users: Vec<(usize, u32)> = Vec::new();
@@ -221,7 +234,7 @@ fn chains(
     }
     let alike = |a: u32, b: u32| {
         let charts = |edge: u32| of_edge[edge as usize].iter().map(|user| user.1);
-        is_feature(a as usize) == is_feature(b as usize) && charts(a).eq(charts(b))
+        kind(a as usize) == kind(b as usize) && charts(a).eq(charts(b))
     };
     let goes_on = |point: u32| matches!(at_point[point as usize][..], [a, b] if alike(a, b));
     let mut chains = Vec::new();
@@ -240,7 +253,8 @@ fn chains(
                 _ => break,
             }
         }
-        chains.push(Chain { points, feature: is_feature(edge as usize) });
+        let (feature, line) = kind(edge as usize);
+        chains.push(Chain { points, feature, line });
     };
     for point in 0..mesh.points.len() as u32 {
         if !goes_on(point) {
@@ -327,7 +341,7 @@ mod tests {
 
     #[test]
     fn surfaces_become_domains_whose_curves_are_shared() {
-        let names = ["all".to_owned()];
+        let names = [names::Named::new("all")];
         for (mesh, faces, curves) in [
             (cube(4), 6, 12),
             (sphere(8), 2, 1),

@@ -64,8 +64,13 @@ impl<'a> Arc<'a> {
 /// Refuses curves that cross or touch each other or themselves anywhere but at shared vertices.
 ///
 /// # Errors
-/// The first such pair in the order of the curves, named and placed.
-pub fn check(curves: &[DomainCurve], tree: &RTree<Chord>, limits: Limits) -> Result<(), Fault> {
+/// The first such pair in the order of the curves, named and placed; `face_of` names a face that a curve bounds.
+pub fn check<'n>(
+    curves: &[DomainCurve],
+    tree: &RTree<Chord>,
+    limits: Limits,
+    face_of: impl Fn(CurveId) -> Option<&'n str>,
+) -> Result<(), Fault> {
     let mut pairs: Vec<(CurveId, u32, CurveId, u32)> = tree
         .intersection_candidates_with_other_tree(tree)
         .map(|(a, b)| (a.data.0, a.data.1, b.data.0, b.data.1))
@@ -80,7 +85,7 @@ pub fn check(curves: &[DomainCurve], tree: &RTree<Chord>, limits: Limits) -> Res
             meet(Arc::chord(first, i), Arc::chord(second, j), &shared_vertices(first, second), limits)
         };
         if let Some(meeting) = found {
-            return Err(refusal(first, second, meeting, limits));
+            return Err(refusal(first, second, meeting, limits, face_of(b).or_else(|| face_of(a))));
         }
     }
     Ok(())
@@ -219,7 +224,7 @@ fn nearest_end(a: &Arc, b: &Arc) -> DVec2 {
     all.into_iter().min_by(|x, y| x.0.total_cmp(&y.0)).map_or(a.from.1, |(_, p)| p)
 }
 
-fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits) -> Fault {
+fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits, face: Option<&str>) -> Fault {
     let (Meeting::Crosses(p) | Meeting::Touches(p)) = meeting;
     let is_end = |c: &DomainCurve| {
         c.first().distance(p) <= 2.0 * limits.tolerance || c.last().distance(p) <= 2.0 * limits.tolerance
@@ -246,5 +251,9 @@ fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits) -
         ),
     };
     let fault = Fault::new(what).at(format!("at {}", told(p))).remedy(remedy);
+    let fault = match face {
+        Some(face) => fault.at(format!("face \"{face}\"")),
+        None => fault,
+    };
     if b.place.is_empty() { fault } else { fault.at(b.place.clone()) }
 }

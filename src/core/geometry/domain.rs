@@ -269,7 +269,11 @@ impl Domain {
             crossing::bulge(curve, curve.fine[i as usize], curve.fine[i as usize + 1]) + tolerance
         });
         if borders == Borders::Given {
-            crossing::check(&curves, &chords, Limits { tolerance, near: 1e-3 * size })?;
+            let face_of = |curve: CurveId| {
+                let of = |chain: &&Vec<Vec<DirectedCurve>>| chain.iter().flatten().any(|step| step.curve == curve);
+                chains.iter().position(|chain| of(&chain)).map(|face| names[face].as_str())
+            };
+            crossing::check(&curves, &chords, Limits { tolerance, near: 1e-3 * size }, face_of)?;
         }
         for (f, (spec, chain)) in faces.iter().zip(&mut chains).enumerate() {
             for (i, steps) in chain.iter_mut().enumerate() {

@@ -14,7 +14,7 @@ use gltf::mesh::{Mode, Primitive};
 use gltf::scene::Transform;
 use gltf::{Document, Gltf, Node};
 
-use super::mesh_file::{Group, MeshFile};
+use super::mesh_file::{Group, MeshFile, Texture};
 use super::scan::shown;
 use super::weld::{SINGLE, weld};
 use crate::core::fault::Fault;
@@ -62,6 +62,11 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
     let tags = std::mem::take(&mut mesh.triangle_tags);
     let keep = |[a, b, c]: [u32; 3]| a != b && b != c && c != a;
     mesh.triangle_tags = mesh.triangles.iter().zip(tags).filter(|(t, _)| keep(**t)).map(|(_, tag)| tag).collect();
+    mesh.texture = scene.texture.of_all(&mesh);
+    if let Some(texture) = &mut mesh.texture {
+        let mut of_triangle = mesh.triangles.iter();
+        texture.triangles.retain(|_| of_triangle.next().is_some_and(|&t| keep(t)));
+    }
     mesh.triangles.retain(|&t| keep(t));
     mesh.skipped = scene.skipped.into_iter().map(|(kind, count)| (kind.to_owned(), count)).collect();
     Ok(mesh)
@@ -111,6 +116,7 @@ struct Scene<'a> {
     buffers: Buffers,
     most: usize,
     mesh: MeshFile,
+    texture: Texture,
     skipped: BTreeMap<&'static str, usize>,
 }
 
@@ -180,12 +186,22 @@ impl Scene<'_> {
                 format!("A triangle of \"{}\" has the vertex {corner} of {}", self.group(tag), positions.count());
             return Err(Fault::new(what).at(self.name));
         }
+        let places = match primitive.get(&gltf::Semantic::TexCoords(0)) {
+            Some(accessor) => self.buffers.texture(&accessor),
+            None => Vec::new(),
+        };
+        let first_place = self.texture.places.len() as u32;
+        self.texture.places.extend(&places);
         // A mirroring transform turns triangles over.
         let mirrored = placed.determinant() < 0.0;
         let mut add = |[a, b, c]: [u32; 3]| {
             let t = if mirrored { [a, c, b] } else { [a, b, c] };
             self.mesh.triangles.push(t.map(|corner| first as u32 + corner));
             self.mesh.triangle_tags.push(tag);
+            let place = |corner: u32| {
+                if (corner as usize) < places.len() { first_place + corner } else { Texture::NOWHERE }
+            };
+            self.texture.place_triangle(self.mesh.triangles.len() - 1, t.map(place));
         };
         match primitive.mode() {
             Mode::TriangleStrip => {

@@ -1,11 +1,17 @@
 //! A mesh as files know it: points and elements by index, with tags, groups and data; no connectivity.
 
-use glam::DVec3;
+use std::collections::BTreeSet;
 
+use glam::{DVec2, DVec3};
+use rustc_hash::FxHashMap;
+
+use crate::core::mesh::names::Named;
 use crate::core::metric::tensor::Metric3;
 
 /// The name of the group of lines that are the merging front of a mesh on the way.
 pub const FRONT: &str = "front";
+/// The names of the groups of lines that every mesh has: those with elements on one side, and those with elements on both.
+pub const BUILT_IN: [&str; 2] = ["boundary", "inside"];
 
 /// A named group of elements (Gmsh's physical group).
 #[derive(Clone, Debug, PartialEq)]
@@ -53,12 +59,68 @@ pub struct MeshFile {
     pub groups: Vec<Group>,
     /// The metric at each point, where the file has one.
     pub metric: Option<Vec<Metric3>>,
+    /// The place of each point in the parametric plane, where the file has one.
+    pub uv: Option<Vec<DVec2>>,
     /// Numbers at points.
     pub point_data: Vec<Data>,
     /// Numbers at elements (triangles first, then quadrilaterals).
     pub element_data: Vec<Data>,
+    /// Texture coordinates, where the file has them.
+    pub texture: Option<Texture>,
     /// Element types that the file has and that are not read, with their counts ("tetrahedron", 12).
     pub skipped: Vec<(String, usize)>,
+}
+
+/// Where the corners of elements lie on a texture, by the number of the place: a point may lie at several places, one for each
+/// side of a seam. Numbers may lead nowhere.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Texture {
+    /// The places.
+    pub places: Vec<DVec2>,
+    /// For each triangle the places of its corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// Likewise for each quadrilateral.
+    pub quads: Vec<[u32; 4]>,
+    /// And for each polygon.
+    pub polygons: Vec<Vec<u32>>,
+}
+
+impl Texture {
+    /// The number of no place.
+    pub const NOWHERE: u32 = u32::MAX;
+
+    /// Takes in the places of a triangle's corners; nothing where the file has no places so far.
+    pub(super) fn place_triangle(&mut self, triangle: usize, places: [u32; 3]) {
+        if !self.places.is_empty() {
+            self.triangles.resize(triangle, [Self::NOWHERE; 3]);
+            self.triangles.push(places);
+        }
+    }
+
+    /// Likewise of a quadrilateral.
+    pub(super) fn place_quad(&mut self, quad: usize, places: [u32; 4]) {
+        if !self.places.is_empty() {
+            self.quads.resize(quad, [Self::NOWHERE; 4]);
+            self.quads.push(places);
+        }
+    }
+
+    /// The texture with something said of every element of a mesh; none where it has no places.
+    pub(super) fn of_all(mut self, mesh: &MeshFile) -> Option<Texture> {
+        self.triangles.resize(mesh.triangles.len(), [Self::NOWHERE; 3]);
+        self.quads.resize(mesh.quads.len(), [Self::NOWHERE; 4]);
+        self.polygons.resize(mesh.polygons.len(), Vec::new());
+        (!self.places.is_empty()).then_some(self)
+    }
+
+    /// Where the corners of a triangle lie, if all lie somewhere.
+    pub fn of_triangle(&self, triangle: usize) -> Option<[DVec2; 3]> {
+        let place = |k: usize| {
+            let place = self.triangles.get(triangle)?[k];
+            self.places.get(place as usize).copied().filter(|p| p.is_finite() && p.abs().max_element() < 1e9)
+        };
+        Some([place(0)?, place(1)?, place(2)?])
+    }
 }
 
 impl MeshFile {
@@ -74,14 +136,72 @@ impl MeshFile {
             .find(|group| group.dimension == dimension && group.tag == tag)
             .map(|group| group.name.as_str())
     }
-}
 
-impl MeshFile {
+    /// The lines, by their place in `lines`, that are in a group of their own: not those that every mesh has anyway.
+    pub fn own_lines(&self) -> Vec<usize> {
+        let built_in: Vec<u32> = self
+            .groups
+            .iter()
+            .filter(|group| group.dimension == 1 && BUILT_IN.contains(&group.name.as_str()))
+            .map(|group| group.tag)
+            .collect();
+        let is_own = |i: &usize| !matches!(tag_of(&self.line_tags, *i), tag if tag == 0 || built_in.contains(&tag));
+        (0..self.lines.len()).filter(is_own).collect()
+    }
+
     /// The lines of the merging front, by their place in `lines`; none in a mesh that is no state of a conversion.
     pub fn front_lines(&self) -> impl Iterator<Item = usize> + '_ {
         let group = self.groups.iter().find(|group| group.dimension == 1 && group.name == FRONT);
         let is_front = move |i: &usize| group.is_some_and(|group| tag_of(&self.line_tags, *i) == group.tag);
         (0..self.lines.len()).filter(is_front)
+    }
+
+    /// The groups of elements, and of lines those that some of `lines` are in.
+    pub(super) fn groups_with(&self, lines: &[usize]) -> impl Iterator<Item = &Group> {
+        let tags: BTreeSet<u32> = lines.iter().map(|&i| tag_of(&self.line_tags, i)).collect();
+        self.groups.iter().filter(move |group| match group.dimension {
+            1 => tags.contains(&group.tag),
+            dimension => dimension == 2,
+        })
+    }
+
+    /// The first element at each of some lines, triangles before quadrilaterals, and which of its sides it is.
+    pub(super) fn sides_at(&self, lines: &[usize]) -> Vec<Option<(usize, usize)>> {
+        let key = |a: u32, b: u32| [a.min(b), a.max(b)];
+        let ends = |&i: &usize| key(self.lines[i][0], self.lines[i][1]);
+        let mut first: FxHashMap<[u32; 2], Option<(usize, usize)>> = lines.iter().map(|i| (ends(i), None)).collect();
+        if first.is_empty() {
+            return Vec::new();
+        }
+        let elements = self.triangles.iter().map(|t| &t[..]).chain(self.quads.iter().map(|q| &q[..]));
+        for (number, corners) in elements.enumerate() {
+            for (k, &corner) in corners.iter().enumerate() {
+                if let Some(known) = first.get_mut(&key(corner, corners[(k + 1) % corners.len()])) {
+                    known.get_or_insert((number, k));
+                }
+            }
+        }
+        lines.iter().map(|i| first[&ends(i)]).collect()
+    }
+
+    /// What the region of a tag is called.
+    pub fn region(&self, tag: u32) -> Named {
+        Named::tagged(self.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned), tag)
+    }
+
+    /// The groups of lines by number, and the number of that of each line: none for lines without a tag, and for the merging front
+    /// of a state, which says nothing about the shape.
+    pub fn line_groups(&self) -> (Vec<Named>, Vec<Option<u32>>) {
+        let tags: Vec<u32> = (0..self.lines.len()).map(|i| tag_of(&self.line_tags, i)).collect();
+        let is_group = |tag: &u32| *tag > 0 && self.group_name(1, *tag) != Some(FRONT);
+        let known: Vec<u32> = tags.iter().copied().filter(is_group).collect::<BTreeSet<u32>>().into_iter().collect();
+        let name = |&tag: &u32| {
+            Named::tagged(self.group_name(1, tag).map_or_else(|| format!("line {tag}"), str::to_owned), tag)
+        };
+        (
+            known.iter().map(name).collect(),
+            tags.iter().map(|tag| known.binary_search(tag).ok().map(|k| k as u32)).collect(),
+        )
     }
 }
 

@@ -1,4 +1,5 @@
-//! PLY (Stanford): the elements `vertex` and `face`, in text or binary; the crate `ply-rs-bw` parses. Deliberately absent: all
+//! PLY (Stanford): the elements `vertex`, `face` and `edge`, in text or binary; the crate `ply-rs-bw` parses. Tags are the property
+//! `region` of faces and `line` of edges, and names of groups are comments (`comment region 7 left plate`). Deliberately absent: all
 //! other elements and properties, colours and normals among them; triangle strips are counted as skipped.
 
 use std::io::{self, Write};
@@ -9,7 +10,7 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
-use super::mesh_file::{MeshFile, tag_of};
+use super::mesh_file::{Group, MeshFile, tag_of};
 use super::save::Shortest;
 use super::scan::shown;
 use crate::core::fault::Fault;
@@ -17,9 +18,11 @@ use crate::core::progress::Pace;
 
 /// So many elements are parsed at a time, so that what the parser makes of them does not add up.
 const AT_A_TIME: usize = 256;
+/// Dimensions of groups and how comments call them.
+const KINDS: [(u8, &str); 2] = [(1, "line"), (2, "region")];
 
-/// Reads a mesh from the bytes of a PLY file: points, triangles, quadrilaterals and polygons. A property `region` of the faces
-/// (which [`write`](fn@write) writes) becomes their tag.
+/// Reads a mesh from the bytes of a PLY file: points, triangles, quadrilaterals, polygons and lines, with the tags and names that
+/// [`write`](fn@write) writes.
 ///
 /// # Errors
 /// What is wrong with the file, with the line where it is text; and faces whose vertex does not exist.
@@ -27,7 +30,8 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     let mut reader = Reader::new(bytes);
     let header = Parser::<Passed>::new().read_header(&mut reader).map_err(|error| told(name, &error, true))?;
     check_counts(name, &header, reader.get_ref().len())?;
-    let mut mesh = MeshFile::default();
+    let mut mesh =
+        MeshFile { groups: header.comments.iter().filter_map(|text| group(text)).collect(), ..MeshFile::default() };
     let mut go_on = |reader: &Reader<&[u8]>| pace.goes_on(bytes.len() - reader.get_ref().len(), bytes.len());
     for (kind, element) in &header.elements {
         match kind.as_str() {
@@ -58,6 +62,20 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                         .map_err(|what| Fault::new(format!("Face {count} {what}")).at(name))
                 })?;
             }
+            "edge" => {
+                let tagged = element.properties.contains_key("line");
+                each(name, &header, element, &mut reader, &mut go_on, |edge: Edge| {
+                    let ends = edge.ends.map(u32::try_from);
+                    let [Ok(a), Ok(b)] = ends else {
+                        return Err(Fault::new(format!("Edge {} lacks a vertex", mesh.lines.len() + 1)).at(name));
+                    };
+                    mesh.lines.push([a, b]);
+                    if tagged {
+                        mesh.line_tags.push(edge.line as u32);
+                    }
+                    Ok(())
+                })?;
+            }
             _ => {
                 each(name, &header, element, &mut reader, &mut go_on, |_: Passed| Ok(()))?;
                 if kind == "tristrips" {
@@ -67,12 +85,15 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         }
     }
     let points = mesh.points.len();
-    let corners =
+    let elements =
         mesh.triangles.as_flattened().iter().chain(mesh.quads.as_flattened()).chain(mesh.polygons.iter().flatten());
+    let corners = elements.chain(mesh.lines.as_flattened());
     if let Some(corner) = corners.copied().find(|&corner| corner as usize >= points) {
-        return Err(
-            Fault::new(format!("A face has the vertex {corner}, and the last one is {}", points as i64 - 1)).at(name)
-        );
+        return Err(Fault::new(format!(
+            "A face or edge has the vertex {corner}, and the last one is {}",
+            points as i64 - 1
+        ))
+        .at(name));
     }
     Ok(mesh)
 }
@@ -239,6 +260,38 @@ impl Face {
     }
 }
 
+/// An edge: its ends, -1 where there is none, and its tag.
+struct Edge {
+    ends: [i64; 2],
+    line: f64,
+}
+
+impl PropertyAccess for Edge {
+    fn new() -> Self {
+        Edge { ends: [-1; 2], line: 0.0 }
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let Some(number) = number(&value) else { return PropertyAccessResult::Ignored };
+        match name {
+            // As any number that is none: the cast bounds it.
+            "vertex1" => self.ends[0] = number as i64,
+            "vertex2" => self.ends[1] = number as i64,
+            "line" => self.line = number,
+            _ => return PropertyAccessResult::Ignored,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+/// The group that a comment names.
+fn group(comment: &str) -> Option<Group> {
+    let (kind, rest) = comment.trim().split_once(' ')?;
+    let dimension = KINDS.iter().find(|(_, word)| *word == kind)?.0;
+    let (tag, name) = rest.trim().split_once(' ')?;
+    Some(Group { dimension, tag: tag.parse().ok()?, name: name.trim().to_owned() })
+}
+
 fn number(value: &Property) -> Option<f64> {
     Some(match *value {
         Property::Char(x) => f64::from(x),
@@ -253,15 +306,28 @@ fn number(value: &Property) -> Option<f64> {
     })
 }
 
-/// Writes points, triangles and quadrilaterals as text, in double precision, with the tag of each as `region`.
+/// Writes points, triangles and quadrilaterals as text, in double precision, with the tag of each as `region`; lines that are in a
+/// group of their own as edges, with the tag as `line`; and the names of these groups as comments.
 ///
 /// # Errors
 /// What `out` says.
 pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
-    writeln!(out, "ply\nformat ascii 1.0\nelement vertex {}", mesh.points.len())?;
+    let lines = mesh.own_lines();
+    writeln!(out, "ply\nformat ascii 1.0")?;
+    for Group { dimension, tag, name } in mesh.groups_with(&lines) {
+        let kind = KINDS.iter().find(|(known, _)| known == dimension).map_or("", |(_, kind)| kind);
+        let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        writeln!(out, "comment {kind} {tag} {name}")?;
+    }
+    writeln!(out, "element vertex {}", mesh.points.len())?;
     writeln!(out, "property double x\nproperty double y\nproperty double z")?;
     writeln!(out, "element face {}", mesh.triangles.len() + mesh.quads.len())?;
-    writeln!(out, "property list uchar int vertex_indices\nproperty uint region\nend_header")?;
+    writeln!(out, "property list uchar int vertex_indices\nproperty uint region")?;
+    if !lines.is_empty() {
+        let count = lines.len();
+        writeln!(out, "element edge {count}\nproperty int vertex1\nproperty int vertex2\nproperty uint line")?;
+    }
+    writeln!(out, "end_header")?;
     for p in &mesh.points {
         writeln!(out, "{} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
     }
@@ -270,6 +336,10 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     }
     for (i, [a, b, c, d]) in mesh.quads.iter().enumerate() {
         writeln!(out, "4 {a} {b} {c} {d} {}", tag_of(&mesh.quad_tags, i))?;
+    }
+    for i in lines {
+        let [a, b] = mesh.lines[i];
+        writeln!(out, "{a} {b} {}", tag_of(&mesh.line_tags, i))?;
     }
     Ok(())
 }

@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::mesh_file::MeshFile;
+use super::mesh_file::{MeshFile, Texture};
 use crate::core::geometry::predicates::orient;
 
 impl MeshFile {
@@ -31,13 +31,23 @@ impl MeshFile {
             .map(|q| &q[..])
             .zip(tags(&quad_tags))
             .chain(polygons.iter().map(|p| &p[..]).zip(tags(&polygon_tags)));
+        let mut texture = self.texture.take();
+        let (quads_there, polygons_there) = texture
+            .as_mut()
+            .map_or_else(Default::default, |t| (std::mem::take(&mut t.quads), std::mem::take(&mut t.polygons)));
+        let mut there = quads_there.iter().map(|q| &q[..]).chain(polygons_there.iter().map(|p| &p[..]));
         for (polygon, tag) in all {
             let triangles = ears(&self.points, polygon);
             if tagged {
                 self.triangle_tags.extend(std::iter::repeat_n(tag, triangles.len()));
             }
-            self.triangles.extend(triangles);
+            if let (Some(texture), Some(corners)) = (&mut texture, there.next()) {
+                let place = |k: usize| corners.get(k).copied().unwrap_or(Texture::NOWHERE);
+                texture.triangles.extend(triangles.iter().map(|t| t.map(place)));
+            }
+            self.triangles.extend(triangles.iter().map(|t| t.map(|k| polygon[k])));
         }
+        self.texture = texture;
         (self, cut)
     }
 }
@@ -46,8 +56,8 @@ fn tags(tags: &[u32]) -> impl Iterator<Item = u32> + '_ {
     tags.iter().copied().chain(std::iter::repeat(0))
 }
 
-/// The triangles of one polygon.
-fn ears(points: &[DVec3], polygon: &[u32]) -> Vec<[u32; 3]> {
+/// The triangles of one polygon, by the places of their corners in it.
+fn ears(points: &[DVec3], polygon: &[u32]) -> Vec<[usize; 3]> {
     let p = |k: usize| points[polygon[k] as usize];
     let n = polygon.len();
     // Newell's normal: twice the area vector.
@@ -83,10 +93,10 @@ fn ears(points: &[DVec3], polygon: &[u32]) -> Vec<[u32; 3]> {
             }
         }
         let k = best.map_or(1, |(_, k)| k);
-        triangles.push([left[(k + m - 1) % m], left[k], left[(k + 1) % m]].map(|k| polygon[k]));
+        triangles.push([left[(k + m - 1) % m], left[k], left[(k + 1) % m]]);
         left.remove(k);
     }
-    triangles.push([left[0], left[1], left[2]].map(|k| polygon[k]));
+    triangles.push([left[0], left[1], left[2]]);
     triangles
 }
 

@@ -2,6 +2,7 @@
 
 pub mod ids;
 pub mod triangle_set;
+pub mod names;
 pub mod order;
 pub mod half_edge;
 pub mod refusals;

@@ -20,4 +20,6 @@ pub struct TriangleSet {
     pub region: Vec<u32>,
     /// On surfaces: the place in space of each point. Empty in the plane.
     pub xyz: Vec<DVec3>,
+    /// Sides along numbered lines (curves of a domain, groups of lines of a file): the points at their ends, the number of the line.
+    pub lines: Vec<([PointId; 2], u32)>,
 }

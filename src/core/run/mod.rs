@@ -10,6 +10,7 @@
 //! | running ahead on another thread | [`history::History::lend`], [`recorder::Recorder`], [`history::History::accept`] |
 //! | one event a step, the number of quadrilaterals, where to go next | [`log::Log`], `playback` |
 //! | invariants and figures along the run | [`timeline`] |
+//! | when quadrilaterals were made, without a history | [`births`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`watch`] |
 //! | why this segment, what is this node | [`explain`], [`front_table`] |
 //!
@@ -26,6 +27,7 @@ pub mod keyframes;
 pub mod recorder;
 pub mod history;
 pub mod copies;
+pub mod births;
 mod playback;
 pub mod breakpoint;
 pub mod watch;

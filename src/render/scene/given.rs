@@ -32,7 +32,7 @@ const AT_A_TIME: usize = 1 << 14;
 pub fn feature_line(palette: &Palette, kind: Feature) -> (Rgba, f32) {
     match kind {
         Feature::Fold => (palette.boundary, 1.75),
-        Feature::Region => (palette.boundary, 2.4),
+        Feature::Region | Feature::Line => (palette.boundary, 2.4),
         Feature::Boundary => (palette.boundary, 3.2),
         Feature::Branching => (palette.front[1], 3.2),
         Feature::Conflict => (palette.broken, 3.2),

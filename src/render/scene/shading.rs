@@ -157,8 +157,8 @@ mod tests {
             point: (0..6).map(PointId).collect(),
             triangles: vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]],
             region: vec![0; 4],
-            xyz: Vec::new(),
             uv,
+            ..TriangleSet::default()
         };
         Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6])
     }

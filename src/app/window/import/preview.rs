@@ -15,7 +15,7 @@ use crate::core::background::import::is_plane;
 use crate::core::discrete::census::{Census, Division, count_of};
 use crate::core::discrete::chart::{Bound, charts};
 use crate::core::discrete::edges::{Edges, Triangles};
-use crate::core::discrete::features::{Feature, features};
+use crate::core::discrete::features::{Feature, features, with_lines};
 use crate::core::discrete::sound::sound;
 use crate::core::fault::Fault;
 use crate::core::io::format::read_mesh_watched;
@@ -23,8 +23,8 @@ use crate::core::progress::{Cancel, Stage, Watch};
 use crate::render::scene::{Given, Scene};
 
 /// Kinds of features, in the order in which they are told.
-pub const KINDS: [Feature; 5] =
-    [Feature::Fold, Feature::Region, Feature::Boundary, Feature::Branching, Feature::Conflict];
+pub const KINDS: [Feature; 6] =
+    [Feature::Fold, Feature::Region, Feature::Line, Feature::Boundary, Feature::Branching, Feature::Conflict];
 
 /// A surface of more triangles than this is shown with its features before its charts are known.
 const LARGE: usize = 20_000;
@@ -38,8 +38,8 @@ pub struct Loaded {
     pub is_plane: bool,
     /// Whether sizes are given at its points.
     pub has_metric: bool,
-    /// The names of its regions.
-    pub regions: Vec<String>,
+    /// How many regions it has.
+    pub regions: usize,
     /// What was mended, and what was passed over.
     pub repairs: Vec<String>,
     /// The mean length of its edges.
@@ -62,7 +62,7 @@ pub struct Wanted {
 pub struct Shown {
     pub wanted: Wanted,
     /// How many edges are features of each kind, as [`KINDS`] has them.
-    pub counts: [usize; 5],
+    pub counts: [usize; 6],
     /// The charts; none where they are not known yet, or there are none.
     pub division: Option<Arc<Division>>,
     pub scene: Arc<Scene>,
@@ -180,7 +180,7 @@ fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
     let used = found.mesh.triangles.as_flattened().iter().map(|&k| points[k as usize]);
     let ends = used.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
     let extent = ends.map_or(DVec3::ZERO, |[low, high]| high - low);
-    let (regions, repairs) = (found.regions, found.repairs);
+    let (regions, repairs) = (found.regions.len(), found.repairs);
     Ok(Loaded { mesh: found.mesh, edges, census, is_plane, has_metric, regions, repairs, mean_edge, extent })
 }
 
@@ -209,7 +209,7 @@ impl Work {
         let features = match &self.features {
             Some((of, features)) if *of == angle => features.clone(),
             _ => {
-                let found: Arc<[Option<Feature>]> = features(mesh, edges, angle).into();
+                let found: Arc<[Option<Feature>]> = with_lines(features(mesh, edges, angle), mesh, edges).into();
                 self.features = Some((angle, found.clone()));
                 found
             }
@@ -290,7 +290,7 @@ mod tests {
         });
         let Some(Told::Shown(last)) = last else { panic!("no picture of the last wish") };
         assert_eq!((last.scene.generation, last.division.as_ref().unwrap().charts > 1), (300, true));
-        assert_eq!(last.counts, [0; 5], "no fold is beyond 150 degrees");
+        assert_eq!(last.counts, [0; 6], "no fold is beyond 150 degrees");
         assert!(shown < 150, "{shown}");
     }
 

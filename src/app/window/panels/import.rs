@@ -248,8 +248,8 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
             line("triangles", grouped(census.triangles));
             line("components", grouped(census.components));
             line("boundary loops", grouped(census.border_loops));
-            if loaded.regions.len() > 1 {
-                line("regions", grouped(loaded.regions.len()));
+            if loaded.regions > 1 {
+                line("regions", grouped(loaded.regions));
             }
         },
     );
@@ -259,6 +259,7 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
         let (one, several) = match kind {
             Feature::Fold => ("folded edge", "folded edges"),
             Feature::Region => ("edge between regions", "edges between regions"),
+            Feature::Line => ("edge in a named line", "edges in named lines"),
             Feature::Boundary => ("edge of the boundary", "edges of the boundary"),
             Feature::Branching => ("edge of three triangles or more", "edges of three triangles or more"),
             Feature::Conflict => ("edge whose triangles disagree", "edges whose triangles disagree"),

@@ -37,7 +37,7 @@ fn a_sound_mesh_comes_in_as_it_is() {
     assert_eq!(imported.set.triangles, star().triangles);
     assert_eq!(imported.set.uv.len(), 5);
     assert_eq!(imported.repairs, Vec::<String>::new());
-    assert_eq!(imported.regions, ["region 0"]);
+    assert_eq!(imported.regions, [Named::tagged("region 0", 0)]);
     assert_eq!(imported.origin, [[0, 0], [1, 1], [2, 2], [3, 3], [4, 4]]);
 }
 
@@ -173,7 +173,7 @@ fn regions_are_cut_apart_and_named() {
     file.triangle_tags = vec![7, 7, 3, 3];
     file.groups = vec![Group { dimension: 2, tag: 7, name: "steel".to_owned() }];
     let imported = import(&file, false).unwrap();
-    assert_eq!(imported.regions, ["region 3", "steel"]);
+    assert_eq!(imported.regions, [Named::tagged("region 3", 3), Named::tagged("steel", 7)]);
     assert_eq!(imported.set.region, [1, 1, 0, 0]);
     assert_eq!(imported.set.uv.len(), 8);
     assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(4));
@@ -233,7 +233,46 @@ fn odd_loops_of_an_even_part_are_fine() {
 fn lines_inside_regions_are_told() {
     let mut file = star();
     file.lines = vec![[0, 1], [4, 0]];
-    assert_eq!(import(&file, false).unwrap().repairs, ["1 line inside a region is not kept"]);
+    assert_eq!(import(&file, false).unwrap().repairs, ["1 line inside a region that is in no group is not kept"]);
+}
+
+#[test]
+fn lines_in_groups_are_kept_inside_regions_and_at_the_border() {
+    let mut file = star();
+    file.lines = vec![[1, 0], [4, 0], [4, 2]];
+    file.line_tags = vec![9, 5, 5];
+    file.groups = vec![Group { dimension: 1, tag: 5, name: "rib".to_owned() }];
+    let Imported { set, lines, repairs, .. } = import(&file, false).unwrap();
+    assert_eq!(lines, [Named::tagged("rib", 5), Named::tagged("line 9", 9)]);
+    assert!(repairs.is_empty(), "{repairs:?}");
+    // Both banks of the rib name its two sides; nodes on it are doubled, points are not.
+    assert_eq!((set.lines.iter().filter(|line| line.1 == 0).count(), set.lines.len()), (4, 5));
+    assert_eq!((set.uv.len(), set.point.iter().map(|p| p.0).max()), (8, Some(4)));
+}
+
+#[test]
+fn odd_parts_on_both_sides_of_a_line_are_made_even_by_dividing_it() {
+    // A ring of a line around one triangle: three triangles outside, one within.
+    let mut file = mesh(
+        &[(0.0, 0.0), (2.0, 0.0), (1.0, 2.0), (1.0, 0.0), (1.5, 1.0), (0.5, 1.0)],
+        &[[3, 4, 5], [0, 3, 5], [3, 1, 4], [5, 4, 2]],
+    );
+    file.lines = vec![[3, 4], [4, 5], [5, 3]];
+    file.line_tags = vec![1; 3];
+    // The three outside are parts of their own, since they meet in points only: each shares a side with the one within.
+    let Imported { set, repairs, .. } = import(&file, false).unwrap();
+    assert_eq!((set.triangles.len(), set.lines.len()), (10, 12));
+    assert!(repairs[0].starts_with("3 "), "{repairs:?}");
+    let firm = |t: &[u32; 3]| firm(set.uv[t[0] as usize], set.uv[t[1] as usize], set.uv[t[2] as usize]);
+    assert!(set.triangles.iter().all(firm) && set.lines.iter().all(|line| line.1 == 0));
+    // Two parts, both odd: the side between them is divided, and that without leave.
+    let mut file = star();
+    file.triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 5, 4], [5, 6, 4], [6, 0, 4]];
+    file.points.extend([DVec3::new(-0.1, 0.6, 0.0), DVec3::new(-0.1, 0.4, 0.0)]);
+    (file.lines, file.line_tags) = (vec![[0, 4], [4, 3]], vec![4; 2]);
+    let Imported { set, repairs, .. } = import(&file, false).unwrap();
+    assert_eq!((set.triangles.len(), set.lines.len()), (8, 6));
+    assert!(repairs[0].contains("divided"), "{repairs:?}");
 }
 
 #[test]
@@ -267,7 +306,8 @@ fn a_background_mesh_survives_the_way_through_a_file() {
             triangles: set.triangles.clone(),
             ..MeshFile::default()
         };
-        assert_eq!(import(&file, false).unwrap().set, set);
+        let expected = TriangleSet { lines: Vec::new(), ..set.clone() };
+        assert_eq!(import(&file, false).unwrap().set, expected);
         assert!(implied_metric(&set).iter().all(Metric2::is_spd));
     }
 }

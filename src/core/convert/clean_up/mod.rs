@@ -14,7 +14,7 @@ use smallvec::SmallVec;
 
 use super::energy;
 use super::event::{Cleaning, Event};
-use super::settle::{Nodes, settle, worst_quality};
+use super::settle::{Nodes, RELAX_ROUNDS, relax, untangle, worst_quality};
 use super::worklist::{ListMark, Worklist};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;
@@ -26,20 +26,20 @@ use region::Region;
 const LEAST_QUALITY: f64 = 0.2;
 /// The energy must fall by this much: differences below it are noise of the relaxation.
 const LEAST_GAIN: f64 = 1e-2;
-/// Candidates tried at one node, best valence gain first: as single changes or firsts of pairs, and as firsts of longer sequences.
+/// Single changes tried at one node, best valence gain first.
 const MOST_TRIALS: usize = 16;
-const MOST_OF_LONGER: usize = 24;
 /// An element below this quality is poor: around it the structure may become worse where the mesh becomes better.
 const POOR: f64 = 0.4;
-/// All changes of a sequence but the last may raise the sum of squared excesses by this much, and the energy by no more than
-/// `MOST_RISE` in pairs and in longer sequences.
+/// All changes of a sequence but the last may raise the sum of squared excesses by this much.
 const MOST_WORSE: i32 = 2;
-const MOST_RISE: [f64; 2] = [5.0, 6.0];
 /// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are: those
 /// seldom give back more (for one trial in a hundred).
 const HOPELESS: f64 = 1.5;
-/// Changes tried second, third and fourth, after each way to get there.
-const LATER_TRIALS: [usize; 3] = [4, 3, 3];
+/// And so it is when its own nodes have been relaxed once, and it stands this much higher: the other rounds give back less.
+const LATER_ROUNDS_GIVE: f64 = 0.5;
+/// Up to so many elements a face is searched thoroughly for sequences of changes. What a thorough search finds beyond the
+/// lean one is a tenth of the irregular nodes, for three times the trials: it tells where there are few.
+const SMALL: usize = 3000;
 /// Trials of pairs: so many for every mesh, and one more for so many elements. Small meshes are searched to the end, and the
 /// time of large ones stays linear.
 const PAIR_TRIALS: usize = 30_000;
@@ -106,15 +106,27 @@ impl Reach {
         }
     }
 
-    /// First changes tried at a node.
-    fn firsts(self) -> usize {
-        if self == Reach::Longer { MOST_OF_LONGER } else { MOST_TRIALS }
+    /// How wide a face of so many elements is searched.
+    fn breadth(self, elements: usize) -> Breadth {
+        let (firsts, most_rise, later) = match (self, elements <= SMALL) {
+            (Reach::Longer, true) => (24, 6.0, [4, 3, 3]),
+            (_, true) => (16, 5.0, [4, 3, 3]),
+            (Reach::Longer, false) => (12, 3.0, [2, 2, 2]),
+            (_, false) => (8, 3.0, [2, 2, 2]),
+        };
+        Breadth { firsts, most_rise, later }
     }
+}
 
-    /// How much energy changes may cost for a while.
-    fn most_rise(self) -> f64 {
-        MOST_RISE[usize::from(self == Reach::Longer)]
-    }
+/// How many ways a search for sequences of changes goes.
+#[derive(Clone, Copy, Debug)]
+struct Breadth {
+    /// First changes tried at a node, best valence gain first.
+    firsts: usize,
+    /// How much energy all changes but the last may cost.
+    most_rise: f64,
+    /// Changes tried second, third and fourth, after each way to get there.
+    later: [usize; 3],
 }
 
 /// Changes made one after the other.
@@ -165,6 +177,7 @@ impl Trial {
 pub(super) struct CleanUp<'a> {
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
     reach: Reach,
+    breadth: Breadth,
     valences: Valences,
     /// Irregular nodes.
     list: Worklist,
@@ -189,14 +202,16 @@ impl<'a> CleanUp<'a> {
     ) -> CleanUp<'a> {
         // Twice its share: the small faces of a mesh of many are seldom searched to the end, and are most of its irregular nodes.
         let of_all = |trials: usize| (trials as f64 * (2.0 * share).min(1.0)).ceil() as usize;
+        let elements = mesh.elements_of(face).count();
         let most_trials = match reach {
             Reach::Singles => usize::MAX,
-            Reach::Pairs => done.trials + of_all(PAIR_TRIALS) + mesh.elements_of(face).count() / ELEMENTS_A_PAIR_TRIAL,
+            Reach::Pairs => done.trials + of_all(PAIR_TRIALS) + elements / ELEMENTS_A_PAIR_TRIAL,
             Reach::Longer => done.trials + of_all(LONGER_TRIALS),
         };
         let mut work = CleanUp {
             source,
             reach,
+            breadth: reach.breadth(elements),
             valences: Valences::of(mesh),
             // Energy falls with every kept change, so this ends by itself; the budget bounds the time on hostile input.
             list: Worklist::new(20 * mesh.nodes_of(face).count() + 1000, recording),
@@ -307,10 +322,10 @@ impl<'a> CleanUp<'a> {
     /// Tries sequences of changes around one irregular node: first changes that cost little energy, cheapest first, each with
     /// those that make up for what it did to the valences.
     fn sequence(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
-        let mut first: SmallVec<[(f64, Ranked); MOST_OF_LONGER]> = SmallVec::new();
-        for ranked in self.valences.candidates(mesh, node, MOST_WORSE, self.reach.firsts()) {
+        let mut first: SmallVec<[(f64, Ranked); 24]> = SmallVec::new();
+        for ranked in self.valences.candidates(mesh, node, MOST_WORSE, self.breadth.firsts) {
             let mark = mesh.mark();
-            if let Some(trial) = self.attempt(mesh, ranked.1, self.reach.most_rise()) {
+            if let Some(trial) = self.attempt(mesh, ranked.1, self.breadth.most_rise) {
                 if trial.is_good() {
                     return Some(self.keep(trial));
                 }
@@ -321,7 +336,7 @@ impl<'a> CleanUp<'a> {
         first.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (_, (gain, candidate)) in first {
             let mark = mesh.mark();
-            if let Some(trial) = self.attempt(mesh, candidate, self.reach.most_rise())
+            if let Some(trial) = self.attempt(mesh, candidate, self.breadth.most_rise)
                 && let Some(all) = self.go_on(mesh, gain, &trial)
             {
                 return Some(self.keep(all));
@@ -335,8 +350,8 @@ impl<'a> CleanUp<'a> {
     /// Goes on with a sequence whose changes so far have this valence gain, until all of it is good.
     fn go_on(&mut self, mesh: &mut Mesh, gain: i32, so_far: &Trial) -> Option<Trial> {
         let is_last = so_far.steps.len() + 1 == self.reach.longest();
-        let (worse, most) = if is_last { (0, HOPELESS) } else { (MOST_WORSE, self.reach.most_rise()) };
-        let trials = LATER_TRIALS[so_far.steps.len() - 1];
+        let (worse, most) = if is_last { (0, HOPELESS) } else { (MOST_WORSE, self.breadth.most_rise) };
+        let trials = self.breadth.later[so_far.steps.len() - 1];
         let mut found: SmallVec<[Ranked; 32]> = SmallVec::new();
         for &node in so_far.touched.iter().filter(|&&n| self.valences.excess(mesh, n) != 0) {
             found.extend(self.valences.candidates(mesh, node, worse - gain, trials));
@@ -369,13 +384,16 @@ impl<'a> CleanUp<'a> {
         self.before.gather(mesh, &core);
         let before = self.before.judge(mesh, &self.valences);
         let what = candidate.apply(mesh, &*self.source, &mut core).ok()?;
-        if !settle(mesh, &*self.source, &core) {
+        if !untangle(mesh, &*self.source, &core) {
             return None;
         }
         self.after.gather(mesh, &core);
         self.after.add_those_left_of(mesh, &self.before);
-        if self.after.judge(mesh, &self.valences).energy - before.energy > most {
-            return None;
+        for (rounds, allowed) in [(1, most + LATER_ROUNDS_GIVE), (RELAX_ROUNDS - 1, most)] {
+            relax(mesh, &*self.source, &core, rounds);
+            if self.after.judge(mesh, &self.valences).energy - before.energy > allowed {
+                return None;
+            }
         }
         for &node in &self.after.nodes {
             energy::relax(mesh, node, &*self.source);

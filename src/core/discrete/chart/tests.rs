@@ -96,7 +96,12 @@ fn triangles_without_area_and_single_ones_have_charts_too() {
     let edges = Edges::of(&mesh.triangles);
     let found = charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), Bound::default(), &mut Nobody).unwrap();
     assert_eq!(found.iter().map(|c| c.triangles.len()).sum::<usize>(), mesh.triangles.len());
-    let single = Triangles { points: mesh.points[..3].to_vec(), triangles: vec![[0, 1, 2]], region: vec![0] };
+    let single = Triangles {
+        points: mesh.points[..3].to_vec(),
+        triangles: vec![[0, 1, 2]],
+        region: vec![0],
+        ..Triangles::default()
+    };
     assert_eq!(sound(&single, ANGLE, Bound::default()).len(), 1);
 }
 

@@ -5,7 +5,7 @@ use std::path::{Component, Path};
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use gltf::Document;
 use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{Accessor, DataType, Dimensions};
@@ -109,6 +109,28 @@ impl Buffers {
             }
         }
         Ok(positions)
+    }
+
+    /// Texture coordinates: two numbers each, in single precision or as parts of the greatest whole number. None at all where they
+    /// are given in another way, since a mesh is whole without them.
+    pub fn texture(&self, accessor: &Accessor) -> Vec<DVec2> {
+        let size = match accessor.data_type() {
+            DataType::F32 => 4,
+            DataType::U16 if accessor.normalized() => 2,
+            DataType::U8 if accessor.normalized() => 1,
+            _ => return Vec::new(),
+        };
+        if accessor.dimensions() != Dimensions::Vec2 || accessor.sparse().is_some() {
+            return Vec::new();
+        }
+        let Some(view) = accessor.view() else { return Vec::new() };
+        let Some(items) = self.items(&view, accessor.offset(), accessor.count(), 2 * size) else { return Vec::new() };
+        // The unit of whole numbers says nothing: charts have sizes of their own.
+        let number = |item: &[u8]| match *item {
+            [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
+            _ => f64::from(whole(item)),
+        };
+        items.map(|item| DVec2::new(number(&item[..size]), number(&item[size..]))).collect()
     }
 
     /// Indices: whole numbers of one, two or four bytes.

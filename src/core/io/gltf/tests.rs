@@ -2,6 +2,7 @@ use super::*;
 use crate::core::progress::{Nobody, Reading};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use glam::DVec2;
 
 /// Two triangles over the unit square, 48 bytes of positions and then indices 0 1 2 3 as bytes, with the given nodes and mode.
 fn document(nodes: &str, mode: u8, more: &str) -> String {
@@ -38,6 +39,35 @@ fn strips_and_fans_become_triangles_that_all_turn_the_same_way() {
     assert_eq!(fan.triangles, [[0, 1, 2], [0, 2, 3]]);
     let lines = read_text(&document(r#"{"mesh": 0}"#, 3, "")).unwrap();
     assert_eq!(lines.skipped, [("line".to_owned(), 4)]);
+}
+
+#[test]
+fn texture_coordinates_go_with_their_corners_through_welding() {
+    let places: Vec<u8> = [0.0_f32, 0.0, 0.5, 0.0, 0.0, 0.25, 0.5, 0.25].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let text = document(r#"{"mesh": 0}"#, 5, "")
+        .replace(r#""POSITION": 0"#, r#""POSITION": 0, "TEXCOORD_0": 2"#)
+        .replace(
+            r#""type": "SCALAR"}]"#,
+            r#""type": "SCALAR"}, {"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"}]"#,
+        )
+        .replace(r#""byteLength": 4}]"#, r#""byteLength": 4}, {"buffer": 1, "byteLength": 32}]"#)
+        .replace(
+            r#""buffers": ["#,
+            &format!(
+                r#""buffers": [{{"byteLength": 52, "uri": "first"}}, {{"byteLength": 32, "uri": "data:application/octet-stream;base64,{}"}}, "#,
+                STANDARD.encode(&places)
+            ),
+        );
+    // The document's own buffer takes the place of the first.
+    let (head, tail) = text.split_once(r#"{"byteLength": 52, "uri": "first"}, "#).unwrap();
+    let (second, own) = tail.split_once("}, ").unwrap();
+    let (own, rest) = own.split_once("}]").unwrap();
+    let mesh = read_text(&format!("{head}{own}}}, {second}}}]{rest}")).unwrap();
+    let texture = mesh.texture.unwrap();
+    let at = |x: f64, y: f64| DVec2::new(x, y);
+    assert_eq!(texture.of_triangle(0), Some([at(0.0, 0.0), at(0.5, 0.0), at(0.0, 0.25)]));
+    assert_eq!(texture.of_triangle(1), Some([at(0.0, 0.25), at(0.5, 0.0), at(0.5, 0.25)]));
+    assert_eq!(texture.of_triangle(2), None);
 }
 
 #[test]

@@ -1,0 +1,170 @@
+//! Charts that the file brings itself: texture coordinates, where they lay a part of the surface into the plane one to one and do
+//! not stretch it too much (spec 4).
+
+use glam::{DVec2, DVec3};
+
+use super::chart::{Bound, Chart, Part, Surface};
+use super::edges::{Corner, Edges};
+use super::rigid::{is_embedded, snapped};
+use super::tutte::{stands, stretch};
+
+/// A texture in more pieces than one for so many triangles, and one more, is no map of the surface: it would be cut to shreds.
+const TRIANGLES_A_PIECE: usize = 64;
+
+impl Chart {
+    /// Whether it has so many border loops, and is a part of the plane as to how it hangs together.
+    fn is_planar_with(&self, loops: usize) -> bool {
+        let edges = Edges::of(&self.local).len();
+        self.loops.len() == loops && loops > 0 && self.points.len() + self.local.len() + loops == edges + 2
+    }
+}
+
+impl Surface<'_> {
+    /// The charts of a part by its texture, cut where that is torn. None where a triangle lies nowhere on it, or in more pieces than
+    /// are of use, or a piece is not one to one or stretched beyond the bound; nor where it tears a disc, which is laid into the
+    /// plane whole without it.
+    pub fn textured(&self, part: &Part, bound: Bound) -> Option<Vec<Chart>> {
+        let triangles = &part.triangles;
+        if !triangles.iter().all(|&t| self.places(t).is_some()) {
+            return None;
+        }
+        let mut slits: Vec<Corner> =
+            triangles.iter().flat_map(|&t| Self::sides(t)).filter(|&side| self.is_torn(side)).collect();
+        slits.sort_unstable();
+        let is_whole = slits.iter().all(|&side| self.neighbour(part, side).is_none());
+        if !is_whole && self.nodes(part).is_planar_with(1) {
+            return None;
+        }
+        let pieces = self.connected(&Part { triangles: triangles.clone(), slits });
+        if pieces.len() > 1 + triangles.len() / TRIANGLES_A_PIECE {
+            return None;
+        }
+        pieces.iter().map(|piece| self.by_texture(piece, bound)).collect()
+    }
+
+    fn places(&self, triangle: u32) -> Option<[DVec2; 3]> {
+        *self.mesh.texture.get(triangle as usize)?
+    }
+
+    /// Whether the two triangles at a side lie apart on the texture, or there is one only.
+    fn is_torn(&self, side: Corner) -> bool {
+        let ends = |side: Corner| {
+            let places = self.places(side / 3)?;
+            Some([places[side as usize % 3], places[(side as usize + 1) % 3]])
+        };
+        let beyond = self.beyond[side as usize].and_then(ends);
+        !matches!((ends(side), beyond), (Some([a, b]), Some([c, d])) if a == d && b == c)
+    }
+
+    /// The chart of a piece that its texture does not tear.
+    fn by_texture(&self, piece: &Part, bound: Bound) -> Option<Chart> {
+        let mut chart = self.nodes(piece);
+        if !chart.is_planar_with(chart.loops.len()) {
+            return None;
+        }
+        let mut uv = vec![DVec2::ZERO; chart.points.len()];
+        for (&t, local) in chart.triangles.iter().zip(&chart.local) {
+            let places = self.places(t)?;
+            (0..3).for_each(|k| uv[local[k] as usize] = places[k]);
+        }
+        // As large as in space, beside the origin, and seen from outside: textures are often mirrored.
+        let xyz: Vec<DVec3> = chart.points.iter().map(|&p| self.mesh.points[p as usize]).collect();
+        let doubled = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|k| uv[k as usize]);
+            (b - a).perp_dot(c - a)
+        };
+        let in_plane: f64 = chart.local.iter().map(doubled).sum();
+        let in_space: f64 = chart.triangles.iter().map(|&t| self.mesh.area_vector(t as usize).length()).sum();
+        let scale = (in_space / in_plane.abs()).sqrt();
+        if !(scale.is_finite() && scale > 0.0) {
+            return None;
+        }
+        let origin = uv.iter().fold(DVec2::INFINITY, |low, &p| low.min(p));
+        let axes = DVec2::new(scale, scale * in_plane.signum());
+        uv.iter_mut().for_each(|p| *p = snapped((*p - origin) * axes, self.grid));
+        if !stands(&chart.local, &uv) || !is_embedded(&uv, &chart.loops) {
+            return None;
+        }
+        chart.stretch = stretch(&xyz, &chart.local, &uv);
+        chart.uv = uv;
+        bound.allows(chart.stretch).then_some(chart)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::discrete::chart::charts;
+    use crate::core::discrete::edges::Triangles;
+    use crate::core::discrete::features::{ANGLE, features};
+    use crate::core::discrete::fixtures::{plate, tube};
+    use crate::core::progress::Nobody;
+
+    fn found(mesh: &Triangles) -> Vec<Chart> {
+        let edges = Edges::of(&mesh.triangles);
+        charts(mesh, &edges, &features(mesh, &edges, ANGLE), Bound::default(), &mut Nobody).unwrap()
+    }
+
+    /// A texture by a function of place, and of the middle of the triangle.
+    fn lay(mesh: &mut Triangles, at: impl Fn(DVec3, DVec3) -> DVec2) {
+        mesh.texture = (0..mesh.triangles.len())
+            .map(|t| {
+                let corners = mesh.corners(t);
+                let middle = corners.iter().sum::<DVec3>() / 3.0;
+                Some(corners.map(|p| at(p, middle)))
+            })
+            .collect();
+    }
+
+    /// Once around the tube, torn where the angle is that of the x axis.
+    fn around(p: DVec3, middle: DVec3) -> DVec2 {
+        let angle = |p: DVec3| libm::atan2(p.y, p.x).rem_euclid(std::f64::consts::TAU);
+        let (own, near) = (angle(p), angle(middle));
+        let turn = ((near - own) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        DVec2::new(own + turn, p.z)
+    }
+
+    #[test]
+    fn a_tube_is_unrolled_as_its_texture_says_mirrored_or_not() {
+        for mirrored in [1.0, -1.0] {
+            let mut mesh = tube(24, 10, 4.0);
+            lay(&mut mesh, |p, middle| around(p, middle) * DVec2::new(0.1 * mirrored, 0.1));
+            let charts = found(&mesh);
+            assert_eq!((charts.len(), charts[0].loops.len()), (1, 1));
+            // A row of points twice: along the tear.
+            assert_eq!(charts[0].points.len(), mesh.points.len() + 11);
+            let stretch = charts[0].stretch;
+            assert!(stretch.shape < 1.01 && stretch.area < 1.01, "{stretch:?}");
+            let width = charts[0].uv.iter().fold(0.0_f64, |wide, p| wide.max(p.x));
+            assert!((width - std::f64::consts::TAU).abs() < 0.05, "{width}");
+        }
+    }
+
+    #[test]
+    fn a_texture_that_folds_overlaps_stretches_or_is_in_shreds_is_not_used() {
+        let own = found(&plate(8, 0.1));
+        let textures: [&dyn Fn(DVec3, DVec3) -> DVec2; 4] = [
+            // Folded along the middle.
+            &|p, _| DVec2::new((p.x - 0.5).abs(), p.y),
+            // Stretched.
+            &|p, _| DVec2::new(p.x, 0.1 * p.y),
+            // A spiral that runs over itself.
+            &|p, _| {
+                let (sin, cos) = libm::sincos(9.0 * p.x);
+                DVec2::new(cos, sin) * (1.0 + 0.5 * p.y)
+            },
+            // Each triangle by itself.
+            &|p, middle| p.truncate() + middle.truncate(),
+        ];
+        for texture in textures {
+            let mut mesh = plate(8, 0.1);
+            lay(&mut mesh, texture);
+            assert_eq!(found(&mesh), own);
+        }
+        let mut mesh = plate(8, 0.1);
+        lay(&mut mesh, |p, _| DVec2::new(p.y, 2.0 * p.x));
+        assert_ne!(found(&mesh), own);
+        mesh.texture[5] = None;
+        assert_eq!(found(&mesh), own);
+    }
+}

@@ -1,0 +1,81 @@
+//! When the quadrilaterals that stand were made: noted while a conversion goes on, for files and figures that show it.
+
+use crate::core::convert::converter::Converter;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::ids::ElementId;
+use crate::core::mesh::touched::Touched;
+
+/// The step that made each quadrilateral: the last one after which its element was one and before which it was none, however often it
+/// was changed since (as [`History::made`](super::history::History::made) says).
+#[derive(Clone, Debug, Default)]
+pub struct Births {
+    steps: Vec<Option<u64>>,
+    touched: Touched,
+}
+
+impl Births {
+    /// Of the quadrilaterals with which a conversion begins: step 0.
+    pub fn of(mesh: &Mesh) -> Births {
+        let mut births = Births::default();
+        mesh.elements().for_each(|e| births.see(mesh, e, 0));
+        births
+    }
+
+    /// Notes what the last step made. The converter must keep a history, if only of that step.
+    pub fn note(&mut self, converter: &Converter<'_>) {
+        let mut touched = std::mem::take(&mut self.touched);
+        converter.note_last_step(&mut touched);
+        touched.elements().iter().for_each(|e| self.see(&converter.mesh, *e, converter.counts.steps));
+        touched.clear();
+        self.touched = touched;
+    }
+
+    /// The step that made a quadrilateral; none for what is none.
+    pub fn step(&self, element: ElementId) -> Option<u64> {
+        self.steps.get(element.index()).copied().flatten()
+    }
+
+    fn see(&mut self, mesh: &Mesh, element: ElementId, step: u64) {
+        if self.steps.len() <= element.index() {
+            self.steps.resize(element.index() + 1, None);
+        }
+        let known = &mut self.steps[element.index()];
+        if mesh.has_element(element) && mesh.is_quad(element) {
+            known.get_or_insert(step);
+        } else {
+            *known = None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::convert::phase::Phase;
+    use crate::core::io::built_in;
+    use crate::core::progress::Nobody;
+    use crate::core::run::history::{BUDGET, History};
+    use crate::core::run::run::Run;
+
+    #[test]
+    fn births_are_the_steps_that_a_history_finds() {
+        let mut run = Run::of(built_in::named("two-faces").unwrap().unwrap());
+        run.parameters.size_scale *= 2.0;
+        let background = run.background(&mut Nobody).unwrap();
+        let mut history = History::of(run.clone(), &background, BUDGET).unwrap();
+        history.seek(u64::MAX).unwrap();
+        let mut converter = run.start(&background).unwrap();
+        converter.keep_history();
+        let mut births = Births::of(&converter.mesh);
+        while *converter.phase() != Phase::Done {
+            converter.step().unwrap();
+            births.note(&converter);
+            converter.shorten_history(1);
+        }
+        let quads: Vec<_> = converter.mesh.elements().collect();
+        assert!(quads.len() > 20, "{}", quads.len());
+        for e in quads {
+            assert_eq!(births.step(e), history.made(e).unwrap(), "{e:?}");
+        }
+    }
+}
