@@ -95,17 +95,21 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
         let defaults = Taking::default();
         let tip = "Folds beyond this angle are edges to keep (--feature-angle)";
         row(ui, "feature angle", tip, palette, |ui| {
-            let mut degrees = hundredths(taking.feature_angle.to_degrees());
-            let dragged = measure(ui, &mut degrees, Taking::ANGLES, false, "°", "Feature angle");
-            dragging |= dragged;
-            options.feature_angle = unless_default(degrees, hundredths(defaults.feature_angle.to_degrees()));
+            let before = hundredths(taking.feature_angle.to_degrees());
+            let mut degrees = before;
+            dragging |= measure(ui, &mut degrees, Taking::ANGLES, false, "°", "Feature angle");
+            if degrees != before {
+                options.feature_angle = unless_default(degrees, hundredths(defaults.feature_angle.to_degrees()));
+            }
         });
         let tip = "How far shapes may be stretched where the surface is laid into the plane (--chart-stretch)";
         row(ui, "chart stretch", tip, palette, |ui| {
-            let mut stretch = taking.chart_stretch;
-            let dragged = measure(ui, &mut stretch, Taking::STRETCHES, true, "", "Chart stretch");
-            dragging |= dragged;
-            options.chart_stretch = unless_default(hundredths(stretch), defaults.chart_stretch);
+            let before = hundredths(taking.chart_stretch);
+            let mut stretch = before;
+            dragging |= measure(ui, &mut stretch, Taking::STRETCHES, true, "", "Chart stretch");
+            if stretch != before {
+                options.chart_stretch = unless_default(stretch, defaults.chart_stretch);
+            }
         });
     });
     if !charted && import.loaded.is_some() {
