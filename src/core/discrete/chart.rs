@@ -19,7 +19,7 @@ use crate::core::fault::Fault;
 use crate::core::progress::{Cancel, Stage, Watch};
 
 /// Triangles and their map to the plane.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
     /// Its triangles, ascending, by their place in the surface.
     pub triangles: Vec<u32>,
@@ -42,6 +42,12 @@ pub struct Stretch {
     pub shape: f64,
     /// Ratio of the greatest to the least area in space of equal areas of the plane.
     pub area: f64,
+}
+
+impl Default for Stretch {
+    fn default() -> Self {
+        Stretch { shape: 1.0, area: 1.0 }
+    }
 }
 
 /// How much a chart may be stretched.
@@ -195,6 +201,9 @@ impl<'a> Surface<'a> {
             let mut piece = vec![first as u32];
             let mut next = 0;
             while next < piece.len() {
+                if next.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+                    return pieces;
+                }
                 for side in Self::sides(triangles[piece[next] as usize]) {
                     if let Some(at) = self.neighbour(part, side).filter(|&at| left[at]) {
                         left[at] = false;
@@ -248,13 +257,16 @@ impl<'a> Surface<'a> {
         if holes > 0 { Next::Slit(self.slit(part, &chart, &edges, &xyz)) } else { Next::Cut }
     }
 
-    /// The nodes of a part: corners that are held together by its edges.
+    /// The nodes of a part: corners that are held together by its edges; none where the work is told to end.
     pub fn nodes(&self, part: &Part) -> Chart {
         let triangles = &part.triangles;
         let mut nodes = Sets::new(3 * triangles.len());
         let mut border_sides: Vec<Corner> = Vec::new();
         let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
         for (at, &t) in triangles.iter().enumerate() {
+            if at.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+                return Chart::default();
+            }
             for side in Self::sides(t) {
                 let own = 3 * at as u32 + side % 3;
                 match self.neighbour(part, side) {
@@ -268,6 +280,9 @@ impl<'a> Surface<'a> {
             }
         }
         let set: Vec<u32> = (0..3 * triangles.len() as u32).map(|corner| nodes.find(corner)).collect();
+        if self.cancel.is_asked() {
+            return Chart::default();
+        }
         // The border, loop after loop; then the nodes inside, from the border inwards.
         let mut side_at = vec![u32::MAX; set.len()];
         border_sides.iter().for_each(|&side| side_at[set[side as usize] as usize] = side);
@@ -292,6 +307,9 @@ impl<'a> Surface<'a> {
         let corners = Groups::of(set.len(), set.len(), |corner| set[corner as usize]);
         let mut next = 0;
         while next < order.len() {
+            if next.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+                return Chart::default();
+            }
             let node = set[order[next] as usize];
             for &corner in corners.get(node) {
                 for near in [after(corner), after(after(corner))] {
@@ -311,7 +329,7 @@ impl<'a> Surface<'a> {
             points: order.into_iter().map(point).collect(),
             loops,
             uv: Vec::new(),
-            stretch: Stretch { shape: 1.0, area: 1.0 },
+            stretch: Stretch::default(),
         }
     }
 
@@ -362,7 +380,7 @@ impl<'a> Surface<'a> {
         slits
     }
 
-    /// Two parts of a part, divided half-way between two triangles that are far apart.
+    /// Two parts of a part, divided half-way between two triangles that are far apart; of no use where the work is told to end.
     fn halves(&self, part: &Part) -> [Vec<u32>; 2] {
         let triangles = &part.triangles;
         let farthest = |from: u32| {
@@ -377,6 +395,9 @@ impl<'a> Surface<'a> {
         }
         let mut owner: Vec<u8> = self.reach(part, &seeds).iter().map(|reached| reached.1).collect();
         for _ in 0..2 {
+            if self.cancel.is_asked() {
+                return [Vec::new(), Vec::new()];
+            }
             // Each from its own middle: the triangle farthest from where the two meet.
             let meeting = |at: usize| {
                 Self::sides(triangles[at])
@@ -413,6 +434,9 @@ impl<'a> Surface<'a> {
         for _ in 0..3 {
             let mut moved = false;
             for at in 0..part.triangles.len() {
+                if at.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+                    return;
+                }
                 let beyond = Self::sides(part.triangles[at]).map(|side| self.neighbour(part, side).map(|n| owner[n]));
                 let foreign = beyond.iter().flatten().filter(|&&o| o != owner[at]).count();
                 let own = beyond.iter().flatten().filter(|&&o| o == owner[at]).count();

@@ -15,6 +15,8 @@ use crate::core::progress::Cancel;
 const ROUNDS: usize = 40;
 /// Steps of the solver that a round takes on a large surface, about.
 const STEPS: f64 = 400.0;
+/// Triangles that are looked at between two looks at whether to go on.
+const AT_A_TIME: usize = 1 << 14;
 /// So many rows of the matrix are gone through before that is told.
 const TELL: usize = 1 << 20;
 /// Nodes that move by less than this part of the size are at rest.
@@ -37,6 +39,7 @@ pub fn map(
     let go_on = || (!cancel.is_asked()).then_some(());
     let flat: Vec<[DVec2; 3]> = triangles.iter().map(|t| flattened(t.map(|k| xyz[k as usize]))).collect();
     let weights: Vec<[f64; 3]> = flat.iter().map(weights).collect();
+    go_on()?;
     let mut uv = unrolled(triangles, &flat, xyz.len());
     go_on()?;
     let border = loops[0] as usize;
@@ -44,7 +47,10 @@ pub fn map(
     // One node is held fast, so that the rest know where they are.
     let n = xyz.len();
     let mut row: Vec<Vec<(u32, f64)>> = vec![Vec::with_capacity(8); n];
-    for (t, w) in triangles.iter().zip(&weights) {
+    for (at, (t, w)) in triangles.iter().zip(&weights).enumerate() {
+        if at.is_multiple_of(AT_A_TIME) {
+            go_on()?;
+        }
         for k in 0..3 {
             let (a, b, w) = (t[(k + 1) % 3], t[(k + 2) % 3], w[k]);
             for (from, to) in [(a, b), (b, a)] {
