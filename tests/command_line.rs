@@ -342,6 +342,44 @@ fn ctrl_c_leaves_no_half_written_file() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_nothing_of_a_mesh_that_came_by_standard_input() {
+    use std::fmt::Write as _;
+    use std::time::{Duration, Instant};
+
+    let (folder, kept) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let n = 300;
+    let mut obj = String::new();
+    for k in 0..(n + 1) * (n + 1) {
+        let (x, y) = (k % (n + 1), k / (n + 1));
+        writeln!(obj, "v {x} {y} {}", 5.0 * libm::sin(0.1 * f64::from(x)) * libm::sin(0.1 * f64::from(y))).unwrap();
+    }
+    for k in 0..n * n {
+        let a = k % n + k / n * (n + 1) + 1;
+        writeln!(obj, "f {a} {} {}\nf {a} {} {}", a + 1, a + n + 2, a + n + 2, a + n + 1).unwrap();
+    }
+    let mut child = command(&["convert", "-", "--from", "obj", "-o", "a.msh"], folder.path())
+        .env("TMPDIR", kept.path())
+        .stdin(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(obj.as_bytes()).unwrap();
+    let begin = Instant::now();
+    while std::fs::read_dir(kept.path()).unwrap().count() == 0 {
+        assert!(begin.elapsed() < Duration::from_secs(30));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // It is read or laid flat by now, for some seconds still.
+    std::thread::sleep(Duration::from_millis(400));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr), (Some(130), Vec::new()));
+    for left in [folder.path(), kept.path()] {
+        assert_eq!(std::fs::read_dir(left).unwrap().count(), 0);
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_said() {

@@ -196,10 +196,10 @@ fn the_texture_of_a_file_lays_its_charts_where_it_is_one_to_one() {
     let n = 24;
     let vertical = |bytes: &[u8], seam: u32| {
         let given = read_bytes("a.obj", bytes, Format::Obj).unwrap();
-        let laid = sound(&given).unwrap();
+        let laid = sound(&given, &mut Nobody).unwrap();
         let edges = Edges::of(&laid.mesh.triangles);
         let features = features(&laid.mesh, &edges, ANGLE);
-        let found = charts(&laid.mesh, &edges, &features, Bound::default());
+        let found = charts(&laid.mesh, &edges, &features, Bound::default(), &mut Nobody).unwrap();
         assert_eq!(found.len(), 1);
         // Points that are there twice: those of the slit.
         let mut points = found[0].points.clone();

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use super::command_line::CheckArguments;
 use super::input::{self, InputFormat};
 use super::output::{self, tell};
+use super::progress::Progress;
 use super::{FALLS_SHORT, complain};
 use crate::core::fault::Fault;
 use crate::core::io::format::Format;
@@ -18,11 +19,13 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<ExitCode, Fault> {
     if name == "-" && from.is_none() {
         return Err(Fault::new("The format is not known").at("standard input").remedy("Write --from msh"));
     }
-    let mesh = input::read_mesh(name, from)?.ok_or_else(|| {
+    let mut progress = Progress::new(arguments.quiet);
+    let mesh = input::read_mesh(name, from, &mut progress)?.ok_or_else(|| {
         let known = Format::ALL.map(|format| format!(".{}", format.extension())).join(", ");
         Fault::new("This is a case, and meshes are checked").at(name).remedy(format!("Name a mesh: {known}"))
     })?;
     let found = examine(&mesh);
+    progress.finish();
     if let Some(target) = &arguments.report {
         let json = serde_json::to_string_pretty(&found).expect("findings have nothing that JSON has not");
         target.write(|out| writeln!(out, "{json}"))?;

@@ -23,7 +23,8 @@ pub(super) struct Cli {
 
 #[derive(Subcommand)]
 pub(super) enum Command {
-    /// Open the window: step through a conversion, forward and back
+    /// Open the window: step through a conversion, forward and back. Of a mesh it shows first what it is like and asks how it is
+    /// taken, unless one of the options below says it
     Open(OpenArguments),
     /// Make an all-quadrilateral mesh of a case or of a triangle mesh
     Convert(ConvertArguments),
@@ -68,8 +69,8 @@ pub(super) struct Source {
 }
 
 /// How a mesh that is given is used.
-#[derive(Args, Default)]
-pub(super) struct MeshOptions {
+#[derive(Args, Clone, Debug, Default, PartialEq)]
+pub struct MeshOptions {
     /// What MESH is used for: its triangles, converted as they are (what a mesh in the plane is used for where nothing is said), or
     /// its shape, meshed anew (a mesh in space)
     #[arg(long = "use", value_name = "triangles|shape", value_parser = ["triangles", "shape"], hide_possible_values = true)]
@@ -113,6 +114,8 @@ pub(super) struct OpenArguments {
     /// A built-in case, a case file or a run file (.toml), a mesh, or a figure, which opens at the state that it shows
     #[arg(value_name = "CASE|MESH|FIGURE", default_value = "example1")]
     pub input: String,
+    #[command(flatten)]
+    pub mesh: MeshOptions,
 }
 
 #[derive(Args)]
@@ -227,6 +230,7 @@ mod tests {
             "quadfront",
             "quadfront open",
             "quadfront open plate.toml",
+            "quadfront open bracket.stl --use shape --feature-angle 30",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }

@@ -10,12 +10,15 @@ use crate::core::convert::parameters::nearest;
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
+#[cfg(feature = "window")]
+use crate::core::io::case::Taking;
 use crate::core::io::case::{self, Case};
 use crate::core::io::figure;
 use crate::core::io::format::{self, Format};
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::io::run_file;
 use crate::core::io::save::load;
+use crate::core::progress::Watch;
 use crate::core::run::run::Run;
 use crate::core::run::shown::Shown;
 
@@ -138,13 +141,13 @@ pub(super) fn read(source: &Source, mesh: &MeshOptions) -> Result<Input, Fault> 
 
 /// The run of a file: a case or a mesh from its beginning, a run file, or what a figure carries.
 #[cfg(feature = "window")]
-pub(super) fn run_of(path: &Path) -> Result<Run, Fault> {
+pub(super) fn run_of(path: &Path, mesh: &MeshOptions) -> Result<Run, Fault> {
     let input = path.display().to_string();
     if input == "-" {
         return Err(Fault::new("The window opens files").at(input).remedy("Name a case, a mesh or a run file"));
     }
     let source = Source { input, quiet: true, ..Source::default() };
-    let mut input = read(&source, &MeshOptions::default())?;
+    let mut input = read(&source, mesh)?;
     input.run.shown = input.figure;
     Ok(input.run)
 }
@@ -184,6 +187,18 @@ fn read_plain(source: &Source, mesh: &MeshOptions) -> Result<Input, Fault> {
             .remedy(format!("Write {key} in the case, or leave {option} out")));
     }
     Ok(Input::of(run, None))
+}
+
+/// How the options say that a mesh is taken.
+///
+/// # Errors
+/// Options that no case could have.
+#[cfg(feature = "window")]
+pub(super) fn taking_of(path: &Path, options: &MeshOptions) -> Result<Taking, Fault> {
+    match mesh_case(path.to_path_buf(), &Source::default(), options)?.domain {
+        case::DomainSource::Mesh { taking, .. } => Ok(taking),
+        _ => Ok(Taking::default()),
+    }
 }
 
 /// An option for meshes, as the line of a case that says the same.
@@ -255,12 +270,16 @@ fn case_or_run(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Ru
 }
 
 /// The mesh of a file or of standard input as it is; `None` where the input is a case.
-pub(super) fn read_mesh(name: &str, from: Option<InputFormat>) -> Result<Option<MeshFile>, Fault> {
+pub(super) fn read_mesh(
+    name: &str,
+    from: Option<InputFormat>,
+    watch: &mut dyn Watch,
+) -> Result<Option<MeshFile>, Fault> {
     match kind(name, from)? {
         Kind::StandardInput(InputFormat::Mesh(format)) => {
             format::read_bytes(STANDARD_INPUT, &standard_input()?, format).map(Some)
         }
-        Kind::File(path, InputFormat::Mesh(_)) => format::read_mesh(&path, None).map(Some),
+        Kind::File(path, InputFormat::Mesh(_)) => format::read_mesh_watched(&path, None, watch).map(Some),
         _ => Ok(None),
     }
 }

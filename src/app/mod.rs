@@ -15,19 +15,23 @@ pub mod window;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser;
 
 use crate::core::fault::Fault;
 use crate::core::io::save;
-use command_line::{Cli, Command};
+use command_line::{Cli, Command, OpenArguments};
+use progress::INTERRUPT;
 
 /// A checked mesh falls short.
 const FALLS_SHORT: u8 = 1;
 /// Bad input or usage.
 const BAD_INPUT: u8 = 2;
 /// Ctrl-C, as shells tell it.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED: u8 = 130;
+/// So long work has to end by itself.
+const GRACE: Duration = Duration::from_millis(500);
 
 /// Runs the program with the process's own arguments.
 pub fn run() -> ExitCode {
@@ -43,20 +47,26 @@ pub fn run() -> ExitCode {
     // handler (no system refuses one) Ctrl-C would end the process all the same and leave a temporary file.
     let _ = ctrlc::set_handler(|| {
         save::abandon();
-        std::process::exit(INTERRUPTED);
+        INTERRUPT.ask();
+        // Work that hears of it ends by itself, and takes with it what it has put down elsewhere.
+        std::thread::sleep(GRACE);
+        std::process::exit(i32::from(INTERRUPTED));
     });
     let done = match cli
         .command
         .as_ref()
-        .unwrap_or(&Command::Open(command_line::OpenArguments { input: "example1".to_owned() }))
+        .unwrap_or(&Command::Open(OpenArguments { input: "example1".to_owned(), mesh: Default::default() }))
     {
-        Command::Open(arguments) => open(&arguments.input),
+        Command::Open(arguments) => open(arguments),
         Command::Convert(arguments) => convert::convert(arguments),
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
         Command::Check(arguments) => check::check(arguments),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
         Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),
     };
+    if INTERRUPT.is_asked() {
+        return ExitCode::from(INTERRUPTED);
+    }
     done.unwrap_or_else(|fault| {
         complain(&fault);
         ExitCode::from(BAD_INPUT)
@@ -65,17 +75,22 @@ pub fn run() -> ExitCode {
 
 /// Opens the window.
 #[cfg(feature = "window")]
-fn open(input: &str) -> Result<ExitCode, Fault> {
-    // What does not exist is said where the command was given.
-    let source = window::Source::named(input);
+fn open(arguments: &OpenArguments) -> Result<ExitCode, Fault> {
+    let OpenArguments { input, mesh } = arguments;
+    let mut source = window::Source::named(input);
+    // What does not exist, and options that do not fit, are said where the command was given.
+    input::run_of(std::path::Path::new(input), mesh)?;
     if let window::Source::File(path) = &source {
-        input::run_of(path)?;
+        save::find(path)?;
+        if *mesh != Default::default() {
+            source = window::Source::Mesh(path.clone(), mesh.clone());
+        }
     }
     window::open(source)
 }
 
 #[cfg(not(feature = "window"))]
-fn open(_: &str) -> Result<ExitCode, Fault> {
+fn open(_: &OpenArguments) -> Result<ExitCode, Fault> {
     Err(Fault::new("This quadfront was built without its window")
         .remedy("Build it with the feature \"window\", or use quadfront convert and quadfront render"))
 }

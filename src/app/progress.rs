@@ -1,12 +1,16 @@
 //! How far the work is, shown on a terminal, and how long its parts took: `core` has no clock, this has.
 
 use std::fmt::Write;
+use std::sync::LazyLock;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::core::io::report::grouped;
-use crate::core::progress::{Stage, Watch};
+use crate::core::progress::{Cancel, Stage, Watch};
+
+/// What Ctrl-C asks.
+pub(super) static INTERRUPT: LazyLock<Cancel> = LazyLock::new(Cancel::new);
 
 /// Shows progress on standard error where that is a terminal, and measures the time of each stage.
 pub(super) struct Progress {
@@ -27,8 +31,7 @@ impl Progress {
     /// Clears the line, and tells the seconds of each stage in the order of the work.
     pub fn finish(mut self) -> Vec<(Stage, f64)> {
         self.close();
-        self.bar.finish_and_clear();
-        self.times
+        std::mem::take(&mut self.times)
     }
 
     fn close(&mut self) {
@@ -54,7 +57,19 @@ impl Progress {
         self.total = total;
         self.bar.set_length(total);
         self.bar.reset_eta();
-        self.bar.set_style(style(if total > 0 { "{msg}: {done} of about {all} {bar:20} {left}" } else { "{msg}" }));
+        let parts = match self.now {
+            _ if total == 0 => "{msg}",
+            // Bytes, and steps of unequal length.
+            Some((Stage::Read | Stage::Mend, _)) => "{msg}: {percent} % {bar:20} {left}",
+            _ => "{msg}: {done} of about {all} {bar:20} {left}",
+        };
+        self.bar.set_style(style(parts));
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
 }
 
@@ -86,11 +101,17 @@ impl Watch for Progress {
         self.bar.set_position(done.min(total));
         self.bar.tick();
     }
+
+    fn cancel(&self) -> Cancel {
+        INTERRUPT.clone()
+    }
 }
 
 fn words(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "Reading",
+        Stage::Mend => "Mending the mesh",
+        Stage::Chart => "Laying the surface flat",
         Stage::Divide => "Dividing the curves",
         Stage::Triangulate => "Triangulating",
         Stage::Adapt => "Adapting the triangles",

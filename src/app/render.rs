@@ -15,7 +15,7 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
     output::check(&[], Some(&arguments.out))?;
     if arguments.at.is_none()
         && arguments.figure.plot.is_none()
-        && let Some(mesh) = input::read_mesh(&source.input, source.from)?
+        && let Some(mesh) = input::read_mesh(&source.input, source.from, &mut Progress::new(source.quiet))?
     {
         let picture =
             Picture { title: source.input.clone(), ..Picture::of_mesh_from(&mesh, arguments.figure.bearing()) };

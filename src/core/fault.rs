@@ -14,12 +14,19 @@ pub struct Fault {
     pub place: String,
     /// What to do about it, a sentence without its full stop; may be empty.
     pub remedy: String,
+    /// Whether nothing is wrong: somebody has asked for the work to end.
+    pub is_stop: bool,
 }
 
 impl Fault {
     /// A fault without a place or a remedy yet.
     pub fn new(what: impl Into<String>) -> Self {
-        Fault { what: what.into(), place: String::new(), remedy: String::new() }
+        Fault { what: what.into(), place: String::new(), remedy: String::new(), is_stop: false }
+    }
+
+    /// What work says that was told to end before it was done (`progress::Cancel`).
+    pub fn stopped() -> Self {
+        Fault { is_stop: true, ..Fault::new("The work was stopped") }
     }
 
     /// The same fault with its place; an outer place ("plate.toml, line 14") goes before an inner one.

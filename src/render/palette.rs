@@ -105,6 +105,8 @@ pub struct Palette {
     pub stripe: Rgba,
     /// Metric ellipses.
     pub ellipse: Rgba,
+    /// Fills of charts that lie beside each other: quiet, as everything of the mesh.
+    pub charts: [Rgba; 6],
 }
 
 /// For dark rooms.
@@ -140,6 +142,14 @@ pub const DARK: Palette = Palette {
     accent_row: Rgba::hexa(0xFFB01F1F),
     stripe: Rgba::hex(0x1D2127),
     ellipse: Rgba::hexa(0x8A939E8C),
+    charts: [
+        Rgba::hex(0x24364A),
+        Rgba::hex(0x3A4226),
+        Rgba::hex(0x48362A),
+        Rgba::hex(0x3A3052),
+        Rgba::hex(0x17443F),
+        Rgba::hex(0x46293A),
+    ],
 };
 
 /// For light rooms.
@@ -175,6 +185,14 @@ pub const LIGHT: Palette = Palette {
     accent_row: Rgba::hexa(0xAD4E0018),
     stripe: Rgba::hex(0xECEEF0),
     ellipse: Rgba::hexa(0x616A748C),
+    charts: [
+        Rgba::hex(0xD3E2F2),
+        Rgba::hex(0xE4EDC8),
+        Rgba::hex(0xF5E0CB),
+        Rgba::hex(0xDCCFF3),
+        Rgba::hex(0xC3E8E4),
+        Rgba::hex(0xF4D7DF),
+    ],
 };
 
 /// How a role looks in a figure: colours as `#RRGGBB`, widths in points.
@@ -279,6 +297,38 @@ mod tests {
             assert!(on_panel >= text - 0.05 && weak_on_panel >= weak - 0.05, "{on_panel:.2}, {weak_on_panel:.2}");
             assert!(contrast(palette.accent, palette.panel) >= 4.5);
             assert!(contrast(palette.strong, palette.button) >= 4.5);
+        }
+    }
+
+    /// How far apart two colours are seen, in OKLab times 100.
+    fn apart(a: Rgba, b: Rgba) -> f64 {
+        let lab = |Rgba([r, g, b, _]): Rgba| {
+            let linear = |c: u8| {
+                let c = f64::from(c) / 255.0;
+                if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
+            };
+            let [r, g, b] = [r, g, b].map(linear);
+            let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
+            let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
+            let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
+            glam::DVec3::new(
+                0.210_454_255_3 * l + 0.793_617_785 * m - 0.004_072_046_8 * s,
+                1.977_998_495_1 * l - 2.428_592_205 * m + 0.450_593_709_9 * s,
+                0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766 * s,
+            )
+        };
+        100.0 * lab(a).distance(lab(b))
+    }
+
+    #[test]
+    fn charts_are_told_apart_and_features_stand_out_from_all_of_them() {
+        for palette in [DARK, LIGHT] {
+            for (k, &one) in palette.charts.iter().enumerate() {
+                let nearest = palette.charts[..k].iter().map(|&other| apart(one, other)).fold(f64::INFINITY, f64::min);
+                assert!(nearest > 3.5, "{one:?}: {nearest:.1}");
+                assert!(contrast(palette.boundary, one) > 7.0, "{one:?}: {:.1}", contrast(palette.boundary, one));
+                assert!(contrast(palette.weak, one) > 2.7, "{one:?}: {:.1}", contrast(palette.weak, one));
+            }
         }
     }
 

@@ -9,10 +9,12 @@ mod form;
 mod shading;
 mod mesh;
 mod overlay;
+mod given;
 
 use glam::{DVec2, DVec3};
 
 pub use form::{Form, Spot};
+pub use given::{Given, feature_line, seam_line};
 pub use mesh::Drawn;
 pub use overlay::{Decision, Outlined, Overlay, front};
 pub use placed::{Placed, STRETCH};

@@ -18,6 +18,7 @@ use super::settings::{BOTTOM, Settings};
 use super::state::{Over, State};
 use super::theme;
 use super::viewport::Views;
+use crate::render::palette::Palette;
 
 /// How long a notice is shown.
 const NOTICE: Duration = Duration::from_secs(6);
@@ -271,6 +272,36 @@ impl App {
     }
 }
 
+/// Transport, timeline, docks and what floats over them: the window on a run.
+fn docks(
+    ui: &mut Ui,
+    state: &mut State,
+    views: &mut Views,
+    layout: &mut Layout,
+    commands: &mut Vec<Command>,
+    palette: &'static Palette,
+    plain: Frame,
+) {
+    // A window that has no room for the timeline does not make it forget its height.
+    let squashed = ui.available_height() < state.bottom + BOTTOM[0];
+    let time = Panel::bottom(if squashed { "time squashed" } else { "time" })
+        .frame(plain)
+        .default_size(state.bottom)
+        .size_range(BOTTOM[0]..=BOTTOM[1])
+        .resizable(true)
+        .show(ui, |ui| panels::time::show(ui, state, commands, palette));
+    if !squashed {
+        state.bottom = time.response.rect.height();
+    }
+    panels::offer::show(ui, state, commands, palette);
+    panels::messages::show(ui, state, palette);
+    egui::CentralPanel::default().frame(plain).show(ui, |ui| {
+        layout.show(ui, state, views, commands, palette);
+    });
+    panels::notes::show(ui.ctx(), state, palette);
+    panels::figure::show(ui.ctx(), state, commands, palette);
+}
+
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
@@ -288,6 +319,7 @@ impl eframe::App for App {
             let dark = context.theme() == egui::Theme::Dark;
             context.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
         }
+        self.state.look_at_import(context.theme() == egui::Theme::Dark);
         self.play(&context);
         self.state.hear_soon();
         self.files(&context);
@@ -300,24 +332,16 @@ impl eframe::App for App {
             .frame(plain)
             .exact_size(32.0)
             .show(ui, |ui| panels::top::show(ui, state, commands, palette));
-        // A window that has no room for the timeline does not make it forget its height.
-        let squashed = ui.available_height() < state.bottom + BOTTOM[0];
-        let time = Panel::bottom(if squashed { "time squashed" } else { "time" })
-            .frame(plain)
-            .default_size(state.bottom)
-            .size_range(BOTTOM[0]..=BOTTOM[1])
-            .resizable(true)
-            .show(ui, |ui| panels::time::show(ui, state, commands, palette));
-        if !squashed {
-            state.bottom = time.response.rect.height();
+        if state.import.is_some() {
+            panels::offer::show(ui, state, commands, palette);
+            panels::messages::show(ui, state, palette);
+            panels::import::show(ui, state, plain, commands, palette);
+            egui::CentralPanel::default().frame(plain).show(ui, |ui| {
+                self.views.given(ui, state, commands, palette);
+            });
+        } else {
+            docks(ui, state, &mut self.views, &mut self.layout, commands, palette, plain);
         }
-        panels::offer::show(ui, state, commands, palette);
-        panels::messages::show(ui, state, palette);
-        egui::CentralPanel::default().frame(plain).show(ui, |ui| {
-            self.layout.show(ui, state, &mut self.views, commands, palette);
-        });
-        panels::notes::show(&context, state, palette);
-        panels::figure::show(&context, state, commands, palette);
         panels::over::show(&context, state, commands, palette);
         if let Some((_, since)) = &self.state.notice {
             match NOTICE.checked_sub(since.elapsed()) {

@@ -26,6 +26,9 @@ const UNDO: usize = 200;
 impl State {
     /// Does what a person asks for.
     pub fn apply(&mut self, command: Command) {
+        if self.import.is_some() && !command.fits_import() {
+            return self.notice("That belongs to a run: convert the mesh first, or cancel.".to_owned());
+        }
         match command {
             Command::Go(goal) => self.go(goal),
             Command::ToBreakpoint(forward) => self.seek_breakpoint(forward),
@@ -33,6 +36,7 @@ impl State {
             Command::Speed(speed) => self.speed = speed,
             Command::Stop => {
                 self.playing = None;
+                self.stop_opening();
                 if let Some(session) = &self.session {
                     session.stop();
                 }
@@ -93,6 +97,21 @@ impl State {
             }),
             Command::Bookmark => self.bookmark(),
             Command::Open(source) => self.open(source),
+            Command::Import => match &self.source {
+                Some(Source::Mesh(path, options)) => self.import(path.clone(), options.clone()),
+                _ => self.notice("What is open is no mesh that was opened here.".to_owned()),
+            },
+            Command::SetImport(options, dragging) => {
+                if let Some(import) = &mut self.import {
+                    import.set(*options, dragging);
+                }
+            }
+            Command::Convert => {
+                if let Some(import) = self.import.as_ref().filter(|import| import.loaded.is_some()) {
+                    self.open(Source::Mesh(import.path.clone(), import.options.clone()));
+                }
+            }
+            Command::CancelImport => self.cancel_import(),
             Command::OpenDialog => self.ask_for_file(),
             Command::OpenPath => self.show(Over::Path),
             Command::GoTo => self.show(Over::GoTo),
@@ -178,6 +197,9 @@ impl State {
     }
 
     fn take_back(&mut self, back: bool) {
+        if let Some(import) = &mut self.import {
+            return import.take_back(back);
+        }
         let (from, to) = if back { (&mut self.undo, &mut self.redo) } else { (&mut self.redo, &mut self.undo) };
         let Some(kept) = from.pop() else { return };
         let before = std::mem::replace(&mut self.kept, kept);
@@ -257,10 +279,21 @@ impl State {
     fn escape(&mut self) {
         if self.overlay != Over::Nothing {
             self.overlay = Over::Nothing;
+        } else if self.import.is_some() {
+            self.cancel_import();
         } else if self.playing.is_some() {
             self.playing = None;
         } else {
             self.keep(|kept| kept.picked = None);
+        }
+    }
+
+    /// Ends the conversion that has begun, and back to how the mesh is taken; else gives up the mesh.
+    fn cancel_import(&mut self) {
+        if self.is_opening() {
+            self.stop_opening();
+        } else {
+            self.give_up_import();
         }
     }
 

@@ -16,6 +16,7 @@ pub use place::{Offer, folder};
 use place::{Place, left_behind};
 
 use super::session::{Opened, Source, Wake};
+use crate::app::command_line::MeshOptions;
 use crate::core::fault::Fault;
 use crate::core::io::run_file::Keeper;
 use crate::core::run::run::{Bookmark, Camera, Edit, Run};
@@ -253,7 +254,10 @@ impl Autosave {
         let is_it = |offer: &Offer| source == Some(&Source::File(offer.place.path.clone()));
         let adopted = self.opening.take_if(|offer| is_it(offer));
         let was_unsaved = self.kept.take().is_some();
-        self.saved = if adopted.is_some() { None } else { Some(Changes::of(&opened.run)) };
+        // How a mesh was taken is nowhere but in the run.
+        let was_taken = matches!(source, Some(Source::Mesh(_, options)) if *options != MeshOptions::default());
+        let is_unsaved = adopted.is_some() || was_taken;
+        self.saved = (!is_unsaved).then(|| Changes::of(&opened.run));
         let place = adopted.map(|offer| offer.place);
         // The old one ends first, and lets go of its lock.
         drop(std::mem::replace(&mut self.saver, Saver::new(self.folder.clone(), place, self.wake.clone())));

@@ -5,6 +5,7 @@ use eframe::egui::{Key, Modifiers};
 use super::figures::Formats;
 use super::session::{Goal, Source};
 use super::state::Place;
+use crate::app::command_line::MeshOptions;
 use crate::core::io::built_in;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::render::camera::Bearing;
@@ -73,6 +74,14 @@ pub enum Command {
     Bookmark,
     /// Open a case or a mesh.
     Open(Source),
+    /// Show again how the mesh that is open was taken, to take it otherwise.
+    Import,
+    /// Take the mesh that is about to be converted otherwise; whether a person is still dragging.
+    SetImport(Box<MeshOptions>, bool),
+    /// Convert it.
+    Convert,
+    /// Give up what is under way with it, or else the mesh.
+    CancelImport,
     /// Ask for a file by the system's dialog.
     OpenDialog,
     /// Show the field for a path.
@@ -235,7 +244,11 @@ impl Command {
             Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
             Command::Bookmark => "Bookmark this step".into(),
             Command::Open(Source::BuiltIn(name)) => format!("Open {name}"),
-            Command::Open(Source::File(path)) => format!("Open {}", path.display()),
+            Command::Open(Source::File(path) | Source::Mesh(path, _)) => format!("Open {}", path.display()),
+            Command::Import => "How the mesh is taken…".into(),
+            Command::SetImport(..) => "Take the mesh otherwise".into(),
+            Command::Convert => "Convert".into(),
+            Command::CancelImport => "Cancel".into(),
             Command::OpenDialog => "Open by dialog…".into(),
             Command::OpenPath => "Open by path…".into(),
             Command::GoTo => "Go to a step or NQ…".into(),
@@ -280,6 +293,32 @@ impl Command {
         }
     }
 
+    /// Whether it does something while a mesh is about to be converted: what belongs to a run waits until there is one.
+    pub fn fits_import(&self) -> bool {
+        matches!(
+            self,
+            Command::SetImport(..)
+                | Command::Convert
+                | Command::CancelImport
+                | Command::Escape
+                | Command::Stop
+                | Command::Fit
+                | Command::LookFrom(_)
+                | Command::HiddenLines
+                | Command::ToggleTheme
+                | Command::Open(_)
+                | Command::OpenDialog
+                | Command::OpenPath
+                | Command::OpenKept
+                | Command::DiscardKept
+                | Command::Undo
+                | Command::Redo
+                | Command::Palette
+                | Command::Help
+                | Command::Screenshot
+        )
+    }
+
     /// All that need nothing else to be said.
     pub fn all() -> Vec<Command> {
         let mut all: Vec<Command> = keys().into_iter().map(|k| k.2).collect();
@@ -288,6 +327,7 @@ impl Command {
             Command::OpenDialog,
             Command::ResetParameters,
             Command::ResetLayout,
+            Command::Import,
             Command::Notes,
             Command::ShowTimes,
             Command::Measure,

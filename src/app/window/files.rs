@@ -9,9 +9,11 @@ use std::time::{Duration, Instant};
 use eframe::egui::ColorImage;
 
 use super::session::{Source, Wake};
+use crate::app::command_line::MeshOptions;
 use crate::app::input;
 use crate::core::fault::Fault;
 use crate::core::io::figure::KEYWORD;
+use crate::core::io::format::Format;
 use crate::core::io::{built_in, save};
 
 /// How often a file is looked at that may change.
@@ -34,9 +36,15 @@ impl Source {
     pub fn name(&self) -> String {
         match self {
             Source::BuiltIn(name) => name.clone(),
-            Source::File(path) => path.display().to_string(),
+            Source::File(path) | Source::Mesh(path, _) => path.display().to_string(),
         }
     }
+}
+
+/// What can be opened, by extension.
+fn extensions() -> Vec<&'static str> {
+    let meshes = Format::ALL.into_iter().map(Format::extension);
+    ["toml", "svg", "png"].into_iter().chain(meshes).collect()
 }
 
 /// The system's dialog, on a thread of its own: it may hang where the desktop has no portal.
@@ -64,7 +72,7 @@ impl Dialog {
         std::thread::spawn(move || {
             let dialog = rfd::FileDialog::new()
                 .set_title("Open a case, a mesh or a figure")
-                .add_filter("Cases, meshes, figures", &["toml", "msh", "mesh", "vtu", "obj", "inp", "svg", "png"]);
+                .add_filter("Cases, meshes, figures", &extensions());
             // Nobody listens where the window has given it up.
             let _ = tell.send(dialog.pick_file());
             wake();
@@ -119,10 +127,13 @@ impl Watcher {
                 }
                 before = now;
                 // What cannot be read is told, and that nothing is lost by it.
-                let read = input::run_of(&path).map(|_| path.display().to_string()).map_err(|fault| {
-                    let remedy = if fault.remedy.is_empty() { String::new() } else { format!("{}. ", fault.remedy) };
-                    fault.remedy(format!("{remedy}The window keeps what it has"))
-                });
+                let read = input::run_of(&path, &MeshOptions::default()).map(|_| path.display().to_string()).map_err(
+                    |fault| {
+                        let remedy =
+                            if fault.remedy.is_empty() { String::new() } else { format!("{}. ", fault.remedy) };
+                        fault.remedy(format!("{remedy}The window keeps what it has"))
+                    },
+                );
                 if tell.send(read).is_err() {
                     return;
                 }

@@ -10,6 +10,7 @@ mod session;
 mod measure;
 mod command;
 mod files;
+mod import;
 mod settings;
 mod graphics;
 mod autosave;

@@ -15,6 +15,7 @@ pub mod messages;
 pub mod offer;
 pub mod notes;
 pub mod figure;
+pub mod import;
 pub mod over;
 
 use eframe::egui::{self, Align, Button, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo};

@@ -17,12 +17,13 @@ pub use goal::Goal;
 pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
+use crate::app::command_line::MeshOptions;
 use crate::core::convert::conversion::Background;
 use crate::core::convert::event::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::io::case::Case;
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::progress::{Stage, Watch};
+use crate::core::progress::{Cancel, Stage, Watch};
 use crate::core::run::breakpoint::Condition;
 use crate::core::run::explain::SegmentTold;
 use crate::core::run::recorder::{Recorder, Stretch};
@@ -32,7 +33,7 @@ use crate::core::run::watch::Watched;
 use worker::Worker;
 
 /// How often progress is told.
-const EVERY: Duration = Duration::from_millis(50);
+pub(super) const EVERY: Duration = Duration::from_millis(50);
 
 /// What is asked of a session, by the window or by its own recorder.
 enum Ask {
@@ -131,6 +132,8 @@ pub struct Session {
     ask: Sender<Ask>,
     told: Receiver<Told>,
     stop: Arc<AtomicBool>,
+    /// Ends the opening.
+    opening: Cancel,
 }
 
 /// Called from other threads when there is something to be told.
@@ -142,13 +145,14 @@ impl Session {
         let (ask, asked) = channel();
         let (tell, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
-        let voice = Voice { tell, wake, last: Instant::now() };
+        let opening = Cancel::new();
+        let voice = Voice { tell, wake, last: Instant::now(), cancel: opening.clone() };
         let (own, flag) = (ask.clone(), stop.clone());
         std::thread::spawn(move || match Worker::open(read, own, voice, flag) {
             Ok(mut worker) => worker.serve(&asked),
             Err((voice, fault)) => voice.say(Told::Fault(fault, 1)),
         });
-        Session { ask, told, stop }
+        Session { ask, told, stop, opening }
     }
 
     /// Asks to go somewhere.
@@ -199,6 +203,7 @@ impl Session {
     /// Stops what is under way, where it is.
     pub fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
+        self.opening.ask();
     }
 
     /// What is told next, where that comes soon.
@@ -223,6 +228,7 @@ struct Voice {
     tell: Sender<Told>,
     wake: Wake,
     last: Instant,
+    cancel: Cancel,
 }
 
 impl Voice {
@@ -242,22 +248,34 @@ impl Voice {
 
 impl Watch for Voice {
     fn tell(&mut self, stage: Stage, done: u64, total: u64) {
-        let words = match stage {
-            Stage::Read => "Reading",
-            Stage::Divide => "Dividing the curves",
-            Stage::Triangulate => "Triangulating",
-            Stage::Adapt => "Adapting the triangles",
-            _ => "Converting",
-        };
-        self.progress(words, done, total);
+        self.progress(words_of(stage), done, total);
+    }
+
+    fn cancel(&self) -> Cancel {
+        self.cancel.clone()
+    }
+}
+
+/// What the window calls a part of the work.
+pub(super) fn words_of(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Read => "Reading",
+        Stage::Mend => "Mending the mesh",
+        Stage::Chart => "Laying the surface flat",
+        Stage::Divide => "Dividing the curves",
+        Stage::Triangulate => "Triangulating",
+        Stage::Adapt => "Adapting the triangles",
+        _ => "Converting",
     }
 }
 
 /// What a session is opened with.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A built-in case, by its name.
     BuiltIn(String),
-    /// A case or a mesh in a file.
+    /// A case, a run or a figure in a file; or a mesh, of which the window shows first what it is like.
     File(PathBuf),
+    /// A mesh, taken as the options say.
+    Mesh(PathBuf, MeshOptions),
 }

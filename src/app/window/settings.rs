@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::apply::layer;
-use super::state::State;
+use super::state::{HiddenLines, Place, State};
 use crate::core::fault::Fault;
 use crate::core::io::save;
 use crate::render::scene::{ColourBy, Layers};
@@ -30,6 +30,13 @@ pub struct Settings {
     speed: f32,
     /// Height of the timeline with its buttons, in points.
     bottom: f32,
+    /// Where meshes on surfaces are shown, how covered lines are drawn, whether elements are curved.
+    #[serde(default)]
+    place: Place,
+    #[serde(default)]
+    hidden: HiddenLines,
+    #[serde(default)]
+    curved: bool,
     /// Size of the window in points.
     #[serde(default)]
     pub window: Option<[f32; 2]>,
@@ -48,6 +55,9 @@ impl Settings {
             colour_by: state.kept.colour_by.name().to_owned(),
             speed: state.speed,
             bottom: state.bottom.round(),
+            place: state.space.place,
+            hidden: state.space.hidden,
+            curved: state.space.curved,
             window,
             docks,
         }
@@ -60,6 +70,7 @@ impl Settings {
             *layer(&mut layers, k) = on;
         }
         state.kept.layers = layers;
+        (state.space.place, state.space.hidden, state.space.curved) = (self.place, self.hidden, self.curved);
         state.kept.colour_by =
             ColourBy::ALL.into_iter().find(|by| by.name() == self.colour_by).unwrap_or(state.kept.colour_by);
         if self.speed.is_finite() && (0.1..=1000.0).contains(&self.speed) {
@@ -136,6 +147,7 @@ mod tests {
         state.kept.layers.ellipses = true;
         state.kept.colour_by = ColourBy::Level;
         (state.speed, state.bottom) = (30.0, 300.0);
+        (state.space.place, state.space.hidden, state.space.curved) = (Place::Both, HiddenLines::Faint, true);
         let settings = Settings::of(&state, false, Some([1280.0, 800.0]), serde_json::json!({}));
         settings.write(&path).unwrap();
         let read = Settings::read(&path).unwrap().unwrap();
@@ -144,6 +156,15 @@ mod tests {
         read.give(&mut other);
         assert_eq!((other.kept.layers, other.kept.colour_by), (state.kept.layers, ColourBy::Level));
         assert_eq!((other.speed, other.bottom), (30.0, 300.0));
+        let space = other.space;
+        assert_eq!((space.place, space.hidden, space.curved), (Place::Both, HiddenLines::Faint, true));
+        // Files of before know nothing of space.
+        let text = std::fs::read_to_string(&path).unwrap();
+        let old: String =
+            text.lines().filter(|line| !line.contains("\"hidden\"")).map(|line| format!("{line}\n")).collect();
+        std::fs::write(&path, &old).unwrap();
+        assert!(old.len() < text.len() && Settings::read(&path).unwrap().is_some());
+        std::fs::write(&path, &text).unwrap();
         for bad in
             ["", "{}", "[1]", "{\"version\": 1", &std::fs::read_to_string(&path).unwrap().replace(": 1,", ": 99,")]
         {

@@ -3,6 +3,7 @@
 mod hearing;
 mod space;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -11,16 +12,19 @@ pub use space::{HiddenLines, InSpace, Place};
 use super::autosave::Autosave;
 use super::figures::Figures;
 use super::files::{Dialog, Watcher};
+use super::import::{Import, News};
 use super::measure::{Measuring, Times};
 use super::panels::timeline::Columns;
 use super::session::{Explained, Goal, Moment, Opened, Past, Session, Source, Stops, Told, Tracked, Verdict, Wake};
 use glam::DVec2;
 
+use crate::app::command_line::MeshOptions;
 use crate::app::figure::another_state;
 use crate::app::input;
 use crate::core::convert::phase::Phase;
 use crate::core::fault::Fault;
 use crate::core::io::built_in;
+use crate::core::io::format::Format;
 use crate::core::mesh::ids::NodeId;
 use crate::core::run::breakpoint::Condition;
 use crate::core::run::copies::Since;
@@ -82,6 +86,10 @@ pub struct State {
     pub source: Option<Source>,
     /// What is being opened; what is open stays until that stands.
     opening: Option<(Source, Session)>,
+    /// The mesh that is about to be converted.
+    pub import: Option<Import>,
+    /// The last number that a picture of such a mesh had.
+    pictures: u64,
     /// Looks whether the file changes.
     pub watcher: Option<Watcher>,
     /// The state of a figure that was opened, until it is reached.
@@ -213,6 +221,8 @@ impl State {
             session: None,
             source: None,
             opening: None,
+            import: None,
+            pictures: 0,
             watcher: None,
             awaited: None,
             autosave: None,
@@ -276,14 +286,69 @@ impl State {
         }
     }
 
-    /// Opens a case or a mesh in place of what is open, which stays until the other one stands.
+    /// Opens a case or a mesh in place of what is open, which stays until the other one stands. Of a mesh it is shown first what
+    /// it is like.
     pub fn open(&mut self, source: Source) {
+        if let Source::File(path) = &source
+            && Format::from_path(path).is_ok()
+        {
+            return self.import(path.clone(), MeshOptions::default());
+        }
+        let is_of_import =
+            matches!((&source, &self.import), (Source::Mesh(path, _), Some(import)) if *path == import.path);
+        if !is_of_import {
+            self.give_up_import();
+        }
         let named = source.clone();
         let session = Session::open(move || read(&named), self.wake.clone());
         if self.opening.replace((source, session)).is_none() {
             self.waiting += 1;
         }
         self.since.get_or_insert_with(Instant::now);
+    }
+
+    /// Shows what a mesh is like and how it is to be taken.
+    pub fn import(&mut self, path: PathBuf, options: MeshOptions) {
+        self.give_up_import();
+        self.stop_opening();
+        self.playing = None;
+        self.import = Some(Import::begin(path, options, self.pictures, self.wake.clone()));
+    }
+
+    /// Whether something is being opened.
+    pub fn is_opening(&self) -> bool {
+        self.opening.is_some()
+    }
+
+    /// Gives up what is being opened.
+    pub fn stop_opening(&mut self) {
+        if let Some((_, session)) = &self.opening {
+            session.stop();
+        }
+    }
+
+    /// Gives up the mesh that is about to be converted.
+    pub fn give_up_import(&mut self) {
+        if let Some(import) = self.import.take() {
+            self.pictures = import.generation();
+        }
+    }
+
+    /// Hears what the mesh that is about to be converted is like.
+    pub fn look_at_import(&mut self, dark: bool) {
+        let Some(import) = &mut self.import else { return };
+        if let News::Refused(fault) = import.look(dark) {
+            self.complain(&fault);
+            self.give_up_import();
+            self.keeps();
+        }
+    }
+
+    /// Says that what is open stays, where something is.
+    fn keeps(&mut self) {
+        if let Some(opened) = &self.opened {
+            self.notice(format!("The window keeps {}.", opened.case.name));
+        }
     }
 
     /// Hears what is being opened: it takes the place of what is open, or is given up with what is wrong.
@@ -298,9 +363,12 @@ impl State {
                 }
                 Told::Fault(fault, asks) => {
                     self.opening = None;
-                    self.complain(&fault);
-                    if let Some(opened) = &self.opened {
-                        self.notice(format!("The window keeps {}.", opened.case.name));
+                    if !fault.is_stop {
+                        self.complain(&fault);
+                    }
+                    // A mesh that is refused can be taken otherwise.
+                    if self.import.is_none() {
+                        self.keeps();
                     }
                     if let Some(autosave) = &mut self.autosave {
                         autosave.failed();
@@ -314,9 +382,10 @@ impl State {
 
     /// What was opened stands.
     fn begin(&mut self, source: Source, session: Session, opened: Arc<Opened>) {
+        self.give_up_import();
         self.session = Some(session);
         self.watcher = match &source {
-            Source::File(path) => Some(Watcher::of(path.clone(), self.wake.clone())),
+            Source::File(path) | Source::Mesh(path, _) => Some(Watcher::of(path.clone(), self.wake.clone())),
             Source::BuiltIn(_) => None,
         };
         self.notes =
@@ -470,6 +539,7 @@ fn read(source: &Source) -> Result<Run, Fault> {
             Some(case) => case.map(Run::of),
             None => Err(Fault::new("There is no built-in case of this name").at(name.clone())),
         },
-        Source::File(path) => input::run_of(path),
+        Source::File(path) => input::run_of(path, &MeshOptions::default()),
+        Source::Mesh(path, options) => input::run_of(path, options),
     }
 }

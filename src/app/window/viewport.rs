@@ -2,6 +2,7 @@
 
 mod cameras;
 mod faces;
+mod given;
 mod space;
 mod stage;
 mod tools;

@@ -1,13 +1,29 @@
 //! Numbers and events in words, as everywhere in the window: integers grouped by thin spaces, a true minus, an en dash for what
 //! is not defined.
 
+use super::session::words_of;
+use super::state::Progress;
 use crate::core::convert::candidates::{Candidate, Candidates, Passed};
 use crate::core::convert::event::{Event, Mending, Purpose, Why};
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
+use crate::core::progress::Stage;
 use crate::render::scene::Outlined;
 
 pub use crate::render::number::{UNDEFINED, decimals, degrees, fixed, grouped, size};
+
+/// How far work is.
+pub fn progress(progress: &Progress) -> String {
+    let Progress { words, done, total } = *progress;
+    // Bytes, and steps of unequal length.
+    if total > 0 && [Stage::Read, Stage::Mend].map(words_of).contains(&words) {
+        format!("{words}: {} %", 100 * done.min(total) / total)
+    } else if total > 0 {
+        format!("{words} {} of about {}", grouped(done), grouped(total.max(done)))
+    } else {
+        words.to_owned()
+    }
+}
 
 /// A front segment by its nodes.
 pub fn segment(a: NodeId, b: NodeId) -> String {

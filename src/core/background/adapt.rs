@@ -93,6 +93,7 @@ impl Adapter<'_> {
         self.refine(watch)?;
         self.mesh = self.mesh.reordered();
         for cycle in 0..CYCLES {
+            watch.cancel().check()?;
             watch.tell(Stage::Adapt, cycle as u64 + 1, CYCLES as u64 + 1);
             self.collapse_short();
             self.split_long(cycle == 0)?;
@@ -115,6 +116,7 @@ impl Adapter<'_> {
         loop {
             let elements = self.mesh.element_count();
             let expected = found.iter().map(|f| f.length as u64).sum::<u64>() * 2 + elements as u64;
+            watch.cancel().check()?;
             watch.tell(Stage::Adapt, elements as u64, expected);
             let mut made = Vec::new();
             for f in &found {

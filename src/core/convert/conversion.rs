@@ -23,7 +23,7 @@ use crate::core::geometry::complex;
 use crate::core::geometry::domain::Domain;
 use crate::core::geometry::predicates::{convex, firm};
 use crate::core::io::case::{Case, DomainSource, MeshUse, Taking};
-use crate::core::io::format::read_mesh;
+use crate::core::io::format::read_mesh_watched;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::half_edge::{Ground, Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId, PointId};
@@ -95,6 +95,7 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
         DomainSource::Mesh { path, sol, taking } => from_mesh(case, path, sol.as_deref(), taking, watch)?,
     };
     refuse_needles(&made.mesh)?;
+    watch.cancel().check()?;
     chosen_faces(made, &case.parameters.faces)
 }
 
@@ -199,12 +200,12 @@ fn from_mesh(
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     watch.tell(Stage::Read, 0, 0);
-    let mut file = read_mesh(path, sol)?;
+    let mut file = read_mesh_watched(path, sol, watch)?;
     taking.scale(&mut file);
     let place = path.display().to_string();
     if !is_plane(&file) || taking.used == Some(MeshUse::Shape) {
         return from_surface(case, &file, taking, watch)
-            .map_err(|fault| if fault.place.is_empty() { fault.at(place) } else { fault });
+            .map_err(|fault| if fault.place.is_empty() && !fault.is_stop { fault.at(place) } else { fault });
     }
     let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
     let set = &imported.set;
@@ -244,8 +245,8 @@ fn from_mesh(
 /// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
 /// case's fields; where there are none those given at its points, or those that its triangles have.
 fn from_surface(case: &Case, file: &MeshFile, taking: &Taking, watch: &mut dyn Watch) -> Result<Background, Fault> {
-    let Sound { mesh, copied, regions, lines, mut repairs } = sound(file)?;
-    let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound())?;
+    let Sound { mesh, copied, regions, lines, mut repairs } = sound(file, watch)?;
+    let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch)?;
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
     for spec in &case.fields {

@@ -28,6 +28,9 @@ use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::{Stage, Watch};
 
+/// Steps between two tellings of how far it is.
+const TELL: u64 = 2048;
+
 /// Least quality and largest new edge that a formation may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gates {
@@ -313,9 +316,10 @@ impl<'a> Converter<'a> {
     /// As [`Converter::step`].
     pub fn run(&mut self, watch: &mut dyn Watch) -> Result<(), Fault> {
         let total = self.mesh.element_count() as u64;
-        watch.tell(Stage::Convert, 0, total);
+        watch.tell(Stage::Convert, 2 * self.counts.formed, total);
         while self.phase != Phase::Done {
-            if self.counts.steps.is_multiple_of(8192) {
+            if self.counts.steps.is_multiple_of(TELL) {
+                watch.cancel().check()?;
                 watch.tell(Stage::Convert, 2 * self.counts.formed, total);
             }
             if self.phase == (Phase::PostProcess { part: Part::FirstSmoothing }) {
@@ -343,15 +347,28 @@ impl<'a> Converter<'a> {
         let total = self.mesh.element_count() as u64;
         watch.tell(Stage::Convert, 0, total);
         let mut parts = self.mesh.parts();
-        let (sender, receiver) = std::sync::mpsc::channel();
+        let cancel = watch.cancel();
+        // What a face tells: how many quadrilaterals it has formed, and at last itself.
+        enum Told<'a> {
+            Formed(u64),
+            Done(Result<Converter<'a>, Fault>),
+        }
+        let (sender, receiver) = std::sync::mpsc::channel::<(usize, Told<'a>)>();
         let mut done: Vec<Option<Result<Converter<'a>, Fault>>> = parts.iter().map(|_| None).collect();
         rayon::in_place_scope(|scope| {
             for (k, part) in parts.iter_mut().enumerate() {
                 let (mesh, sender) = (std::mem::take(&mut part.mesh), sender.clone());
                 let (source, parameters) = (Arc::clone(&self.source), self.parameters.clone());
+                let cancel = cancel.clone();
                 scope.spawn(move |_| {
                     let mut converter = Converter { total, ..Converter::new(mesh, source, parameters) };
                     let face = loop {
+                        if converter.counts.steps.is_multiple_of(TELL) {
+                            if let Err(stopped) = cancel.check() {
+                                break Err(stopped);
+                            }
+                            let _ = sender.send((k, Told::Formed(converter.counts.formed)));
+                        }
                         match converter.step() {
                             Ok(Event::FaceConverted { .. }) => break Ok(converter),
                             Ok(_) => {}
@@ -359,17 +376,24 @@ impl<'a> Converter<'a> {
                         }
                     };
                     // Whoever listens stays until all are there.
-                    let _ = sender.send((k, face));
+                    let _ = sender.send((k, Told::Done(face)));
                 });
             }
             drop(sender);
-            let mut formed = 0;
-            for (k, face) in receiver {
-                if let Ok(converter) = &face {
-                    formed += converter.counts.formed;
-                    watch.tell(Stage::Convert, 2 * formed, total);
+            let mut formed = vec![0; done.len()];
+            let mut all = 0;
+            for (k, told) in receiver {
+                let own = match &told {
+                    Told::Formed(own) => *own,
+                    Told::Done(Ok(converter)) => converter.counts.formed,
+                    Told::Done(Err(_)) => formed[k],
+                };
+                all = all + own - formed[k];
+                formed[k] = own;
+                watch.tell(Stage::Convert, 2 * all, total);
+                if let Told::Done(face) = told {
+                    done[k] = Some(face);
                 }
-                done[k] = Some(face);
             }
         });
         for (part, face) in parts.iter_mut().zip(done) {

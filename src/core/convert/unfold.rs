@@ -18,6 +18,7 @@ use crate::core::mesh::ids::{ElementId, NodeId, PointId};
 use crate::core::mesh::refusals::Operation;
 use crate::core::metric::field::MetricSource;
 use crate::core::metric::tensor::Metric2;
+use crate::core::progress::Cancel;
 
 /// A quadrilateral with a corner whose sine against the surface is below this is to be mended.
 const FOLDED: f64 = 1e-3;
@@ -444,7 +445,7 @@ fn coincident(mesh: &Mesh, copies: &[(PointId, NodeId)]) -> (Vec<NodeId>, f64) {
     let mut nodes: Vec<NodeId> = copies.chunk_by(|a, b| a.0 == b.0).map(|at_point| at_point[0].1).collect();
     nodes.extend(mesh.nodes().filter(|&n| !mesh.is_fixed(n)));
     let places: Vec<DVec3> = nodes.iter().map(|&n| mesh.xyz(n)).collect();
-    let standing = weld(&places, SAME_PLACE).1;
+    let standing = weld(&places, SAME_PLACE, &Cancel::default()).1;
     // A place is kept under a new number the first time it is seen.
     let mut next = 0;
     let is_later = |at: &u32| {

@@ -146,6 +146,7 @@ pub fn walk_editing(
         if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::NextFace | Phase::Done)
         {
             shown = nq;
+            watch.cancel().check()?;
             watch.tell(Stage::Convert, 2 * nq, total);
         }
     }

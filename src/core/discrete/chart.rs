@@ -11,10 +11,12 @@ use std::collections::BinaryHeap;
 
 use glam::{DVec2, DVec3};
 
-use super::edges::{Corner, Edges, Triangles};
+use super::edges::{Corner, Edges, Groups, Triangles};
 use super::features::Feature;
 use super::{rigid, tutte};
 use crate::core::background::cut::Sets;
+use crate::core::fault::Fault;
+use crate::core::progress::{Cancel, Stage, Watch};
 
 /// Triangles and their map to the plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,22 +64,50 @@ impl Default for Bound {
 /// A chart with holes is taken as it is up to here, and slit beyond.
 const WITH_HOLES: Bound = Bound { shape: 2.0, area: 4.0 };
 
+/// Triangles that are looked at between two looks at whether to go on.
+const AT_A_TIME: usize = 1 << 12;
+
 /// Cuts a surface into charts, in the order of their first triangles.
-pub fn charts(mesh: &Triangles, edges: &Edges, features: &[Option<Feature>], bound: Bound) -> Vec<Chart> {
-    let surface = Surface::new(mesh, edges, features);
+///
+/// # Errors
+/// [`Fault::stopped`].
+pub fn charts(
+    mesh: &Triangles,
+    edges: &Edges,
+    features: &[Option<Feature>],
+    bound: Bound,
+    watch: &mut dyn Watch,
+) -> Result<Vec<Chart>, Fault> {
+    let cancel = watch.cancel();
+    let total = mesh.triangles.len() as u64;
+    watch.tell(Stage::Chart, 0, total);
+    let surface = Surface::new(mesh, edges, features, cancel.clone());
     let all = Part::of((0..mesh.triangles.len() as u32).collect());
     let mut waiting = surface.connected(&all);
-    let mut charts = Vec::new();
+    let (mut charts, mut done, mut told) = (Vec::new(), 0, 0);
     waiting.retain(|part| match surface.textured(part, bound) {
         Some(found) => {
+            done += part.triangles.len() as u64;
             charts.extend(found);
             false
         }
         None => true,
     });
     while let Some(part) = waiting.pop() {
-        match surface.chart(&part, bound) {
-            Next::Taken(chart) => charts.push(*chart),
+        // What comes from work that was told to end is of no use.
+        cancel.check()?;
+        told = told.max(done);
+        watch.tell(Stage::Chart, told, total);
+        let mut tell = |share: f64| {
+            // It may have to be cut yet; what was told once is not taken back.
+            told = told.max(done + (0.5 * share * part.triangles.len() as f64) as u64);
+            watch.tell(Stage::Chart, told, total);
+        };
+        match surface.chart(&part, bound, &mut tell) {
+            Next::Taken(chart) => {
+                done += chart.triangles.len() as u64;
+                charts.push(*chart);
+            }
             Next::Slit(slits) => waiting.push(Part { slits, ..part }),
             Next::Cut => {
                 for half in surface.halves(&part) {
@@ -86,8 +116,9 @@ pub fn charts(mesh: &Triangles, edges: &Edges, features: &[Option<Feature>], bou
             }
         }
     }
+    cancel.check()?;
     charts.sort_unstable_by_key(|chart| chart.triangles[0]);
-    charts
+    Ok(charts)
 }
 
 impl Bound {
@@ -126,10 +157,11 @@ pub(super) struct Surface<'a> {
     centre: Vec<DVec3>,
     /// Coordinates in the plane are multiples of this.
     pub grid: f64,
+    cancel: Cancel,
 }
 
 impl<'a> Surface<'a> {
-    fn new(mesh: &'a Triangles, edges: &Edges, features: &[Option<Feature>]) -> Self {
+    fn new(mesh: &'a Triangles, edges: &Edges, features: &[Option<Feature>], cancel: Cancel) -> Self {
         let mut beyond = vec![None; 3 * mesh.triangles.len()];
         for (edge, _) in features.iter().enumerate().filter(|(_, feature)| feature.is_none()) {
             if let [a, b] = *edges.get(edge).sides {
@@ -143,7 +175,7 @@ impl<'a> Surface<'a> {
         let size = (high - low).max_element();
         // Ten thousand charts as wide as the surface still have exact coordinates side by side.
         let grid = if size > 0.0 { libm::ldexp(1.0, libm::ilogb(size) - 37) } else { 1.0 };
-        Surface { mesh, beyond, centre, grid }
+        Surface { mesh, beyond, centre, grid, cancel }
     }
 
     /// The sides of a triangle.
@@ -181,9 +213,12 @@ impl<'a> Surface<'a> {
         pieces
     }
 
-    /// The chart of a part, or what else has to be done with it.
-    fn chart(&self, part: &Part, bound: Bound) -> Next {
+    /// The chart of a part, or what else has to be done with it; tells how far it is, from 0 to 1.
+    fn chart(&self, part: &Part, bound: Bound, tell: &mut dyn FnMut(f64)) -> Next {
         let mut chart = self.nodes(part);
+        if self.cancel.is_asked() {
+            return Next::Cut;
+        }
         let edges = Edges::of(&chart.local);
         let euler = chart.points.len() as i64 - edges.len() as i64 + chart.local.len() as i64;
         let holes = chart.loops.len() as i64 - 1;
@@ -193,9 +228,9 @@ impl<'a> Surface<'a> {
             return Next::Cut;
         }
         let xyz: Vec<DVec3> = chart.points.iter().map(|&p| self.mesh.points[p as usize]).collect();
-        let rigid = rigid::map(&xyz, &chart.local, &chart.loops, self.grid);
+        let rigid = rigid::map(&xyz, &chart.local, &chart.loops, self.grid, &self.cancel, tell);
         let mapped = match rigid {
-            None if holes == 0 => tutte::map(&xyz, &chart.local, chart.loops[0] as usize, self.grid),
+            None if holes == 0 => tutte::map(&xyz, &chart.local, chart.loops[0] as usize, self.grid, &self.cancel),
             found => found,
         };
         // Taken as it is where nothing else can be done: what is mended before lets no triangle come to that.
@@ -254,13 +289,11 @@ impl<'a> Surface<'a> {
             number[set[0] as usize] = 0;
             order.push(0);
         }
-        let mut corners: Vec<u32> = (0..set.len() as u32).collect();
-        corners.sort_unstable_by_key(|&corner| (set[corner as usize], corner));
+        let corners = Groups::of(set.len(), set.len(), |corner| set[corner as usize]);
         let mut next = 0;
         while next < order.len() {
             let node = set[order[next] as usize];
-            let first = corners.partition_point(|&corner| set[corner as usize] < node);
-            for &corner in corners[first..].iter().take_while(|&&corner| set[corner as usize] == node) {
+            for &corner in corners.get(node) {
                 for near in [after(corner), after(after(corner))] {
                     let number = &mut number[set[near as usize] as usize];
                     if *number == u32::MAX {
@@ -409,7 +442,12 @@ impl<'a> Surface<'a> {
                 }
             }
         }
+        let mut looked = 0_usize;
         while let Some(Reverse((bits, owner, at))) = queue.pop() {
+            looked += 1;
+            if looked.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+                break;
+            }
             let at = at as usize;
             if reached[at] != (f64::from_bits(bits), owner) {
                 continue;

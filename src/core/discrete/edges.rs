@@ -29,6 +29,48 @@ pub struct Edge<'a> {
     pub sides: &'a [Corner],
 }
 
+/// Things `0..n` by the group that each belongs to, groups and the things of each ascending: in one pass, where sorting so many
+/// would take as long as all the rest.
+pub(super) struct Groups {
+    start: Vec<u32>,
+    /// The things, group after group.
+    pub items: Vec<u32>,
+}
+
+impl Groups {
+    /// Groups `0..groups` of so many things.
+    pub fn of(things: usize, groups: usize, group: impl Fn(u32) -> u32) -> Groups {
+        let mut start = vec![0; groups + 1];
+        (0..things as u32).for_each(|thing| start[group(thing) as usize + 1] += 1);
+        for k in 0..groups {
+            start[k + 1] += start[k];
+        }
+        let mut free = start.clone();
+        let mut items = vec![0; things];
+        for thing in 0..things as u32 {
+            let place = &mut free[group(thing) as usize];
+            items[*place as usize] = thing;
+            *place += 1;
+        }
+        Groups { start, items }
+    }
+
+    /// The things of a group.
+    pub fn get(&self, group: u32) -> &[u32] {
+        &self.items[self.start[group as usize] as usize..self.start[group as usize + 1] as usize]
+    }
+
+    /// Each group, to put its things into another order.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut [u32]> {
+        let mut rest = &mut self.items[..];
+        self.start.windows(2).map(move |range| {
+            let (group, after) = std::mem::take(&mut rest).split_at_mut((range[1] - range[0]) as usize);
+            rest = after;
+            group
+        })
+    }
+}
+
 /// All edges, by ascending ends.
 #[derive(Clone, Debug, Default)]
 pub struct Edges {
@@ -48,8 +90,10 @@ impl Edges {
             let [a, b] = [t[corner as usize % 3], t[(corner as usize + 1) % 3]];
             [a.min(b), a.max(b)]
         };
-        let mut sides: Vec<Corner> = (0..3 * triangles.len() as u32).collect();
-        sides.sort_unstable_by_key(|&corner| (key(corner), corner));
+        let nodes = triangles.as_flattened().iter().max().map_or(0, |&last| last as usize + 1);
+        let mut sides = Groups::of(3 * triangles.len(), nodes, |corner| key(corner)[0]);
+        sides.iter_mut().for_each(|sides| sides.sort_unstable_by_key(|&corner| (key(corner)[1], corner)));
+        let sides = sides.items;
         let mut edges = Edges { of_side: vec![0; sides.len()], ..Edges::default() };
         for (i, &corner) in sides.iter().enumerate() {
             if edges.ends.last() != Some(&key(corner)) {

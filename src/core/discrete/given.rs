@@ -212,11 +212,12 @@ mod tests {
     use crate::core::discrete::fixtures::{cube, plate, sphere, torus};
     use crate::core::discrete::surface::surface;
     use crate::core::mesh::names::Named;
+    use crate::core::progress::Nobody;
 
     #[test]
     fn charts_of_closed_surfaces_are_made_even_and_nothing_else_is_changed() {
         for mesh in [cube(3), sphere(5), torus(15, 9)] {
-            let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default()).unwrap();
+            let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
             let (set, divided) = laid.triangles(&mesh, false).unwrap();
             assert_eq!(set.xyz.len(), mesh.points.len() + divided);
             assert_eq!(set.triangles.len(), mesh.triangles.len() + 2 * divided);
@@ -231,7 +232,7 @@ mod tests {
         let mut mesh = plate(3, 0.2);
         mesh.triangles.pop();
         mesh.region.pop();
-        let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default()).unwrap();
+        let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
         assert!(laid.triangles(&mesh, false).unwrap_err().what.contains("17 triangles"));
         assert_eq!(laid.triangles(&mesh, true).unwrap().0.triangles.len(), 18);
     }

@@ -5,9 +5,10 @@ use glam::DVec3;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 
-use super::edges::{Edges, Triangles};
+use super::edges::{Edges, Groups, Triangles};
 use crate::core::background::cut::Sets;
 use crate::core::io::weld::weld;
+use crate::core::progress::Cancel;
 
 /// Points nearer than this part of the largest coordinate are at one place.
 pub(super) const SAME_PLACE: f64 = 1e-9;
@@ -21,13 +22,13 @@ const ROUNDS: usize = 8;
 
 impl Triangles {
     /// Lets triangles that use points at one place use the first of them; how many points are no longer used for it.
-    pub fn weld(&mut self) -> usize {
-        let mut used: Vec<u32> = self.triangles.as_flattened().to_vec();
-        used.sort_unstable();
-        used.dedup();
+    pub fn weld(&mut self, cancel: &Cancel) -> usize {
+        let mut is_used = vec![false; self.points.len()];
+        self.triangles.as_flattened().iter().for_each(|&k| is_used[k as usize] = true);
+        let used: Vec<u32> = (0..self.points.len() as u32).filter(|&k| is_used[k as usize]).collect();
         let places: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
-        let (kept, standing) = weld(&places, SAME_PLACE);
-        if kept.len() == places.len() {
+        let (kept, standing) = weld(&places, SAME_PLACE, cancel);
+        if kept.len() == places.len() || cancel.is_asked() {
             return 0;
         }
         // The first point of each place, by the order in which places were kept.
@@ -124,16 +125,16 @@ impl Triangles {
                 edge.ends.iter().for_each(|&end| sets.join(corner_at(edge.sides[0], end), corner_at(*other, end)));
             }
         }
-        let mut by_point: Vec<(u32, u32, u32)> =
-            (0..corners as u32).map(|c| (self.triangles[c as usize / 3][c as usize % 3], sets.find(c), c)).collect();
-        by_point.sort_unstable();
+        let fan_of: Vec<u32> = (0..corners as u32).map(|c| sets.find(c)).collect();
+        let at = |c: u32| self.triangles[c as usize / 3][c as usize % 3];
+        let mut by_point = Groups::of(corners, self.points.len(), at);
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         self.points.iter().for_each(|&p| (low, high) = (low.min(p), high.max(p)));
         let size = (high - low).length();
         let (mut copies, mut places) = (Vec::new(), 0);
-        for at_point in by_point.chunk_by(|a, b| a.0 == b.0) {
-            let point = at_point[0].0;
-            let fans = at_point.chunk_by(|a, b| a.1 == b.1);
+        for (point, at_point) in (0_u32..).zip(by_point.iter_mut()) {
+            at_point.sort_unstable_by_key(|&c| (fan_of[c as usize], c));
+            let fans = at_point.chunk_by(|&a, &b| fan_of[a as usize] == fan_of[b as usize]);
             let fan_count = fans.clone().count();
             if fan_count < 2 || 2 * fan_count <= outer[point as usize] {
                 continue;
@@ -141,14 +142,14 @@ impl Triangles {
             places += 1;
             let place = self.points[point as usize];
             for fan in fans {
-                let others = fan.iter().flat_map(|f| self.triangles[f.2 as usize / 3]).filter(|&k| k != point);
+                let others = fan.iter().flat_map(|&c| self.triangles[c as usize / 3]).filter(|&k| k != point);
                 let others: Vec<DVec3> = others.map(|k| self.points[k as usize]).collect();
                 let way = others.iter().sum::<DVec3>() / others.len() as f64 - place;
                 let shortest = others.iter().map(|p| p.distance(place)).fold(f64::INFINITY, f64::min);
                 let far = (APART * size).min(APART_OF_EDGE * shortest);
                 self.points.push(place + way.normalize_or_zero() * far);
                 copies.push(point);
-                for &(_, _, c) in fan {
+                for &c in fan {
                     self.triangles[c as usize / 3][c as usize % 3] = self.points.len() as u32 - 1;
                 }
             }
@@ -180,15 +181,15 @@ mod tests {
     fn points_at_one_place_are_used_as_one() {
         let plate_size = 1.0;
         let mut mesh = beside(plate(4, 0.0), &plate(4, 0.0), DVec3::X * plate_size);
-        assert_eq!((borders(&mesh), mesh.weld(), borders(&mesh)), (32, 5, 24));
-        assert_eq!(mesh.weld(), 0);
+        assert_eq!((borders(&mesh), mesh.weld(&Cancel::default()), borders(&mesh)), (32, 5, 24));
+        assert_eq!(mesh.weld(&Cancel::default()), 0);
     }
 
     #[test]
     fn points_that_hang_in_sides_are_taken_into_them() {
         // Five points of the one border stand on four, or two, sides of the other.
         let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
-        assert_eq!((mesh.weld(), mesh.stitch()), (3, 2));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch()), (3, 2));
         assert_eq!(borders(&mesh), 16 + 8 - 4 - 2);
         let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.area_vector(t).length()).sum();
         assert!((area - 2.0).abs() < 1e-12 && mesh.stitch() == 0);
@@ -197,13 +198,13 @@ mod tests {
     #[test]
     fn cubes_that_touch_in_a_corner_are_set_apart_and_plates_are_not() {
         let mut mesh = beside(cube(1), &cube(1), DVec3::ONE);
-        assert_eq!(mesh.weld(), 1);
+        assert_eq!(mesh.weld(&Cancel::default()), 1);
         let points = mesh.points.len();
         let (copies, places) = mesh.part();
         assert_eq!((copies.len(), places, mesh.points.len()), (2, 1, points + 2));
         let [a, b] = [mesh.points[points], mesh.points[points + 1]];
         assert!(a.distance(b) > 1e-7 && a.distance(b) < 1e-5);
         let mut mesh = beside(plate(2, 0.0), &plate(2, 0.0), DVec3::new(1.0, 1.0, 0.0));
-        assert_eq!((mesh.weld(), mesh.part().1), (1, 0));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.part().1), (1, 0));
     }
 }

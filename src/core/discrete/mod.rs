@@ -16,5 +16,6 @@ pub mod texture;
 pub mod surface;
 pub mod curvature;
 pub mod given;
+pub mod census;
 #[cfg(test)]
 mod fixtures;

@@ -9,22 +9,36 @@ use rstar::{AABB, RTree};
 use super::sparse::Means;
 use super::tutte::stands;
 use crate::core::geometry::predicates::orient;
+use crate::core::progress::Cancel;
 
 /// Rounds of turning and following.
 const ROUNDS: usize = 40;
+/// Steps of the solver that a round takes on a large surface, about.
+const STEPS: f64 = 400.0;
+/// So many rows of the matrix are gone through before that is told.
+const TELL: usize = 1 << 20;
 /// Nodes that move by less than this part of the size are at rest.
 const AT_REST: f64 = 1e-4;
 /// The least weight of an edge, as a part of that between equilateral triangles: blunt angles would pull backwards.
 const LEAST_WEIGHT: f64 = 1e-2;
 
 /// Where the nodes lie in the plane; those of the border loops (so many each) come first, with the triangles to their left. `None`
-/// where that is not one to one.
+/// where that is not one to one, or where the work is told to end. `tell` is told how far it is, from 0 to 1.
 ///
 /// Coordinates are multiples of `grid`, a power of two: so they stay what they are when charts are laid side by side.
-pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32], grid: f64) -> Option<Vec<DVec2>> {
+pub fn map(
+    xyz: &[DVec3],
+    triangles: &[[u32; 3]],
+    loops: &[u32],
+    grid: f64,
+    cancel: &Cancel,
+    tell: &mut dyn FnMut(f64),
+) -> Option<Vec<DVec2>> {
+    let go_on = || (!cancel.is_asked()).then_some(());
     let flat: Vec<[DVec2; 3]> = triangles.iter().map(|t| flattened(t.map(|k| xyz[k as usize]))).collect();
     let weights: Vec<[f64; 3]> = flat.iter().map(weights).collect();
     let mut uv = unrolled(triangles, &flat, xyz.len());
+    go_on()?;
     let border = loops[0] as usize;
     let size = (0..border).map(|k| xyz[k].distance(xyz[(k + 1) % border])).sum::<f64>();
     // One node is held fast, so that the rest know where they are.
@@ -41,15 +55,29 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32], grid: f64) -> O
             }
         }
     }
+    go_on()?;
     let sums: Vec<f64> = row.iter().map(|r| r.iter().map(|w| w.1).sum()).collect();
     let rows = row.into_iter().zip(&sums).skip(1).map(|(row, sum)| {
         let inside = row.into_iter().filter(|w| w.0 > 0);
         inside.map(|(node, weight)| (node - 1, weight / sum)).collect()
     });
-    let solver = Means::new(rows).factored();
+    let means = Means::new(rows);
+    go_on()?;
+    let solver = means.factored();
     let origin = uv[0];
     uv.iter_mut().for_each(|p| *p -= origin);
-    for _ in 0..ROUNDS {
+    let mut work = 0;
+    for round in 0..ROUNDS {
+        let mut steps = 0.0;
+        let mut goes_on = || {
+            (steps, work) = (steps + 1.0, work + n);
+            if work > TELL {
+                work = 0;
+                // Nobody knows how many steps a round takes.
+                tell((round as f64 + steps / (steps + STEPS)) / ROUNDS as f64);
+            }
+            !cancel.is_asked()
+        };
         let mut right = vec![DVec2::ZERO; n];
         for ((t, q), w) in triangles.iter().zip(&flat).zip(&weights) {
             // The turn that brings the triangle nearest to where it lies: from the sums of u.q and u x q over its sides.
@@ -67,9 +95,9 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], loops: &[u32], grid: f64) -> O
                 right[t[i] as usize] -= side;
             }
         }
-        let side = |axis: usize| -> Option<Vec<f64>> {
+        let mut side = |axis: usize| -> Option<Vec<f64>> {
             let b: Vec<f64> = (1..n).map(|i| right[i][axis] / sums[i]).collect();
-            solver.solve(&b, uv[1..].iter().map(|p| p[axis]).collect(), 1e-9 * size)
+            solver.solve(&b, uv[1..].iter().map(|p| p[axis]).collect(), 1e-9 * size, &mut goes_on)
         };
         let (x, y) = (side(0)?, side(1)?);
         let mut moved = 0.0_f64;
@@ -189,12 +217,15 @@ mod tests {
     use super::*;
     use crate::core::discrete::edges::Edges;
     use crate::core::discrete::fixtures::{plate, tube};
+    use crate::core::progress::Nobody;
 
     /// A disc of a fixture cut open, with its border first: what charts make of it.
     fn disc(mesh: &crate::core::discrete::edges::Triangles) -> crate::core::discrete::chart::Chart {
         let edges = Edges::of(&mesh.triangles);
         let features = crate::core::discrete::features::features(mesh, &edges, 0.7);
-        crate::core::discrete::chart::charts(mesh, &edges, &features, Default::default()).remove(0)
+        crate::core::discrete::chart::charts(mesh, &edges, &features, Default::default(), &mut Nobody)
+            .unwrap()
+            .remove(0)
     }
 
     #[test]

@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::edges::{Edges, Triangles};
+use super::edges::{Edges, Groups, Triangles};
 use super::lines::on_edges;
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::names::Named;
+use crate::core::progress::{Stage, Watch};
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
 const FLAT: f64 = 1e-6;
@@ -16,6 +17,8 @@ const FLAT: f64 = 1e-6;
 const LOW: f64 = 1e-6;
 /// Turning the longest side of a flat triangle may leave another; so often it is tried.
 const ROUNDS: usize = 16;
+/// What is told of as one step each.
+const STEPS: u64 = 8;
 
 /// A surface with the names of its regions and what was mended.
 #[derive(Clone, Debug)]
@@ -38,15 +41,22 @@ pub struct Sound {
 /// are in a group become those of the edges that they lie on.
 ///
 /// # Errors
-/// No triangles; points that are not finite or beyond 1e100; points that are not there.
-pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
+/// No triangles; points that are not finite or beyond 1e100; points that are not there; [`Fault::stopped`].
+pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     let mut repairs = Vec::new();
     let mut tell = |n: usize, one: &str, several: &str| match n {
         0 => {}
         1 => repairs.push(format!("1 {one}")),
         n => repairs.push(format!("{n} {several}")),
     };
+    let cancel = watch.cancel();
+    let mut begin = |step: u64| {
+        watch.tell(Stage::Mend, step, STEPS);
+        cancel.check()
+    };
+    begin(0)?;
     let (file, cut) = file.clone().triangulated();
+    begin(1)?;
     tell(cut, "quadrilateral or polygon was cut into triangles", "quadrilaterals and polygons were cut into triangles");
     if file.triangles.is_empty() {
         return Err(Fault::new("The mesh has no triangles").remedy("Give a mesh of triangles"));
@@ -81,14 +91,19 @@ pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
     let segments: Vec<([u32; 2], u32)> =
         file.lines.iter().zip(line_of).filter_map(|(&ends, line)| Some((ends, line?))).collect();
     let mut mesh = Triangles { points: file.points, triangles: file.triangles, region, lines: Vec::new(), texture };
-    let welded = mesh.weld();
+    begin(2)?;
+    let welded = mesh.weld(&cancel);
+    begin(3)?;
     tell(welded, "point lay on another and was made one with it", "points lay on others and were made one with them");
     let stitched = mesh.stitch();
     tell(stitched, "point hung in a side and was taken into it", "points hung in sides and were taken into them");
+    begin(4)?;
     let doubles = mesh.drop_doubles();
     tell(doubles, "duplicate triangle was left out", "duplicate triangles were left out");
+    begin(5)?;
     let flat = mesh.turn_flat_ones();
     tell(flat, "triangle without area was taken out", "triangles without area were taken out");
+    begin(6)?;
     let turned = mesh.orient();
     tell(
         turned,
@@ -98,7 +113,9 @@ pub fn sound(file: &MeshFile) -> Result<Sound, Fault> {
     if mesh.triangles.is_empty() {
         return Err(Fault::new("No triangle of the mesh has an area"));
     }
+    begin(7)?;
     let (copied, parted) = mesh.part();
+    begin(STEPS)?;
     tell(parted, "point in which parts touched was parted", "points in which parts touched were parted");
     let lost;
     (mesh.lines, lost) = on_edges(&segments, &mesh, &copied);
@@ -134,11 +151,12 @@ impl Triangles {
             t.sort_unstable();
             t
         };
-        let mut order: Vec<u32> = (0..self.triangles.len() as u32).collect();
-        order.sort_unstable_by_key(|&i| (key(&self.triangles[i as usize]), i));
-        let mut keep = vec![true; order.len()];
-        for w in order.windows(2) {
-            keep[w[1] as usize] = key(&self.triangles[w[0] as usize]) != key(&self.triangles[w[1] as usize]);
+        let of = |i: u32| key(&self.triangles[i as usize]);
+        let mut groups = Groups::of(self.triangles.len(), self.points.len(), |i| of(i)[0]);
+        let mut keep = vec![true; self.triangles.len()];
+        for alike in groups.iter_mut() {
+            alike.sort_unstable_by_key(|&i| (of(i), i));
+            alike.windows(2).for_each(|w| keep[w[1] as usize] = of(w[0]) != of(w[1]));
         }
         self.keep(&keep);
         keep.iter().filter(|k| !**k).count()
@@ -264,6 +282,7 @@ mod tests {
     use super::*;
     use crate::core::discrete::features::{Feature, features};
     use crate::core::discrete::fixtures::{plate, sphere, torus};
+    use crate::core::progress::Nobody;
 
     fn file(mesh: &Triangles) -> MeshFile {
         MeshFile { points: mesh.points.clone(), triangles: mesh.triangles.clone(), ..MeshFile::default() }
@@ -276,7 +295,7 @@ mod tests {
         for i in (0..given.triangles.len()).step_by(3) {
             given.triangles[i].swap(0, 1);
         }
-        let found = sound(&given).unwrap();
+        let found = sound(&given, &mut Nobody).unwrap();
         assert_eq!(found.repairs, ["100 triangles were turned to agree with their neighbours".to_owned()]);
         let edges = Edges::of(&found.mesh.triangles);
         assert!(features(&found.mesh, &edges, 3.2).iter().all(|f| *f != Some(Feature::Conflict)));
@@ -298,7 +317,7 @@ mod tests {
         given.triangles.push([b, c, middle]);
         given.triangles.push([a, middle, c]);
         given.triangles.push([a, a, c]);
-        let found = sound(&given).unwrap();
+        let found = sound(&given, &mut Nobody).unwrap();
         let edges = Edges::of(&found.mesh.triangles);
         let borders = (0..edges.len()).filter(|&e| edges.get(e).sides.len() == 1).count();
         assert_eq!((found.mesh.triangles.len(), borders), (10, 8));
@@ -311,12 +330,12 @@ mod tests {
         let n = given.triangles.len();
         let [a, b, c] = given.triangles[3];
         given.triangles.push([c, a, b]);
-        assert_eq!(sound(&given).unwrap().mesh.triangles.len(), n);
+        assert_eq!(sound(&given, &mut Nobody).unwrap().mesh.triangles.len(), n);
         given.triangles.push([0, 1, 999]);
-        assert!(sound(&given).unwrap_err().to_string().contains("point 1000"));
+        assert!(sound(&given, &mut Nobody).unwrap_err().to_string().contains("point 1000"));
         given.triangles.pop();
         given.points[0].y = f64::NAN;
-        assert!(sound(&given).is_err());
-        assert!(sound(&MeshFile::default()).is_err());
+        assert!(sound(&given, &mut Nobody).is_err());
+        assert!(sound(&MeshFile::default(), &mut Nobody).is_err());
     }
 }

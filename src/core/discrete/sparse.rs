@@ -23,9 +23,9 @@ pub struct Solver {
 
 impl Solver {
     /// The solution for a right side, sought from `x` on until no equation misses by more than `near`, or as near as rounding lets it;
-    /// `None` where there is none.
-    pub fn solve(&self, b: &[f64], x: Vec<f64>, near: f64) -> Option<Vec<f64>> {
-        self.means.solve(&self.factors, b, x, near)
+    /// `None` where there is none, or where `goes_on`, which is asked before each step, does not want it any more.
+    pub fn solve(&self, b: &[f64], x: Vec<f64>, near: f64, goes_on: &mut dyn FnMut() -> bool) -> Option<Vec<f64>> {
+        self.means.solve(&self.factors, b, x, near, goes_on)
     }
 }
 
@@ -104,7 +104,14 @@ impl Means {
         Solver { means: self, factors }
     }
 
-    fn solve(&self, factors: &[f64], b: &[f64], mut x: Vec<f64>, near: f64) -> Option<Vec<f64>> {
+    fn solve(
+        &self,
+        factors: &[f64],
+        b: &[f64],
+        mut x: Vec<f64>,
+        near: f64,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Vec<f64>> {
         let n = self.rows();
         let mut work = vec![0.0; n];
         let (mut p, mut v) = (vec![0.0; n], vec![0.0; n]);
@@ -121,6 +128,9 @@ impl Means {
             p.fill(0.0);
             v.fill(0.0);
             for _ in 0..MOST_STEPS {
+                if !goes_on() {
+                    return None;
+                }
                 let new = dot(&shadow, &residual);
                 let beta = new / rho * (alpha / omega);
                 if !beta.is_finite() || new == 0.0 {
@@ -189,7 +199,8 @@ mod tests {
             };
             let mut b = vec![0.0; n as usize];
             b[n as usize - 1] = 1.0 - pull;
-            let x = Means::new((0..n).map(row)).factored().solve(&b, vec![0.0; n as usize], 1e-13).unwrap();
+            let x =
+                Means::new((0..n).map(row)).factored().solve(&b, vec![0.0; n as usize], 1e-13, &mut || true).unwrap();
             for i in 0..n as usize {
                 let before = if i == 0 { 0.0 } else { x[i - 1] };
                 let after = if i + 1 == n as usize { 1.0 } else { x[i + 1] };

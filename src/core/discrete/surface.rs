@@ -21,6 +21,7 @@ use crate::core::mesh::names;
 use crate::core::metric::field::Field;
 use crate::core::metric::gradation::bound_gradation;
 use crate::core::metric::tensor::Metric3;
+use crate::core::progress::Watch;
 
 /// An element turns by no more than this where its size is not given (radians).
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
@@ -64,11 +65,18 @@ struct Link {
 /// names of its regions, and `bound` is how much a chart may be stretched.
 ///
 /// # Errors
-/// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that.
-pub fn surface(mesh: &Triangles, regions: &[names::Named], angle: f64, bound: Bound) -> Result<Surface, Fault> {
+/// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that. [`Fault::stopped`].
+pub fn surface(
+    mesh: &Triangles,
+    regions: &[names::Named],
+    angle: f64,
+    bound: Bound,
+    watch: &mut dyn Watch,
+) -> Result<Surface, Fault> {
     let edges = Edges::of(&mesh.triangles);
     let features = with_lines(features(mesh, &edges, angle), mesh, &edges);
-    let charts = charts(mesh, &edges, &features, bound);
+    let charts = charts(mesh, &edges, &features, bound, watch)?;
+    let cancel = watch.cancel();
     let mut line_of: Vec<Option<u32>> = vec![None; edges.len()];
     for (edge, line) in mesh.lines.iter().filter_map(|(ends, line)| Some((edges.between(*ends)?, *line))) {
         line_of[edge].get_or_insert(line);
@@ -100,6 +108,7 @@ pub fn surface(mesh: &Triangles, regions: &[names::Named], angle: f64, bound: Bo
     let (mut specs, mut lifts) = (Vec::new(), Vec::new());
     let mut parts = vec![0_u32; regions.len()];
     for chart in &charts {
+        cancel.check()?;
         let region = mesh.region[chart.triangles[0] as usize] as usize;
         parts[region] += 1;
         let xyz = chart.points.iter().map(|&p| mesh.points[p as usize]).collect();
@@ -328,6 +337,7 @@ fn pieces(
 mod tests {
     use super::*;
     use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
+    use crate::core::progress::Nobody;
 
     #[test]
     fn surfaces_become_domains_whose_curves_are_shared() {
@@ -339,12 +349,12 @@ mod tests {
             (three_half_planes(), 3, 4),
             (plate(10, 0.1), 1, 1),
         ] {
-            let found = surface(&mesh, &names, ANGLE, Bound::default()).unwrap();
+            let found = surface(&mesh, &names, ANGLE, Bound::default(), &mut Nobody).unwrap();
             let domain = &found.domain;
             let own = domain.curves.iter().enumerate().filter(|(k, curve)| curve.first.index() == *k).count();
             assert_eq!((domain.faces.len(), own), (faces, curves));
             assert!(found.table(&implied_sizes(&mesh)).is_ok());
         }
-        assert!(surface(&torus(30, 20), &names, ANGLE, Bound::default()).is_ok());
+        assert!(surface(&torus(30, 20), &names, ANGLE, Bound::default(), &mut Nobody).is_ok());
     }
 }

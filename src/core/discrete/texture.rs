@@ -98,10 +98,11 @@ mod tests {
     use crate::core::discrete::edges::Triangles;
     use crate::core::discrete::features::{ANGLE, features};
     use crate::core::discrete::fixtures::{plate, tube};
+    use crate::core::progress::Nobody;
 
     fn found(mesh: &Triangles) -> Vec<Chart> {
         let edges = Edges::of(&mesh.triangles);
-        charts(mesh, &edges, &features(mesh, &edges, ANGLE), Bound::default())
+        charts(mesh, &edges, &features(mesh, &edges, ANGLE), Bound::default(), &mut Nobody).unwrap()
     }
 
     /// A texture by a function of place, and of the middle of the triangle.

@@ -9,6 +9,7 @@ use super::chart::Stretch;
 use super::rigid::snapped;
 use super::sparse::Means;
 use crate::core::geometry::predicates::orient;
+use crate::core::progress::Cancel;
 
 /// How nearly each node stands at its mean, on a circle of radius 1.
 const NEAR: f64 = 1e-13;
@@ -17,8 +18,8 @@ const NEAR: f64 = 1e-13;
 const LEAST_WEIGHT: f64 = 1e-4;
 
 /// Where the nodes of a disc lie in the plane; those of the border are the first `border` ones, anticlockwise. `None` where rounding
-/// keeps a triangle from lying the right way round.
-pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64) -> Option<Vec<DVec2>> {
+/// keeps a triangle from lying the right way round, or where the work is told to end.
+pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, cancel: &Cancel) -> Option<Vec<DVec2>> {
     let lengths: Vec<f64> = (0..border).map(|k| xyz[k].distance(xyz[(k + 1) % border])).collect();
     let around: f64 = lengths.iter().sum();
     if around.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) || border < 3 {
@@ -57,7 +58,7 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64) -> O
             rows.push(inside);
         }
         let solver = Means::new(rows.into_iter()).factored();
-        let [x, y] = right.map(|b| solver.solve(&b, b.clone(), NEAR));
+        let [x, y] = right.map(|b| solver.solve(&b, b.clone(), NEAR, &mut || !cancel.is_asked()));
         let (x, y) = (x?, y?);
         uv.extend(x.into_iter().zip(y).map(|(x, y)| DVec2::new(x, y) * radius));
     }

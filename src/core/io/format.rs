@@ -4,9 +4,10 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::mesh_file::MeshFile;
-use super::save::{load, save};
+use super::save::{load_watched, save};
 use super::{gltf, inp, medit, msh, obj, ply, stl, vtu};
 use crate::core::fault::Fault;
+use crate::core::progress::{Nobody, Pace, Reading, Watch};
 
 /// The formats of meshes, read and written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,13 +110,24 @@ impl Format {
 /// # Errors
 /// One fault with file, line and remedy for whatever is wrong.
 pub fn read_mesh(path: &Path, sol: Option<&Path>) -> Result<MeshFile, Fault> {
+    read_mesh_watched(path, sol, &mut Nobody)
+}
+
+/// As [`read_mesh`], while somebody watches.
+///
+/// # Errors
+/// As [`read_mesh`], and [`Fault::stopped`].
+pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch) -> Result<MeshFile, Fault> {
+    let pace = Reading::watched(watch);
     let format = Format::from_path(path)?;
-    let mut mesh = read_in(&path.display().to_string(), &load(path)?, format, path.parent())?;
+    let bytes = load_watched(path, &pace)?;
+    let mut mesh = read_in(&path.display().to_string(), &bytes, format, path.parent(), &pace)?;
     let beside = path.with_extension("sol");
     let sol = sol.or_else(|| (format == Format::Medit && beside.is_file()).then_some(beside.as_path()));
     if let Some(sol) = sol {
-        let bytes = load(sol)?;
-        mesh.metric = Some(medit::read_metric(&sol.display().to_string(), &bytes, mesh.points.len())?);
+        let bytes = load_watched(sol, &pace)?;
+        let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace)?;
+        mesh.metric = Some(metric);
     }
     Ok(mesh)
 }
@@ -125,24 +137,32 @@ pub fn read_mesh(path: &Path, sol: Option<&Path>) -> Result<MeshFile, Fault> {
 /// # Errors
 /// One fault with name, line and remedy for whatever is wrong.
 pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
-    read_in(name, bytes, format, None)
+    read_in(name, bytes, format, None, &Reading::watched(&mut Nobody))
 }
 
 /// As [`read_bytes`], with the folder in which files lie that the mesh names.
-fn read_in(name: &str, bytes: &[u8], format: Format, folder: Option<&Path>) -> Result<MeshFile, Fault> {
+fn read_in(
+    name: &str,
+    bytes: &[u8],
+    format: Format,
+    folder: Option<&Path>,
+    pace: &dyn Pace,
+) -> Result<MeshFile, Fault> {
     if bytes.trim_ascii().is_empty() {
         return Err(Fault::new("The file is empty").at(name).remedy("Write it again"));
     }
-    match format {
-        Format::Msh => msh::read(name, bytes),
-        Format::Medit => medit::read(name, bytes),
-        Format::Vtu => vtu::read(name, bytes),
-        Format::Obj => obj::read(name, bytes),
-        Format::Inp => inp::read(name, bytes),
-        Format::Ply => ply::read(name, bytes),
-        Format::Stl => stl::read(name, bytes),
-        Format::Gltf | Format::Glb => gltf::read(name, bytes, folder),
-    }
+    let read = match format {
+        Format::Msh => msh::read(name, bytes, pace),
+        Format::Medit => medit::read(name, bytes, pace),
+        Format::Vtu => vtu::read(name, bytes, pace),
+        Format::Obj => obj::read(name, bytes, pace),
+        Format::Inp => inp::read(name, bytes, pace),
+        Format::Ply => ply::read(name, bytes, pace),
+        Format::Stl => stl::read(name, bytes, pace),
+        Format::Gltf | Format::Glb => gltf::read(name, bytes, folder, pace),
+    };
+    // A reader that was told to end has seen a part of the file, and may have complained of that.
+    pace.cancel().check().and(read)
 }
 
 /// Writes a mesh to a stream. The metric of Medit, which is a file of its own, is not written.

@@ -18,6 +18,7 @@ use super::mesh_file::{Group, MeshFile, Texture};
 use super::scan::shown;
 use super::weld::{SINGLE, weld};
 use crate::core::fault::Fault;
+use crate::core::progress::Pace;
 use bytes::Buffers;
 
 /// Extensions that say nothing of where a triangle is, and may be required of a reader.
@@ -34,8 +35,10 @@ const ALWAYS: usize = 64 << 20;
 /// # Errors
 /// Documents that are not valid glTF 2.0; extensions that are required and not known here (Draco and other compressed meshes), by
 /// name; buffers that are missing, lie elsewhere, or end too soon; nodes with two parents; indices that point nowhere.
-pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>) -> Result<MeshFile, Fault> {
+pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    pace.goes_on(0, bytes.len());
     let (document, blob) = document(name, bytes)?;
+    pace.cancel().check()?;
     let buffers = Buffers::load(name, &document, blob, folder)?;
     let most = ALWAYS.max(MOST_TIMES.saturating_mul(bytes.len() + buffers.size()));
     let mut scene = Scene { name, buffers, most, ..Scene::default() };
@@ -51,7 +54,8 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>) -> Result<MeshFile,
     let mut mesh = scene.mesh;
     // Their bytes are not needed beside what welding needs.
     drop(scene.buffers);
-    let (points, standing) = weld(&mesh.points, SINGLE);
+    let (points, standing) = weld(&mesh.points, SINGLE, pace.cancel());
+    pace.cancel().check()?;
     mesh.points = points;
     mesh.triangles.iter_mut().flatten().for_each(|corner| *corner = standing[*corner as usize]);
     // Strips turn corners with triangles of no area, which are no triangles.

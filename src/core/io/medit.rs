@@ -13,13 +13,14 @@ use super::save::Shortest;
 use super::scan::{Scanner, shown};
 use crate::core::fault::Fault;
 use crate::core::metric::tensor::Metric3;
+use crate::core::progress::{Nobody, Pace, Reading};
 
 /// Reads a mesh from the bytes of a `.mesh` file; `name` is how messages call it. References become tags.
 ///
 /// # Errors
 /// A fault with the line for what is not such a file.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
-    let mut s = Scanner::new(name, bytes).with_comments(b'#');
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).with_comments(b'#').watched(pace);
     let dimension = header(&mut s)?;
     let mut mesh = MeshFile::default();
     let mut skipped = BTreeMap::new();
@@ -146,7 +147,15 @@ fn elements<const N: usize>(
 /// A fault with the line for what is not such a file, for another number of vertices, and for a tensor that is not
 /// positive definite.
 pub fn read_metric(name: &str, bytes: &[u8], count: usize) -> Result<Vec<Metric3>, Fault> {
-    let mut s = Scanner::new(name, bytes).with_comments(b'#');
+    read_metric_watched(name, bytes, count, &Reading::watched(&mut Nobody))
+}
+
+/// As [`read_metric`], while somebody watches.
+///
+/// # Errors
+/// As [`read_metric`], and [`Fault::stopped`].
+pub fn read_metric_watched(name: &str, bytes: &[u8], count: usize, pace: &dyn Pace) -> Result<Vec<Metric3>, Fault> {
+    let mut s = Scanner::new(name, bytes).with_comments(b'#').watched(pace);
     let dimension = header(&mut s)?;
     while let Some(word) = s.word() {
         if word != b"SolAtVertices" {
@@ -167,8 +176,10 @@ pub fn read_metric(name: &str, bytes: &[u8], count: usize) -> Result<Vec<Metric3
         }
         let components = if kind == 1 { 1 } else { dimension * (dimension + 1) / 2 };
         s.fits(values as u64, 2 * components, "a number of values")?;
-        return (1..=count).map(|vertex| tensor(&mut s, components, vertex)).collect();
+        let read = (1..=count).map(|vertex| tensor(&mut s, components, vertex)).collect();
+        return pace.cancel().check().and(read);
     }
+    pace.cancel().check()?;
     Err(Fault::new("There is no section SolAtVertices").at(name).remedy("A metric is given at the vertices"))
 }
 

@@ -10,13 +10,14 @@ use super::mesh_file::{Group, MeshFile, Texture, tag_of};
 use super::save::Shortest;
 use super::scan::{Scanner, parse_integer, parse_real, shown};
 use crate::core::fault::Fault;
+use crate::core::progress::Pace;
 
 /// Reads vertices, triangles, quadrilaterals and polygons.
 ///
 /// # Errors
 /// A fault with the line for a malformed vertex or face and for a face whose vertex does not exist.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
-    let mut s = Scanner::new(name, bytes);
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).watched(pace);
     let mut mesh = MeshFile::default();
     let mut corners: Vec<u32> = Vec::new();
     // A face may stand before its vertices: the largest vertex and where it stands are checked at the end.

@@ -14,6 +14,7 @@ use super::mesh_file::{Group, MeshFile, tag_of};
 use super::save::Shortest;
 use super::scan::shown;
 use crate::core::fault::Fault;
+use crate::core::progress::Pace;
 
 /// So many elements are parsed at a time, so that what the parser makes of them does not add up.
 const AT_A_TIME: usize = 256;
@@ -25,12 +26,13 @@ const KINDS: [(u8, &str); 2] = [(1, "line"), (2, "region")];
 ///
 /// # Errors
 /// What is wrong with the file, with the line where it is text; and faces whose vertex does not exist.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut reader = Reader::new(bytes);
     let header = Parser::<Passed>::new().read_header(&mut reader).map_err(|error| told(name, &error, true))?;
     check_counts(name, &header, reader.get_ref().len())?;
     let mut mesh =
         MeshFile { groups: header.comments.iter().filter_map(|text| group(text)).collect(), ..MeshFile::default() };
+    let mut go_on = |reader: &Reader<&[u8]>| pace.goes_on(bytes.len() - reader.get_ref().len(), bytes.len());
     for (kind, element) in &header.elements {
         match kind.as_str() {
             "vertex" => {
@@ -42,7 +44,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
                     }
                 }
                 mesh.points.reserve_exact(element.count);
-                each(name, &header, element, &mut reader, |vertex: Vertex| {
+                each(name, &header, element, &mut reader, &mut go_on, |vertex: Vertex| {
                     if vertex.0.is_finite() {
                         mesh.points.push(vertex.0);
                         return Ok(());
@@ -54,7 +56,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
             "face" => {
                 let tagged = element.properties.contains_key("region");
                 let mut count = 0;
-                each(name, &header, element, &mut reader, |face: Face| {
+                each(name, &header, element, &mut reader, &mut go_on, |face: Face| {
                     count += 1;
                     face.into_mesh(&mut mesh, tagged)
                         .map_err(|what| Fault::new(format!("Face {count} {what}")).at(name))
@@ -62,7 +64,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
             }
             "edge" => {
                 let tagged = element.properties.contains_key("line");
-                each(name, &header, element, &mut reader, |edge: Edge| {
+                each(name, &header, element, &mut reader, &mut go_on, |edge: Edge| {
                     let ends = edge.ends.map(u32::try_from);
                     let [Ok(a), Ok(b)] = ends else {
                         return Err(Fault::new(format!("Edge {} lacks a vertex", mesh.lines.len() + 1)).at(name));
@@ -75,7 +77,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
                 })?;
             }
             _ => {
-                each(name, &header, element, &mut reader, |_: Passed| Ok(()))?;
+                each(name, &header, element, &mut reader, &mut go_on, |_: Passed| Ok(()))?;
                 if kind == "tristrips" {
                     mesh.skipped.push(("triangle strip".to_owned(), element.count));
                 }
@@ -134,12 +136,13 @@ fn each<E: PropertyAccess>(
     header: &Header,
     element: &ElementDef,
     reader: &mut Reader<&[u8]>,
+    go_on: &mut dyn FnMut(&Reader<&[u8]>) -> bool,
     mut take: impl FnMut(E) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     let parser = Parser::<E>::new();
     let mut part = element.clone();
     let mut left = element.count;
-    while left > 0 {
+    while left > 0 && go_on(reader) {
         part.count = left.min(AT_A_TIME);
         left -= part.count;
         let text = header.encoding == Encoding::Ascii;

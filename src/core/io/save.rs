@@ -2,11 +2,15 @@
 
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::core::fault::Fault;
+use crate::core::progress::{Nobody, Pace, Reading};
+
+/// So much of a file is read before that is told.
+const AT_A_TIME: u64 = 1 << 22;
 
 /// A number in the shortest form that reads back to the same bits, with an exponent where digits would be wasted.
 #[derive(Clone, Copy, Debug)]
@@ -119,19 +123,45 @@ fn buffered<W: Write>(out: W, write: impl FnOnce(&mut dyn Write) -> io::Result<(
     out.into_inner().map_err(|unwritten| unwritten.into_error())
 }
 
+/// Whether there is such a file and it may be read.
+///
+/// # Errors
+/// As [`load`].
+pub fn find(path: &Path) -> Result<(), Fault> {
+    match File::open(path).and_then(|file| file.metadata()) {
+        Ok(meta) if meta.is_dir() => Err(explain(path, "read", &ErrorKind::IsADirectory.into())),
+        Ok(_) => Ok(()),
+        Err(error) => Err(explain(path, "read", &error)),
+    }
+}
+
 /// Reads a whole file.
 ///
 /// # Errors
 /// A fault that names the path: it is missing, a folder, not permitted, or empty.
 pub fn load(path: &Path) -> Result<Vec<u8>, Fault> {
+    load_watched(path, &Reading::watched(&mut Nobody))
+}
+
+/// As [`load`], while somebody watches.
+///
+/// # Errors
+/// As [`load`], and [`Fault::stopped`].
+pub fn load_watched(path: &Path, pace: &dyn Pace) -> Result<Vec<u8>, Fault> {
     let bytes = File::open(path)
-        .and_then(|file| if file.metadata()?.is_dir() { Err(ErrorKind::IsADirectory.into()) } else { Ok(file) })
         .and_then(|mut file| {
+            let meta = file.metadata()?;
+            if meta.is_dir() {
+                return Err(ErrorKind::IsADirectory.into());
+            }
             let mut bytes = Vec::new();
-            io::Read::read_to_end(&mut file, &mut bytes)?;
+            // A guess, which the system may have made up.
+            bytes.try_reserve_exact(meta.len() as usize)?;
+            while pace.goes_on(0, meta.len() as usize) && (&mut file).take(AT_A_TIME).read_to_end(&mut bytes)? > 0 {}
             Ok(bytes)
         })
         .map_err(|error| explain(path, "read", &error))?;
+    pace.cancel().check()?;
     Ok(bytes)
 }
 

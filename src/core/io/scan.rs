@@ -4,6 +4,10 @@
 //! makes room for it, so that a lying header costs an error and not the memory.
 
 use crate::core::fault::Fault;
+use crate::core::progress::Pace;
+
+/// How often a reader tells how far it is, in bytes.
+const TELL: usize = 1 << 16;
 
 /// How the numbers of a binary file are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,8 +18,9 @@ pub enum ByteOrder {
     Big,
 }
 
-/// A place in a buffer, moving forward over words, lines or binary numbers.
-#[derive(Clone, Debug)]
+/// A place in a buffer, moving forward over words, lines or binary numbers. Where it is watched it tells how far it is; told to end
+/// it stands at the end of the file, and whoever watches knows why.
+#[derive(Clone)]
 pub struct Scanner<'a> {
     name: &'a str,
     bytes: &'a [u8],
@@ -25,13 +30,36 @@ pub struct Scanner<'a> {
     comment: Option<u8>,
     /// Whether there are no lines to speak of.
     binary: bool,
+    pace: Option<&'a dyn Pace>,
+    /// The length of the whole file.
+    whole: usize,
+    /// Where it tells next.
+    tell: usize,
 }
 
 impl<'a> Scanner<'a> {
     /// A scanner at the start of `bytes` (after a byte order mark, if there is one); `name` is how messages call it.
     pub fn new(name: &'a str, bytes: &'a [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Scanner { name, bytes, at, last: at, comment: None, binary: false }
+        Scanner { name, bytes, at, last: at, comment: None, binary: false, pace: None, whole: bytes.len(), tell: TELL }
+    }
+
+    /// The same scanner, watched.
+    #[must_use]
+    pub fn watched(mut self, pace: &'a dyn Pace) -> Self {
+        self.pace = Some(pace);
+        self
+    }
+
+    /// Tells how far it is, now and then.
+    #[inline]
+    fn go_on(&mut self) {
+        if self.at >= self.tell {
+            self.tell = self.at + TELL;
+            if self.pace.is_some_and(|pace| !pace.goes_on(self.at, self.whole)) {
+                self.at = self.bytes.len();
+            }
+        }
     }
 
     /// The same scanner, to which words that begin with `mark` are comments up to the end of their line.
@@ -89,6 +117,7 @@ impl<'a> Scanner<'a> {
 
     /// The next word, on this line or a later one.
     pub fn word(&mut self) -> Option<&'a [u8]> {
+        self.go_on();
         self.skip_space();
         let rest = &self.bytes[self.at..];
         let long = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
@@ -104,6 +133,7 @@ impl<'a> Scanner<'a> {
 
     /// The rest of this line, without the space around it, and on to the next one; `None` at the end.
     pub fn line(&mut self) -> Option<&'a [u8]> {
+        self.go_on();
         if self.left() == 0 {
             return None;
         }
@@ -134,6 +164,7 @@ impl<'a> Scanner<'a> {
 
     /// Moves behind the next `needle`; says whether there was one.
     pub fn skip_past(&mut self, needle: &[u8]) -> bool {
+        self.go_on();
         let Some((&first, _)) = needle.split_first() else { return true };
         let mut from = self.at;
         while let Some(step) = self.bytes[from..].iter().position(|&b| b == first) {
@@ -246,6 +277,7 @@ impl<'a> Scanner<'a> {
     }
 
     fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Fault> {
+        self.go_on();
         match self.bytes[self.at..].first_chunk::<N>() {
             Some(chunk) => {
                 self.last = self.at;

@@ -8,23 +8,26 @@ use super::mesh_file::{Group, MeshFile};
 use super::scan::{Scanner, shown};
 use super::weld::{SINGLE, Welder, weld};
 use crate::core::fault::Fault;
+use crate::core::progress::Pace;
 
 /// What stands before the triangles of a binary file: 80 bytes of anything and their number.
 const HEADER: usize = 84;
 /// A triangle of a binary file: normal and three corners in single precision, two bytes of attributes.
 const TRIANGLE: usize = 50;
+/// So many triangles are welded before that is told.
+const AT_A_TIME: usize = 1 << 12;
 
 /// Reads a mesh from the bytes of an STL file.
 ///
 /// # Errors
 /// With the line or the byte: words that are not STL's, numbers that are none or not finite, a file that is cut off.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     // A binary file may begin with the word "solid" too: its length tells.
     if bytes.len() >= HEADER && is_binary(bytes) {
-        return read_binary(name, bytes);
+        return read_binary(name, bytes, pace);
     }
     if bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
-        return read_text(Scanner::new(name, bytes));
+        return read_text(Scanner::new(name, bytes).watched(pace), pace);
     }
     Err(Fault::new("This is not STL: it does not begin with \"solid\", and its length is not that of binary STL")
         .at(name)
@@ -37,7 +40,7 @@ fn is_binary(bytes: &[u8]) -> bool {
     bytes.len() - HEADER == count.saturating_mul(TRIANGLE)
 }
 
-fn read_binary(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
+fn read_binary(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes);
     s.set_binary();
     let triangles = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
@@ -59,11 +62,17 @@ fn read_binary(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
         }
     }
     let mut welder = Welder::new(SINGLE, largest);
-    let triangles = triangles.iter().map(|t| [0, 1, 2].map(|k| welder.weld(corner(t, k)))).collect();
-    Ok(MeshFile { triangles, points: welder.points(), ..MeshFile::default() })
+    let mut welded = Vec::with_capacity(triangles.len());
+    for part in triangles.chunks(AT_A_TIME) {
+        if !pace.goes_on(HEADER + welded.len() * TRIANGLE, bytes.len()) {
+            break;
+        }
+        welded.extend(part.iter().map(|t| [0, 1, 2].map(|k| welder.weld(corner(t, k)))));
+    }
+    Ok(MeshFile { triangles: welded, points: welder.points(), ..MeshFile::default() })
 }
 
-fn read_text(mut s: Scanner) -> Result<MeshFile, Fault> {
+fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let (mut mesh, mut corners) = (MeshFile::default(), Vec::new());
     let mut solid: u32 = 0;
     while let Some(word) = s.word() {
@@ -102,7 +111,7 @@ fn read_text(mut s: Scanner) -> Result<MeshFile, Fault> {
             mesh.triangle_tags.push(solid);
         }
     }
-    let (points, standing) = weld(&corners, SINGLE);
+    let (points, standing) = weld(&corners, SINGLE, pace.cancel());
     mesh.points = points;
     mesh.triangles = standing.as_chunks().0.to_vec();
     Ok(mesh)

@@ -4,8 +4,13 @@
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
+use crate::core::progress::Cancel;
+
 /// For formats in single precision: some rounding errors of the largest coordinate.
 pub const SINGLE: f64 = 4.0 * f32::EPSILON as f64;
+
+/// So many points are welded between two looks at whether to go on.
+const AT_A_TIME: usize = 1 << 14;
 
 /// Joins points that lie within some distance of each other; the first of them stays. A chain of points is not drawn together: each is
 /// compared with the ones that stay.
@@ -61,10 +66,17 @@ impl Welder {
 }
 
 /// Joins points within `relative` times the largest coordinate. Returns the points that stay, and for each point given the place
-/// of the one that stands for it.
-pub fn weld(points: &[DVec3], relative: f64) -> (Vec<DVec3>, Vec<u32>) {
+/// of the one that stands for it. Told to end, it
+/// returns nothing.
+pub fn weld(points: &[DVec3], relative: f64, cancel: &Cancel) -> (Vec<DVec3>, Vec<u32>) {
     let mut welder = Welder::new(relative, points.iter().fold(0.0, |largest, p| p.abs().max_element().max(largest)));
-    let standing = points.iter().map(|&p| welder.weld(p)).collect();
+    let mut standing = Vec::with_capacity(points.len());
+    for part in points.chunks(AT_A_TIME) {
+        if cancel.is_asked() {
+            return (Vec::new(), Vec::new());
+        }
+        standing.extend(part.iter().map(|&p| welder.weld(p)));
+    }
     (welder.points(), standing)
 }
 
@@ -77,7 +89,7 @@ mod tests {
         let near = 1000.0 * SINGLE;
         let p = DVec3::new(1000.0, -3.0, 0.5);
         let points = [p, DVec3::ZERO, p + DVec3::new(0.9 * near, 0.0, 0.0), p + DVec3::new(0.0, 1.1 * near, 0.0)];
-        let (kept, standing) = weld(&points, SINGLE);
+        let (kept, standing) = weld(&points, SINGLE, &Cancel::default());
         assert_eq!(kept, [p, DVec3::ZERO, points[3]]);
         assert_eq!(standing, [0, 1, 0, 2]);
     }
@@ -88,7 +100,7 @@ mod tests {
         for offset in [0.0, 1.0, -1.0, 7.0] {
             let border = DVec3::new(offset * cell, 0.0, 0.0);
             let points = [DVec3::ONE, border - 0.2 * SINGLE, border + 0.2 * SINGLE];
-            assert_eq!(weld(&points, SINGLE).1, [0, 1, 1], "{offset}");
+            assert_eq!(weld(&points, SINGLE, &Cancel::default()).1, [0, 1, 1], "{offset}");
         }
     }
 
@@ -102,12 +114,12 @@ mod tests {
             DVec3::from_array(at) * (1.1 * near)
         }));
         // With the square of their number this would not end in minutes.
-        assert_eq!(weld(&points, SINGLE).0.len(), points.len());
+        assert_eq!(weld(&points, SINGLE, &Cancel::default()).0.len(), points.len());
     }
 
     #[test]
     fn points_all_at_zero_are_one_and_none_are_none() {
-        assert_eq!(weld(&[DVec3::ZERO; 3], SINGLE).1, [0, 0, 0]);
-        assert_eq!(weld(&[], SINGLE).0, []);
+        assert_eq!(weld(&[DVec3::ZERO; 3], SINGLE, &Cancel::default()).1, [0, 0, 0]);
+        assert_eq!(weld(&[], SINGLE, &Cancel::default()).0, []);
     }
 }

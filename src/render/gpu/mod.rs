@@ -14,7 +14,7 @@ use self::pipelines::Pipelines;
 use self::target::Target;
 use super::camera::Camera;
 use super::palette::Rgba;
-use super::scene::{Dot, Face, Line, Scene};
+use super::scene::{Dot, Face, Form, Line, Scene};
 
 pub use self::target::read_back;
 
@@ -88,10 +88,10 @@ struct Uniform {
 /// Lines lie on faces: they are pulled towards the eye by at least so much of the depth.
 const LEAST_PULL: f32 = 1e-6;
 
-/// Draws a scene in the plane and one in space into any number of views.
+/// Draws a scene in the plane, one in space and one of what was given into any number of views.
 pub struct Painter {
     pipelines: Pipelines,
-    lists: [Lists; 2],
+    lists: [Lists; 3],
     targets: Vec<Option<Target>>,
     most: u32,
 }
@@ -152,7 +152,7 @@ impl Painter {
     pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Painter {
         Painter {
             pipelines: Pipelines::new(device, window, samples),
-            lists: [Lists::new(), Lists::new()],
+            lists: [Lists::new(), Lists::new(), Lists::new()],
             targets: Vec::new(),
             most: device.limits().max_texture_dimension_2d,
         }
@@ -168,8 +168,12 @@ impl Painter {
         view: &View,
         scene: &Scene,
     ) {
-        let in_space = scene.form().is_in_space();
-        let lists = &mut self.lists[usize::from(in_space)];
+        let which = match scene.form() {
+            Form::Plane => 0,
+            Form::Flat | Form::Curved => 1,
+            Form::Given => 2,
+        };
+        let lists = &mut self.lists[which];
         lists.set(device, queue, scene);
         if self.targets.len() <= index {
             self.targets.resize_with(index + 1, || None);
@@ -189,7 +193,7 @@ impl Painter {
             light: [view.light.even, view.light.lit, view.light.shine, view.hidden],
             depth: [view.camera.depth_of_point() as f32, LEAST_PULL, 0.0, 0.0],
         };
-        let drawn = (in_space, scene.generation, uniform, view.ground);
+        let drawn = (which, scene.generation, uniform, view.ground);
         if target.drawn == Some(drawn) {
             return;
         }

@@ -18,7 +18,7 @@ pub(super) struct Target {
     samples: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
     /// What the picture shows.
-    pub drawn: Option<(bool, u64, Uniform, Rgba)>,
+    pub drawn: Option<(usize, u64, Uniform, Rgba)>,
 }
 
 impl Target {

@@ -17,6 +17,8 @@ pub enum Form {
     Flat,
     /// In space; elements follow the surface.
     Curved,
+    /// In space: triangles as they were given, which are no mesh yet.
+    Given,
 }
 
 impl Form {
@@ -28,7 +30,7 @@ impl Form {
     /// Pieces of an edge in a mesh of so many elements: large meshes have small elements, which look the same flat.
     pub(super) fn pieces(self, elements: usize) -> usize {
         match (self, elements) {
-            (Form::Plane | Form::Flat, _) => 1,
+            (Form::Plane | Form::Flat | Form::Given, _) => 1,
             (Form::Curved, ..4_000) => 4,
             (Form::Curved, ..40_000) => 2,
             (Form::Curved, _) => 1,

@@ -147,13 +147,7 @@ fn verdict(ui: &mut Ui, state: &State, palette: &Palette) {
 fn status(ui: &mut Ui, state: &State, palette: &Palette) {
     if state.is_busy() && state.since.is_some_and(|since| since.elapsed().as_millis() > 150) {
         let text = match &state.progress {
-            Some(progress) if progress.total > 0 => format!(
-                "{} {} of about {}",
-                progress.words,
-                words::grouped(progress.done),
-                words::grouped(progress.total.max(progress.done))
-            ),
-            Some(progress) => progress.words.to_owned(),
+            Some(progress) => words::progress(progress),
             None => "Working".to_owned(),
         };
         ui.label(text);

@@ -27,7 +27,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         ui.add_space(8.0);
         field(ui, bar.width(), commands, palette);
     });
-    if let Some(opened) = &state.opened {
+    // What is about to be converted has its name in its panel.
+    if let Some(opened) = state.opened.as_ref().filter(|_| state.import.is_none()) {
         let painter = ui.painter_at(bar);
         let name = painter.layout_no_wrap(opened.case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
         let room = (bar.width() - 720.0).max(0.0);
@@ -65,6 +66,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         item(ui, Command::OpenDialog, commands);
         item(ui, Command::OpenPath, commands);
         item(ui, Command::Reopen, commands);
+        item(ui, Command::Import, commands);
         item(ui, Command::SaveRun, commands);
         item(ui, Command::Notes, commands);
         ui.separator();

@@ -1,12 +1,14 @@
 //! How the window shows meshes on surfaces.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::render::camera::Camera;
 use crate::render::scene::Form;
 
 /// Where the main view shows a mesh on surfaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Place {
     /// In space.
     #[default]
@@ -37,7 +39,8 @@ impl Place {
 }
 
 /// How lines that faces cover are drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum HiddenLines {
     /// They are not.
     #[default]

@@ -15,7 +15,7 @@ use crate::render::pick::{self, Cover};
 use crate::render::scene::{Decision, Outlined};
 
 /// Points left free around a fitted mesh.
-const MARGIN: f64 = 44.0;
+pub(super) const MARGIN: f64 = 44.0;
 
 /// The last cover, and what it is of.
 #[derive(Default)]
@@ -65,31 +65,42 @@ impl Views {
     /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two fingers. Tells
     /// whether the camera has moved.
     fn steer(&mut self, ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect, moment: &Moment) -> bool {
-        let before = *camera;
         let frame = Frame { camera: *camera, rect };
-        let drag = response.drag_delta();
-        let by = DVec2::new(f64::from(drag.x), f64::from(drag.y));
-        let shift = ui.input(|input| input.modifiers.shift);
         if response.drag_started() {
             // What is grabbed stays under the pointer; beside the mesh it turns about its middle.
             let press = ui.input(|input| input.pointer.press_origin());
             let hit = press.and_then(|at| pick::hit(&self.space.scene, camera, frame.size(), frame.inside(at)));
             self.pivot = hit.map(|hit| hit.place).or_else(|| middle_of(moment));
         }
-        if response.dragged_by(PointerButton::Primary) && !shift {
-            camera.orbit_about(by, self.pivot.unwrap_or(camera.centre));
-        } else if response.dragged() {
-            camera.pan(by);
-        }
-        if let Some(at) = response.hover_pos() {
-            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-            let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
-            if factor != 1.0 {
-                camera.zoom(factor, frame.inside(at), frame.size());
-            }
-        }
-        *camera != before
+        orbit(ui, response, camera, frame, self.pivot)
     }
+}
+
+/// Turns, moves and zooms by what is done in a view in space; a drag turns about `pivot`. Tells whether the camera has moved.
+pub(super) fn orbit(
+    ui: &Ui,
+    response: &egui::Response,
+    camera: &mut Camera,
+    frame: Frame,
+    pivot: Option<DVec3>,
+) -> bool {
+    let before = *camera;
+    let drag = response.drag_delta();
+    let by = DVec2::new(f64::from(drag.x), f64::from(drag.y));
+    let shift = ui.input(|input| input.modifiers.shift);
+    if response.dragged_by(PointerButton::Primary) && !shift {
+        camera.orbit_about(by, pivot.unwrap_or(camera.centre));
+    } else if response.dragged() {
+        camera.pan(by);
+    }
+    if let Some(at) = response.hover_pos() {
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
+        if factor != 1.0 {
+            camera.zoom(factor, frame.inside(at), frame.size());
+        }
+    }
+    *camera != before
 }
 
 fn fit(moment: &Moment, turn: DQuat, size: DVec2) -> Camera {

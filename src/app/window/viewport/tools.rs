@@ -10,6 +10,33 @@ use crate::render::palette::Palette;
 
 /// Shows the buttons in the upper right corner.
 pub(super) fn show(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    corner(ui, rect, palette, |ui, width| {
+        // From the right.
+        let place = state.space.place;
+        for (shown, text) in [(Place::Plane, "Plane"), (Place::Both, "Both"), (Place::Space, "Space")] {
+            button(ui, place == shown, text, Command::Place(shown), commands);
+        }
+        if place == Place::Plane || width < 380.0 {
+            return;
+        }
+        ui.separator();
+        hidden(ui, state, commands);
+        button(ui, state.space.curved, "Curved", Command::ToggleCurved, commands);
+        ui.separator();
+        sides(ui, commands);
+    });
+}
+
+/// Those of a mesh that is no mesh of the program's own yet.
+pub(super) fn show_sides(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    corner(ui, rect, palette, |ui, _| {
+        hidden(ui, state, commands);
+        ui.separator();
+        sides(ui, commands);
+    });
+}
+
+fn corner(ui: &mut Ui, rect: Rect, palette: &Palette, buttons: impl FnOnce(&mut Ui, f32)) {
     let corner = Rect::from_min_max(rect.min + Vec2::new(8.0, 8.0), rect.right_top() + Vec2::new(-8.0, 36.0));
     if corner.width() < 120.0 || rect.height() < 80.0 {
         return;
@@ -18,30 +45,27 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Co
         let plate = Frame::NONE.fill(ink(palette.ground)).corner_radius(4.0).inner_margin(Margin::symmetric(4, 2));
         plate.show(ui, |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let mut button = |ui: &mut Ui, on: bool, text: &str, command: Command| {
-                let response = ui.selectable_label(on, RichText::new(text).font(theme::regular(theme::HEAD)));
-                response.widget_info(|| WidgetInfo::selected(Role::Button, true, on, command.name()));
-                if response.on_hover_text(command.tip()).clicked() {
-                    commands.push(command);
-                }
-            };
-            // From the right.
-            let place = state.space.place;
-            for (shown, text) in [(Place::Plane, "Plane"), (Place::Both, "Both"), (Place::Space, "Space")] {
-                button(ui, place == shown, text, Command::Place(shown));
-            }
-            if place == Place::Plane || corner.width() < 380.0 {
-                return;
-            }
-            ui.separator();
-            let hidden = state.space.hidden;
-            let text = format!("Hidden {}", hidden.name());
-            button(ui, hidden != HiddenLines::Off, &text, Command::HiddenLines);
-            button(ui, state.space.curved, "Curved", Command::ToggleCurved);
-            ui.separator();
-            for (side, text) in [(Bearing::Z, "Z"), (Bearing::Y, "Y"), (Bearing::X, "X"), (Bearing::Iso, "Iso")] {
-                button(ui, false, text, Command::LookFrom(side));
-            }
+            buttons(ui, corner.width());
         });
     });
+}
+
+fn button(ui: &mut Ui, on: bool, text: &str, command: Command, commands: &mut Vec<Command>) {
+    let response = ui.selectable_label(on, RichText::new(text).font(theme::regular(theme::HEAD)));
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, on, command.name()));
+    if response.on_hover_text(command.tip()).clicked() {
+        commands.push(command);
+    }
+}
+
+fn hidden(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let hidden = state.space.hidden;
+    let text = format!("Hidden {}", hidden.name());
+    button(ui, hidden != HiddenLines::Off, &text, Command::HiddenLines, commands);
+}
+
+fn sides(ui: &mut Ui, commands: &mut Vec<Command>) {
+    for (side, text) in [(Bearing::Z, "Z"), (Bearing::Y, "Y"), (Bearing::X, "X"), (Bearing::Iso, "Iso")] {
+        button(ui, false, text, Command::LookFrom(side), commands);
+    }
 }

@@ -2,11 +2,12 @@ use super::*;
 use crate::core::discrete::features::{ANGLE, features};
 use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
 use crate::core::geometry::predicates::orient;
+use crate::core::progress::Nobody;
 
 /// The charts, after looking that they are what charts must be.
 fn sound(mesh: &Triangles, angle: f64, bound: Bound) -> Vec<Chart> {
     let edges = Edges::of(&mesh.triangles);
-    let found = charts(mesh, &edges, &features(mesh, &edges, angle), bound);
+    let found = charts(mesh, &edges, &features(mesh, &edges, angle), bound, &mut Nobody).unwrap();
     let mut owner = vec![u32::MAX; mesh.triangles.len()];
     for (number, chart) in found.iter().enumerate() {
         for (&t, local) in chart.triangles.iter().zip(&chart.local) {
@@ -93,7 +94,7 @@ fn triangles_without_area_and_single_ones_have_charts_too() {
     let p = mesh.points[3];
     mesh.points[4] = p;
     let edges = Edges::of(&mesh.triangles);
-    let found = charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), Bound::default());
+    let found = charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), Bound::default(), &mut Nobody).unwrap();
     assert_eq!(found.iter().map(|c| c.triangles.len()).sum::<usize>(), mesh.triangles.len());
     let single = Triangles {
         points: mesh.points[..3].to_vec(),
@@ -108,6 +109,6 @@ fn triangles_without_area_and_single_ones_have_charts_too() {
 fn charts_do_not_depend_on_anything_but_the_surface() {
     let mesh = sphere(12);
     let edges = Edges::of(&mesh.triangles);
-    let once = charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), Bound::default());
-    assert_eq!(once, charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), Bound::default()));
+    let once = charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), Bound::default(), &mut Nobody).unwrap();
+    assert_eq!(once, charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), Bound::default(), &mut Nobody).unwrap());
 }

@@ -29,6 +29,15 @@ pub struct Taking {
     pub scale: f64,
 }
 
+impl Taking {
+    /// The least and the greatest fold, in degrees.
+    pub const ANGLES: [f64; 2] = [1.0, 180.0];
+    /// The least and the greatest stretch.
+    pub const STRETCHES: [f64; 2] = [1.1, 50.0];
+    /// The least and the greatest scale.
+    pub const SCALES: [f64; 2] = [1e-9, 1e9];
+}
+
 impl Default for Taking {
     fn default() -> Self {
         Taking { used: None, feature_angle: ANGLE, chart_stretch: Bound::default().shape, scale: 1.0 }
@@ -72,16 +81,20 @@ pub(super) fn taking(table: &Table<'_>) -> Result<Taking, Fault> {
             _ => return Err(value.wrong("a use of a mesh", "use = \"triangles\" or use = \"shape\"")),
         });
     }
-    let between = |key: &str, default: f64, least: f64, most: f64, what: &str| match table.get(key) {
+    let between = |key: &str, default: f64, [least, most]: [f64; 2], what: &str, unit: &str| match table.get(key) {
         None => Ok(default),
         Some(value) => match value.number()? {
             number if (least..=most).contains(&number) => Ok(number),
-            _ => Err(value.wrong(what, &format!("{key} = {default}"))),
+            _ => {
+                let most = if most < 1e6 { format!("{most}") } else { format!("{most:e}") };
+                let least = if least > 1e-6 { format!("{least}") } else { format!("{least:e}") };
+                Err(value.wrong(&format!("{what} from {least} to {most}{unit}"), &format!("{key} = {default}")))
+            }
         },
     };
-    let degrees = between("feature_angle", ANGLE.to_degrees(), 1.0, 180.0, "an angle from 1 to 180 degrees")?;
+    let degrees = between("feature_angle", ANGLE.to_degrees(), Taking::ANGLES, "an angle", " degrees")?;
     taking.feature_angle = degrees.to_radians();
-    taking.chart_stretch = between("chart_stretch", taking.chart_stretch, 1.1, 50.0, "a stretch from 1.1 to 50")?;
-    taking.scale = between("scale", 1.0, 1e-9, 1e9, "a factor from 1e-9 to 1e9")?;
+    taking.chart_stretch = between("chart_stretch", taking.chart_stretch, Taking::STRETCHES, "a stretch", "")?;
+    taking.scale = between("scale", 1.0, Taking::SCALES, "a factor", "")?;
     Ok(taking)
 }

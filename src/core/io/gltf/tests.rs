@@ -1,4 +1,5 @@
 use super::*;
+use crate::core::progress::{Nobody, Reading};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec2;
@@ -23,7 +24,7 @@ fn document(nodes: &str, mode: u8, more: &str) -> String {
 }
 
 fn read_text(text: &str) -> Result<MeshFile, Fault> {
-    read("a.gltf", text.as_bytes(), None)
+    read("a.gltf", text.as_bytes(), None, &Reading::watched(&mut Nobody))
 }
 
 fn refused(text: &str) -> String {
@@ -127,7 +128,7 @@ fn files_beside_it_are_read_and_none_elsewhere() {
     std::fs::write(inner.join("a b.bin"), &bytes).unwrap();
     std::fs::write(folder.path().join("outside.bin"), &bytes).unwrap();
     let with = |uri: &str| format!("{}{uri}{}", &text[..start], &text[end..]);
-    let read = |uri: &str| read("a.gltf", with(uri).as_bytes(), Some(&inner));
+    let read = |uri: &str| read("a.gltf", with(uri).as_bytes(), Some(&inner), &Reading::watched(&mut Nobody));
     assert_eq!(read("a%20b.bin").unwrap().triangles.len(), 2);
     let absolute = folder.path().join("outside.bin").display().to_string();
     for uri in
@@ -160,7 +161,7 @@ fn a_header_that_lies_about_its_length_is_refused() {
         let mut bytes = b"glTF\x02\0\0\0".to_vec();
         bytes.extend(length.to_le_bytes());
         bytes.extend([0; 20]);
-        assert!(read("a.glb", &bytes, None).is_err());
+        assert!(read("a.glb", &bytes, None, &Reading::watched(&mut Nobody)).is_err());
     }
-    assert!(read("a.glb", b"glTF", None).is_err());
+    assert!(read("a.glb", b"glTF", None, &Reading::watched(&mut Nobody)).is_err());
 }

@@ -9,6 +9,7 @@ use crate::core::fault::Fault;
 use crate::core::io::mesh_file::{Group, MeshFile};
 use crate::core::io::numbering::{Numbering, sort_by_number};
 use crate::core::io::scan::{Scanner, parse_integer, parse_real, shown};
+use crate::core::progress::Pace;
 
 /// What an element type of Abaqus is to us: its number of corners, 0 for what is skipped.
 fn corners_of(kind: &str) -> Result<usize, ()> {
@@ -76,8 +77,8 @@ struct Run {
 ///
 /// # Errors
 /// A fault with the line for a malformed node or element, an element of higher order, and numbers that come twice.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
-    let mut s = Scanner::new(name, bytes);
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).watched(pace);
     let mut mesh = MeshFile::default();
     let (mut node_numbers, mut triangle_numbers, mut quad_numbers) = (Vec::new(), Vec::new(), Vec::new());
     let mut nodes: Option<Numbering> = None;

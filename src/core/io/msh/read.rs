@@ -11,6 +11,7 @@ use crate::core::fault::Fault;
 use crate::core::io::mesh_file::{Group, MeshFile};
 use crate::core::io::numbering::{Numbering, sort_by_number};
 use crate::core::io::scan::{ByteOrder, Scanner, shown};
+use crate::core::progress::Pace;
 
 /// Reads a mesh from the bytes of an MSH file; `name` is how messages call it.
 ///
@@ -21,9 +22,9 @@ use crate::core::io::scan::{ByteOrder, Scanner, shown};
 /// # Errors
 /// A fault with the line for everything that is not MSH 2.x or 4.1, and for what MSH allows and we do not read
 /// (elements of higher order).
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut reader = Reader {
-        input: Input { scanner: Scanner::new(name, bytes), binary: None },
+        input: Input { scanner: Scanner::new(name, bytes).watched(pace), binary: None },
         version: None,
         file: MeshFile::default(),
         nodes: None,

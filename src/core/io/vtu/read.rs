@@ -9,6 +9,7 @@ use crate::core::fault::Fault;
 use crate::core::io::mesh_file::{Data, Group, MeshFile, positive_definite};
 use crate::core::io::scan::{Scanner, shown};
 use crate::core::metric::tensor::Metric3;
+use crate::core::progress::Pace;
 
 /// An array as the file has it.
 struct Array {
@@ -31,8 +32,8 @@ impl Array {
 ///
 /// # Errors
 /// A fault with the line for what is not such a file.
-pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Fault> {
-    let mut s = Scanner::new(name, bytes);
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).watched(pace);
     let mut arrays = Vec::new();
     let mut room = String::new();
     let (mut is_grid, mut pieces) = (false, 0);

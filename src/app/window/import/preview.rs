@@ -1,0 +1,307 @@
+//! The thread that reads a mesh, mends it, finds its features and charts, and makes the picture of them. Of several wishes the newest
+//! counts: what is under way for another one is ended.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Instant;
+
+use glam::DVec3;
+
+use crate::app::window::session::{EVERY, Wake, words_of};
+use crate::app::window::state::Progress;
+use crate::app::window::theme;
+use crate::core::background::import::is_plane;
+use crate::core::discrete::census::{Census, Division, count_of};
+use crate::core::discrete::chart::{Bound, charts};
+use crate::core::discrete::edges::{Edges, Triangles};
+use crate::core::discrete::features::{Feature, features, with_lines};
+use crate::core::discrete::sound::sound;
+use crate::core::fault::Fault;
+use crate::core::io::format::read_mesh_watched;
+use crate::core::progress::{Cancel, Stage, Watch};
+use crate::render::scene::{Given, Scene};
+
+/// Kinds of features, in the order in which they are told.
+pub const KINDS: [Feature; 6] =
+    [Feature::Fold, Feature::Region, Feature::Line, Feature::Boundary, Feature::Branching, Feature::Conflict];
+
+/// A surface of more triangles than this is shown with its features before its charts are known.
+const LARGE: usize = 20_000;
+
+/// A mesh that has been read and mended.
+pub struct Loaded {
+    pub mesh: Triangles,
+    edges: Edges,
+    pub census: Census,
+    /// Whether it lies in the plane z = 0.
+    pub is_plane: bool,
+    /// Whether sizes are given at its points.
+    pub has_metric: bool,
+    /// How many regions it has.
+    pub regions: usize,
+    /// What was mended, and what was passed over.
+    pub repairs: Vec<String>,
+    /// The mean length of its edges.
+    pub mean_edge: f64,
+    /// Its extent along the axes.
+    pub extent: DVec3,
+}
+
+/// What a picture is to show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted {
+    /// In radians.
+    pub feature_angle: f64,
+    /// How far charts may be stretched; none where it has no charts.
+    pub bound: Option<Bound>,
+    pub dark: bool,
+}
+
+/// A picture, with what it shows.
+pub struct Shown {
+    pub wanted: Wanted,
+    /// How many edges are features of each kind, as [`KINDS`] has them.
+    pub counts: [usize; KINDS.len()],
+    /// The charts; none where they are not known yet, or there are none.
+    pub division: Option<Arc<Division>>,
+    pub scene: Arc<Scene>,
+}
+
+/// What the thread tells.
+pub enum Told {
+    Progress(Progress),
+    Loaded(Result<Arc<Loaded>, Fault>),
+    Shown(Arc<Shown>),
+}
+
+struct Ask {
+    wanted: Wanted,
+    generation: u64,
+    cancel: Cancel,
+}
+
+/// The thread.
+pub struct Preview {
+    ask: Sender<Ask>,
+    told: Receiver<Told>,
+    /// Ends what is under way.
+    cancel: Cancel,
+}
+
+impl Preview {
+    /// Begins to read a mesh; `wake` is called when there is something to be told.
+    pub fn of(path: PathBuf, wake: Wake) -> Preview {
+        let (ask, asked) = channel();
+        let (tell, told) = channel();
+        let cancel = Cancel::new();
+        let reading = cancel.clone();
+        std::thread::spawn(move || {
+            let mut voice = Voice { tell, wake, cancel: reading, last: None };
+            let loaded = load(&path, &mut voice).map(Arc::new);
+            let read = loaded.as_ref().ok().cloned();
+            if !matches!(&loaded, Err(fault) if fault.is_stop) {
+                voice.say(Told::Loaded(loaded));
+            }
+            if let Some(loaded) = read {
+                Work { loaded, features: None, division: None }.serve(&asked, &mut voice);
+            }
+        });
+        Preview { ask, told, cancel }
+    }
+
+    /// Asks for a picture in place of what was asked for before; it has this generation, and one on the way to it the one before.
+    pub fn ask(&mut self, wanted: Wanted, generation: u64) {
+        self.cancel.ask();
+        self.cancel = Cancel::new();
+        // A thread that has ended has told why.
+        let _ = self.ask.send(Ask { wanted, generation, cancel: self.cancel.clone() });
+    }
+
+    /// What has been told since the last time.
+    pub fn hear(&self) -> Vec<Told> {
+        self.told.try_iter().collect()
+    }
+}
+
+impl Drop for Preview {
+    fn drop(&mut self) {
+        self.cancel.ask();
+    }
+}
+
+struct Voice {
+    tell: Sender<Told>,
+    wake: Wake,
+    cancel: Cancel,
+    last: Option<(Stage, Instant)>,
+}
+
+impl Voice {
+    fn say(&self, told: Told) {
+        // Nobody listens any more: the window has given it up.
+        let _ = self.tell.send(told);
+        (self.wake)();
+    }
+}
+
+impl Watch for Voice {
+    fn tell(&mut self, stage: Stage, done: u64, total: u64) {
+        if self.last.is_some_and(|(last, since)| last == stage && since.elapsed() < EVERY) {
+            return;
+        }
+        self.last = Some((stage, Instant::now()));
+        self.say(Told::Progress(Progress { words: words_of(stage), done, total }));
+    }
+
+    fn cancel(&self) -> Cancel {
+        self.cancel.clone()
+    }
+}
+
+fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
+    let file = read_mesh_watched(path, None, voice)?;
+    let place = |fault: Fault| if fault.is_stop { fault } else { fault.at(path.display().to_string()) };
+    let (is_plane, has_metric) = (is_plane(&file), file.metric.is_some());
+    let skipped: Vec<String> =
+        file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
+    let mut found = sound(&file, voice).map_err(place)?;
+    drop(file);
+    found.repairs.extend(skipped);
+    let edges = Edges::of(&found.mesh.triangles);
+    voice.cancel.check()?;
+    let census = Census::of(&found.mesh, &edges);
+    let points = &found.mesh.points;
+    let length = |edge: usize| {
+        let [a, b] = edges.get(edge).ends.map(|end| points[end as usize]);
+        a.distance(b)
+    };
+    let mean_edge = (0..edges.len()).map(length).sum::<f64>() / edges.len().max(1) as f64;
+    let used = found.mesh.triangles.as_flattened().iter().map(|&k| points[k as usize]);
+    let ends = used.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+    let extent = ends.map_or(DVec3::ZERO, |[low, high]| high - low);
+    let (regions, repairs) = (found.regions.len(), found.repairs);
+    Ok(Loaded { mesh: found.mesh, edges, census, is_plane, has_metric, regions, repairs, mean_edge, extent })
+}
+
+/// What is known of the mesh beside its triangles, and what it was found for.
+struct Work {
+    loaded: Arc<Loaded>,
+    features: Option<(f64, Arc<[Option<Feature>]>)>,
+    division: Option<(f64, Bound, Arc<Division>)>,
+}
+
+impl Work {
+    fn serve(&mut self, asked: &Receiver<Ask>, voice: &mut Voice) {
+        while let Ok(first) = asked.recv() {
+            let ask = asked.try_iter().last().unwrap_or(first);
+            voice.cancel = ask.cancel.clone();
+            // What was ended has no picture: another one is asked for.
+            let _ = self.show(&ask, voice);
+        }
+    }
+
+    fn show(&mut self, ask: &Ask, voice: &mut Voice) -> Result<(), Fault> {
+        let Ask { wanted, generation, cancel } = ask;
+        let loaded = self.loaded.clone();
+        let Loaded { mesh, edges, .. } = &*loaded;
+        let angle = wanted.feature_angle;
+        let features = match &self.features {
+            Some((of, features)) if *of == angle => features.clone(),
+            _ => {
+                let found: Arc<[Option<Feature>]> = with_lines(features(mesh, edges, angle), mesh, edges).into();
+                self.features = Some((angle, found.clone()));
+                found
+            }
+        };
+        let picture = |division: Option<Arc<Division>>, generation: u64| {
+            let palette = theme::palette(wanted.dark);
+            let given = Given { mesh, edges, features: &features, division: division.as_deref(), palette };
+            let scene = Scene::of_given(&given, generation, cancel).ok_or_else(Fault::stopped)?;
+            let counts = KINDS.map(|kind| count_of(&features, kind));
+            Ok::<_, Fault>(Shown { wanted: wanted.clone(), counts, division, scene: Arc::new(scene) })
+        };
+        let division = match (&self.division, wanted.bound) {
+            (_, None) => None,
+            (Some((of, bound, division)), Some(wanted)) if (*of, *bound) == (angle, wanted) => Some(division.clone()),
+            (_, Some(bound)) => {
+                if mesh.triangles.len() > LARGE {
+                    // One of which the charts are still to come is not that of the wish.
+                    let mut first = picture(None, generation - 1)?;
+                    first.wanted.bound = None;
+                    voice.say(Told::Shown(Arc::new(first)));
+                }
+                let charts = charts(mesh, edges, &features, bound, voice)?;
+                let division = Arc::new(Division::of(mesh, edges, &features, &charts));
+                self.division = Some((angle, bound, division.clone()));
+                Some(division)
+            }
+        };
+        let shown = picture(division, *generation)?;
+        voice.say(Told::Shown(Arc::new(shown)));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    fn wish(degrees: f64) -> Wanted {
+        Wanted { feature_angle: degrees.to_radians(), bound: Some(Bound::default()), dark: true }
+    }
+
+    /// What comes within a while.
+    fn next(preview: &Preview, mut is_it: impl FnMut(&Told) -> bool) -> Option<Told> {
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(60) {
+            match preview.told.recv_timeout(Duration::from_millis(500)) {
+                Ok(told) if is_it(&told) => return Some(told),
+                Ok(_) => {}
+                Err(_) if begin.elapsed() > Duration::from_secs(20) => return None,
+                Err(_) => {}
+            }
+        }
+        None
+    }
+
+    /// A tetrahedron as text.
+    fn tetrahedron(folder: &Path) -> PathBuf {
+        let path = folder.join("a.obj");
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+        std::fs::write(&path, text).unwrap();
+        path
+    }
+
+    #[test]
+    fn of_many_wishes_the_last_one_is_shown() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut preview = Preview::of(tetrahedron(folder.path()), Arc::new(|| {}));
+        assert!(next(&preview, |told| matches!(told, Told::Loaded(Ok(loaded)) if loaded.census.nodes == 4)).is_some());
+        for k in 1..=150 {
+            preview.ask(wish(f64::from(k)), 2 * k as u64);
+        }
+        let mut shown = 0;
+        let last = next(&preview, |told| {
+            shown += usize::from(matches!(told, Told::Shown(_)));
+            matches!(told, Told::Shown(shown) if shown.wanted == wish(150.0))
+        });
+        let Some(Told::Shown(last)) = last else { panic!("no picture of the last wish") };
+        assert_eq!((last.scene.generation, last.division.as_ref().unwrap().charts > 1), (300, true));
+        assert_eq!(last.counts, [0; KINDS.len()], "no fold is beyond 150 degrees");
+        assert!(shown < 150, "{shown}");
+    }
+
+    #[test]
+    fn a_file_that_is_none_is_told_with_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("b.obj");
+        std::fs::write(&path, "v 0 0 0\nf 1 2 3\n").unwrap();
+        let preview = Preview::of(path, Arc::new(|| {}));
+        let told = next(&preview, |told| matches!(told, Told::Loaded(Err(_))));
+        let Some(Told::Loaded(Err(fault))) = told else { panic!("no complaint") };
+        assert!(fault.place.contains("b.obj, line 2") && fault.what.contains("vertex 3"), "{fault}");
+    }
+}

@@ -1,0 +1,361 @@
+//! How a mesh file is taken, and what it is like: the words of the command line as a form, counts, what was mended.
+
+use eframe::egui::{
+    self, Align, Button, ComboBox, DragValue, Frame, Grid, Layout, Panel, ProgressBar, Response, RichText, Role,
+    ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo,
+};
+
+use super::{heading, inset, note};
+use crate::app::command_line::MeshOptions;
+use crate::app::window::command::Command;
+use crate::app::window::icons;
+use crate::app::window::import::{Import, KINDS, UNITS};
+use crate::app::window::state::{Progress, State};
+use crate::app::window::theme::{self, ink};
+use crate::app::window::words;
+use crate::core::discrete::features::Feature;
+use crate::core::io::case::{MeshUse, Taking};
+use crate::core::io::save::Shortest;
+use crate::render::palette::{Palette, Rgba};
+use crate::render::scene::{feature_line, seam_line};
+
+/// Width of the panel, and of what its rows are called.
+const WIDTH: f32 = 344.0;
+const NAMES: f32 = 92.0;
+/// How far a chord is from its arc, over the radius, where a person asks for sizes by curvature first.
+const CHORD: f64 = 0.01;
+
+/// Shows it at the left of the view.
+pub fn show(ui: &mut Ui, state: &State, plain: Frame, commands: &mut Vec<Command>, palette: &Palette) {
+    let is_opening = state.is_opening();
+    let opening = state.progress.clone().filter(|_| is_opening);
+    let Some(import) = &state.import else { return };
+    let progress = if is_opening { opening } else { import.progress.clone() };
+    Panel::left("import").exact_size(WIDTH).resizable(false).frame(plain).show(ui, |ui| {
+        Panel::bottom("import buttons").resizable(false).frame(inset()).show(ui, |ui| {
+            under_way(ui, import, is_opening, progress.as_ref(), palette);
+            buttons(ui, import, is_opening, commands);
+        });
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            inset().show(ui, |ui| {
+                ui.set_width(WIDTH - 28.0);
+                title(ui, import, palette);
+                ui.add_enabled_ui(!is_opening, |ui| form(ui, import, commands, palette));
+                counts(ui, import, palette);
+            });
+        });
+    });
+}
+
+fn title(ui: &mut Ui, import: &Import, palette: &Palette) {
+    let name = import.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    ui.add_space(2.0);
+    let text = RichText::new(name).font(theme::semibold(theme::TITLE)).color(ink(palette.strong));
+    ui.add(egui::Label::new(text).truncate()).on_hover_text(import.path.display().to_string());
+    ui.label(note("A mesh without CAD: how shall it be taken?", palette));
+}
+
+/// A row of the form: what it is called, and its widgets.
+fn row(ui: &mut Ui, name: &str, tip: &str, palette: &Palette, widgets: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        ui.set_height(24.0);
+        ui.allocate_ui_with_layout(Vec2::new(NAMES, 24.0), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_width(NAMES);
+            ui.label(RichText::new(name).color(ink(palette.text))).on_hover_text(tip);
+        });
+        widgets(ui);
+    });
+}
+
+/// A number that can be dragged and typed; tells whether it is being dragged.
+fn number(ui: &mut Ui, value: &mut f64, [least, most]: [f64; 2], speed: f64, unit: &str, name: &str) -> Response {
+    let field = DragValue::new(value)
+        .range(least..=most)
+        .speed(speed)
+        .suffix(unit)
+        .max_decimals(12)
+        .custom_formatter(|value, _| Shortest(value).to_string())
+        .update_while_editing(false);
+    let response = ui.add_sized(Vec2::new(84.0, 22.0), field);
+    response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, name));
+    response
+}
+
+fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Palette) {
+    let taking = import.taking();
+    let mut options = import.options.clone();
+    let mut dragging = false;
+    heading(ui, "Import", "as on the command line", palette);
+    ui.spacing_mut().item_spacing.y = 5.0;
+    unit(ui, &mut options, &taking, &mut dragging, palette);
+    used(ui, &mut options, import, palette);
+    sizes(ui, &mut options, import, &taking, &mut dragging, palette);
+    let charted = import.has_charts();
+    ui.add_enabled_ui(charted, |ui| {
+        let defaults = Taking::default();
+        let tip = "Folds beyond this angle are edges to keep (--feature-angle)";
+        row(ui, "feature angle", tip, palette, |ui| {
+            let mut degrees = hundredths(taking.feature_angle.to_degrees());
+            let dragged = measure(ui, &mut degrees, Taking::ANGLES, false, "°", "Feature angle");
+            dragging |= dragged;
+            options.feature_angle = unless_default(degrees, hundredths(defaults.feature_angle.to_degrees()));
+        });
+        let tip = "How far shapes may be stretched where the surface is laid into the plane (--chart-stretch)";
+        row(ui, "chart stretch", tip, palette, |ui| {
+            let mut stretch = taking.chart_stretch;
+            let dragged = measure(ui, &mut stretch, Taking::STRETCHES, true, "", "Chart stretch");
+            dragging |= dragged;
+            options.chart_stretch = unless_default(hundredths(stretch), defaults.chart_stretch);
+        });
+    });
+    if !charted && import.loaded.is_some() {
+        ui.label(note("Triangles in the plane are converted as they lie: without features and charts.", palette));
+    }
+    // It is told too when a drag has ended.
+    if options != import.options || import.is_dragging() != dragging {
+        commands.push(Command::SetImport(Box::new(options), dragging));
+    }
+}
+
+/// A slider with its number; whether one of them is being dragged.
+fn measure(ui: &mut Ui, value: &mut f64, range: [f64; 2], logarithmic: bool, unit: &str, name: &str) -> bool {
+    ui.spacing_mut().slider_width = 104.0;
+    let slider = ui.add(Slider::new(value, range[0]..=range[1]).logarithmic(logarithmic).show_value(false));
+    slider.widget_info(|| WidgetInfo::slider(true, *value, format!("{name} slider")));
+    *value = hundredths(*value);
+    let typed = number(ui, value, range, (range[1] - range[0]) / 400.0, unit, name);
+    slider.dragged() || typed.dragged()
+}
+
+fn hundredths(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0
+}
+
+/// What is as it is where nobody says it is not said.
+fn unless_default(value: f64, default: f64) -> Option<f64> {
+    (value != default).then_some(value)
+}
+
+fn unit(ui: &mut Ui, options: &mut MeshOptions, taking: &Taking, dragging: &mut bool, palette: &Palette) {
+    let mut scale = taking.scale;
+    row(ui, "unit", "What the file's lengths become (--scale)", palette, |ui| {
+        // As many as differ in their scale; all by which a person thinks.
+        let mut known: Vec<(String, f64)> = vec![("as in the file".to_owned(), 1.0)];
+        for (to, metres) in [UNITS[2], UNITS[0]] {
+            let others = UNITS.iter().filter(|unit| unit.0 != to);
+            known.extend(others.map(|&(from, own)| (format!("{from} to {to}"), rounded(own / metres))));
+        }
+        let now = known.iter().find(|unit| unit.1 == scale).map_or("other", |unit| unit.0.as_str()).to_owned();
+        let shown = ComboBox::from_id_salt("unit").selected_text(now).width(112.0).show_ui(ui, |ui| {
+            for (name, factor) in &known {
+                ui.selectable_value(&mut scale, *factor, name);
+            }
+        });
+        shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Unit"));
+        ui.label(note("×", palette));
+        let speed = 0.01 * scale;
+        *dragging |= number(ui, &mut scale, Taking::SCALES, speed, "", "Scale").dragged();
+    });
+    if scale != taking.scale {
+        options.scale = unless_default(scale, 1.0);
+        // Sizes are those of the mesh as it is scaled.
+        options.mesh_size = options.mesh_size.map(|size| rounded(size * scale / taking.scale));
+    }
+}
+
+/// To twelve digits: what a person would have written.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+fn used(ui: &mut Ui, options: &mut MeshOptions, import: &Import, palette: &Palette) {
+    let now = import.used();
+    let words =
+        [(MeshUse::Shape, "shape", "remesh its shape"), (MeshUse::Triangles, "triangles", "convert its triangles")];
+    for (k, (use_, word, text)) in words.into_iter().enumerate() {
+        row(ui, if k == 0 { "use" } else { "" }, "What the mesh is used for (--use)", palette, |ui| {
+            if ui.radio(now == use_, text).clicked() && now != use_ {
+                options.used = (use_ != import.use_by_default()).then(|| word.to_owned());
+            }
+        });
+    }
+}
+
+fn sizes(
+    ui: &mut Ui,
+    options: &mut MeshOptions,
+    import: &Import,
+    taking: &Taking,
+    dragging: &mut bool,
+    palette: &Palette,
+) {
+    let Some(loaded) = &import.loaded else { return };
+    let way = match (options.mesh_size, options.curvature) {
+        (None, _) => 0,
+        (Some(_), None) => 1,
+        (Some(_), Some(_)) => 2,
+    };
+    let own = if loaded.has_metric { "as the mesh says" } else { "as its triangles" };
+    let mut wanted = way;
+    row(ui, "size", "How large elements shall be (--mesh-size, --curvature)", palette, |ui| {
+        let names = [own, "the same everywhere", "finer where it is curved"];
+        let shown = ComboBox::from_id_salt("size").selected_text(names[way]).width(180.0).show_ui(ui, |ui| {
+            for (k, name) in names.into_iter().enumerate() {
+                ui.selectable_value(&mut wanted, k, name);
+            }
+        });
+        shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Size of elements"));
+    });
+    if wanted != way {
+        // Two digits are enough to begin from.
+        let mean = loaded.mean_edge * taking.scale;
+        let plain: f64 = format!("{mean:.1e}").parse().unwrap_or(mean);
+        options.mesh_size = (wanted > 0).then(|| options.mesh_size.unwrap_or(plain));
+        options.curvature = (wanted > 1).then_some(CHORD);
+    }
+    if let Some(size) = &mut options.mesh_size {
+        let name = if options.curvature.is_some() { "where flat" } else { "edge length" };
+        row(ui, name, "In the unit that the mesh is scaled to", palette, |ui| {
+            let speed = 0.01 * *size;
+            *dragging |= number(ui, size, [1e-12, 1e12], speed, "", "Edge length").dragged();
+        });
+    }
+    if let Some(chord) = &mut options.curvature {
+        row(ui, "chord error", "How far a chord may be from its arc, over the radius", palette, |ui| {
+            *dragging |= number(ui, chord, [1e-6, 0.5], 0.0002, "", "Chord error").dragged();
+        });
+    }
+}
+
+fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
+    let Some(loaded) = &import.loaded else { return };
+    heading(ui, "What it is like", "", palette);
+    let grouped = |n: usize| words::grouped(n as u64);
+    let census = loaded.census;
+    let extent = loaded.extent * import.taking().scale;
+    let named = |n: usize, one: &str, several: &str| format!("{} {}", grouped(n), if n == 1 { one } else { several });
+    Grid::new("counts").num_columns(2).striped(false).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES).show(
+        ui,
+        |ui| {
+            let mut line = |name: &str, value: String| {
+                ui.label(note(name, palette));
+                let text = RichText::new(value).font(theme::regular(theme::TABLE)).color(ink(palette.text));
+                ui.add(egui::Label::new(text).wrap());
+                ui.end_row();
+            };
+            line("extent", [extent.x, extent.y, extent.z].map(three_digits).join(" × "));
+            line("nodes", grouped(census.nodes));
+            line("triangles", grouped(census.triangles));
+            line("components", grouped(census.components));
+            line("boundary loops", grouped(census.border_loops));
+            if loaded.regions > 1 {
+                line("regions", grouped(loaded.regions));
+            }
+        },
+    );
+    let Some(shown) = &import.shown else { return };
+    ui.add_space(6.0);
+    for (kind, count) in KINDS.into_iter().zip(shown.counts) {
+        let (one, several) = match kind {
+            Feature::Fold => ("folded edge", "folded edges"),
+            Feature::Region => ("edge between regions", "edges between regions"),
+            Feature::Line => ("edge on a line of the file", "edges on lines of the file"),
+            Feature::Boundary => ("edge of the boundary", "edges of the boundary"),
+            Feature::Branching => ("edge of three triangles or more", "edges of three triangles or more"),
+            Feature::Conflict => ("edge whose triangles disagree", "edges whose triangles disagree"),
+        };
+        if count > 0 || kind == Feature::Fold {
+            swatch(ui, feature_line(palette, kind), named(count, one, several), palette);
+        }
+    }
+    match &shown.division {
+        Some(division) => {
+            let seams = division.seams.len();
+            if seams > 0 {
+                swatch(
+                    ui,
+                    seam_line(palette),
+                    named(seams, "edge cut for the plane", "edges cut for the plane"),
+                    palette,
+                );
+            }
+            ui.horizontal(|ui| {
+                let (rect, _) = ui.allocate_exact_size(Vec2::new(30.0, 16.0), Sense::hover());
+                let count = division.charts.min(palette.charts.len());
+                let width = 30.0 / count.max(1) as f32;
+                for (k, colour) in palette.charts.iter().take(count).enumerate() {
+                    let part =
+                        egui::Rect::from_min_size(rect.min + Vec2::new(k as f32 * width, 2.0), Vec2::new(width, 12.0));
+                    ui.painter().rect_filled(part, 0.0, ink(*colour));
+                }
+                ui.label(line_text(named(division.charts, "chart", "charts"), palette));
+            });
+        }
+        None if import.has_charts() => {
+            ui.label(note("The charts are being sought.", palette));
+        }
+        None => {}
+    }
+    if !loaded.repairs.is_empty() {
+        heading(ui, "Mended", "", palette);
+        for repair in &loaded.repairs {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(icons::CHECK).font(theme::regular(theme::TABLE)).color(ink(palette.holds)));
+                ui.add(egui::Label::new(line_text(repair.clone(), palette)).wrap());
+            });
+        }
+    }
+}
+
+fn line_text(text: String, palette: &Palette) -> RichText {
+    RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text))
+}
+
+/// A line as the view draws it, and what it is.
+fn swatch(ui: &mut Ui, (colour, width): (Rgba, f32), text: String, palette: &Palette) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(Vec2::new(30.0, 16.0), Sense::hover());
+        ui.painter().hline(rect.x_range(), rect.center().y, (width, ink(colour)));
+        ui.label(line_text(text, palette));
+    });
+}
+
+fn three_digits(value: f64) -> String {
+    Shortest(format!("{value:.2e}").parse().unwrap_or(value)).to_string()
+}
+
+/// How far the work is. The room is there when nothing is under way too, so that no button moves from under the pointer.
+fn under_way(ui: &mut Ui, import: &Import, is_opening: bool, progress: Option<&Progress>, palette: &Palette) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 30.0), Sense::hover());
+    let text = match progress {
+        Some(progress) => words::progress(progress),
+        None if is_opening => "Converting".to_owned(),
+        None if import.is_behind() => "Reading".to_owned(),
+        None => return,
+    };
+    let share = match progress {
+        Some(Progress { done, total, .. }) if *total > 0 => (*done as f32 / *total as f32).clamp(0.0, 1.0),
+        _ => 0.0,
+    };
+    ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+        ui.label(note(text, palette));
+        let bar = ProgressBar::new(share).desired_height(3.0).corner_radius(0.0).fill(ink(palette.base));
+        ui.add(bar).widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, "How far it is"));
+    });
+}
+
+fn buttons(ui: &mut Ui, import: &Import, is_opening: bool, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let ready = import.loaded.is_some() && !is_opening;
+        let convert = Button::new(RichText::new("Convert").font(theme::semibold(theme::BODY)));
+        if ui.add_enabled(ready, convert.min_size(Vec2::new(120.0, 28.0))).clicked() {
+            commands.push(Command::Convert);
+        }
+        let cancel = Button::new("Cancel").min_size(Vec2::new(84.0, 28.0));
+        let tip = if is_opening { "Back to how the mesh is taken" } else { "Leave the mesh alone  (Esc)" };
+        if ui.add(cancel).on_hover_text(tip).clicked() {
+            commands.push(Command::CancelImport);
+        }
+    });
+    ui.add_space(4.0);
+}

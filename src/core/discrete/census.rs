@@ -1,0 +1,163 @@
+//! What a surface of triangles is like, counted, and how its charts lie beside each other: what a person wants to see before it is
+//! converted.
+
+use super::chart::Chart;
+use super::edges::{Edges, Triangles};
+use super::features::Feature;
+use crate::core::background::cut::Sets;
+
+/// Counts of a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Census {
+    /// Points that triangles use.
+    pub nodes: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Parts that hang together.
+    pub components: usize,
+    /// Loops of its border; those that touch are one.
+    pub border_loops: usize,
+}
+
+impl Census {
+    /// That of a surface.
+    pub fn of(mesh: &Triangles, edges: &Edges) -> Census {
+        let points = mesh.points.len();
+        let mut is_used = vec![false; points];
+        let mut parts = Sets::new(points);
+        for &[a, b, c] in &mesh.triangles {
+            [a, b, c].iter().for_each(|&k| is_used[k as usize] = true);
+            parts.join(a, b);
+            parts.join(b, c);
+        }
+        let mut on_border = vec![false; points];
+        let mut loops = Sets::new(points);
+        for edge in (0..edges.len()).map(|edge| edges.get(edge)).filter(|edge| edge.sides.len() == 1) {
+            edge.ends.iter().for_each(|&end| on_border[end as usize] = true);
+            loops.join(edge.ends[0], edge.ends[1]);
+        }
+        let roots =
+            |sets: &mut Sets, of: &[bool]| (0..points as u32).filter(|&k| of[k as usize] && sets.find(k) == k).count();
+        Census {
+            nodes: is_used.iter().filter(|used| **used).count(),
+            triangles: mesh.triangles.len(),
+            components: roots(&mut parts, &is_used),
+            border_loops: roots(&mut loops, &on_border),
+        }
+    }
+}
+
+/// How many edges are features of a kind.
+pub fn count_of(features: &[Option<Feature>], kind: Feature) -> usize {
+    features.iter().filter(|feature| **feature == Some(kind)).count()
+}
+
+/// A surface divided into charts.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Division {
+    /// How many charts there are.
+    pub charts: usize,
+    /// The chart of each triangle.
+    pub chart_of: Vec<u32>,
+    /// A number for each chart, as small as can be and another than those of the charts beside it: for colours.
+    pub told_apart: Vec<u32>,
+    /// Edges at which it is cut for the plane alone, ascending: between charts, and where one is slit; no features.
+    pub seams: Vec<u32>,
+}
+
+impl Division {
+    /// That of a surface with these features and charts.
+    pub fn of(mesh: &Triangles, edges: &Edges, features: &[Option<Feature>], charts: &[Chart]) -> Division {
+        let mut chart_of = vec![0; mesh.triangles.len()];
+        let mut nodes = vec![[0; 3]; mesh.triangles.len()];
+        for (number, chart) in (0..).zip(charts) {
+            for (&t, local) in chart.triangles.iter().zip(&chart.local) {
+                (chart_of[t as usize], nodes[t as usize]) = (number, *local);
+            }
+        }
+        let ends = |side: u32| {
+            let (t, k) = (nodes[side as usize / 3], side as usize % 3);
+            [t[k], t[(k + 1) % 3]]
+        };
+        let mut beside: Vec<Vec<u32>> = vec![Vec::new(); charts.len()];
+        let mut seams = Vec::new();
+        for edge in 0..edges.len() {
+            let sides = edges.get(edge).sides;
+            let Some((&one, others)) = sides.split_first() else { continue };
+            let own = chart_of[one as usize / 3];
+            for &other in others {
+                let across = chart_of[other as usize / 3];
+                if across != own {
+                    beside[own as usize].push(across);
+                    beside[across as usize].push(own);
+                }
+            }
+            if let (&[one, other], None) = (sides, features[edge]) {
+                let [a, b] = ends(other);
+                if chart_of[other as usize / 3] != own || ends(one) != [b, a] {
+                    seams.push(edge as u32);
+                }
+            }
+        }
+        let mut told_apart: Vec<u32> = Vec::with_capacity(charts.len());
+        for near in &beside {
+            let taken: Vec<u32> = near.iter().filter_map(|&n| told_apart.get(n as usize).copied()).collect();
+            told_apart.push((0..).find(|number| !taken.contains(number)).unwrap_or(0));
+        }
+        Division { charts: charts.len(), chart_of, told_apart, seams }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::discrete::chart::{Bound, charts};
+    use crate::core::discrete::features::{ANGLE, features};
+    use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
+    use crate::core::progress::Nobody;
+
+    fn divided(mesh: &Triangles) -> (Census, Vec<Option<Feature>>, Division) {
+        let edges = Edges::of(&mesh.triangles);
+        let features = features(mesh, &edges, ANGLE);
+        let charts = charts(mesh, &edges, &features, Bound::default(), &mut Nobody).unwrap();
+        let division = Division::of(mesh, &edges, &features, &charts);
+        for edge in 0..edges.len() {
+            let own: Vec<u32> =
+                edges.get(edge).sides.iter().map(|side| division.chart_of[*side as usize / 3]).collect();
+            for pair in own.windows(2).filter(|pair| pair[0] != pair[1]) {
+                let [a, b] = [0, 1].map(|k| division.told_apart[pair[k] as usize]);
+                assert!(a != b || own.len() > 2, "charts beside each other are told apart");
+                assert!(features[edge].is_some() || division.seams.contains(&(edge as u32)));
+            }
+        }
+        (Census::of(mesh, &edges), features, division)
+    }
+
+    #[test]
+    fn parts_loops_features_and_charts_are_counted() {
+        let (census, features, division) = divided(&cube(2));
+        assert_eq!((census.triangles, census.components, census.border_loops), (48, 1, 0));
+        assert_eq!((count_of(&features, Feature::Fold), division.charts, division.seams.len()), (24, 6, 0));
+        assert!(division.told_apart.iter().all(|number| *number < 3), "a cube needs three colours");
+        let (census, features, _) = divided(&plate(4, 0.0));
+        assert_eq!((census.nodes, census.border_loops, count_of(&features, Feature::Boundary)), (25, 1, 16));
+        let (_, features, _) = divided(&three_half_planes());
+        assert_eq!(count_of(&features, Feature::Branching), 1);
+        // Two balls apart, and a ring that is cut more than once.
+        let mut two = sphere(5);
+        let n = two.points.len() as u32;
+        let more = two.clone();
+        two.points.extend(more.points.iter().map(|p| *p * 3.0));
+        two.triangles.extend(more.triangles.iter().map(|t| t.map(|k| k + n)));
+        two.region.extend(more.region);
+        assert_eq!(divided(&two).0.components, 2);
+        assert!(!divided(&torus(30, 20)).2.seams.is_empty());
+    }
+
+    #[test]
+    fn a_slit_is_a_seam_within_one_chart() {
+        let (census, _, division) = divided(&tube(24, 10, 4.0));
+        assert_eq!((census.border_loops, division.charts), (2, 1));
+        assert_eq!(division.seams.len(), 10, "from one end to the other");
+    }
+}

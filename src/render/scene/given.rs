@@ -1,0 +1,173 @@
+//! A surface as it was given, before it is a mesh: its triangles in the colours of their charts, features and seams as lines.
+
+use glam::DVec3;
+
+use super::form::folded;
+use super::{Face, Form, Line, Scene, ink, relative};
+use crate::core::discrete::census::Division;
+use crate::core::discrete::edges::{Edges, Triangles};
+use crate::core::discrete::features::Feature;
+use crate::core::progress::Cancel;
+use crate::render::palette::{Palette, Rgba};
+
+/// What is drawn of it, and how.
+#[derive(Clone, Copy)]
+pub struct Given<'a> {
+    /// Its triangles.
+    pub mesh: &'a Triangles,
+    /// Their edges.
+    pub edges: &'a Edges,
+    /// The kind of feature that each edge is.
+    pub features: &'a [Option<Feature>],
+    /// Its charts, once they are known.
+    pub division: Option<&'a Division>,
+    /// In which colours.
+    pub palette: &'a Palette,
+}
+
+/// Triangles and edges that are drawn between two looks at whether to go on.
+const AT_A_TIME: usize = 1 << 14;
+
+/// Colour and width in points of a feature: width tells the kinds apart, and where the surface is in disorder the colour of errors too.
+pub fn feature_line(palette: &Palette, kind: Feature) -> (Rgba, f32) {
+    match kind {
+        Feature::Fold => (palette.boundary, 1.75),
+        Feature::Region | Feature::Line => (palette.boundary, 2.4),
+        Feature::Boundary => (palette.boundary, 3.2),
+        Feature::Branching => (palette.front[1], 3.2),
+        Feature::Conflict => (palette.broken, 3.2),
+    }
+}
+
+/// The same of an edge at which a surface is cut for the plane alone.
+pub fn seam_line(palette: &Palette) -> (Rgba, f32) {
+    (palette.weak, 1.25)
+}
+
+impl Scene {
+    /// The scene of a surface that was given; `None` where nobody wants it any more. `generation` is greater than that of any other
+    /// such scene that the card has seen.
+    pub fn of_given(given: &Given<'_>, generation: u64, cancel: &Cancel) -> Option<Scene> {
+        let Given { mesh, edges, features, division, palette } = *given;
+        let go_on = |k: usize| !k.is_multiple_of(AT_A_TIME) || !cancel.is_asked();
+        let ends = mesh.points.iter().map(|&p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let [low, high] = ends.unwrap_or([DVec3::ZERO; 2]);
+        let mut scene = Scene { anchor: 0.5 * (low + high), generation, form: Form::Given, ..Scene::default() };
+        scene.pieces = 1;
+        let at = |k: u32| relative(mesh.points[k as usize], scene.anchor);
+        let fill = |t: usize| match division {
+            Some(division) => {
+                let number = division.told_apart[division.chart_of[t] as usize] as usize;
+                palette.charts[number % palette.charts.len()]
+            }
+            None => palette.live,
+        };
+        let mut faces = Vec::with_capacity(mesh.triangles.len());
+        for (t, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+            if !go_on(t) {
+                return None;
+            }
+            let normal = folded(mesh.area_vector(t).normalize_or(DVec3::Z));
+            faces.push(Face { corners: [at(a), at(b), at(c), at(c)], normals: [normal; 4], colour: ink(fill(t)) });
+        }
+        let line = |[a, b]: [u32; 2], (colour, width): (Rgba, f32), room: f32| Line {
+            ends: [at(a), at(b)],
+            colour: ink(colour),
+            width,
+            dash: [0.0; 2],
+            room,
+        };
+        let (mut plain, mut standing_out) = (Vec::with_capacity(edges.len()), Vec::new());
+        let mut seams = division.map_or(&[][..], |division| &division.seams).iter().peekable();
+        for edge in 0..edges.len() {
+            if !go_on(edge) {
+                return None;
+            }
+            let (at, is_seam) = (edges.get(edge), seams.next_if(|seam| **seam as usize == edge).is_some());
+            if let Some(kind) = features[edge] {
+                standing_out.push((kind, line(at.ends, feature_line(palette, kind), -1.0)));
+            } else if is_seam {
+                plain.push(line(at.ends, seam_line(palette), -1.0));
+            } else {
+                let [p, q] = at.ends.map(|end| mesh.points[end as usize]);
+                let height = |side: &u32| mesh.area_vector(*side as usize / 3).length() / p.distance(q);
+                let room = at.sides.iter().map(height).fold(f64::INFINITY, f64::min);
+                plain.push(line(at.ends, (palette.live_edge, 0.75), room as f32));
+            }
+        }
+        // What is in disorder lies over the rest.
+        standing_out.sort_by_key(|(kind, _)| std::cmp::Reverse(*kind == Feature::Fold));
+        let standing_out: Vec<Line> = standing_out.into_iter().map(|(_, line)| line).collect();
+        scene.faces.replace(&faces, generation);
+        scene.edges.replace(&plain, generation);
+        scene.boundary.replace(&standing_out, generation);
+        Some(scene)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::discrete::chart::{Bound, charts};
+    use crate::core::discrete::features::{ANGLE, features};
+    use crate::core::io::mesh_file::MeshFile;
+    use crate::core::progress::Nobody;
+    use crate::render::palette::{DARK, LIGHT};
+
+    /// A tent: two squares with a fold between them.
+    fn tent() -> Triangles {
+        let file = MeshFile {
+            points: [
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 1.0],
+                [2.0, 0.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [1.0, 1.0, 1.0],
+                [2.0, 1.0, 0.0],
+            ]
+            .map(DVec3::from)
+            .to_vec(),
+            quads: vec![[0, 1, 4, 3], [1, 2, 5, 4]],
+            ..MeshFile::default()
+        };
+        crate::core::discrete::sound::sound(&file, &mut Nobody).unwrap().mesh
+    }
+
+    #[test]
+    fn charts_have_colours_of_their_own_and_features_lines_that_never_fade() {
+        let mesh = tent();
+        let edges = Edges::of(&mesh.triangles);
+        let found = features(&mesh, &edges, ANGLE);
+        let charts = charts(&mesh, &edges, &found, Bound::default(), &mut Nobody).unwrap();
+        let division = Division::of(&mesh, &edges, &found, &charts);
+        let draw = |division, palette| {
+            let given = Given { mesh: &mesh, edges: &edges, features: &found, division, palette };
+            Scene::of_given(&given, 7, &Cancel::default()).unwrap()
+        };
+        let colours = |scene: &Scene| {
+            let mut colours: Vec<u32> = scene.faces.items().iter().map(|face| face.colour).collect();
+            colours.sort_unstable();
+            colours.dedup();
+            colours
+        };
+        let scene = draw(Some(&division), &DARK);
+        assert_eq!((scene.faces.items().len(), colours(&scene).len()), (4, 2));
+        assert_eq!(colours(&draw(None, &LIGHT)), [ink(LIGHT.live)]);
+        let widths: Vec<f32> = scene.boundary.items().iter().map(|line| line.width).collect();
+        assert_eq!(widths.iter().filter(|width| **width == 1.75).count(), 1, "the ridge");
+        assert_eq!(widths.len(), 7);
+        assert!(scene.boundary.items().iter().all(|line| line.room < 0.0));
+        assert_eq!(scene.edges.items().len(), 2, "the diagonals");
+    }
+
+    #[test]
+    fn a_scene_that_nobody_wants_any_more_is_not_made() {
+        let mesh = tent();
+        let edges = Edges::of(&mesh.triangles);
+        let found = features(&mesh, &edges, ANGLE);
+        let cancel = Cancel::new();
+        cancel.ask();
+        let given = Given { mesh: &mesh, edges: &edges, features: &found, division: None, palette: &DARK };
+        assert!(Scene::of_given(&given, 1, &cancel).is_none());
+    }
+}

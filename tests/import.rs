@@ -1,0 +1,332 @@
+//! Promise: a mesh without CAD is opened by a panel that shows how it is taken and what it is like, and converts it.
+//!
+//! Needs a graphics adapter, as `window.rs`.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Key, Modifiers, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::DVec3;
+use quadfront::app::window::{App, Command, Source};
+
+fn has_adapter() -> bool {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
+        Ok(_) => true,
+        Err(error) => {
+            assert!(std::env::var_os("QUADFRONT_NEEDS_ADAPTER").is_none(), "no graphics adapter: {error}");
+            println!("skipped: there is no graphics adapter ({error})");
+            false
+        }
+    }
+}
+
+/// A window of a small laptop's size on nothing.
+fn window() -> Option<Harness<'static, App>> {
+    has_adapter().then(|| {
+        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
+        let mut harness = builder.build_eframe(|cc| App::new(cc, None));
+        harness.run_steps(2);
+        harness
+    })
+}
+
+/// A tube with eight sides and a lid: 45° between its sides, 90° at the lid, open below. So many rows of triangles.
+fn tube(rows: u32) -> Vec<[DVec3; 3]> {
+    let at = |k: u32, row: u32| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 8.0);
+        DVec3::new(10.0 * cos, 10.0 * sin, 30.0 * f64::from(row) / f64::from(rows))
+    };
+    let mut triangles = Vec::new();
+    for (k, next) in (0..8).map(|k| (k, (k + 1) % 8)) {
+        for row in 0..rows {
+            let [a, b, c, d] = [at(k, row), at(next, row), at(next, row + 1), at(k, row + 1)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        triangles.push([DVec3::new(0.0, 0.0, 30.0), at(k, rows), at(next, rows)]);
+    }
+    triangles
+}
+
+fn stl(folder: &Path, name: &str, triangles: &[[DVec3; 3]]) -> PathBuf {
+    let mut bytes = vec![0; 80];
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for t in triangles {
+        bytes.extend([0; 12]);
+        t.iter().flat_map(|p| p.to_array()).for_each(|x| bytes.extend((x as f32).to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+/// Runs frames until something holds.
+fn until(harness: &mut Harness<'static, App>, what: &str, holds: impl Fn(&App) -> bool) {
+    let begin = Instant::now();
+    while !holds(harness.state()) {
+        harness.run_steps(2);
+        let faults = &harness.state().state.faults;
+        assert!(begin.elapsed() < Duration::from_secs(60), "not {what}: {faults:?}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    harness.run_steps(2);
+}
+
+fn open(harness: &mut Harness<'static, App>, path: &Path) {
+    harness.state_mut().apply(Command::Open(Source::named(&path.display().to_string())));
+    shown(harness);
+}
+
+/// Waits for the picture that the panel asks for.
+fn shown(harness: &mut Harness<'static, App>) {
+    // A click takes a frame, what it asks for another.
+    harness.run_steps(4);
+    until(harness, "shown", |app| app.state.import.as_ref().is_some_and(|import| !import.is_behind()));
+}
+
+fn converted(harness: &mut Harness<'static, App>) {
+    until(harness, "converted", |app| {
+        app.state.import.is_none() && app.state.moment.is_some() && !app.state.is_busy() && app.state.recorded
+    });
+}
+
+/// Types a number into a field.
+fn enter(harness: &mut Harness<'static, App>, label: &str, text: &str) {
+    harness.get_by_label(label).focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.run_steps(1);
+    harness.get_by_label(label).type_text(text);
+    harness.run_steps(1);
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+}
+
+/// The pictures are kept where somebody wants to look at them.
+fn picture(harness: &mut Harness<'static, App>, name: &str) -> Vec<u8> {
+    let image = harness.render().unwrap();
+    if let Some(folder) = std::env::var_os("QUADFRONT_PICTURES") {
+        let file = std::fs::File::create(Path::new(&folder).join(format!("{name}.png"))).unwrap();
+        let mut encoder = png::Encoder::new(file, image.width(), image.height());
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.write_header().unwrap().write_image_data(image.as_raw()).unwrap();
+    }
+    image.into_raw()
+}
+
+fn difference(a: &[u8], b: &[u8]) -> f64 {
+    let apart = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 16);
+    a.chunks(4).zip(b.chunks(4)).filter(|pair| apart(*pair)).count() as f64 / (a.len() / 4) as f64
+}
+
+#[test]
+fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = stl(folder.path(), "tube.stl", &tube(6));
+    open(&mut harness, &path);
+    for text in ["tube.stl", "20 × 20 × 30", "56 folded edges", "8 edges of the boundary", "9 charts", "104"] {
+        harness.get_by_label(text);
+    }
+    let before = picture(&mut harness, "tube-40");
+    // The sides are folded by 45 degrees: beyond 60 only the lid's edge is left.
+    enter(&mut harness, "Feature angle", "60");
+    shown(&mut harness);
+    harness.get_by_label("8 folded edges");
+    assert!(harness.query_by_label("56 folded edges").is_none());
+    let after = picture(&mut harness, "tube-60");
+    assert!(difference(&before, &after) > 0.02, "{}", difference(&before, &after));
+    // That is taken back, and done again.
+    harness.state_mut().apply(Command::Undo);
+    shown(&mut harness);
+    harness.get_by_label("56 folded edges");
+    harness.state_mut().apply(Command::Redo);
+    shown(&mut harness);
+    harness.get_by_label("8 folded edges");
+    enter(&mut harness, "Scale", "0.1");
+    harness.get_by_label("2 × 2 × 3");
+    harness.get_by_label("Convert").click();
+    converted(&mut harness);
+    let state = &harness.state().state;
+    let run = state.run().unwrap();
+    assert!(
+        run.case.text.contains("feature_angle = 60.0") && run.case.text.contains("scale = 0.1"),
+        "{}",
+        run.case.text
+    );
+    assert!(!run.case.text.contains("chart_stretch"), "what is as it is is not said");
+    let height =
+        |mesh: &quadfront::core::mesh::half_edge::Mesh| mesh.nodes().map(|n| mesh.xyz(n).z).fold(0.0, f64::max);
+    assert!((height(&state.moment.as_ref().unwrap().mesh) - 3.0).abs() < 1e-6);
+    // A run that is saved keeps it, and opens without a question.
+    let saved = folder.path().join("run.toml");
+    quadfront::core::io::run_file::write(&saved, &run).unwrap();
+    harness.state_mut().apply(Command::Open(Source::File(saved)));
+    until(&mut harness, "opened again", |app| {
+        app.state.source.as_ref().is_some_and(|source| source.name().ends_with("run.toml")) && !app.state.is_busy()
+    });
+    let again = harness.state().state.run().unwrap();
+    assert_eq!(again.case.text, run.case.text);
+    assert!(harness.state().state.import.is_none());
+}
+
+#[test]
+fn triangles_are_converted_as_they_are_and_the_panel_comes_back_as_it_was_left() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    open(&mut harness, &stl(folder.path(), "tube.stl", &tube(4)));
+    harness.get_by_label("convert its triangles").click();
+    harness.run_steps(2);
+    harness.get_by_label("Convert").click();
+    converted(&mut harness);
+    let triangles = harness.state().state.opened.as_ref().unwrap().background.mesh.element_count();
+    assert_eq!(triangles, 8 * (2 * 4 + 1));
+    harness.state_mut().apply(Command::Import);
+    shown(&mut harness);
+    let import = harness.state().state.import.as_ref().unwrap();
+    assert_eq!(import.options.used.as_deref(), Some("triangles"));
+    // Leaving the panel leaves the run as it is.
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    let state = &harness.state().state;
+    assert!(state.import.is_none() && state.moment.is_some());
+}
+
+#[test]
+fn sizes_are_asked_for_in_the_scaled_unit_and_by_curvature() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    open(&mut harness, &stl(folder.path(), "tube.stl", &tube(6)));
+    harness.get_by_label("Size of elements").click();
+    harness.run_steps(2);
+    harness.get_by_label("finer where it is curved").click();
+    harness.run_steps(2);
+    enter(&mut harness, "Edge length", "4");
+    enter(&mut harness, "Chord error", "0.02");
+    enter(&mut harness, "Scale", "0.5");
+    shown(&mut harness);
+    picture(&mut harness, "sizes");
+    let options = harness.state().state.import.as_ref().unwrap().options.clone();
+    assert_eq!((options.mesh_size, options.curvature, options.scale), (Some(2.0), Some(0.02), Some(0.5)));
+    harness.get_by_label("Convert").click();
+    converted(&mut harness);
+    let text = harness.state().state.run().unwrap().case.text;
+    assert!(text.contains("chord = 0.02") && text.contains("far = 2.0"), "{text}");
+}
+
+#[test]
+fn a_mesh_in_the_plane_has_no_charts_until_its_shape_is_wanted() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("square.obj");
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n")
+        .unwrap();
+    open(&mut harness, &path);
+    harness.get_by_label("4 edges of the boundary");
+    assert!(harness.query_by_label("1 chart").is_none());
+    harness.get_by_label("remesh its shape").click();
+    shown(&mut harness);
+    harness.get_by_label("1 chart");
+    picture(&mut harness, "plane");
+}
+
+#[test]
+fn what_is_mended_is_told_and_what_cannot_be_read_names_file_and_line() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let mut triangles = tube(4);
+    triangles[3].swap(0, 1);
+    triangles.push(triangles[0]);
+    open(&mut harness, &stl(folder.path(), "tube.stl", &triangles));
+    harness.get_by_label("1 duplicate triangle was left out");
+    harness.get_by_label("1 triangle was turned to agree with its neighbours");
+    picture(&mut harness, "mended");
+    let broken = folder.path().join("broken.obj");
+    std::fs::write(&broken, "v 0 0 0\nv 1 0 x\n").unwrap();
+    harness.state_mut().apply(Command::Open(Source::File(broken)));
+    until(&mut harness, "refused", |app| !app.state.faults.is_empty());
+    let state = &harness.state().state;
+    assert!(state.import.is_none());
+    assert!(state.faults[0].contains("broken.obj, line 2: \"x\" stands where a coordinate"), "{:?}", state.faults);
+}
+
+#[test]
+fn reading_and_converting_are_cancelled_and_the_window_goes_on() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    // Large enough that it is not done before anybody can press a button.
+    let path = stl(folder.path(), "long.stl", &tube(12_000));
+    harness.state_mut().apply(Command::Open(Source::File(path.clone())));
+    harness.run_steps(2);
+    let import = harness.state().state.import.as_ref().unwrap();
+    assert!(import.loaded.is_none(), "it is still being read");
+    harness.get_by_label("How far it is");
+    harness.get_by_label("Cancel").click();
+    harness.run_steps(2);
+    assert!(harness.state().state.import.is_none() && harness.state().state.faults.is_empty());
+    harness.state_mut().apply(Command::Open(Source::File(path)));
+    until(&mut harness, "read", |app| app.state.import.as_ref().is_some_and(|import| import.loaded.is_some()));
+    harness.get_by_label("Convert").click();
+    harness.run_steps(3);
+    assert!(harness.state().state.is_opening());
+    harness.get_by_label("Cancel").click();
+    let begin = Instant::now();
+    until(&mut harness, "stopped", |app| !app.state.is_opening());
+    assert!(begin.elapsed() < Duration::from_secs(5), "{:?}", begin.elapsed());
+    let state = &harness.state().state;
+    assert!(state.import.is_some() && state.opened.is_none() && state.faults.is_empty(), "{:?}", state.faults);
+    assert!(!state.is_busy());
+    harness.get_by_label("Cancel").click();
+    harness.run_steps(2);
+    assert!(harness.state().state.import.is_none());
+}
+
+#[test]
+fn how_a_mesh_was_taken_is_kept_and_offered_again() {
+    if !has_adapter() {
+        return;
+    }
+    let (folder, kept) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let path = stl(folder.path(), "tube.stl", &tube(4));
+    let begin = |folder: &Path| {
+        let folder = folder.to_path_buf();
+        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
+        let mut harness = builder.build_eframe(|cc| App::new(cc, None).keeping(Some(folder)));
+        harness.run_steps(2);
+        harness
+    };
+    let mut harness = begin(kept.path());
+    open(&mut harness, &path);
+    enter(&mut harness, "Feature angle", "60");
+    harness.get_by_label("Convert").click();
+    converted(&mut harness);
+    let text = harness.state().state.run().unwrap().case.text;
+    harness.run_steps(4);
+    drop(harness);
+    let mut harness = begin(kept.path());
+    until(&mut harness, "offered", |app| app.state.autosave.as_ref().is_some_and(|kept| kept.offer().is_some()));
+    harness.get_by_label("Open it").click();
+    converted(&mut harness);
+    assert_eq!(harness.state().state.run().unwrap().case.text, text);
+    assert!(text.contains("feature_angle = 60.0"), "{text}");
+}
+
+#[test]
+fn of_many_settings_the_newest_is_shown() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    open(&mut harness, &stl(folder.path(), "tube.stl", &tube(400)));
+    for degrees in (10..60).step_by(2) {
+        let mut options = harness.state().state.import.as_ref().unwrap().options.clone();
+        options.feature_angle = Some(f64::from(degrees));
+        harness.state_mut().apply(Command::SetImport(Box::new(options), false));
+        harness.run_steps(1);
+    }
+    shown(&mut harness);
+    let import = harness.state().state.import.as_ref().unwrap();
+    assert_eq!(import.shown.as_ref().unwrap().wanted.feature_angle, 58.0_f64.to_radians());
+}
