@@ -150,7 +150,7 @@ impl Session {
         let (own, flag) = (ask.clone(), stop.clone());
         std::thread::spawn(move || match Worker::open(read, own, voice, flag) {
             Ok(mut worker) => worker.serve(&asked),
-            Err((voice, fault)) => voice.say(Told::Fault(fault, 1)),
+            Err((voice, fault)) => voice.say(Told::Fault(*fault, 1)),
         });
         Session { ask, told, stop, opening }
     }

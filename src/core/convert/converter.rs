@@ -28,6 +28,14 @@ use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::{Stage, Watch};
 
+/// What a face tells that is converted at the same time as others.
+enum OfFace<'a> {
+    /// How many quadrilaterals it has formed so far.
+    Formed(u64),
+    /// It is at its end.
+    Done(Box<Result<Converter<'a>, Fault>>),
+}
+
 /// Steps between two tellings of how far it is.
 const TELL: u64 = 2048;
 
@@ -348,12 +356,7 @@ impl<'a> Converter<'a> {
         watch.tell(Stage::Convert, 0, total);
         let mut parts = self.mesh.parts();
         let cancel = watch.cancel();
-        // What a face tells: how many quadrilaterals it has formed, and at last itself.
-        enum Told<'a> {
-            Formed(u64),
-            Done(Result<Converter<'a>, Fault>),
-        }
-        let (sender, receiver) = std::sync::mpsc::channel::<(usize, Told<'a>)>();
+        let (sender, receiver) = std::sync::mpsc::channel();
         let mut done: Vec<Option<Result<Converter<'a>, Fault>>> = parts.iter().map(|_| None).collect();
         rayon::in_place_scope(|scope| {
             for (k, part) in parts.iter_mut().enumerate() {
@@ -367,7 +370,7 @@ impl<'a> Converter<'a> {
                             if let Err(stopped) = cancel.check() {
                                 break Err(stopped);
                             }
-                            let _ = sender.send((k, Told::Formed(converter.counts.formed)));
+                            let _ = sender.send((k, OfFace::Formed(converter.counts.formed)));
                         }
                         match converter.step() {
                             Ok(Event::FaceConverted { .. }) => break Ok(converter),
@@ -376,7 +379,7 @@ impl<'a> Converter<'a> {
                         }
                     };
                     // Whoever listens stays until all are there.
-                    let _ = sender.send((k, Told::Done(face)));
+                    let _ = sender.send((k, OfFace::Done(Box::new(face))));
                 });
             }
             drop(sender);
@@ -384,15 +387,14 @@ impl<'a> Converter<'a> {
             let mut all = 0;
             for (k, told) in receiver {
                 let own = match &told {
-                    Told::Formed(own) => *own,
-                    Told::Done(Ok(converter)) => converter.counts.formed,
-                    Told::Done(Err(_)) => formed[k],
+                    OfFace::Formed(own) => *own,
+                    OfFace::Done(face) => face.as_ref().as_ref().map_or(formed[k], |converter| converter.counts.formed),
                 };
                 all = all + own - formed[k];
                 formed[k] = own;
                 watch.tell(Stage::Convert, 2 * all, total);
-                if let Told::Done(face) = told {
-                    done[k] = Some(face);
+                if let OfFace::Done(face) = told {
+                    done[k] = Some(*face);
                 }
             }
         });

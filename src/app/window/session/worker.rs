@@ -86,7 +86,7 @@ impl Worker {
         own: Sender<Ask>,
         mut voice: Voice,
         stop: Arc<AtomicBool>,
-    ) -> Result<Worker, (Voice, Fault)> {
+    ) -> Result<Worker, (Voice, Box<Fault>)> {
         let made = read().and_then(|run| {
             let background = run.background(&mut voice)?;
             let history = History::of(run, &background, BUDGET)?;
@@ -94,7 +94,7 @@ impl Worker {
         });
         let (background, history) = match made {
             Ok(made) => made,
-            Err(fault) => return Err((voice, fault)),
+            Err(fault) => return Err((voice, Box::new(fault))),
         };
         let triangles = background.mesh.element_count() as u64;
         voice.say(Told::Opened(Arc::new(Opened {
