@@ -62,7 +62,7 @@ pub struct Wanted {
 pub struct Shown {
     pub wanted: Wanted,
     /// How many edges are features of each kind, as [`KINDS`] has them.
-    pub counts: [usize; 6],
+    pub counts: [usize; KINDS.len()],
     /// The charts; none where they are not known yet, or there are none.
     pub division: Option<Arc<Division>>,
     pub scene: Arc<Scene>,
@@ -290,7 +290,7 @@ mod tests {
         });
         let Some(Told::Shown(last)) = last else { panic!("no picture of the last wish") };
         assert_eq!((last.scene.generation, last.division.as_ref().unwrap().charts > 1), (300, true));
-        assert_eq!(last.counts, [0; 6], "no fold is beyond 150 degrees");
+        assert_eq!(last.counts, [0; KINDS.len()], "no fold is beyond 150 degrees");
         assert!(shown < 150, "{shown}");
     }
 

@@ -263,7 +263,7 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
         let (one, several) = match kind {
             Feature::Fold => ("folded edge", "folded edges"),
             Feature::Region => ("edge between regions", "edges between regions"),
-            Feature::Line => ("edge in a named line", "edges in named lines"),
+            Feature::Line => ("edge on a line of the file", "edges on lines of the file"),
             Feature::Boundary => ("edge of the boundary", "edges of the boundary"),
             Feature::Branching => ("edge of three triangles or more", "edges of three triangles or more"),
             Feature::Conflict => ("edge whose triangles disagree", "edges whose triangles disagree"),
