@@ -6,8 +6,9 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
-use super::edges::{Edges, Triangles};
+use super::edges::{Corner, Edge, Edges, Triangles};
 use super::surface::Surface;
+use crate::core::background::cut::Sets;
 use crate::core::background::parity::toggles;
 use crate::core::fault::Fault;
 use crate::core::geometry::predicates::firm;
@@ -51,11 +52,22 @@ impl Surface {
             charts.iter_mut().for_each(|chart| chart.divide([a, b], middle));
         }
         let mut set = TriangleSet::default();
-        let mut number = vec![u32::MAX; points.len()];
+        let corners_of = |chart: &Laid| -> Vec<[u32; 3]> {
+            chart.local.iter().map(|t| t.map(|node| chart.points[node as usize])).collect()
+        };
+        let mut fans = Fans::of(charts.iter().flat_map(corners_of).collect());
+        let mut number = vec![u32::MAX; 3 * fans.triangles.len()];
+        let mut triangle = 0;
         for (k, chart) in charts.iter().enumerate() {
             let first = set.uv.len() as u32;
-            for (&uv, &point) in chart.uv.iter().zip(&chart.points) {
-                let known = &mut number[point as usize];
+            // A corner at which each node stands.
+            let mut stands = vec![0; chart.uv.len()];
+            for t in &chart.local {
+                (0..3).for_each(|corner| stands[t[corner] as usize] = 3 * triangle + corner as u32);
+                triangle += 1;
+            }
+            for ((&uv, &point), corner) in chart.uv.iter().zip(&chart.points).zip(stands) {
+                let known = &mut number[fans.sets.find(corner) as usize];
                 if *known == u32::MAX {
                     *known = set.xyz.len() as u32;
                     set.xyz.push(points[point as usize]);
@@ -75,13 +87,50 @@ impl Surface {
                 set.region.push(k as u32);
             }
         }
-        let numbered = |(ends, line): &([u32; 2], u32)| {
-            let ends = ends.map(|end| number[end as usize]);
-            ends.iter().all(|end| *end != u32::MAX).then(|| (ends.map(PointId), *line))
+        let mut numbered = |&(ends, line): &([u32; 2], u32)| {
+            let at = fans.corners(ends)?;
+            Some((at.map(|corner| PointId(number[fans.sets.find(corner) as usize])), line))
         };
-        set.lines = lines.iter().filter_map(numbered).collect();
+        set.lines = lines.iter().filter_map(&mut numbered).collect();
         Ok((set, divided.len()))
     }
+}
+
+/// Triangles by their points, with the corners held together that fans have around a point: parts that touch in a point only have a
+/// node each there.
+struct Fans {
+    triangles: Vec<[u32; 3]>,
+    edges: Edges,
+    /// Of corners.
+    sets: Sets,
+}
+
+impl Fans {
+    fn of(triangles: Vec<[u32; 3]>) -> Fans {
+        let (edges, sets) = (Edges::of(&triangles), Sets::new(3 * triangles.len()));
+        let mut fans = Fans { triangles, edges, sets };
+        for edge in 0..fans.edges.len() {
+            let Edge { ends, sides } = fans.edges.get(edge);
+            let [first, others] = [&sides[..1], &sides[1..]];
+            for (end, other) in ends.into_iter().flat_map(|end| others.iter().map(move |&other| (end, other))) {
+                let [a, b] = [first[0], other].map(|side| at_end(&fans.triangles, side, end));
+                fans.sets.join(a, b);
+            }
+        }
+        fans
+    }
+
+    /// Corners at the ends of an edge.
+    fn corners(&self, ends: [u32; 2]) -> Option<[u32; 2]> {
+        let side = self.edges.get(self.edges.between(ends)?).sides[0];
+        Some(ends.map(|end| at_end(&self.triangles, side, end)))
+    }
+}
+
+/// The corner at that end of a side.
+fn at_end(triangles: &[[u32; 3]], side: Corner, end: u32) -> Corner {
+    let own = triangles[side as usize / 3][side as usize % 3] == end;
+    if own { side } else { side - side % 3 + (side + 1) % 3 }
 }
 
 fn told(p: DVec3) -> String {
@@ -225,6 +274,23 @@ mod tests {
                 assert_eq!(set.region.iter().filter(|r| **r == chart).count() % 2, 0);
             }
         }
+    }
+
+    #[test]
+    fn plates_that_touch_in_a_corner_have_a_point_each_there() {
+        let (mut mesh, other) = (plate(2, 0.0), plate(2, 0.0));
+        let last = mesh.points.len() as u32 - 1;
+        // The first point of the other one is the last of this one.
+        mesh.points.extend(other.points[1..].iter().map(|p| *p + DVec3::new(1.0, 1.0, 0.0)));
+        mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|k| k + last)));
+        mesh.region.extend(&other.region);
+        mesh.lines = vec![([0, 1], 0), ([last, last + 1], 1)];
+        let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
+        let (set, _) = laid.triangles(&mesh, false).unwrap();
+        assert_eq!((set.xyz.len(), mesh.points.len()), (18, 17));
+        let ends = set.lines.iter().map(|(ends, _)| ends.map(|end| set.xyz[end.index()].truncate()));
+        let [half, one] = [DVec2::new(0.5, 0.0), DVec2::ONE];
+        assert_eq!(ends.collect::<Vec<_>>(), [[DVec2::ZERO, half], [one, one + half]]);
     }
 
     #[test]
