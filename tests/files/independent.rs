@@ -217,15 +217,25 @@ fn ply_is_the_same_mesh_to_the_bare_crate() {
         for vertex in &file.payload["vertex"] {
             found.points.push(["x", "y", "z"].map(|axis| double(&vertex[axis])));
         }
-        for edge in file.payload.get("edge").into_iter().flatten() {
-            found.add(&["vertex1", "vertex2"].map(|end| whole(&edge[end])), &whole(&edge["line"]).to_string());
-        }
         for face in &file.payload["face"] {
             let Property::ListInt(corners) = &face["vertex_indices"] else { panic!("{face:?}") };
             let corners: Vec<u32> = corners.iter().map(|&k| k as u32).collect();
             found.add(&corners, &whole(&face["region"]).to_string());
+            for (k, side) in ["line1", "line2", "line3", "line4"].iter().enumerate() {
+                if let Some(tag) = face.get(*side).map(whole).filter(|tag| *tag != 0) {
+                    let n = corners.len();
+                    assert!(k < n);
+                    found.add(&[corners[k], corners[(k + 1) % n]], &tag.to_string());
+                }
+            }
         }
-        assert_eq!(found, seen(&mesh, &|tag| is_own(&mesh, tag), &|_, tag| tag.to_string()), "{name}");
+        let mut expected = seen(&mesh, &|tag| is_own(&mesh, tag), &|_, tag| tag.to_string());
+        // Lines come face by face, from whichever side.
+        for seen in [&mut found, &mut expected] {
+            seen.lines.iter_mut().for_each(|(ends, _)| ends.sort_unstable());
+            seen.lines.sort_unstable();
+        }
+        assert_eq!(found, expected, "{name}");
         for group in mesh.groups.iter().filter(|group| group.dimension == 2) {
             let comment = format!("region {} {}", group.tag, group.name);
             assert!(file.header.comments.contains(&comment), "{comment}: {:?}", file.header.comments);

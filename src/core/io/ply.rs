@@ -1,6 +1,7 @@
-//! PLY (Stanford): the elements `vertex`, `face` and `edge`, in text or binary; the crate `ply-rs-bw` parses. Tags are the property
-//! `region` of faces and `line` of edges, and names of groups are comments (`comment region 7 left plate`). Deliberately absent: all
-//! other elements and properties, colours and normals among them; triangle strips are counted as skipped.
+//! PLY (Stanford): the elements `vertex` and `face`, in text or binary; the crate `ply-rs-bw` parses. Tags are properties of faces:
+//! `region`, and `line1` to `line4` for lines along their sides (the first from the first corner to the second; 0 for none). Names of
+//! groups are comments (`comment region 7 left plate`). Deliberately absent: all other elements (edges among them, which common
+//! readers refuse) and properties, colours and normals; triangle strips are counted as skipped.
 
 use std::io::{self, Write};
 
@@ -9,6 +10,7 @@ use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
+use rustc_hash::FxHashMap;
 
 use super::mesh_file::{Group, MeshFile, tag_of};
 use super::save::Shortest;
@@ -20,8 +22,10 @@ use crate::core::progress::Pace;
 const AT_A_TIME: usize = 256;
 /// Dimensions of groups and how comments call them.
 const KINDS: [(u8, &str); 2] = [(1, "line"), (2, "region")];
+/// Properties of faces with the tags of lines along their sides.
+const SIDES: [&str; 4] = ["line1", "line2", "line3", "line4"];
 
-/// Reads a mesh from the bytes of a PLY file: points, triangles, quadrilaterals, polygons and lines, with the tags and names that
+/// Reads a mesh from the bytes of a PLY file: points, triangles, quadrilaterals and polygons, with the lines, tags and names that
 /// [`write`](fn@write) writes.
 ///
 /// # Errors
@@ -62,20 +66,6 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                         .map_err(|what| Fault::new(format!("Face {count} {what}")).at(name))
                 })?;
             }
-            "edge" => {
-                let tagged = element.properties.contains_key("line");
-                each(name, &header, element, &mut reader, &mut go_on, |edge: Edge| {
-                    let ends = edge.ends.map(u32::try_from);
-                    let [Ok(a), Ok(b)] = ends else {
-                        return Err(Fault::new(format!("Edge {} lacks a vertex", mesh.lines.len() + 1)).at(name));
-                    };
-                    mesh.lines.push([a, b]);
-                    if tagged {
-                        mesh.line_tags.push(edge.line as u32);
-                    }
-                    Ok(())
-                })?;
-            }
             _ => {
                 each(name, &header, element, &mut reader, &mut go_on, |_: Passed| Ok(()))?;
                 if kind == "tristrips" {
@@ -89,11 +79,9 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         mesh.triangles.as_flattened().iter().chain(mesh.quads.as_flattened()).chain(mesh.polygons.iter().flatten());
     let corners = elements.chain(mesh.lines.as_flattened());
     if let Some(corner) = corners.copied().find(|&corner| corner as usize >= points) {
-        return Err(Fault::new(format!(
-            "A face or edge has the vertex {corner}, and the last one is {}",
-            points as i64 - 1
-        ))
-        .at(name));
+        return Err(
+            Fault::new(format!("A face has the vertex {corner}, and the last one is {}", points as i64 - 1)).at(name)
+        );
     }
     Ok(mesh)
 }
@@ -205,6 +193,7 @@ impl PropertyAccess for Vertex {
 struct Face {
     corners: Vec<i64>,
     region: f64,
+    lines: [f64; 4],
 }
 
 impl PropertyAccess for Face {
@@ -227,7 +216,11 @@ impl PropertyAccess for Face {
                 Some(value) => self.region = value,
                 None => return PropertyAccessResult::UnsupportedType,
             },
-            _ => return PropertyAccessResult::Ignored,
+            _ => {
+                let side = SIDES.iter().position(|side| *side == name);
+                let (Some(side), Some(value)) = (side, number(&value)) else { return PropertyAccessResult::Ignored };
+                self.lines[side] = value;
+            }
         }
         PropertyAccessResult::Set
     }
@@ -237,6 +230,10 @@ impl Face {
     fn into_mesh(self, mesh: &mut MeshFile, tagged: bool) -> Result<(), String> {
         let corners: Option<Vec<u32>> = self.corners.iter().map(|&corner| u32::try_from(corner).ok()).collect();
         let corners = corners.ok_or("has a negative vertex")?;
+        for (k, line) in self.lines.into_iter().enumerate().filter(|(k, line)| *line >= 1.0 && *k < corners.len()) {
+            mesh.lines.push([corners[k], corners[(k + 1) % corners.len()]]);
+            mesh.line_tags.push(line as u32);
+        }
         let tags = match corners[..] {
             [a, b, c] => {
                 mesh.triangles.push([a, b, c]);
@@ -257,30 +254,6 @@ impl Face {
             tags.push(self.region as u32);
         }
         Ok(())
-    }
-}
-
-/// An edge: its ends, -1 where there is none, and its tag.
-struct Edge {
-    ends: [i64; 2],
-    line: f64,
-}
-
-impl PropertyAccess for Edge {
-    fn new() -> Self {
-        Edge { ends: [-1; 2], line: 0.0 }
-    }
-
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        let Some(number) = number(&value) else { return PropertyAccessResult::Ignored };
-        match name {
-            // As any number that is none: the cast bounds it.
-            "vertex1" => self.ends[0] = number as i64,
-            "vertex2" => self.ends[1] = number as i64,
-            "line" => self.line = number,
-            _ => return PropertyAccessResult::Ignored,
-        }
-        PropertyAccessResult::Set
     }
 }
 
@@ -307,7 +280,7 @@ fn number(value: &Property) -> Option<f64> {
 }
 
 /// Writes points, triangles and quadrilaterals as text, in double precision, with the tag of each as `region`; lines that are in a
-/// group of their own as edges, with the tag as `line`; and the names of these groups as comments.
+/// group of their own as tags of the first face's side there; and the names of these groups as comments.
 ///
 /// # Errors
 /// What `out` says.
@@ -323,23 +296,34 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     writeln!(out, "property double x\nproperty double y\nproperty double z")?;
     writeln!(out, "element face {}", mesh.triangles.len() + mesh.quads.len())?;
     writeln!(out, "property list uchar int vertex_indices\nproperty uint region")?;
+    let mut tags_of_sides: FxHashMap<usize, [u32; 4]> = FxHashMap::default();
+    for (&i, side) in lines.iter().zip(mesh.sides_at(&lines)) {
+        if let Some((face, side)) = side {
+            tags_of_sides.entry(face).or_default()[side] = tag_of(&mesh.line_tags, i);
+        }
+    }
     if !lines.is_empty() {
-        let count = lines.len();
-        writeln!(out, "element edge {count}\nproperty int vertex1\nproperty int vertex2\nproperty uint line")?;
+        SIDES.iter().try_for_each(|side| writeln!(out, "property uint {side}"))?;
     }
     writeln!(out, "end_header")?;
+    let tags = |out: &mut dyn Write, face: usize, tag: u32| {
+        write!(out, " {tag}")?;
+        if !lines.is_empty() {
+            let [a, b, c, d] = tags_of_sides.get(&face).copied().unwrap_or_default();
+            write!(out, " {a} {b} {c} {d}")?;
+        }
+        writeln!(out)
+    };
     for p in &mesh.points {
         writeln!(out, "{} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
     }
     for (i, [a, b, c]) in mesh.triangles.iter().enumerate() {
-        writeln!(out, "3 {a} {b} {c} {}", tag_of(&mesh.triangle_tags, i))?;
+        write!(out, "3 {a} {b} {c}")?;
+        tags(out, i, tag_of(&mesh.triangle_tags, i))?;
     }
     for (i, [a, b, c, d]) in mesh.quads.iter().enumerate() {
-        writeln!(out, "4 {a} {b} {c} {d} {}", tag_of(&mesh.quad_tags, i))?;
-    }
-    for i in lines {
-        let [a, b] = mesh.lines[i];
-        writeln!(out, "{a} {b} {}", tag_of(&mesh.line_tags, i))?;
+        write!(out, "4 {a} {b} {c} {d}")?;
+        tags(out, mesh.triangles.len() + i, tag_of(&mesh.quad_tags, i))?;
     }
     Ok(())
 }
