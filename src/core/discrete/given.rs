@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
 use super::edges::{Corner, Edge, Edges, Triangles};
-use super::surface::Surface;
+use super::surface::{Surface, sides};
 use crate::core::background::cut::Sets;
 use crate::core::background::parity::toggles;
 use crate::core::fault::Fault;
@@ -159,45 +159,15 @@ impl Laid {
     }
 }
 
-/// The sides to divide, by the points at their ends, so that every chart has an even number of triangles: of each set of
-/// charts that meet at sides the longest one is at hand.
+/// The sides to divide, by the points at their ends, so that every loop of a chart's border has an even number of sides, and with
+/// that every chart an even number of triangles; where that is no way only the latter.
 fn divide_odd(mesh: &Triangles, charts: &[Chart], split_odd: bool) -> Result<Vec<[u32; 2]>, Fault> {
-    let odd: Vec<bool> = charts.iter().map(|chart| chart.local.len() % 2 == 1).collect();
-    if !odd.contains(&true) {
+    if charts.iter().all(|chart| chart.loops.iter().all(|long| long % 2 == 0)) {
         return Ok(Vec::new());
     }
     let edges = Edges::of(&mesh.triangles);
-    let mut chart_of = vec![0_u32; mesh.triangles.len()];
-    for (number, chart) in charts.iter().enumerate() {
-        chart.triangles.iter().for_each(|&t| chart_of[t as usize] = number as u32);
-    }
-    // The charts that are turned from even to odd by dividing an edge, and the longest such edge.
-    let mut longest: BTreeMap<Vec<u32>, (f64, usize)> = BTreeMap::new();
-    for edge in 0..edges.len() {
-        let edge_at = edges.get(edge);
-        if edge_at.sides.len() == 1 && !split_odd {
-            continue;
-        }
-        let mut at: Vec<u32> = edge_at.sides.iter().map(|&side| chart_of[side as usize / 3]).collect();
-        at.sort_unstable();
-        let turned: Vec<u32> =
-            at.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1).map(|same| same[0]).collect();
-        if turned.is_empty() {
-            continue;
-        }
-        let [a, b] = edge_at.ends.map(|end| mesh.points[end as usize]);
-        let long = a.distance(b);
-        let known = longest.entry(turned).or_insert((long, edge));
-        if long > known.0 {
-            *known = (long, edge);
-        }
-    }
-    let mut rows: Vec<Vec<u32>> = vec![Vec::new(); charts.len()];
-    for (column, turned) in longest.keys().enumerate() {
-        turned.iter().for_each(|&chart| rows[chart as usize].push(column as u32));
-    }
-    let cost: Vec<Option<f64>> = longest.values().map(|(long, _)| Some(1.0 / long.max(f64::MIN_POSITIVE))).collect();
-    let toggled = toggles(&rows, &odd, &cost).map_err(|blamed| {
+    let divided = |rows: &Borders| rows.divided(mesh, &edges, split_odd);
+    divided(&Borders::of_loops(charts, &edges)).or_else(|_| divided(&Borders::of_charts(charts, &edges))).map_err(|blamed| {
         let triangles: usize = blamed.iter().map(|&k| charts[k as usize].local.len()).sum();
         let place = charts[blamed[0] as usize].points[0];
         Fault::new(format!(
@@ -205,13 +175,79 @@ fn divide_odd(mesh: &Triangles, charts: &[Chart], split_odd: bool) -> Result<Vec
         ))
         .at(format!("at {}", told(mesh.points[place as usize])))
         .remedy("Divide one side at its border, or allow that (--split-odd)")
-    })?;
-    Ok(longest
-        .values()
-        .zip(toggled)
-        .filter(|(_, toggled)| *toggled)
-        .map(|((_, edge), _)| edges.get(*edge).ends)
-        .collect())
+    })
+}
+
+/// What is to be made even, with the edges that it runs along.
+struct Borders {
+    odd: Vec<bool>,
+    /// An edge, and what runs along it: ascending, as often as it does.
+    along: Vec<(usize, u32)>,
+}
+
+impl Borders {
+    /// Each loop by itself.
+    fn of_loops(charts: &[Chart], edges: &Edges) -> Borders {
+        let mut borders = Borders { odd: Vec::new(), along: Vec::new() };
+        for chart in charts {
+            for sides in sides(chart) {
+                borders.take(chart, &sides, edges);
+                borders.odd.push(sides.len() % 2 == 1);
+            }
+        }
+        borders.along.sort_unstable();
+        borders
+    }
+
+    /// All loops of a chart together.
+    fn of_charts(charts: &[Chart], edges: &Edges) -> Borders {
+        let mut borders = Borders { odd: Vec::new(), along: Vec::new() };
+        for chart in charts {
+            let sides: Vec<[u32; 2]> = sides(chart).flatten().collect();
+            borders.take(chart, &sides, edges);
+            borders.odd.push(sides.len() % 2 == 1);
+        }
+        borders.along.sort_unstable();
+        borders
+    }
+
+    fn take(&mut self, chart: &Chart, sides: &[[u32; 2]], edges: &Edges) {
+        let number = self.odd.len() as u32;
+        let on = |side: &[u32; 2]| edges.between(side.map(|node| chart.points[node as usize]));
+        self.along.extend(sides.iter().filter_map(on).map(|edge| (edge, number)));
+    }
+
+    /// The edges to divide, by the points at their ends: of all that the same borders run along the longest one is at hand.
+    ///
+    /// # Errors
+    /// The borders that cannot be made even.
+    fn divided(&self, mesh: &Triangles, edges: &Edges, split_odd: bool) -> Result<Vec<[u32; 2]>, Vec<u32>> {
+        // The borders that are turned from even to odd by dividing an edge, and the longest such edge.
+        let mut longest: BTreeMap<Vec<u32>, (f64, usize)> = BTreeMap::new();
+        for at_edge in self.along.chunk_by(|a, b| a.0 == b.0) {
+            let edge = edges.get(at_edge[0].0);
+            let is_turned = |same: &&[(usize, u32)]| same.len() % 2 == 1;
+            let turned: Vec<u32> = at_edge.chunk_by(|a, b| a == b).filter(is_turned).map(|same| same[0].1).collect();
+            if turned.is_empty() || (edge.sides.len() == 1 && !split_odd) {
+                continue;
+            }
+            let [a, b] = edge.ends.map(|end| mesh.points[end as usize]);
+            let long = a.distance(b);
+            let known = longest.entry(turned).or_insert((long, at_edge[0].0));
+            if long > known.0 {
+                *known = (long, at_edge[0].0);
+            }
+        }
+        let mut rows: Vec<Vec<u32>> = vec![Vec::new(); self.odd.len()];
+        for (column, turned) in longest.keys().enumerate() {
+            turned.iter().for_each(|&border| rows[border as usize].push(column as u32));
+        }
+        let cost: Vec<Option<f64>> =
+            longest.values().map(|(long, _)| Some(1.0 / long.max(f64::MIN_POSITIVE))).collect();
+        let toggled = toggles(&rows, &self.odd, &cost)?;
+        let chosen = longest.values().zip(toggled).filter(|(_, toggled)| *toggled);
+        Ok(chosen.map(|((_, edge), _)| edges.get(*edge).ends).collect())
+    }
 }
 
 /// The metric that the triangles themselves imply, at each point: in that of a triangle it is equilateral with sides of length 1. At a
@@ -274,6 +310,20 @@ mod tests {
                 assert_eq!(set.region.iter().filter(|r| **r == chart).count() % 2, 0);
             }
         }
+    }
+
+    #[test]
+    fn every_loop_of_a_ring_is_made_even_not_only_both_together() {
+        let mut mesh = plate(9, 0.02);
+        // A hole of five sides, and a border of 37: a triangle beside it, and one at the rim.
+        mesh.triangles.drain(80..83);
+        mesh.triangles.pop();
+        mesh.region.truncate(mesh.triangles.len());
+        let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
+        assert_eq!(laid.charts[0].loops.iter().map(|long| long % 2).collect::<Vec<_>>(), [1, 1]);
+        assert_eq!(laid.triangles(&mesh, true).unwrap().1, 2);
+        // Where no side of the border may be divided, the count of triangles is even all the same.
+        assert_eq!(laid.triangles(&mesh, false).unwrap().1, 0);
     }
 
     #[test]

@@ -198,7 +198,7 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
 }
 
 /// The sides of a chart's border, loop by loop, each with its first local node.
-fn sides(chart: &Chart) -> impl Iterator<Item = Vec<[u32; 2]>> + '_ {
+pub(super) fn sides(chart: &Chart) -> impl Iterator<Item = Vec<[u32; 2]>> + '_ {
     let mut first = 0;
     chart.loops.iter().map(move |&long| {
         let begin = first;
