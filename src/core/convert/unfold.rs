@@ -22,6 +22,8 @@ use crate::core::progress::Cancel;
 
 /// A quadrilateral with a corner whose sine against the surface is below this is to be mended.
 const FOLDED: f64 = 1e-3;
+/// One below this is flat or turned as any reader sees it. In the slivers of a surface many are between the two whatever is done.
+const FLAT: f64 = 1e-7;
 /// Nodes are moved until the sines around are this large; larger is not better here.
 const ENOUGH: f64 = 0.1;
 /// Steps of a search for a better place, by the metric at the node, and the directions of each.
@@ -215,12 +217,14 @@ impl<'a> Unfolding<'a> {
         mesh.is_quad(e) && self.sine(mesh, e) < FOLDED
     }
 
-    /// How many elements around nodes fold.
-    fn flaws(&self, mesh: &Mesh, nodes: &[NodeId]) -> usize {
+    /// How many elements around nodes are flat or turned, and how many fold.
+    fn flaws(&self, mesh: &Mesh, nodes: &[NodeId]) -> [usize; 2] {
         let mut around: Vec<ElementId> = nodes.iter().flat_map(|&n| mesh.fan(n).map(|h| h.element())).collect();
         around.sort_unstable();
         around.dedup();
-        around.into_iter().filter(|&e| self.folds(mesh, e)).count()
+        let quads = around.into_iter().filter(|&e| mesh.is_quad(e));
+        let sines: Vec<f64> = quads.map(|e| self.sine(mesh, e)).collect();
+        [FLAT, FOLDED].map(|least| sines.iter().filter(|&&sine| sine < least).count())
     }
 
     /// Moves a free node a little, to leave the place of another; whether that folds nothing.
@@ -321,9 +325,13 @@ impl<'a> Unfolding<'a> {
         // Steps by the size that is asked for, then by that of the elements that are there.
         let (from, metric) = (mesh.uv(node), mesh.metric(node));
         let shortest = mesh.neighbours(node).map(|n| metric.norm2(mesh.uv(n) - from)).fold(1.0, f64::min).sqrt();
-        let steps = STEPS.into_iter().chain(STEPS.map(|step| step * shortest));
-        for step in steps {
-            if best >= ENOUGH {
+        for (step, fineness) in [1.0, shortest, 0.02 * shortest, 4e-4 * shortest]
+            .into_iter()
+            .enumerate()
+            .flat_map(|(k, size)| STEPS.map(|step| (step * size, k)))
+        {
+            // The finest ones are for slivers, in which there is no room for others.
+            if best >= if fineness < 2 { ENOUGH } else { FOLDED } {
                 return;
             }
             let (from, metric) = (mesh.uv(node), mesh.metric(node));
