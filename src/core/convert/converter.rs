@@ -328,7 +328,9 @@ impl<'a> Converter<'a> {
         while self.phase != Phase::Done {
             if self.counts.steps.is_multiple_of(TELL) {
                 watch.cancel().check()?;
-                watch.tell(Stage::Convert, 2 * self.counts.formed, total);
+                if !matches!(self.phase, Phase::PostProcess { .. }) {
+                    watch.tell(Stage::Convert, 2 * self.counts.formed, total);
+                }
             }
             if self.phase == (Phase::PostProcess { part: Part::FirstSmoothing }) {
                 watch.tell(Stage::Finish, 0, 0);
