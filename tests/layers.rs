@@ -2,13 +2,15 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec2;
-use quadfront::core::convert::conversion::background;
+use quadfront::core::convert::conversion::{background, convert};
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::Event;
 use quadfront::core::convert::phase::Phase;
 use quadfront::core::fault::Fault;
 use quadfront::core::front::segment::front_level;
 use quadfront::core::io::built_in;
+use quadfront::core::io::export::Export;
+use quadfront::core::mesh::soundness::{Allow, examine};
 use quadfront::core::progress::Nobody;
 
 /// A base segment that was selected: its level, its middle, and the least level that could have been.
@@ -80,4 +82,19 @@ fn a_curve_that_is_not_there_is_refused() {
     case.parameters.set("layered_loops", "hole").unwrap();
     let fault = background(&case, &mut Nobody).unwrap_err().to_string();
     assert!(fault.contains("the case has none"), "{fault}");
+}
+
+#[test]
+fn example_3_converts_with_layers_about_its_openings_and_without() {
+    for layers in ["0", "2"] {
+        let mut case = built_in::named("example3").unwrap().unwrap();
+        case.parameters.set("layers", layers).unwrap();
+        case.parameters.set("layered_loops", "round,oval,slot").unwrap();
+        let done = convert(&case, &mut Nobody).unwrap();
+        let share = done.mesh.element_count() as f64 / done.triangles as f64;
+        assert!((0.42..0.66).contains(&share), "{layers}: {share}");
+        let file = Export::of(&done.mesh, &done.names).file;
+        assert!(file.triangles.is_empty() && done.mesh.folded().is_empty());
+        examine(&file).verdict(Allow::default()).unwrap();
+    }
 }
