@@ -45,18 +45,9 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 texture.places.push(DVec2::new(coordinate(), coordinate()));
             }
             Some(b"f") => {
-                corners.clear();
                 places.clear();
-                for word in words {
-                    let vertex = corner(word, mesh.points.len()).ok_or_else(|| {
-                        s.fault(format!("\"{}\" stands where a vertex of the face is expected", shown(word)))
-                    })?;
-                    if vertex as usize >= largest.0 {
-                        largest = (vertex as usize + 1, s.mark());
-                    }
-                    corners.push(vertex);
-                    places.push(place(word, texture.places.len()));
-                }
+                places.extend(words.clone().map(|word| place(word, texture.places.len())));
+                take_corners(&s, words, mesh.points.len(), "face", &mut largest, &mut corners)?;
                 let tag = names.tag(&mut mesh);
                 match corners[..] {
                     [a, b, c] => {
@@ -83,16 +74,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 line_names.next.clone_from(&names.next);
             }
             Some(b"l") => {
-                corners.clear();
-                for word in words {
-                    let vertex = corner(word, mesh.points.len()).ok_or_else(|| {
-                        s.fault(format!("\"{}\" stands where a vertex of the line is expected", shown(word)))
-                    })?;
-                    if vertex as usize >= largest.0 {
-                        largest = (vertex as usize + 1, s.mark());
-                    }
-                    corners.push(vertex);
-                }
+                take_corners(&s, words, mesh.points.len(), "line", &mut largest, &mut corners)?;
                 let tag = line_names.tag(&mut mesh);
                 for ends in corners.windows(2) {
                     mesh.lines.push([ends[0], ends[1]]);
@@ -146,6 +128,27 @@ impl Names {
         }
         self.now
     }
+}
+
+/// The vertices of a face or line; the largest so far, with the place of its line, grows with them.
+fn take_corners<'w>(
+    s: &Scanner,
+    words: impl Iterator<Item = &'w [u8]>,
+    so_far: usize,
+    of: &str,
+    largest: &mut (usize, usize),
+    corners: &mut Vec<u32>,
+) -> Result<(), Fault> {
+    corners.clear();
+    for word in words {
+        let vertex = corner(word, so_far)
+            .ok_or_else(|| s.fault(format!("\"{}\" stands where a vertex of the {of} is expected", shown(word))))?;
+        if vertex as usize >= largest.0 {
+            *largest = (vertex as usize + 1, s.mark());
+        }
+        corners.push(vertex);
+    }
+    Ok(())
 }
 
 /// The zero-based vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative ones count back from the last vertex so far.
