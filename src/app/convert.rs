@@ -42,7 +42,7 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     write(mesh_target.as_ref(), &quads.file)?;
     if let Some(target) = &destination.picture {
         let options = FigureOptions::default();
-        let frame = quads.frame(options.look(false).layers, options.bearing());
+        let frame = quads.frame(&options.look(false));
         let figure = Figure::of_run(&input.run, &[frame], &options, input.can_be_carried())?;
         output::write_figure(target, &figure)?;
     }

@@ -129,8 +129,8 @@ pub(super) fn make(
     if options.plot.is_some() && wanted.len() > 1 {
         return Err(Fault::new("A histogram is of one state").at("--plot").remedy("Name one stop with --at"));
     }
-    let layers = options.look(wanted.len() > 1).layers;
-    let frames = work::frames(run, wanted, layers, options.bearing(), options.plot.is_some(), watch)?;
+    let look = options.look(wanted.len() > 1);
+    let frames = work::frames(run, wanted, &look, options.plot.is_some(), watch)?;
     Ok((Figure::of_run(run, &frames, options, carries)?, frames))
 }
 

@@ -18,7 +18,7 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
         && let Some(mesh) = input::read_mesh(&source.input, source.from, &mut Progress::new(source.quiet))?
     {
         let picture =
-            Picture { title: source.input.clone(), ..Picture::of_mesh_from(&mesh, arguments.figure.bearing()) };
+            Picture { title: source.input.clone(), ..Picture::of_mesh_by(&mesh, &arguments.figure.look(false)) };
         return output::write_figure(&arguments.out, &Figure::of_mesh(&picture, &arguments.figure));
     }
     let mut progress = Progress::new(source.quiet);

@@ -25,8 +25,7 @@ use crate::core::progress::{Stage, Watch};
 use crate::core::run::births::Births;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{ShownState, fingerprint};
-use crate::render::camera::Bearing;
-use crate::render::look::{Layer, Layers};
+use crate::render::look::{Layer, Look};
 use crate::render::picture::{Picture, Seen};
 
 use super::figure::Wanted;
@@ -69,8 +68,8 @@ pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -
     let frame = {
         let (parameters, phase) = (&case.parameters, &Phase::Select);
         let shown = ShownState { step: 0, at: Some(Stop::Step(0)), state: fingerprint(&mesh, phase) };
-        let seen = Seen { mesh: &mesh, parameters, phase, changed: &[], from: Bearing::Iso };
-        Frame { picture: Picture::of_state(&seen, Layers::default()), shown, statistics: None }
+        let seen = Seen { mesh: &mesh, parameters, phase, changed: &[] };
+        Frame { picture: Picture::of_state(&seen, &Look::default()), shown, statistics: None }
     };
     let mut export = Export::of(&mesh, &names);
     let statistics = Statistics::measure(export.measured(), &sizing)?;
@@ -176,11 +175,11 @@ pub(super) fn convert(
 }
 
 impl Quads {
-    /// The frame of it, for a figure that looks from a side.
-    pub fn frame(&self, layers: Layers, from: Bearing) -> Frame {
+    /// The frame of it, for a figure.
+    pub fn frame(&self, look: &Look) -> Frame {
         let (mesh, parameters, phase) = (&self.mesh, &self.in_force, &self.phase);
-        let seen = Seen { mesh, parameters, phase, changed: &[], from };
-        Frame { picture: Picture::of_state(&seen, layers), shown: self.shown, statistics: None }
+        let seen = Seen { mesh, parameters, phase, changed: &[] };
+        Frame { picture: Picture::of_state(&seen, look), shown: self.shown, statistics: None }
     }
 }
 
@@ -201,14 +200,13 @@ pub(super) struct Frame {
 pub(super) fn frames(
     run: &Run,
     wanted: &[Wanted],
-    layers: Layers,
-    from: Bearing,
+    look: &Look,
     plotted: bool,
     watch: &mut dyn Watch,
 ) -> Result<Vec<Frame>, Fault> {
     let mut frames = Vec::new();
     let mut meshes = Vec::new();
-    let watches_changes = layers.has(Layer::Changed);
+    let watches_changes = look.layers.has(Layer::Changed);
     let converted = conversion::convert_by(&run.case, watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
         if watches_changes {
@@ -223,9 +221,9 @@ pub(super) fn frames(
             converter.note_last_step(&mut changed);
             let (mesh, phase) = (&converter.mesh, converter.phase());
             let (parameters, changed) = (converter.parameters(), changed.elements());
-            let seen = Seen { mesh, parameters, phase, changed, from };
+            let seen = Seen { mesh, parameters, phase, changed };
             let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
-            frames.push(Frame { picture: Picture::of_state(&seen, layers), shown, statistics: None });
+            frames.push(Frame { picture: Picture::of_state(&seen, look), shown, statistics: None });
             if plotted {
                 meshes.push(Export::of(mesh, &Names::default()));
             }

@@ -1,7 +1,9 @@
 //! How a figure looks: ink, ground, what of a state is drawn, and which part of it.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
+use super::camera::Bearing;
 use super::picture::Role;
 
 /// The inks of figures.
@@ -125,6 +127,51 @@ impl Layers {
     }
 }
 
+/// How lines that faces cover are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HiddenLines {
+    /// They are not.
+    #[default]
+    Off,
+    /// Faintly.
+    Faint,
+    /// Nearly as those that are seen.
+    Shown,
+}
+
+impl HiddenLines {
+    /// All of them.
+    pub const ALL: [HiddenLines; 3] = [HiddenLines::Off, HiddenLines::Faint, HiddenLines::Shown];
+
+    /// The next one.
+    pub fn next(self) -> HiddenLines {
+        match self {
+            HiddenLines::Off => HiddenLines::Faint,
+            HiddenLines::Faint => HiddenLines::Shown,
+            HiddenLines::Shown => HiddenLines::Off,
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            HiddenLines::Off => "off",
+            HiddenLines::Faint => "faint",
+            HiddenLines::Shown => "shown",
+        }
+    }
+
+    /// How much is seen of such lines.
+    pub fn share(self) -> f32 {
+        match self {
+            HiddenLines::Off => 0.0,
+            HiddenLines::Faint => 0.2,
+            HiddenLines::Shown => 0.75,
+        }
+    }
+}
+
 /// A part of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
@@ -145,4 +192,8 @@ pub struct Look {
     pub layers: Layers,
     /// The part that is drawn; all where there is none.
     pub part: Option<Part>,
+    /// From where a mesh in space is seen.
+    pub from: Bearing,
+    /// How its covered lines are drawn.
+    pub hidden: HiddenLines,
 }

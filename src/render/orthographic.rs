@@ -1,14 +1,18 @@
-//! Meshes in space as pictures: seen from afar, from a side (slightly from above where none is asked for), what is hidden left out. All areas are drawn (they are
-//! of one colour each), and of every line the parts that no nearer element covers.
+//! Meshes in space as pictures: seen from afar, from a side (slightly from above where none is asked for). Areas (they are
+//! of one colour each) are drawn that are not wholly hidden, and of every line the parts that no nearer element covers; the others are
+//! left out, or drawn more faintly.
 
 use glam::{DVec2, DVec3};
 
 use super::camera::Bearing;
+use super::look::HiddenLines;
 use super::picture::{Line, Picture};
 use crate::core::io::mesh_file::MeshFile;
 
 /// Parts of a line that are judged each for itself.
 const PARTS: usize = 12;
+/// So far from its corners towards its middle an area is asked whether it is hidden.
+const WITHIN: f64 = 0.05;
 
 /// The direction of a view.
 #[derive(Clone, Copy, Debug)]
@@ -63,30 +67,9 @@ pub fn turn_over(picture: &mut Picture) {
     }
 }
 
-/// Leaves out the parts of lines that elements hide; `ends` gives the points in space between which each line runs.
-pub fn hide(picture: &mut Picture, ends: &[[DVec3; 2]], mesh: &MeshFile, view: &View) {
-    let cover = Cover::of(mesh, view);
-    let mut lines = Vec::with_capacity(picture.lines.len());
-    for (line, [a, b]) in picture.lines.iter().zip(ends) {
-        let at = |i: usize| a.lerp(*b, i as f64 / PARTS as f64);
-        let mut begun: Option<usize> = None;
-        for i in 0..=PARTS {
-            let seen = i < PARTS && !cover.hides(at(i).midpoint(at(i + 1)), view);
-            match (begun, seen) {
-                (None, true) => begun = Some(i),
-                (Some(from), false) => {
-                    lines.push(Line { ends: [view.place(at(from)), view.place(at(i))], ..line.clone() });
-                    begun = None;
-                }
-                _ => {}
-            }
-        }
-    }
-    picture.lines = lines;
-}
-
-/// The elements as triangles in the picture, by the cells of a grid.
-struct Cover {
+/// The elements of a mesh as triangles in the picture, by the cells of a grid: what hides what.
+pub struct Cover {
+    view: View,
     triangles: Vec<[DVec3; 3]>,
     cells: Vec<Vec<u32>>,
     low: DVec2,
@@ -98,7 +81,8 @@ struct Cover {
 }
 
 impl Cover {
-    fn of(mesh: &MeshFile, view: &View) -> Cover {
+    /// What the elements of a mesh hide, seen from a side.
+    pub fn of(mesh: &MeshFile, view: View) -> Cover {
         let at = |n: u32| {
             let p = mesh.points[n as usize];
             view.place(p).extend(view.depth(p))
@@ -113,6 +97,7 @@ impl Cover {
         let cell = (extent.x * extent.y / (triangles.len().max(1) as f64)).sqrt().max(1e-3 * extent.max_element());
         let (columns, rows) = ((extent.x / cell) as usize + 1, (extent.y / cell) as usize + 1);
         let mut cover = Cover {
+            view,
             triangles,
             cells: vec![Vec::new(); columns * rows],
             low: low.truncate(),
@@ -134,14 +119,51 @@ impl Cover {
         cover
     }
 
+    /// From where it is seen.
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// Leaves out the areas that are wholly hidden, where there is one of each triangle and quadrilateral of the mesh in turn.
+    pub fn hide_areas(&self, picture: &mut Picture, mesh: &MeshFile) {
+        let elements = mesh.triangles.iter().map(|t| &t[..]).chain(mesh.quads.iter().map(|q| &q[..]));
+        let mut shows = elements.map(|nodes| {
+            let places = || nodes.iter().map(|&n| mesh.points[n as usize]);
+            let middle = places().sum::<DVec3>() / nodes.len() as f64;
+            // A corner may be hidden by its neighbours: what lies a little within is asked for.
+            !places().map(|p| p.lerp(middle, WITHIN)).chain([middle]).all(|p| self.hides(p))
+        });
+        picture.areas.retain(|_| shows.next().unwrap_or(true));
+    }
+
+    /// Leaves out the parts of lines that elements hide, or marks them as hidden; `ends` gives the points in space between which
+    /// each line runs.
+    pub fn hide_lines(&self, picture: &mut Picture, ends: &[[DVec3; 2]], hidden: HiddenLines) {
+        let mut lines = Vec::with_capacity(picture.lines.len());
+        for (line, [a, b]) in picture.lines.iter().zip(ends) {
+            let at = |i: usize| a.lerp(*b, i as f64 / PARTS as f64);
+            let is_hidden: [bool; PARTS] = std::array::from_fn(|i| self.hides(at(i).midpoint(at(i + 1))));
+            let mut from = 0;
+            for same in is_hidden.chunk_by(|a, b| a == b) {
+                let to = from + same.len();
+                if !same[0] || hidden != HiddenLines::Off {
+                    let ends = [from, to].map(|i| self.view.place(at(i)));
+                    lines.push(Line { ends, hidden: same[0], ..line.clone() });
+                }
+                from = to;
+            }
+        }
+        picture.lines = lines;
+    }
+
     fn cell_of(&self, p: DVec2) -> (usize, usize) {
         let q = ((p - self.low) / self.cell).floor().max(DVec2::ZERO);
         ((q.x as usize).min(self.columns - 1), (q.y as usize).min(self.rows - 1))
     }
 
     /// Whether an element lies before the point.
-    fn hides(&self, p: DVec3, view: &View) -> bool {
-        let (place, depth) = (view.place(p), view.depth(p));
+    fn hides(&self, p: DVec3) -> bool {
+        let (place, depth) = (self.view.place(p), self.view.depth(p));
         let (column, row) = self.cell_of(place);
         self.cells[row * self.columns + column].iter().any(|&t| {
             let [a, b, c] = self.triangles[t as usize];
@@ -181,16 +203,21 @@ mod tests {
             ..MeshFile::default()
         };
         let line = |z: f64| [corner(-2.0, 2.0, z), corner(2.0, 2.0, z)];
-        let drawn = |z: f64| {
+        let drawn = |z: f64, hidden: HiddenLines| {
             let ends = line(z);
-            let one = Line { role: Role::DeadEdge, ends: ends.map(|p| view.place(p)), room: 1.0 };
+            let one = Line { role: Role::DeadEdge, ends: ends.map(|p| view.place(p)), room: 1.0, hidden: false };
             let mut picture = Picture { lines: vec![one], ..Picture::default() };
-            hide(&mut picture, &[ends], &mesh, &view);
+            Cover::of(&mesh, view).hide_lines(&mut picture, &[ends], hidden);
             picture.lines
         };
-        assert_eq!(drawn(1.0).len(), 1);
-        let behind = drawn(-1.0);
+        for hidden in HiddenLines::ALL {
+            assert_eq!(drawn(1.0, hidden).len(), 1);
+        }
+        let behind = drawn(-1.0, HiddenLines::Off);
         assert_eq!(behind.len(), 1);
         assert!((behind[0].ends[1].x).abs() < 0.2, "{behind:?}");
+        let faint = drawn(-1.0, HiddenLines::Faint);
+        assert_eq!(faint.iter().map(|line| line.hidden).collect::<Vec<_>>(), [false, true]);
+        assert_eq!((&faint[0], faint[1].ends[0]), (&behind[0], behind[0].ends[1]));
     }
 }

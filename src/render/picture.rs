@@ -3,10 +3,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::camera::Bearing;
-use super::orthographic::{self, View};
+use super::orthographic::{self, Cover, View};
 
-use super::look::{Layer, Layers};
+use super::look::{Layer, Layers, Look};
 use super::number;
 use super::scene::Decision;
 use crate::core::convert::parameters::Parameters;
@@ -87,6 +86,8 @@ pub struct Line {
     pub ends: [DVec2; 2],
     /// The least height over this line of the elements beside it, in the units of the mesh: how much room it has.
     pub room: f64,
+    /// Whether elements cover it.
+    pub hidden: bool,
 }
 
 /// A mark of constant size on the page; what has no room there is left out.
@@ -163,8 +164,6 @@ pub struct Seen<'a> {
     pub phase: &'a Phase,
     /// What the last step changed.
     pub changed: &'a [ElementId],
-    /// From where it is looked at, where it is in space.
-    pub from: Bearing,
 }
 
 /// One side of an element on its way to a line.
@@ -180,20 +179,26 @@ impl Picture {
     ///
     /// An edge is of the boundary where one element has it or where the mesh has a line there.
     pub fn of_mesh(mesh: &MeshFile) -> Picture {
-        Picture::of_mesh_from(mesh, Bearing::Iso)
+        Picture::of_mesh_by(mesh, &Look::default())
     }
 
-    /// The same from another side, where the mesh is in space.
-    pub fn of_mesh_from(mesh: &MeshFile, from: Bearing) -> Picture {
+    /// The same as a look has it, where the mesh is in space.
+    pub fn of_mesh_by(mesh: &MeshFile, look: &Look) -> Picture {
+        Picture::with_cover(mesh, look).0
+    }
+
+    /// The same, and what covers what where it is in space.
+    fn with_cover(mesh: &MeshFile, look: &Look) -> (Picture, Option<Cover>) {
         if orthographic::is_flat(mesh) {
-            return Picture::as_it_lies(mesh).0;
+            return (Picture::as_it_lies(mesh).0, None);
         }
-        let view = View::from(from);
-        let (mut picture, edges) = Picture::as_it_lies(&orthographic::flattened(mesh, &view));
+        let cover = Cover::of(mesh, View::from(look.from));
+        let (mut picture, edges) = Picture::as_it_lies(&orthographic::flattened(mesh, cover.view()));
         let ends: Vec<[DVec3; 2]> = edges.iter().map(|e| e.map(|n| mesh.points[n as usize])).collect();
         orthographic::turn_over(&mut picture);
-        orthographic::hide(&mut picture, &ends, mesh, &view);
-        picture
+        cover.hide_areas(&mut picture, mesh);
+        cover.hide_lines(&mut picture, &ends, look.hidden);
+        (picture, Some(cover))
     }
 
     /// The picture of a mesh in the plane, and the nodes of each line.
@@ -229,7 +234,7 @@ impl Picture {
             let highest = same.iter().map(|s| s.role).max().expect("a chunk is never empty");
             let role = if same.len() == 1 { Role::Boundary } else { highest };
             let room = same.iter().map(|s| s.room).fold(f64::INFINITY, f64::min);
-            picture.lines.push(Line { role, ends: same[0].edge.map(at), room });
+            picture.lines.push(Line { role, ends: same[0].edge.map(at), room, hidden: false });
             edges.push(same[0].edge);
         }
         (picture, edges)
@@ -237,25 +242,23 @@ impl Picture {
 
     /// The picture of a conversion on surfaces: the mesh, over it the front by the classes of table 1 and the base segment. Marks are
     /// drawn in planar domains only.
-    fn of_state_in_space(seen: &Seen<'_>, layers: Layers) -> Picture {
-        let Seen { mesh, parameters, phase, from, .. } = *seen;
+    fn of_state_in_space(seen: &Seen<'_>, look: &Look) -> Picture {
+        let Seen { mesh, parameters, phase, .. } = *seen;
         let file = Export::of(mesh, &Names::default()).file;
-        let mut picture = Picture::of_mesh_from(&file, from);
+        let (mut picture, cover) = Picture::with_cover(&file, look);
         let base = Decision::of(phase).base.and_then(|[a, b]| mesh.front_between(a, b));
-        // Seen like the mesh itself.
-        let view = if orthographic::is_flat(&file) { None } else { Some(View::from(from)) };
         let (mut front, mut space) = (Picture::default(), Vec::new());
         for h in mesh.front() {
             let segment = Segment::measure(mesh, h, parameters);
-            let is_base = base == Some(h) && layers.has(Layer::Decision);
+            let is_base = base == Some(h) && look.layers.has(Layer::Decision);
             let role = if is_base { Role::Base } else { Role::Front(segment.class) };
             let in_space = [segment.a, segment.b].map(|n| mesh.xyz(n));
-            let ends = in_space.map(|p| view.map_or(p.truncate(), |view| view.place(p)));
-            front.lines.push(Line { role, ends, room: f64::INFINITY });
+            let ends = in_space.map(|p| cover.as_ref().map_or(p.truncate(), |cover| cover.view().place(p)));
+            front.lines.push(Line { role, ends, room: f64::INFINITY, hidden: false });
             space.push(in_space);
         }
-        if let Some(view) = &view {
-            orthographic::hide(&mut front, &space, &file, view);
+        if let Some(cover) = &cover {
+            cover.hide_lines(&mut front, &space, look.hidden);
         }
         picture.lines.append(&mut front.lines);
         picture
@@ -263,10 +266,10 @@ impl Picture {
 
     /// The picture of a conversion at some step: the mesh, over it the front by the classes of table 1, the quadrilateral in
     /// the making, and the marks that are asked for.
-    pub fn of_state(seen: &Seen<'_>, layers: Layers) -> Picture {
-        let Seen { mesh, parameters, phase, changed, .. } = *seen;
+    pub fn of_state(seen: &Seen<'_>, look: &Look) -> Picture {
+        let (Seen { mesh, parameters, phase, changed }, layers) = (*seen, look.layers);
         if mesh.ground().is_some() {
-            return Picture::of_state_in_space(seen, layers);
+            return Picture::of_state_in_space(seen, look);
         }
         let mut picture = Picture::of_mesh(&Export::of(mesh, &Names::default()).file);
         if layers.has(Layer::Changed) {
@@ -294,7 +297,7 @@ impl Picture {
 
     fn add_line(&mut self, mesh: &Mesh, role: Role, ends: [NodeId; 2]) {
         if ends.iter().all(|n| mesh.has_node(*n)) {
-            self.lines.push(Line { role, ends: ends.map(|n| mesh.uv(n)), room: f64::INFINITY });
+            self.lines.push(Line { role, ends: ends.map(|n| mesh.uv(n)), room: f64::INFINITY, hidden: false });
         }
     }
 
@@ -420,11 +423,11 @@ mod tests {
         let phase = Phase::Defer { base };
         let parameters = Parameters::default();
         let changed = [ElementId(0), ElementId(9)];
-        let seen = Seen { mesh: &mesh, parameters: &parameters, phase: &phase, changed: &changed, from: Bearing::Iso };
+        let seen = Seen { mesh: &mesh, parameters: &parameters, phase: &phase, changed: &changed };
         let mut layers = Layers::usual(Ink::Grey, false);
         layers.set(Layer::Changed, true);
         layers.set(Layer::H, true);
-        let picture = Picture::of_state(&seen, layers);
+        let picture = Picture::of_state(&seen, &Look { layers, ..Look::default() });
         let count = |role| picture.lines.iter().filter(|l| l.role == role).count();
         assert_eq!(
             (count(Role::Front(1)), count(Role::Base), count(Role::LiveEdge), count(Role::Boundary)),

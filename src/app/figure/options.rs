@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::core::fault::Fault;
 use crate::core::run::shown::Shown;
 use crate::render::camera::Bearing;
-use crate::render::look::{Ink, Layer, Layers, Look, Part};
+use crate::render::look::{HiddenLines, Ink, Layer, Layers, Look, Part};
 use crate::render::vector::svg::{COLUMN, MILLIMETRE, PAGE, Sheet};
 
 /// Dots an inch of line art in print, and of screens.
@@ -148,6 +148,12 @@ fn ink(text: &str) -> Result<Ink, String> {
     }
 }
 
+/// How hidden lines are drawn, by name.
+fn hidden_lines(text: &str) -> Result<HiddenLines, String> {
+    let found = HiddenLines::ALL.into_iter().find(|hidden| hidden.name() == text);
+    found.ok_or_else(|| "write off, faint or shown".to_owned())
+}
+
 /// Bearings by name.
 fn bearing(text: &str) -> Result<Bearing, String> {
     Bearing::parse(text).ok_or_else(|| "write iso, x, y, z, or degrees AZ,EL such as 33,27".to_owned())
@@ -188,6 +194,9 @@ pub(in crate::app) struct FigureOptions {
     /// turned by so many
     #[arg(long, value_name = "iso|x|y|z|AZ,EL[,ROLL]", value_parser = bearing, allow_hyphen_values = true)]
     pub view: Option<Bearing>,
+    /// Lines of a mesh in space that its elements cover: off, faint or shown
+    #[arg(long, value_name = "off|faint|shown", value_parser = hidden_lines)]
+    pub hidden: Option<HiddenLines>,
     /// Frames side by side in a strip: 4, and rows of equal length
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=26))]
     pub columns: Option<u32>,
@@ -216,6 +225,7 @@ impl FigureOptions {
             self.plot.map(|plot| format!("--plot={}", plots(plot))),
             self.part.map(|words| format!("--part={}", part(words))),
             self.view.map(|side| format!("--view={side}")),
+            self.hidden.map(|hidden| format!("--hidden={}", hidden.name())),
             self.columns.map(|columns| format!("--columns={columns}")),
         ];
         words.into_iter().flatten().collect()
@@ -246,6 +256,7 @@ impl FigureOptions {
             plot: own.plot.or(theirs.plot),
             part: own.part.or(theirs.part),
             view: own.view.or(theirs.view),
+            hidden: own.hidden.or(theirs.hidden),
             columns: own.columns.or(theirs.columns),
         })
     }
@@ -259,12 +270,9 @@ impl FigureOptions {
             transparent: self.transparent.unwrap_or(false),
             layers: self.layers.as_ref().map_or(usual, |words| words.over(usual)),
             part: self.part.map(|words| words.0),
+            from: self.view.unwrap_or_default(),
+            hidden: self.hidden.unwrap_or_default(),
         }
-    }
-
-    /// From where a mesh in space is seen.
-    pub fn bearing(&self) -> Bearing {
-        self.view.unwrap_or_default()
     }
 
     /// Dots an inch.
@@ -297,7 +305,7 @@ mod tests {
             "--size=1920 --ink=colour --transparent=false --layers=none --part=-0.5,1e-7,0.25",
             "--size=84.5mm --layers=live,front",
             "--view=-30,27.5,4 --part=0,0,3",
-            "--view=x",
+            "--view=x --hidden=faint",
         ] {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
             let options = FigureOptions::from_words(&words).unwrap();
@@ -312,6 +320,7 @@ mod tests {
             "--layers=lives",
             "--view=w",
             "--view=0,91",
+            "--hidden=no",
             "a",
             "--out=b",
         ] {

@@ -20,7 +20,7 @@ use crate::core::progress::Nobody;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{Shown, ShownState, fingerprint};
 use crate::render::camera::Bearing;
-use crate::render::look::{Ink, Layer, Layers, Part};
+use crate::render::look::{HiddenLines, Ink, Layer, Layers, Part};
 use crate::render::orthographic::View;
 use crate::render::picture::{Picture, Seen};
 
@@ -147,7 +147,7 @@ impl Figures {
     }
 
     /// The options of the command line that say the same.
-    fn options(&self, part: Option<(Part, f64)>, view: Option<Bearing>) -> Result<FigureOptions, Fault> {
+    fn options(&self, part: Option<(Part, f64)>, view: Option<(Bearing, HiddenLines)>) -> Result<FigureOptions, Fault> {
         let wrong = |what: String| Fault::new(format!("The size of the figure is not understood: {what}"));
         let text = self.size.trim();
         let mut size: Option<Size> = if text.is_empty() { None } else { Some(text.parse().map_err(wrong)?) };
@@ -175,7 +175,8 @@ impl Figures {
             layers: (!self.changed.is_empty()).then(|| LayerWords::exactly(layers)),
             plot,
             part: part.map(|part| PartWords(part.0)),
-            view,
+            view: view.map(|view| view.0),
+            hidden: view.map(|view| view.1).filter(|hidden| *hidden != HiddenLines::Off),
             columns: None,
         })
     }
@@ -212,7 +213,7 @@ impl State {
             let centre = side.map_or(camera.centre.truncate(), |side| View::from(side).place(camera.centre));
             (Part { centre, height: size.y / camera.points_per_unit() }, size.y / size.x)
         });
-        let planned = self.figures.options(part, side).and_then(|options| {
+        let planned = self.figures.options(part, side.map(|side| (side, self.space.hidden))).and_then(|options| {
             let strip = self.figures.is_strip();
             let wanted = if strip { Some(self.figures.wanted(&self.kept.bookmarks)?) } else { None };
             Ok((options, wanted))
@@ -282,13 +283,12 @@ fn shown(moment: &Moment) -> ShownState {
 /// The figure of the state at hand.
 fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &FigureOptions) -> Result<Figure, Fault> {
     let Moment { mesh, parameters, phase, just_changed, .. } = moment.as_ref();
-    let seen = Seen { mesh, parameters, phase, changed: just_changed, from: options.bearing() };
+    let seen = Seen { mesh, parameters, phase, changed: just_changed };
     let statistics = match options.plot {
         Some(_) => Some(work::statistics(&Export::of(mesh, &Names::default()), &opened.background.sizing)?),
         None => None,
     };
-    let frame =
-        Frame { picture: Picture::of_state(&seen, options.look(false).layers), shown: shown(moment), statistics };
+    let frame = Frame { picture: Picture::of_state(&seen, &options.look(false)), shown: shown(moment), statistics };
     Figure::of_run(run, &[frame], options, true)
 }
 

@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::apply::layer;
-use super::state::{HiddenLines, Place, State};
+use super::state::{Place, State};
 use crate::core::fault::Fault;
 use crate::core::io::save;
+use crate::render::look::HiddenLines;
 use crate::render::scene::{ColourBy, Layers};
 
 /// The version of the file.

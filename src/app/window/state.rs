@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-pub use space::{HiddenLines, InSpace, Place};
+pub use space::{InSpace, Place};
 
 use super::autosave::Autosave;
 use super::figures::Figures;

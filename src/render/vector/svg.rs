@@ -11,7 +11,7 @@ use self::marks::Marks;
 use self::page::{Page, Path};
 use crate::render::look::{Layer, Look, Part};
 use crate::render::palette::{CROWDED, HATCH, THIN, figure};
-use crate::render::picture::{Picture, Role};
+use crate::render::picture::{Line, Picture, Role};
 
 /// Points in a millimetre.
 pub const MILLIMETRE: f64 = 72.0 / 25.4;
@@ -142,9 +142,10 @@ fn draw(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, number: 
     if clip {
         page.clip(number, frame.left_top, frame.size);
     }
-    for role in Role::ALL.into_iter().filter(|role| look.layers.has(Layer::of(*role))) {
-        areas(page, picture, frame, look, role);
-        lines(page, picture, frame, look, role);
+    let roles = || Role::ALL.into_iter().filter(|role| look.layers.has(Layer::of(*role)));
+    roles().for_each(|role| areas(page, picture, frame, look, role));
+    for hidden in [true, false] {
+        roles().for_each(|role| lines(page, picture, frame, look, role, hidden));
     }
     Marks::new(page, frame, look).draw(&picture.marks);
     if clip {
@@ -165,22 +166,24 @@ fn areas(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: R
     page.path(&path, &format!("fill=\"{fill}\""));
 }
 
-fn lines(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: Role) {
+/// The lines of a role, those that are covered or those that are not.
+fn lines(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: Role, hidden: bool) {
     let style = figure(role, look.ink);
     let Some(stroke) = style.stroke else { return };
     let (cap, dash) = match style.dash {
         Some([on, off]) => ("butt", format!(" stroke-dasharray=\"{on} {off}\"")),
         None => ("round", String::new()),
     };
+    let opacity = if hidden { format!(" stroke-opacity=\"{}\"", look.hidden.share()) } else { String::new() };
     for (crowded, width) in [(true, THIN.min(style.width)), (false, style.width)] {
         let mut path = Path::default();
         // The boundary keeps its width: it is what a reader orients by.
         let thin = |room: f64| role != Role::Boundary && room * frame.scale < CROWDED;
-        let here = |l: &&crate::render::picture::Line| l.role == role && thin(l.room) == crowded;
+        let here = |l: &&Line| l.role == role && l.hidden == hidden && thin(l.room) == crowded;
         for line in picture.lines.iter().filter(here).filter(|l| frame.sees(&l.ends)) {
             path.walk(line.ends.iter().map(|p| frame.place(*p)), false);
         }
-        let stroke = format!("stroke=\"{stroke}\" stroke-width=\"{width}\" stroke-linecap=\"{cap}\"{dash}");
+        let stroke = format!("stroke=\"{stroke}\" stroke-width=\"{width}\" stroke-linecap=\"{cap}\"{dash}{opacity}");
         page.path(&path, &format!("fill=\"none\" {stroke}"));
     }
 }

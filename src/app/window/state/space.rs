@@ -4,6 +4,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::render::camera::Camera;
+use crate::render::look::HiddenLines;
 use crate::render::scene::Form;
 
 /// Where the main view shows a mesh on surfaces.
@@ -35,48 +36,6 @@ impl Place {
     /// Space where it is the plane, and the plane where it is not.
     pub fn toggled(self) -> Place {
         if self == Place::Plane { Place::Space } else { Place::Plane }
-    }
-}
-
-/// How lines that faces cover are drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum HiddenLines {
-    /// They are not.
-    #[default]
-    Off,
-    /// Faintly.
-    Faint,
-    /// Nearly as those that are seen.
-    Shown,
-}
-
-impl HiddenLines {
-    /// The next one.
-    pub fn next(self) -> HiddenLines {
-        match self {
-            HiddenLines::Off => HiddenLines::Faint,
-            HiddenLines::Faint => HiddenLines::Shown,
-            HiddenLines::Shown => HiddenLines::Off,
-        }
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            HiddenLines::Off => "off",
-            HiddenLines::Faint => "faint",
-            HiddenLines::Shown => "shown",
-        }
-    }
-
-    /// How much is seen of such lines.
-    pub fn share(self) -> f32 {
-        match self {
-            HiddenLines::Off => 0.0,
-            HiddenLines::Faint => 0.2,
-            HiddenLines::Shown => 0.75,
-        }
     }
 }
 

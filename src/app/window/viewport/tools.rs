@@ -3,9 +3,10 @@
 use eframe::egui::{Align, Frame, Layout, Margin, Rect, RichText, Role, Ui, UiBuilder, Vec2, WidgetInfo};
 
 use crate::app::window::command::Command;
-use crate::app::window::state::{HiddenLines, Place, State};
+use crate::app::window::state::{Place, State};
 use crate::app::window::theme::{self, ink};
 use crate::render::camera::Bearing;
+use crate::render::look::HiddenLines;
 use crate::render::palette::Palette;
 
 /// Shows the buttons in the upper right corner.
