@@ -28,6 +28,8 @@ pub struct Counting {
     pub quads: Count,
     /// Polygons of five corners and more.
     pub polygons: Count,
+    /// Whether all kinds of elements are counted in one row.
+    pub in_one_row: bool,
 }
 
 impl Default for Count {
@@ -78,7 +80,7 @@ impl Counting {
     /// How a file counts that begins at 0.
     pub fn from_zero() -> Counting {
         let zero = || Count::From(0);
-        Counting { points: zero(), triangles: zero(), quads: zero(), polygons: zero() }
+        Counting { points: zero(), triangles: zero(), quads: zero(), polygons: zero(), in_one_row: true }
     }
 }
 
@@ -96,7 +98,7 @@ impl MeshFile {
     }
 
     /// What elements are called, by their places among triangles, quadrilaterals and polygons: "triangle 7", "triangles 3, 7 and 9",
-    /// "triangles 3, 7, 9, 10, 12 and 40 more".
+    /// "triangles 3, 7, 9, 10, 12 and 40 more"; "element 7" where several kinds are counted in one row.
     pub fn elements_told(&self, places: &[u32]) -> String {
         let mut places = places.to_vec();
         places.sort_unstable();
@@ -109,14 +111,18 @@ impl MeshFile {
             }
             place => (["polygon", "polygons"], &self.counting.polygons, place - triangles - quads),
         };
-        let told: Vec<String> = places
-            .chunk_by(|&a, &b| kind(a).0 == kind(b).0)
-            .map(|alike| {
-                let (words, count, _) = kind(alike[0]);
-                things_told(words, count, alike.iter().map(|&place| kind(place).2))
-            })
-            .collect();
-        told.join(" and ")
+        let alike = |&a: &u32, &b: &u32| kind(a).0 == kind(b).0;
+        let number = |&place: &u32| {
+            let (_, count, index) = kind(place);
+            count.number(index as usize)
+        };
+        let kinds = [triangles, quads, self.polygons.len()].iter().filter(|n| **n > 0).count();
+        if self.counting.in_one_row && kinds > 1 {
+            places.sort_by_key(number);
+            return things_told(["element", "elements"], places.len(), places.iter().filter_map(number));
+        }
+        let told = places.chunk_by(alike).map(|of| things_told(kind(of[0]).0, of.len(), of.iter().filter_map(number)));
+        told.collect::<Vec<_>>().join(" and ")
     }
 
     /// What points are called: "point 7", "points 3, 7 and 9".
@@ -124,13 +130,13 @@ impl MeshFile {
         let mut points = points.to_vec();
         points.sort_unstable();
         points.dedup();
-        things_told(["point", "points"], &self.counting.points, points.iter().map(|&point| point as usize))
+        let numbers = points.iter().filter_map(|&point| self.counting.points.number(point as usize));
+        things_told(["point", "points"], points.len(), numbers)
     }
 }
 
-fn things_told([one, several]: [&str; 2], count: &Count, indices: impl ExactSizeIterator<Item = usize>) -> String {
-    let all = indices.len();
-    let numbers: Vec<String> = indices.take(TOLD).filter_map(|i| count.number(i)).map(|n| n.to_string()).collect();
+fn things_told([one, several]: [&str; 2], all: usize, numbers: impl Iterator<Item = u64>) -> String {
+    let numbers: Vec<String> = numbers.take(TOLD).map(|n| n.to_string()).collect();
     match (&numbers[..], all - numbers.len()) {
         ([], 1) => format!("a {one}"),
         ([], n) => format!("{n} {several}"),
@@ -152,15 +158,18 @@ mod tests {
             polygons: vec![vec![0; 5]],
             ..MeshFile::default()
         };
+        assert_eq!(file.origins()[8..], [8, 9, 10, 10, 11, 11, 12, 12, 12]);
         assert_eq!(file.elements_told(&[6]), "triangle 7");
         assert_eq!(file.elements_told(&[4, 2, 2]), "triangles 3 and 5");
         assert_eq!(file.elements_told(&[0, 1, 2, 3, 4, 5, 6]), "triangles 1, 2, 3, 4, 5 and 2 more");
         assert_eq!(file.elements_told(&[9, 11, 12]), "triangle 10 and quadrilateral 2 and polygon 1");
+        (file.counting.quads, file.counting.in_one_row) = (Count::From(40), true);
+        assert_eq!(file.elements_told(&[9, 11]), "elements 10 and 41");
+        (file.quads, file.polygons) = (Vec::new(), Vec::new());
         file.counting.triangles = Count::of(&[5, 6, 9]);
         assert_eq!(file.elements_told(&[0, 2]), "triangles 5 and 9");
         file.counting.points = Count::Nothing;
         assert_eq!((file.points_told(&[4]), file.points_told(&[4, 5])), ("a point".into(), "2 points".into()));
-        assert_eq!(file.origins()[8..], [8, 9, 10, 10, 11, 11, 12, 12, 12]);
     }
 
     #[test]

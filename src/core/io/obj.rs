@@ -93,6 +93,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         let what = format!("A face or line has the vertex {}, and there are {}", largest.0, mesh.points.len());
         return Err(s.fault_at(largest.1, what));
     }
+    mesh.counting.in_one_row = true;
     mesh.texture = texture.of_all(&mesh);
     let has = |dimension| mesh.groups.iter().any(|group| group.dimension == dimension);
     let (faces, lines) = (has(2), has(1));

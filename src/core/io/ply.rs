@@ -75,6 +75,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
             }
         }
     }
+    mesh.counting.in_one_row = true;
     mesh.counting.points = Count::From(0);
     let points = mesh.points.len();
     let elements =

@@ -179,6 +179,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     }
     sort_by_number(&mut triangle_numbers, &mut mesh.triangles, &mut []);
     sort_by_number(&mut quad_numbers, &mut mesh.quads, &mut []);
+    mesh.counting.in_one_row = true;
     mesh.counting.points = Count::of(&node_numbers);
     (mesh.counting.triangles, mesh.counting.quads) = (Count::of(&triangle_numbers), Count::of(&quad_numbers));
     sets.into_groups(&mut mesh, &triangle_numbers, &quad_numbers);
