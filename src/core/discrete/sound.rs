@@ -1,12 +1,12 @@
 //! Triangles of a file made fit to be a surface: what can be mended for certain is mended and told; what is no mesh is refused.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 
 use glam::DVec3;
 
 use super::edges::{Edges, Groups, Triangles};
 use super::lines::on_edges;
-use super::refuse::{crossed, far_away, one_sided, overlapping, used_points};
+use super::refuse::{LARGEST, crossed, far_away, one_sided, overlapping, used_points};
 use crate::core::background::import::is_plane;
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
@@ -128,6 +128,18 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
         "lines are on no edges of the mesh and were left out",
     );
     Ok(Sound { mesh, regions, lines, copied, repairs })
+}
+
+/// The triangles of a file as they are, to be shown where it is refused; without those that have no place.
+pub fn as_given(file: &MeshFile) -> Triangles {
+    let mut mesh = Triangles { origin: file.origins(), ..Triangles::default() };
+    let (file, _) = file.clone().triangulated();
+    (mesh.points, mesh.triangles) = (file.points, file.triangles);
+    let is_there = |k: &u32| mesh.points.get(*k as usize).is_some_and(|p| p.abs().max_element() <= LARGEST);
+    let keep: Vec<bool> = mesh.triangles.iter().map(|t| t.iter().all(is_there)).collect();
+    mesh.region = vec![0; mesh.triangles.len()];
+    mesh.keep(&keep);
+    mesh
 }
 
 impl Triangles {
@@ -288,16 +300,29 @@ impl Triangles {
             turned[first] = Some(false);
             let mut part = vec![first];
             let mut next = 0;
-            while next < part.len() {
+            // Where neighbours disagree is crossed last: in a part with one side they do so there and nowhere else.
+            let mut later: VecDeque<(usize, usize)> = VecDeque::new();
+            loop {
+                if next == part.len() {
+                    let Some((t, other)) = later.pop_front() else { break };
+                    if turned[other].is_none() {
+                        turned[other] = turned[t].map(|turned| !turned);
+                        part.push(other);
+                    }
+                    continue;
+                }
                 let t = part[next];
                 next += 1;
                 for side in 3 * t as u32..3 * t as u32 + 3 {
                     let [a, b] = *edges.get(edges.of_side(side)).sides else { continue };
                     let other = if a == side { b } else { a } as usize / 3;
                     if turned[other].is_none() {
-                        let agree = self.side(a) != self.side(b);
-                        turned[other] = turned[t].map(|turned| turned == agree);
-                        part.push(other);
+                        if self.side(a) == self.side(b) {
+                            later.push_back((t, other));
+                        } else {
+                            turned[other] = turned[t];
+                            part.push(other);
+                        }
                     }
                 }
             }
