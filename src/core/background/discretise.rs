@@ -197,7 +197,31 @@ impl<'a> Division<'a> {
                 give(&mut self.pieces[id.index()], if doubled[id.index()] { 1 } else { 2 });
             }
         }
+        self.open_lenses();
         Ok(())
+    }
+
+    /// Where two curves run between the same points in space, such as on both sides of a narrow gap, and one of them is a single chord
+    /// and bends while the other is divided and straight, the nodes of the one would hang in the chord of the other: it is divided too.
+    fn open_lenses(&mut self) {
+        let Some(spatial) = self.domain.spatial.clone() else { return };
+        let ends_of = |id: CurveId| {
+            let mut ends = self.domain.curves[id.index()].ends.map(|v| spatial.vertex_of[v as usize]);
+            ends.sort_unstable();
+            ends
+        };
+        let ids = (0..self.pieces.len() as u32).map(CurveId);
+        let mut by_ends: Vec<_> = ids.filter(|&id| self.first(id) == id).map(|id| (ends_of(id), id)).collect();
+        by_ends.sort_unstable();
+        for curves in by_ends.chunk_by(|a, b| a.0 == b.0) {
+            if curves.iter().any(|&(_, id)| self.segments(id) > 1 && spatial.curves[id.index()].is_chord()) {
+                for &(_, id) in curves {
+                    if self.segments(id) == 1 && self.is_polygonal(id) {
+                        self.refine(id, [0.0, 1.0]);
+                    }
+                }
+            }
+        }
     }
 
     /// The cheapest way to change the curve's number by one: relative length error after it, the piece, its new number.

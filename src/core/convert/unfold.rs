@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
 
 use super::energy;
 use super::event::{Event, Mending};
@@ -30,6 +31,8 @@ const ENOUGH: f64 = 0.1;
 const STEPS: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
 const DIRECTIONS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.7, 0.7], [0.0, 1.0], [-0.7, 0.7], [-1.0, 0.0], [-0.7, -0.7], [0.0, -1.0], [0.7, -0.7]];
+/// Towards nodes around, the steps are by these parts of the way.
+const PARTS: [f64; 3] = [2.0, 0.1, 0.005];
 /// How far a node is moved from the place of another.
 const STIRRED: f64 = 0.05;
 /// Nodes nearer than this part of the largest coordinate are at one place.
@@ -40,6 +43,15 @@ const ROUNDS: usize = 4;
 const INLAID: [f64; 5] = [0.4, 0.6, 0.25, 0.5, 0.33];
 /// Looks at one quadrilateral that folds at the start, on average: what was mended may send its neighbours to be looked at.
 const LOOKS: usize = 24;
+
+/// Where a node may be moved.
+#[derive(Clone, Copy)]
+enum Reach {
+    /// Along axes of the metric, by this size.
+    Axes(f64),
+    /// Towards the nodes around, by this part of the way.
+    Towards(f64),
+}
 
 /// What was mended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -299,21 +311,56 @@ impl<'a> Unfolding<'a> {
     /// Moves the free corners of a quadrilateral in turn, each to where the least sine around it is greatest. Whether
     /// fewer elements around fold then; otherwise all is as before.
     fn moved(&self, mesh: &mut Mesh, element: ElementId) -> bool {
+        let mut corners = mesh.quad(element);
+        let before = self.flaws(mesh, &corners);
+        // Which of them moves first decides where the others have room.
+        (0..corners.len()).any(|_| {
+            let mark = mesh.mark();
+            for _ in 0..ROUNDS {
+                corners.iter().for_each(|&node| self.improve(mesh, node));
+                if self.sine(mesh, element) >= ENOUGH {
+                    break;
+                }
+            }
+            let is_better = self.flaws(mesh, &corners) < before;
+            if !is_better {
+                mesh.take_back(mark);
+                corners.rotate_left(1);
+            }
+            is_better
+        }) || self.moved_together(mesh, element)
+    }
+
+    /// Moves the free corners of a quadrilateral together towards a node around it, then each by itself. Whether fewer elements around
+    /// fold then: one node alone cannot leave a facet that is flat in space.
+    fn moved_together(&self, mesh: &mut Mesh, element: ElementId) -> bool {
         let corners = mesh.quad(element);
-        let (mark, before) = (mesh.mark(), self.flaws(mesh, &corners));
-        for _ in 0..ROUNDS {
-            for node in corners {
-                self.improve(mesh, node);
-            }
-            if self.sine(mesh, element) >= ENOUGH {
-                break;
-            }
+        let before = self.flaws(mesh, &corners);
+        let free: Vec<NodeId> = corners.into_iter().filter(|&n| !mesh.is_fixed(n)).collect();
+        if free.len() < 2 {
+            return false;
         }
-        let is_better = self.flaws(mesh, &corners) < before;
-        if !is_better {
-            mesh.take_back(mark);
-        }
-        is_better
+        let mut around: Vec<NodeId> =
+            free.iter().flat_map(|&n| ring(mesh, n)).filter(|n| !corners.contains(n)).collect();
+        around.sort_unstable();
+        around.dedup();
+        let parts = PARTS.into_iter().flat_map(|fineness| STEPS.map(|step| step * fineness));
+        parts.flat_map(|part| around.iter().map(move |&to| (part, to))).any(|(part, to)| {
+            let (mark, to) = (mesh.mark(), mesh.uv(to));
+            let is_moved = free.iter().all(|&n| {
+                let place = mesh.uv(n).lerp(to, part);
+                self.source.metric(place).map(|metric| mesh.move_node(n, place, metric)).is_ok()
+            });
+            let stays = |&n: &NodeId| mesh.fan(n).all(|h| mesh.stays_positive(h.element(), n, mesh.uv(n)));
+            let is_better = is_moved && free.iter().all(stays) && {
+                free.iter().for_each(|&n| self.improve(mesh, n));
+                self.flaws(mesh, &corners) < before
+            };
+            if !is_better {
+                mesh.take_back(mark);
+            }
+            is_better
+        })
     }
 
     /// Moves a free node to where the least sine around it is greatest.
@@ -322,23 +369,27 @@ impl<'a> Unfolding<'a> {
             return;
         }
         let mut best = self.star_sine(mesh, node);
-        // Steps by the size that is asked for, then by that of the elements that are there.
+        // Steps by the size that is asked for, then by that of the elements that are there; then towards the nodes around, and ever
+        // finer: in slivers there is no room for others, and in a facet that is flat in space the metric knows nothing of its width.
         let (from, metric) = (mesh.uv(node), mesh.metric(node));
         let shortest = mesh.neighbours(node).map(|n| metric.norm2(mesh.uv(n) - from)).fold(1.0, f64::min).sqrt();
-        for (step, fineness) in [1.0, shortest, 0.02 * shortest, 4e-4 * shortest]
-            .into_iter()
-            .enumerate()
-            .flat_map(|(k, size)| STEPS.map(|step| (step * size, k)))
-        {
-            // The finest ones are for slivers, in which there is no room for others.
-            if best >= if fineness < 2 { ENOUGH } else { FOLDED } {
+        let around: Vec<DVec2> = ring(mesh, node).map(|n| mesh.uv(n)).collect();
+        let stages = [Reach::Axes(1.0), Reach::Axes(shortest)].into_iter().chain(PARTS.map(Reach::Towards));
+        for (reach, step) in stages.flat_map(|reach| STEPS.map(|step| (reach, step))) {
+            let enough = if matches!(reach, Reach::Axes(_)) { ENOUGH } else { FOLDED };
+            if best >= enough {
                 return;
             }
             let (from, metric) = (mesh.uv(node), mesh.metric(node));
-            let axes = energy::unit_axes(&metric);
+            let places: SmallVec<[DVec2; 16]> = match reach {
+                Reach::Axes(size) => {
+                    let axes = energy::unit_axes(&metric);
+                    DIRECTIONS.iter().map(|[x, y]| from + (axes[0] * x + axes[1] * y) * (step * size)).collect()
+                }
+                Reach::Towards(part) => around.iter().map(|&to| from.lerp(to, step * part)).collect(),
+            };
             let mut found: Option<(f64, DVec2, Metric2)> = None;
-            for [x, y] in DIRECTIONS {
-                let place = from + (axes[0] * x + axes[1] * y) * step;
+            for place in places {
                 let (Ok(metric), Ok(())) = (self.source.metric(place), mesh.can_move(node, place)) else { continue };
                 let mark = mesh.mark();
                 mesh.move_node(node, place, metric);
@@ -410,6 +461,11 @@ impl<'a> Unfolding<'a> {
             None
         })
     }
+}
+
+/// The other corners of the elements around a node.
+fn ring(mesh: &Mesh, node: NodeId) -> impl Iterator<Item = NodeId> {
+    mesh.fan(node).flat_map(|h| mesh.corners(h.element())).filter(move |&n| n != node)
 }
 
 /// Nodes between two faces, each with one quadrilateral there, that have but two edges in space: each copy with the other, ascending.

@@ -235,6 +235,15 @@ impl SpaceCurve {
         }
     }
 
+    /// Whether it is one straight piece from end to end.
+    pub fn is_chord(&self) -> bool {
+        match &self.path {
+            Path::Segment { .. } => true,
+            Path::Polyline { points, .. } | Path::Sides { points, .. } => points.len() == 2,
+            _ => false,
+        }
+    }
+
     /// Whether its ends are numbers that were given, and not computed.
     pub fn ends_given(&self) -> bool {
         matches!(self.path, Path::Segment { .. } | Path::Polyline { .. } | Path::Sides { .. })
