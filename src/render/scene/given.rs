@@ -133,7 +133,7 @@ impl Scene {
         for mark in marks {
             let corners: Vec<[f32; 3]> = mark.iter().map(|&p| relative(p, scene.anchor)).collect();
             let sides = match corners.len() {
-                2 => 1,
+                n @ (1 | 2) => n - 1,
                 n => n,
             };
             let colour = ink(palette.broken);
