@@ -11,7 +11,7 @@ use crate::core::io::weld::weld;
 use crate::core::progress::Cancel;
 
 /// Points nearer than this part of the size of the mesh are at one place.
-pub(super) const SAME_PLACE: f64 = 1e-9;
+const SAME_PLACE: f64 = 1e-9;
 /// And so are those nearer than this part of the largest coordinate.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// A point nearer to a side than this part of the side's length hangs in it.
@@ -29,7 +29,8 @@ impl Triangles {
         self.triangles.as_flattened().iter().for_each(|&k| is_used[k as usize] = true);
         let used: Vec<u32> = (0..self.points.len() as u32).filter(|&k| is_used[k as usize]).collect();
         let places: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
-        let (kept, standing) = weld(&places, self.same_place(&used), cancel);
+        let [near, largest] = self.same_place(&is_used);
+        let (kept, standing) = weld(&places, near / largest.max(f64::MIN_POSITIVE), cancel);
         if kept.len() == places.len() || cancel.is_asked() {
             return 0;
         }
@@ -45,13 +46,14 @@ impl Triangles {
         places.len() - kept.len()
     }
 
-    /// How near points are that are at one place, over the largest coordinate: by the size of the mesh, wherever it is, but more than by
-    /// rounding.
-    fn same_place(&self, used: &[u32]) -> f64 {
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        used.iter().map(|&k| self.points[k as usize]).for_each(|p| (low, high) = (low.min(p), high.max(p)));
+    /// How near to each other points are that are at one place, by the size of the mesh, wherever it is, but more than by rounding; and
+    /// the largest coordinate of those in use.
+    pub(super) fn same_place(&self, is_used: &[bool]) -> [f64; 2] {
+        let used = self.points.iter().zip(is_used).filter(|(_, used)| **used).map(|(p, _)| *p);
+        let ends = used.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let [low, high] = ends.unwrap_or([DVec3::ZERO; 2]);
         let largest = low.abs().max(high.abs()).max_element();
-        (SAME_PLACE * (high - low).max_element() / largest.max(f64::MIN_POSITIVE)).max(ROUNDING)
+        [(SAME_PLACE * (high - low).max_element()).max(ROUNDING * largest), largest]
     }
 
     /// Divides sides on the border in which points of the border hang, so that they meet there; of those that are `closed` alone, where

@@ -17,6 +17,8 @@ pub(in crate::core) const LARGEST: f64 = 1e30;
 const FAR: f64 = 5e-8;
 /// A polygon whose pieces face each other, so that no more than this part of their areas is left as a whole, crosses itself.
 const CROSSED: f64 = 0.2;
+/// A polygon smaller than this part of its length squared has no area.
+const FLAT: f64 = 1e-6;
 /// So much of a polygon may lie with its back to the whole, by rounding.
 const BACK: f64 = 1e-6;
 /// Pairs of triangles that are looked at for each triangle until enough is known of where they overlap.
@@ -136,6 +138,12 @@ pub(in crate::core) fn crossed(file: &MeshFile, triangles: &[[u32; 3]], origins:
         first += pieces.len();
         let whole: DVec3 = of.iter().map(area).sum();
         let all: f64 = of.iter().map(|t| area(t).length()).sum();
+        let corners = || of.as_flattened().iter().map(|&k| file.points[k as usize]);
+        let size = corners().map(|p| p.distance(file.points[of[0][0] as usize])).fold(0.0, f64::max);
+        // One without area is taken out by its pieces.
+        if all <= FLAT * size * size {
+            continue;
+        }
         // A plane one that crosses itself has pieces that lie with their backs to the whole.
         let back: f64 = of.iter().map(|t| -area(t).dot(whole)).filter(|dot| *dot > 0.0).sum();
         if back > BACK * all * whole.length() || whole.length() < CROSSED * all {

@@ -238,7 +238,7 @@ impl Triangles {
                 // One at the border, on whose corner nothing else stands, is a part of that.
                 let is_free = |k: usize| edges.get(edges.of_side((3 * t + (apex + k) % 3) as u32)).sides.len() == 1;
                 let beyond = edges.get(edges.of_side(side)).sides.iter().copied().find(|&other| other != side);
-                if let Some(other) = beyond.filter(|_| !twice && !(is_free(0) && is_free(2))) {
+                if let Some(other) = beyond.filter(|_| !(twice || is_free(0) && is_free(2))) {
                     let o = other as usize / 3;
                     if touched[o] || !keep[o] {
                         continue;

@@ -114,7 +114,7 @@ impl MeshFile {
         let alike = |&a: &u32, &b: &u32| kind(a).0 == kind(b).0;
         let number = |&place: &u32| {
             let (_, count, index) = kind(place);
-            count.number(index as usize)
+            count.number(index)
         };
         let kinds = [triangles, quads, self.polygons.len()].iter().filter(|n| **n > 0).count();
         if self.counting.in_one_row && kinds > 1 {
