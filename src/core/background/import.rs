@@ -1,8 +1,9 @@
 //! An existing triangle mesh as background: checked, repaired where nothing is lost by it, and cut apart between regions.
 //!
 //! What is refused: curved meshes, meshes of quadrilaterals alone, triangles without room that no neighbour can take in, edges of three
-//! triangles, overlaps, points that hang in sides beside a gap, and parts with an odd number of triangles. Lines that are in a group stay, also inside regions. Nodes at the same place are kept apart as the file has them: they are the two sides
-//! of a crack. Deliberately absent: reading files (`core/io`).
+//! triangles, overlaps, points that hang in sides beside a gap, and parts with an odd number of triangles. Lines that are in a group
+//! stay, also inside regions. Nodes at the same place are kept apart as the file has them: they are the two sides of a crack.
+//! Deliberately absent: reading files (`core/io`).
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
@@ -62,7 +63,7 @@ impl Imported {
 /// that no other region shares is divided.
 ///
 /// # Errors
-/// All that the module's doc says, with the numbers of the triangles (from 1, in the order of the file) and places.
+/// All that the module's doc says, with the triangles as the file counts them, and places.
 pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
     let given = file;
     let (cut, file) = cut_to_triangles(file);
@@ -111,6 +112,8 @@ struct Import<'a> {
     given: &'a MeshFile,
     file: &'a MeshFile,
     uv: Vec<DVec2>,
+    /// How high the plane lies.
+    z: f64,
     origin: Vec<[u32; 2]>,
     triangles: Vec<[u32; 3]>,
     /// Region of each triangle, and the element of the file that it comes from.
@@ -170,6 +173,7 @@ impl<'a> Import<'a> {
             given,
             file,
             uv: file.points.iter().map(|p| p.truncate()).collect(),
+            z: z.0,
             origin: (0..file.points.len() as u32).map(|i| [i, i]).collect(),
             triangles: file.triangles.clone(),
             region: (0..n).map(|i| index[&tag(i)]).collect(),
@@ -207,13 +211,13 @@ impl<'a> Import<'a> {
 
     /// The corners of some triangles, to be shown.
     fn shapes(&self, triangles: impl IntoIterator<Item = usize>) -> Vec<Vec<DVec3>> {
-        let places = |t: usize| self.triangles[t].map(|k| self.uv[k as usize].extend(0.0)).to_vec();
+        let places = |t: usize| self.triangles[t].map(|k| self.uv[k as usize].extend(self.z)).to_vec();
         triangles.into_iter().map(places).collect()
     }
 
     /// Where the points are.
     fn places(&self) -> Vec<DVec3> {
-        self.uv.iter().map(|p| p.extend(0.0)).collect()
+        self.uv.iter().map(|p| p.extend(self.z)).collect()
     }
 
     fn told(&self, triangles: impl IntoIterator<Item = usize>) -> String {
@@ -442,7 +446,7 @@ impl<'a> Import<'a> {
             remedy += "; or merge points that stand at the same place, if the mesh ought to hang together there";
         }
         let triangles = if count == 1 { "triangle" } else { "triangles" };
-        let side = |ends: [u32; 2]| ends.map(|n| mesh.set.uv[n as usize].extend(0.0)).to_vec();
+        let side = |ends: [u32; 2]| ends.map(|n| mesh.set.uv[n as usize].extend(self.z)).to_vec();
         let sides = found.into_iter().flat_map(|l| (0..l.len()).map(|k| side([l[k], l[(k + 1) % l.len()]])));
         Fault::new(format!(
             "The boundary loop of {segments} segments leaves a part{region} with {count} {triangles}; an all-quad mesh needs an even count"
