@@ -1,14 +1,16 @@
 //! Quadrilaterals that fold over their surface, mended one at a time after the last smoothing. Everything before works in the
 //! parametric plane, where all stays strictly convex; between straight sides in space a corner may still turn against the surface,
-//! or a node between two faces have two edges only, or what lies on two faces come to one place. The nodes around are moved first;
+//! or a node between two faces have two edges only, or what lies on two faces come to one place. The nodes around are moved first (`moving`);
 //! where that does not help the quadrilateral has an edge rotated, is collapsed along a diagonal, or pillowed: a smaller one is inlaid, with
-//! four between the two.
+//! four between the two. What is flat or turned even then has its nodes moved in every way that is left.
+
+mod moving;
 
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use smallvec::SmallVec;
 
+use self::moving::DIRECTIONS;
 use super::energy;
 use super::event::{Event, Mending};
 use super::settle::{Nodes, put, settle};
@@ -18,40 +20,20 @@ use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId, PointId};
 use crate::core::mesh::refusals::Operation;
 use crate::core::metric::field::MetricSource;
-use crate::core::metric::tensor::Metric2;
 use crate::core::progress::Cancel;
 
 /// A quadrilateral with a corner whose sine against the surface is below this is to be mended.
 const FOLDED: f64 = 1e-3;
 /// One below this is flat or turned as any reader sees it. In the slivers of a surface many are between the two whatever is done.
 const FLAT: f64 = 1e-7;
-/// Nodes are moved until the sines around are this large; larger is not better here.
-const ENOUGH: f64 = 0.1;
-/// Steps of a search for a better place, by the metric at the node, and the directions of each.
-const STEPS: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
-const DIRECTIONS: [[f64; 2]; 8] =
-    [[1.0, 0.0], [0.7, 0.7], [0.0, 1.0], [-0.7, 0.7], [-1.0, 0.0], [-0.7, -0.7], [0.0, -1.0], [0.7, -0.7]];
-/// Towards nodes around, the steps are by these parts of the way.
-const PARTS: [f64; 3] = [2.0, 0.1, 0.005];
 /// How far a node is moved from the place of another.
 const STIRRED: f64 = 0.05;
 /// Nodes nearer than this part of the largest coordinate are at one place.
 const SAME_PLACE: f64 = 4e-9;
-/// How often the nodes at hand are moved in turn.
-const ROUNDS: usize = 4;
 /// How far the nodes of an inlaid quadrilateral lie from the corners towards the middle.
 const INLAID: [f64; 5] = [0.4, 0.6, 0.25, 0.5, 0.33];
 /// Looks at one quadrilateral that folds at the start, on average: what was mended may send its neighbours to be looked at.
 const LOOKS: usize = 24;
-
-/// Where a node may be moved.
-#[derive(Clone, Copy)]
-enum Reach {
-    /// Along axes of the metric, by this size.
-    Axes(f64),
-    /// Towards the nodes around, by this part of the way.
-    Towards(f64),
-}
 
 /// What was mended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -164,11 +146,12 @@ impl<'a> Unfolding<'a> {
                     Mending::Pillowed { inner }
                 });
                 let is_doublet = before >= FOLDED && self.is_doublet(mesh, node);
-                pillowed.or_else(|| {
+                let rotated = pillowed.or_else(|| {
                     let new = is_doublet.then(|| self.rotated(mesh, element, Some(node))).flatten()?;
                     nodes.extend(new);
                     Some(Mending::Rotated { new })
-                })
+                });
+                rotated.or_else(|| (before < FLAT && self.moved_anyhow(mesh, element)).then_some(Mending::Moved))
             };
             if how.is_some() {
                 for &n in &nodes {
@@ -265,9 +248,7 @@ impl<'a> Unfolding<'a> {
                 let mark = mesh.mark();
                 let core = Nodes::from_slice(&ring);
                 if mesh.rotate_edge(h, by).is_ok() && settle(mesh, &*self.source, &core) {
-                    for _ in 0..ROUNDS {
-                        core.iter().for_each(|&node| self.improve(mesh, node));
-                    }
+                    self.improve_in_turn(mesh, &core);
                     let after = self.flaws(mesh, &ring);
                     let is_better = match needy {
                         None => after < before,
@@ -296,9 +277,7 @@ impl<'a> Unfolding<'a> {
                 && settle(mesh, &*self.source, &Nodes::from_slice(&[b, c, d]))
             {
                 let core = [b, c, d];
-                for _ in 0..ROUNDS {
-                    core.iter().for_each(|&node| self.improve(mesh, node));
-                }
+                self.improve_in_turn(mesh, &core);
                 if self.flaws(mesh, &core) < before {
                     return Some(c);
                 }
@@ -306,104 +285,6 @@ impl<'a> Unfolding<'a> {
             mesh.take_back(mark);
         }
         None
-    }
-
-    /// Moves the free corners of a quadrilateral in turn, each to where the least sine around it is greatest. Whether
-    /// fewer elements around fold then; otherwise all is as before.
-    fn moved(&self, mesh: &mut Mesh, element: ElementId) -> bool {
-        let mut corners = mesh.quad(element);
-        let before = self.flaws(mesh, &corners);
-        // Which of them moves first decides where the others have room.
-        (0..corners.len()).any(|_| {
-            let mark = mesh.mark();
-            for _ in 0..ROUNDS {
-                corners.iter().for_each(|&node| self.improve(mesh, node));
-                if self.sine(mesh, element) >= ENOUGH {
-                    break;
-                }
-            }
-            let is_better = self.flaws(mesh, &corners) < before;
-            if !is_better {
-                mesh.take_back(mark);
-                corners.rotate_left(1);
-            }
-            is_better
-        }) || self.moved_together(mesh, element)
-    }
-
-    /// Moves the free corners of a quadrilateral together towards a node around it, then each by itself. Whether fewer elements around
-    /// fold then: one node alone cannot leave a facet that is flat in space.
-    fn moved_together(&self, mesh: &mut Mesh, element: ElementId) -> bool {
-        let corners = mesh.quad(element);
-        let before = self.flaws(mesh, &corners);
-        let free: Vec<NodeId> = corners.into_iter().filter(|&n| !mesh.is_fixed(n)).collect();
-        if free.len() < 2 {
-            return false;
-        }
-        let mut around: Vec<NodeId> =
-            free.iter().flat_map(|&n| ring(mesh, n)).filter(|n| !corners.contains(n)).collect();
-        around.sort_unstable();
-        around.dedup();
-        let parts = PARTS.into_iter().flat_map(|fineness| STEPS.map(|step| step * fineness));
-        parts.flat_map(|part| around.iter().map(move |&to| (part, to))).any(|(part, to)| {
-            let (mark, to) = (mesh.mark(), mesh.uv(to));
-            let is_moved = free.iter().all(|&n| {
-                let place = mesh.uv(n).lerp(to, part);
-                self.source.metric(place).map(|metric| mesh.move_node(n, place, metric)).is_ok()
-            });
-            let stays = |&n: &NodeId| mesh.fan(n).all(|h| mesh.stays_positive(h.element(), n, mesh.uv(n)));
-            let is_better = is_moved && free.iter().all(stays) && {
-                free.iter().for_each(|&n| self.improve(mesh, n));
-                self.flaws(mesh, &corners) < before
-            };
-            if !is_better {
-                mesh.take_back(mark);
-            }
-            is_better
-        })
-    }
-
-    /// Moves a free node to where the least sine around it is greatest.
-    fn improve(&self, mesh: &mut Mesh, node: NodeId) {
-        if mesh.is_fixed(node) {
-            return;
-        }
-        let mut best = self.star_sine(mesh, node);
-        // Steps by the size that is asked for, then by that of the elements that are there; then towards the nodes around, and ever
-        // finer: in slivers there is no room for others, and in a facet that is flat in space the metric knows nothing of its width.
-        let (from, metric) = (mesh.uv(node), mesh.metric(node));
-        let shortest = mesh.neighbours(node).map(|n| metric.norm2(mesh.uv(n) - from)).fold(1.0, f64::min).sqrt();
-        let around: Vec<DVec2> = ring(mesh, node).map(|n| mesh.uv(n)).collect();
-        let stages = [Reach::Axes(1.0), Reach::Axes(shortest)].into_iter().chain(PARTS.map(Reach::Towards));
-        for (reach, step) in stages.flat_map(|reach| STEPS.map(|step| (reach, step))) {
-            let enough = if matches!(reach, Reach::Axes(_)) { ENOUGH } else { FOLDED };
-            if best >= enough {
-                return;
-            }
-            let (from, metric) = (mesh.uv(node), mesh.metric(node));
-            let places: SmallVec<[DVec2; 16]> = match reach {
-                Reach::Axes(size) => {
-                    let axes = energy::unit_axes(&metric);
-                    DIRECTIONS.iter().map(|[x, y]| from + (axes[0] * x + axes[1] * y) * (step * size)).collect()
-                }
-                Reach::Towards(part) => around.iter().map(|&to| from.lerp(to, step * part)).collect(),
-            };
-            let mut found: Option<(f64, DVec2, Metric2)> = None;
-            for place in places {
-                let (Ok(metric), Ok(())) = (self.source.metric(place), mesh.can_move(node, place)) else { continue };
-                let mark = mesh.mark();
-                mesh.move_node(node, place, metric);
-                let sine = self.star_sine(mesh, node);
-                mesh.take_back(mark);
-                if sine > found.map_or(best, |found| found.0) {
-                    found = Some((sine, place, metric));
-                }
-            }
-            if let Some((sine, place, metric)) = found {
-                mesh.move_node(node, place, metric);
-                best = sine;
-            }
-        }
     }
 
     /// Places in space of the free nodes around the copies of a node on other faces.
@@ -450,9 +331,7 @@ impl<'a> Unfolding<'a> {
             let made = mesh.replace(&[element], &new);
             let is_convex = made.iter().all(|&e| mesh.stays_positive(e, mesh.quad(e)[0], mesh.uv(mesh.quad(e)[0])));
             if is_convex {
-                for _ in 0..ROUNDS {
-                    inner.iter().for_each(|&node| self.improve(mesh, node));
-                }
+                self.improve_in_turn(mesh, &inner);
                 if made.iter().all(|&e| self.sine(mesh, e) >= FOLDED) {
                     return Some(inner);
                 }
@@ -461,11 +340,6 @@ impl<'a> Unfolding<'a> {
             None
         })
     }
-}
-
-/// The other corners of the elements around a node.
-fn ring(mesh: &Mesh, node: NodeId) -> impl Iterator<Item = NodeId> {
-    mesh.fan(node).flat_map(|h| mesh.corners(h.element())).filter(move |&n| n != node)
 }
 
 /// Nodes between two faces, each with one quadrilateral there, that have but two edges in space: each copy with the other, ascending.

@@ -1,8 +1,5 @@
 //! Structural and exact geometric checks of the half-edge mesh (spec 5): what must hold after every operation.
 
-use glam::{DVec2, DVec3};
-use smallvec::SmallVec;
-
 use super::half_edge::Mesh;
 use super::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::geometry::predicates::{convex, positive};
@@ -61,54 +58,6 @@ impl Mesh {
             }
         }
         Ok(())
-    }
-
-    /// The elements on surfaces that have a corner, between straight sides in space, whose normal does not agree with that of
-    /// the surface there: they fold over it, which a mesh too coarse for its curvature does. None in the plane.
-    pub fn folded(&self) -> Vec<ElementId> {
-        if self.ground().is_none() {
-            return Vec::new();
-        }
-        self.elements()
-            .filter(|&e| self.corner_sines(e, &self.places(e)).any(|(surface, _)| surface.is_nan() || surface <= 0.0))
-            .collect()
-    }
-
-    /// The least sine of an element's corners, between straight sides in space, seen along the normal of the surface there, and on
-    /// triangles, whose normals jump, along its own too; 0 at most where a side is no longer than `near`. In the plane, where exact
-    /// predicates say more, along z.
-    pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
-        let xyz = self.places(e);
-        if (0..xyz.len()).any(|k| xyz[k].distance(xyz[(k + 1) % xyz.len()]) <= near) {
-            return 0.0;
-        }
-        let first = self.uv(self.origin(e.half_edge(0)));
-        let jumps = self.ground().is_some_and(|ground| ground.atlas.is_of_facets(first));
-        let sines = self.corner_sines(e, &xyz).map(|(surface, own)| if jumps { surface.min(own) } else { surface });
-        sines.fold(f64::INFINITY, f64::min)
-    }
-
-    /// The places of an element's corners in space.
-    fn places(&self, e: ElementId) -> SmallVec<[DVec3; 4]> {
-        self.corners(e).map(|n| self.xyz(n)).collect()
-    }
-
-    /// The sine of each corner as seen along the normal of the surface there, and along the element's own.
-    /// Its corners stand at `xyz`.
-    fn corner_sines<'a>(&'a self, e: ElementId, xyz: &'a [DVec3]) -> impl Iterator<Item = (f64, f64)> + 'a {
-        let nodes: SmallVec<[NodeId; 4]> = self.corners(e).collect();
-        let count = nodes.len();
-        let middle = nodes.iter().map(|&n| self.uv(n)).sum::<DVec2>() / count as f64;
-        // Twice the mean area of a quadrilateral as a vector; of a triangle too.
-        let own = (xyz[2] - xyz[0]).cross(xyz[count - 1] - xyz[1]).normalize_or_zero();
-        (0..count).map(move |k| {
-            let (next, previous) = (xyz[(k + 1) % count] - xyz[k], xyz[(k + count - 1) % count] - xyz[k]);
-            // At an apex there are many normals: that from a little within the element is meant.
-            let within = self.uv(nodes[k]).lerp(middle, 1e-3);
-            let normal = self.ground().map_or(DVec3::Z, |ground| ground.atlas.at(within).normal());
-            let corner = next.cross(previous) / (next.length() * previous.length()).max(f64::MIN_POSITIVE);
-            (corner.dot(normal), corner.dot(own))
-        })
     }
 
     /// Checks one element: its half-edges and twins agree, its nodes differ, it is strictly positive.

@@ -11,4 +11,5 @@ pub mod operators;
 pub mod quad_operators;
 pub mod check;
 pub mod quality;
+pub mod sines;
 pub mod soundness;

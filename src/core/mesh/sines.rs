@@ -1,0 +1,82 @@
+//! Elements between straight sides in space: the sines of their corners against the surface, which tell where they fold over it.
+
+use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
+
+use super::half_edge::{Ground, Mesh};
+use super::ids::{ElementId, NodeId};
+
+/// The corners of an element, anticlockwise: in the plane and in space.
+#[derive(Clone, Debug)]
+pub struct Corners {
+    uv: SmallVec<[DVec2; 4]>,
+    xyz: SmallVec<[DVec3; 4]>,
+}
+
+impl Corners {
+    /// Puts a corner elsewhere.
+    pub fn put(&mut self, corner: usize, uv: DVec2, xyz: DVec3) {
+        (self.uv[corner], self.xyz[corner]) = (uv, xyz);
+    }
+
+    /// Their least sine, seen along the normal of the surface there, and on triangles, whose normals jump, along the element's own too;
+    /// 0 at most where a side is no longer than `near`. Without a ground, where exact predicates say more, along z. Where it is not
+    /// above `floor` it may be told as any number that is not.
+    pub fn least_sine(&self, ground: Option<&Ground>, near: f64, floor: f64) -> f64 {
+        let count = self.xyz.len();
+        if (0..count).any(|k| self.xyz[k].distance(self.xyz[(k + 1) % count]) <= near) {
+            return 0.0;
+        }
+        let mut least = f64::INFINITY;
+        if ground.is_some_and(|ground| ground.atlas.is_of_facets(self.uv[0])) {
+            // Twice the mean area of a quadrilateral as a vector; of a triangle too.
+            let own = (self.xyz[2] - self.xyz[0]).cross(self.xyz[count - 1] - self.xyz[1]).normalize_or_zero();
+            least = (0..count).map(|k| self.corner(k).dot(own)).fold(least, f64::min);
+        }
+        for sine in self.surface_sines(ground) {
+            if least <= floor {
+                break;
+            }
+            least = least.min(sine);
+        }
+        least
+    }
+
+    /// The sine of each corner as seen along the normal of the surface there.
+    fn surface_sines(&self, ground: Option<&Ground>) -> impl Iterator<Item = f64> {
+        let middle = self.uv.iter().sum::<DVec2>() / self.uv.len() as f64;
+        (0..self.uv.len()).map(move |k| {
+            // At an apex there are many normals: that from a little within the element is meant.
+            let within = self.uv[k].lerp(middle, 1e-3);
+            self.corner(k).dot(ground.map_or(DVec3::Z, |ground| ground.atlas.at(within).normal()))
+        })
+    }
+
+    /// The vector product of the unit sides at a corner.
+    fn corner(&self, k: usize) -> DVec3 {
+        let (count, at) = (self.xyz.len(), self.xyz[k]);
+        let (next, previous) = (self.xyz[(k + 1) % count] - at, self.xyz[(k + count - 1) % count] - at);
+        next.cross(previous) / (next.length() * previous.length()).max(f64::MIN_POSITIVE)
+    }
+}
+
+impl Mesh {
+    /// The corners of an element.
+    pub fn corners_in_space(&self, e: ElementId) -> Corners {
+        let nodes: SmallVec<[NodeId; 4]> = self.corners(e).collect();
+        Corners { uv: nodes.iter().map(|&n| self.uv(n)).collect(), xyz: nodes.iter().map(|&n| self.xyz(n)).collect() }
+    }
+
+    /// The elements on surfaces that have a corner, between straight sides in space, whose normal does not agree with that of
+    /// the surface there: they fold over it, which a mesh too coarse for its curvature does. None in the plane.
+    pub fn folded(&self) -> Vec<ElementId> {
+        let Some(ground) = self.ground() else { return Vec::new() };
+        let folds = |sine: f64| sine.is_nan() || sine <= 0.0;
+        self.elements().filter(|&e| self.corners_in_space(e).surface_sines(Some(ground)).any(folds)).collect()
+    }
+
+    /// The least sine of an element's corners in space; see [`Corners::least_sine`].
+    pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
+        self.corners_in_space(e).least_sine(self.ground().map(|ground| &**ground), near, f64::NEG_INFINITY)
+    }
+}
