@@ -330,3 +330,94 @@ fn of_many_settings_the_newest_is_shown() {
     let import = harness.state().state.import.as_ref().unwrap();
     assert_eq!(import.shown.as_ref().unwrap().wanted.feature_angle, 58.0_f64.to_radians());
 }
+
+/// A plate of `n` by `n` squares as OBJ, bent up along a parabola.
+fn plate(n: usize, bend: f64) -> String {
+    let mut text = String::new();
+    for (x, y) in (0..(n + 1) * (n + 1)).map(|k| (k % (n + 1), k / (n + 1))) {
+        text += &format!("v {x} {y} {}\n", bend * (x * x) as f64);
+    }
+    for a in (0..n * n).map(|k| k % n + k / n * (n + 1) + 1) {
+        text += &format!("f {} {} {}\nf {} {} {}\n", a, a + 1, a + n + 2, a, a + n + 2, a + n + 1);
+    }
+    text
+}
+
+/// How much of a picture has about this colour.
+fn share_of(picture: &[u8], [r, g, b]: [u8; 3]) -> f64 {
+    let alike = |pixel: &&[u8]| pixel.iter().zip([r, g, b]).all(|(a, b)| a.abs_diff(b) < 24);
+    picture.chunks(4).filter(alike).count() as f64 / (picture.len() / 4) as f64
+}
+
+/// The colour of errors in the dark palette.
+const BROKEN: [u8; 3] = [0xFF, 0x6B, 0x8B];
+
+#[test]
+fn a_mesh_that_is_refused_is_shown_with_its_elements_marked_and_looked_at_from_near() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    // A small triangle on top of a plate.
+    let mut text = plate(40, 0.0);
+    text += "v 30.6 10.1 0\nv 30.9 10.1 0\nv 30.8 10.2 0\nf 1682 1683 1684\n";
+    let path = folder.path().join("over.obj");
+    std::fs::write(&path, text).unwrap();
+    open(&mut harness, &path);
+    harness.get_by_label("Refused");
+    harness.get_by_label("Triangles 861 and 3201 overlap.");
+    harness.get_by_label("Take out what is too much: in the plane a place belongs to one triangle.");
+    harness.get_by_label("Mesh of 3201 triangles, as it was given, 2 elements marked");
+    let near = picture(&mut harness, "refused");
+    assert!(share_of(&near, BROKEN) > 0.0005, "{}", share_of(&near, BROKEN));
+    let camera = |harness: &Harness<'static, App>| harness.state().state.import.as_ref().unwrap().camera.unwrap();
+    let before = camera(&harness);
+    assert!(before.centre.distance(DVec3::new(30.5, 10.5, 0.0)) < 1.0, "{:?}", before.centre);
+    // The whole of it is a key away, and there is no way to convert it.
+    harness.state_mut().apply(Command::Fit);
+    harness.run_steps(3);
+    assert!(before.scale > 4.0 * camera(&harness).scale);
+    harness.state_mut().apply(Command::Convert);
+    harness.run_steps(3);
+    let state = &harness.state().state;
+    assert!(!state.is_opening() && state.faults.is_empty(), "{:?}", state.faults);
+}
+
+#[test]
+fn what_a_conversion_is_refused_for_is_marked_until_the_mesh_is_taken_otherwise() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    // A hole of three sides in a bent plate.
+    let text =
+        plate(5, 0.1).lines().filter(|line| *line != "f 15 16 22").fold(String::new(), |text, l| text + l + "\n");
+    let path = folder.path().join("hole.obj");
+    std::fs::write(&path, text).unwrap();
+    open(&mut harness, &path);
+    assert!(harness.query_by_label("Refused").is_none());
+    assert_eq!(share_of(&picture(&mut harness, "hole"), BROKEN), 0.0);
+    harness.get_by_label("convert its triangles").click();
+    harness.run_steps(2);
+    enter(&mut harness, "Scale", "0.001");
+    harness.get_by_label("Convert").click();
+    until(&mut harness, "refused", |app| app.state.import.as_ref().is_some_and(|import| import.refused.is_some()));
+    shown(&mut harness);
+    assert!(harness.state().state.faults.is_empty(), "it is told in the panel");
+    harness.get_by_label("Mesh of 49 triangles, as it was given, 3 elements marked");
+    assert!(share_of(&picture(&mut harness, "odd"), BROKEN) > 0.001);
+    let import = harness.state().state.import.as_ref().unwrap();
+    // In the unit of the file, whatever it is scaled to.
+    let corners: Vec<DVec3> = import.refused.as_ref().unwrap().shapes.concat();
+    assert!(corners.iter().all(|p| p.x > 1.9 && p.x < 3.1 && p.y > 1.9 && p.y < 3.1), "{corners:?}");
+    let options = import.options.clone();
+    // Taken otherwise it is not refused.
+    harness.get_by_label("remesh its shape").click();
+    shown(&mut harness);
+    assert!(harness.query_by_label("Refused").is_none());
+    harness.get_by_label("Mesh of 49 triangles, as it was given");
+    // Where nothing was asked before, the panel comes to tell it.
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    harness.state_mut().apply(Command::Open(Source::Mesh(path, options)));
+    until(&mut harness, "refused again", |app| {
+        app.state.import.as_ref().is_some_and(|import| import.refused.is_some() && !import.is_behind())
+    });
+    harness.get_by_label("Refused");
+}

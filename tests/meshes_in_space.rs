@@ -161,7 +161,7 @@ fn edges_of_a_box_are_kept() {
 }
 
 #[test]
-fn what_branches_or_has_one_side_or_is_turned_is_taken_as_it_is() {
+fn what_branches_is_taken_as_it_is_what_is_turned_is_mended_and_what_has_one_side_is_refused() {
     // Three half planes about a line.
     let mut pages = MeshFile::default();
     for k in 0..3 {
@@ -184,7 +184,7 @@ fn what_branches_or_has_one_side_or_is_turned_is_taken_as_it_is() {
     let mut turned = torus();
     turned.triangles.iter_mut().step_by(3).for_each(|t| t.swap(0, 1));
     assert_eq!(euler(&converted("turned", &turned, Allow::default())), 0);
-    // A Moebius strip: an edge at which two sides disagree is a curve between faces.
+    // A Moebius strip: no mesh of it has an outside.
     let strip = grid(60, 5, [false, false], |u, v| {
         let (c, half) = (on_circle(u), on_circle(0.5 * u));
         let r = 2.0 + (v - 0.5) * half.x;
@@ -199,9 +199,10 @@ fn what_branches_or_has_one_side_or_is_turned_is_taken_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("moebius.ply");
     write_mesh(&path, Format::Ply, &moebius, WriteOptions::default()).unwrap();
-    let done = convert(&Case::of_mesh(path, None), &mut Nobody).unwrap();
-    let mesh = Export::of(&done.mesh, &done.names).file;
-    assert_eq!(euler(&mesh), 0);
+    let fault = convert(&Case::of_mesh(path, None), &mut Nobody).unwrap_err();
+    assert!(fault.to_string().contains("has one side only"), "{fault}");
+    // The edges across it, from border to border.
+    assert_eq!((fault.shapes.len(), fault.shapes[0].len()), (5, 2));
 }
 
 #[test]

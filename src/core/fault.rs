@@ -2,11 +2,16 @@
 
 use std::fmt;
 
+use glam::DVec3;
+
+/// So many elements are shown of a fault that concerns more.
+const SHOWN: usize = 1000;
+
 /// A refusal of bad input: what happened, where, and what to do, each a phrase that a person can read.
 ///
 /// Displayed as one line: `place: what. remedy.` Bugs are assertions and never a `Fault`; a failed candidate inside the
 /// converter is an event and never a `Fault`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// What is wrong, a sentence without its full stop ("The loop \"hole\" has 27 segments").
     pub what: String,
@@ -14,6 +19,9 @@ pub struct Fault {
     pub place: String,
     /// What to do about it, a sentence without its full stop; may be empty.
     pub remedy: String,
+    /// The elements that it is about, for pictures, each by its corners in space: one of a point, two of an edge, three and more of a
+    /// triangle or polygon.
+    pub shapes: Vec<Vec<DVec3>>,
     /// Whether nothing is wrong: somebody has asked for the work to end.
     pub is_stop: bool,
 }
@@ -21,7 +29,7 @@ pub struct Fault {
 impl Fault {
     /// A fault without a place or a remedy yet.
     pub fn new(what: impl Into<String>) -> Self {
-        Fault { what: what.into(), place: String::new(), remedy: String::new(), is_stop: false }
+        Fault { what: what.into(), place: String::new(), remedy: String::new(), shapes: Vec::new(), is_stop: false }
     }
 
     /// What work says that was told to end before it was done (`progress::Cancel`).
@@ -34,6 +42,13 @@ impl Fault {
     pub fn at(mut self, place: impl Into<String>) -> Self {
         let outer = place.into();
         self.place = if self.place.is_empty() { outer } else { format!("{outer}, {}", self.place) };
+        self
+    }
+
+    /// The same fault with the elements that it is about, by their corners; of very many the first.
+    #[must_use]
+    pub fn showing(mut self, shapes: impl IntoIterator<Item = Vec<DVec3>>) -> Self {
+        self.shapes.extend(shapes.into_iter().take(SHOWN));
         self
     }
 

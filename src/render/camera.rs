@@ -144,6 +144,12 @@ impl Camera {
         Camera { centre: turn.inverse() * middle, turn, reach, ..flat }
     }
 
+    /// This camera, as one that has come nearer from where `all` sees everything.
+    #[must_use]
+    pub fn come_from(self, all: &Camera) -> Camera {
+        Camera { reach: all.reach, fitted: all.fitted, ..self }
+    }
+
     /// A camera on `centre` in which lengths of the symmetric root `lens` are `scale` points a unit.
     pub fn through_lens(centre: DVec2, lens: DMat2, scale: f64) -> Camera {
         Camera { centre: centre.extend(0.0), scale, lens, fitted: scale, turn: DQuat::IDENTITY, reach: 1.0 }

@@ -107,7 +107,7 @@ impl State {
                 }
             }
             Command::Convert => {
-                if let Some(import) = self.import.as_ref().filter(|import| import.loaded.is_some()) {
+                if let Some(import) = self.import.as_ref().filter(|import| import.is_ready()) {
                     self.open(Source::Mesh(import.path.clone(), import.options.clone()));
                 }
             }

@@ -34,6 +34,8 @@ pub struct Import {
     preview: Preview,
     /// The mesh, mended, once it is there.
     pub loaded: Option<Arc<Loaded>>,
+    /// Why it was refused, with elements in the file's own unit.
+    pub refused: Option<Fault>,
     /// The picture of it.
     pub shown: Option<Arc<Shown>>,
     /// How far the preview is, while it is under way.
@@ -68,6 +70,7 @@ impl Import {
             path,
             options,
             loaded: None,
+            refused: None,
             shown: None,
             progress: None,
             wanted: None,
@@ -120,6 +123,29 @@ impl Import {
         self.loaded.is_none() || self.shown.as_ref().is_none_or(|shown| Some(&shown.wanted) != self.wanted.as_ref())
     }
 
+    /// Whether the mesh can be converted, as far as that is known.
+    pub fn is_ready(&self) -> bool {
+        self.loaded.as_ref().is_some_and(|loaded| loaded.fault.is_none())
+    }
+
+    /// Shows what the mesh was refused for, and looks there.
+    pub fn refuse(&mut self, fault: Fault) {
+        self.camera = None;
+        self.refused = Some(fault);
+    }
+
+    /// Shows what a conversion of the mesh as it is taken was refused for.
+    pub fn refuse_conversion(&mut self, mut fault: Fault) {
+        let scale = self.taking().scale;
+        fault.shapes.iter_mut().flatten().for_each(|p| *p /= scale);
+        self.refuse(fault);
+    }
+
+    /// What was refused may not be, taken otherwise.
+    fn reconsider(&mut self) {
+        self.refused = self.loaded.as_ref().and_then(|loaded| loaded.fault.clone());
+    }
+
     /// Changes how the mesh is taken, so that it can be taken back.
     pub fn set(&mut self, options: MeshOptions, dragging: bool) {
         if options == self.options {
@@ -135,6 +161,7 @@ impl Import {
         }
         self.is_dragging = dragging;
         self.redo.clear();
+        self.reconsider();
     }
 
     /// Takes back the last change, or does it again.
@@ -142,6 +169,7 @@ impl Import {
         let (from, to) = if back { (&mut self.undo, &mut self.redo) } else { (&mut self.redo, &mut self.undo) };
         if let Some(options) = from.pop() {
             to.push(std::mem::replace(&mut self.options, options));
+            self.reconsider();
         }
         self.is_dragging = false;
     }
@@ -152,15 +180,23 @@ impl Import {
         for told in self.preview.hear() {
             match told {
                 Told::Progress(progress) => self.progress = Some(progress),
-                Told::Loaded(Ok(loaded)) => self.loaded = Some(loaded),
+                Told::Loaded(Ok(loaded)) => {
+                    if let Some(fault) = &loaded.fault {
+                        self.refuse(fault.clone());
+                    }
+                    self.loaded = Some(loaded);
+                }
                 Told::Loaded(Err(fault)) => news = News::Refused(fault),
                 Told::Shown(shown) => self.shown = Some(shown),
+                Told::Refused(fault) => self.refuse(fault),
             }
         }
         if self.loaded.is_some() {
             let taking = self.taking();
-            let wanted =
-                Wanted { feature_angle: taking.feature_angle, bound: self.has_charts().then(|| taking.bound()), dark };
+            let marks = self.refused.as_ref().map_or_else(Arc::default, |fault| fault.shapes.clone().into());
+            // What is refused has no charts, or their colours would hide what it is refused for.
+            let bound = (self.has_charts() && self.refused.is_none()).then(|| taking.bound());
+            let wanted = Wanted { feature_angle: taking.feature_angle, bound, marks, dark };
             if self.wanted.as_ref() != Some(&wanted) {
                 // Two pictures may come of it.
                 self.generation += 2;

@@ -362,9 +362,11 @@ impl State {
                     }
                 }
                 Told::Fault(fault, asks) => {
-                    self.opening = None;
-                    if !fault.is_stop {
-                        self.complain(&fault);
+                    let opening = self.opening.take();
+                    match opening {
+                        _ if fault.is_stop => {}
+                        Some((Source::Mesh(path, options), _)) => self.refuse(path, options, fault),
+                        _ => self.complain(&fault),
                     }
                     // A mesh that is refused can be taken otherwise.
                     if self.import.is_none() {
@@ -377,6 +379,16 @@ impl State {
                 }
                 _ => {}
             }
+        }
+    }
+
+    /// Shows why a mesh was refused.
+    fn refuse(&mut self, path: PathBuf, options: MeshOptions, fault: Fault) {
+        if self.import.is_none() {
+            self.import(path, options);
+        }
+        if let Some(import) = &mut self.import {
+            import.refuse_conversion(fault);
         }
     }
 

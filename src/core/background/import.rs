@@ -1,8 +1,9 @@
 //! An existing triangle mesh as background: checked, repaired where nothing is lost by it, and cut apart between regions.
 //!
-//! What is refused: curved meshes, meshes of quadrilaterals alone, triangles without room, edges of three triangles, overlaps, and parts
-//! with an odd number of triangles. Lines that are in a group stay, also inside regions. Nodes at the same place are kept apart as the file has them: they are the two sides
-//! of a crack. Deliberately absent: reading files (`core/io`).
+//! What is refused: curved meshes, meshes of quadrilaterals alone, triangles without room that no neighbour can take in, edges of three
+//! triangles, overlaps, points that hang in sides beside a gap, and parts with an odd number of triangles. Lines that are in a group
+//! stay, also inside regions. Nodes at the same place are kept apart as the file has them: they are the two sides of a crack.
+//! Deliberately absent: reading files (`core/io`).
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
@@ -14,6 +15,9 @@ use rustc_hash::FxHashMap;
 use super::cut::{Cut, CutMesh, Sets, Side, cut, sorted_sides};
 use super::parity::toggles;
 use super::triangulate::too_thin;
+use crate::core::discrete::edges::Triangles;
+use crate::core::discrete::lines::on_edges;
+use crate::core::discrete::refuse::{capital, crossed, overlapping, used_points};
 use crate::core::fault::Fault;
 use crate::core::geometry::place::{number, told};
 use crate::core::geometry::predicates::{firm, orient};
@@ -22,6 +26,9 @@ use crate::core::mesh::names::Named;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::spectrum::{LogMetric2, LogMetric3};
 use crate::core::metric::tensor::{Metric2, Metric3};
+
+/// A triangle lower than this part of its longest side is none (as `predicates::firm` has it).
+const FLAT: f64 = 1e-7;
 
 /// A mesh that has been taken in.
 #[derive(Clone, Debug)]
@@ -56,18 +63,22 @@ impl Imported {
 /// that no other region shares is divided.
 ///
 /// # Errors
-/// All that the module's doc says, with the numbers of the triangles (from 1, in the order of the file) and places.
+/// All that the module's doc says, with the triangles as the file counts them, and places.
 pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
+    let given = file;
     let (cut, file) = cut_to_triangles(file);
-    let mut import = Import::checked(&file)?;
+    let mut import = Import::checked(given, &file)?;
     tell(
         &mut import.repairs,
         cut,
         "quadrilateral or polygon was cut into triangles",
         "quadrilaterals and polygons were cut into triangles",
     );
-    import.orient_and_drop_duplicates()?;
+    import.drop_duplicates();
+    import.mend();
+    import.orient()?;
     import.check_edges()?;
+    overlapping(given, &import.places(), &import.triangles, &import.element)?;
     import.even_parts(split_odd)?;
     Ok(import.finish())
 }
@@ -97,13 +108,17 @@ fn cut_to_triangles(file: &MeshFile) -> (usize, Cow<'_, MeshFile>) {
 }
 
 struct Import<'a> {
+    /// The mesh as the file has it, and cut to triangles.
+    given: &'a MeshFile,
     file: &'a MeshFile,
     uv: Vec<DVec2>,
+    /// How high the plane lies.
+    z: f64,
     origin: Vec<[u32; 2]>,
     triangles: Vec<[u32; 3]>,
-    /// Region of each triangle, and its number in the file.
+    /// Region of each triangle, and the element of the file that it comes from.
     region: Vec<u32>,
-    number: Vec<u32>,
+    element: Vec<u32>,
     tags: Vec<u32>,
     sides: Vec<Side>,
     /// The groups of lines, and the group of each side in one, by its nodes in ascending order.
@@ -114,43 +129,18 @@ struct Import<'a> {
 }
 
 impl<'a> Import<'a> {
-    fn checked(file: &'a MeshFile) -> Result<Self, Fault> {
+    fn checked(given: &'a MeshFile, file: &'a MeshFile) -> Result<Self, Fault> {
         let (n, quads) = (file.triangles.len(), file.quads.len());
         if quads > 0 {
             return Err(Fault::new(format!("The mesh has quadrilaterals already: all of its {quads} elements"))
-                .remedy("Give a mesh of triangles"));
+                .remedy("Give a mesh of triangles, or mesh its shape anew (--use shape)"));
         }
-        if n == 0 {
-            let skipped: Vec<String> = file.skipped.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
-            let others = if skipped.is_empty() { String::new() } else { format!(", only {}", skipped.join(", ")) };
-            return Err(
-                Fault::new(format!("The mesh has no triangles{others}")).remedy("Give a mesh of plane triangles")
-            );
-        }
-        if n > u32::MAX as usize / 8 || file.points.len() > u32::MAX as usize / 8 {
-            return Err(Fault::new(format!("The mesh has {n} triangles, more than can be numbered")));
-        }
-        let mut used = vec![false; file.points.len()];
-        for (i, t) in file.triangles.iter().enumerate() {
-            for &node in t {
-                let Some(used) = used.get_mut(node as usize) else {
-                    return Err(Fault::new(format!(
-                        "Triangle {} has the point {}, and there are {}",
-                        i + 1,
-                        u64::from(node) + 1,
-                        file.points.len()
-                    )));
-                };
-                *used = true;
-            }
-        }
+        let origins = given.origins();
+        let used = used_points(given, &file.triangles, &origins)?;
+        crossed(given, &file.triangles, &origins)?;
         let mut z = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for (i, p) in file.points.iter().enumerate().filter(|(i, _)| used[*i]) {
-            if !p.is_finite() || p.abs().max_element() > 1e100 {
-                return Err(Fault::new(format!("Point {} is ({}, {}, {})", i + 1, p.x, p.y, p.z))
-                    .remedy("Coordinates must be finite numbers"));
-            }
+        for (_, p) in file.points.iter().enumerate().filter(|(i, _)| used[*i]) {
             z = (z.0.min(p.z), z.1.max(p.z));
             (low, high) = (low.min(p.truncate()), high.max(p.truncate()));
         }
@@ -180,12 +170,14 @@ impl<'a> Import<'a> {
         let orphans = used.iter().filter(|u| !**u).count();
         tell(&mut repairs, orphans, "point without triangles was left out", "points without triangles were left out");
         let mut import = Import {
+            given,
             file,
             uv: file.points.iter().map(|p| p.truncate()).collect(),
+            z: z.0,
             origin: (0..file.points.len() as u32).map(|i| [i, i]).collect(),
             triangles: file.triangles.clone(),
             region: (0..n).map(|i| index[&tag(i)]).collect(),
-            number: (1..=n as u32).collect(),
+            element: origins,
             tags,
             sides: Vec::new(),
             groups,
@@ -217,25 +209,24 @@ impl<'a> Import<'a> {
         firm(self.uv[a as usize], self.uv[b as usize], self.uv[c as usize])
     }
 
-    /// All triangles anticlockwise and each once.
-    fn orient_and_drop_duplicates(&mut self) -> Result<(), Fault> {
-        let mut clockwise = 0;
-        for i in 0..self.triangles.len() {
-            let t = &mut self.triangles[i];
-            if orient(self.uv[t[0] as usize], self.uv[t[1] as usize], self.uv[t[2] as usize]) < 0.0 {
-                t.swap(1, 2);
-                clockwise += 1;
-            }
-            let t = self.triangles[i];
-            let [a, b, c] = t.map(|n| self.uv[n as usize]);
-            if !firm(a, b, c) {
-                let what = format!("Triangle {} is {}", i + 1, too_thin(a, b, c));
-                return Err(Fault::new(what)
-                    .at(format!("at {}, {}, {}", told(a), told(b), told(c)))
-                    .remedy("Mend the mesh there: collapse or swap its longest side"));
-            }
-        }
-        tell(&mut self.repairs, clockwise, "clockwise triangle was turned", "clockwise triangles were turned");
+    /// The corners of some triangles, to be shown.
+    fn shapes(&self, triangles: impl IntoIterator<Item = usize>) -> Vec<Vec<DVec3>> {
+        let places = |t: usize| self.triangles[t].map(|k| self.uv[k as usize].extend(self.z)).to_vec();
+        triangles.into_iter().map(places).collect()
+    }
+
+    /// Where the points are.
+    fn places(&self) -> Vec<DVec3> {
+        self.uv.iter().map(|p| p.extend(self.z)).collect()
+    }
+
+    fn told(&self, triangles: impl IntoIterator<Item = usize>) -> String {
+        let places: Vec<u32> = triangles.into_iter().map(|t| self.element[t]).collect();
+        capital(&self.given.elements_told(&places))
+    }
+
+    /// Each triangle once.
+    fn drop_duplicates(&mut self) {
         let key = |t: &[u32; 3]| {
             let mut t = *t;
             t.sort_unstable();
@@ -251,30 +242,90 @@ impl<'a> Import<'a> {
         if doubles > 0 {
             retain(&mut self.triangles, &keep);
             retain(&mut self.region, &keep);
-            retain(&mut self.number, &keep);
+            retain(&mut self.element, &keep);
         }
         tell(&mut self.repairs, doubles, "duplicate triangle was left out", "duplicate triangles were left out");
-        Ok(())
+    }
+
+    /// Takes out triangles too flat to be any, whose corner the neighbour beyond gets, and takes points into the sides in which they
+    /// hang where there is no gap; lines run along what these sides become.
+    fn mend(&mut self) {
+        let mut mesh = Triangles {
+            points: self.places(),
+            triangles: std::mem::take(&mut self.triangles),
+            region: std::mem::take(&mut self.region),
+            origin: std::mem::take(&mut self.element),
+            ..Triangles::default()
+        };
+        // Corners at one place are the banks of a crack, and what lies between them is not for others to take.
+        let flat = mesh.turn_flat_ones(&|mesh, t| {
+            let [a, b, c] = mesh.corners(t).map(DVec3::truncate);
+            let long = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+            a != b && b != c && c != a && orient(a, b, c).abs() < FLAT * long
+        });
+        let stitched = mesh.stitch(true);
+        tell(&mut self.repairs, flat, "triangle without area was taken out", "triangles without area were taken out");
+        tell(
+            &mut self.repairs,
+            stitched,
+            "point hung in a side and was taken into it",
+            "points hung in sides and were taken into them",
+        );
+        if flat + stitched > 0 && !self.lines.is_empty() {
+            let mut segments: Vec<([u32; 2], u32)> = self.lines.iter().map(|(&(a, b), &line)| ([a, b], line)).collect();
+            segments.sort_unstable();
+            self.lines = on_edges(&segments, &mesh, &[]).0.into_iter().map(|([a, b], line)| ((a, b), line)).collect();
+        }
+        (self.triangles, self.region, self.element) = (mesh.triangles, mesh.region, mesh.origin);
+    }
+
+    /// All triangles anticlockwise.
+    fn orient(&mut self) -> Result<(), Fault> {
+        if self.triangles.is_empty() {
+            let shapes = self.given.triangles.iter().map(|t| t.map(|k| self.given.points[k as usize]).to_vec());
+            return Err(Fault::new("No triangle of the mesh has an area: the corners of each lie on a line")
+                .remedy("Write it with more digits, or in another unit")
+                .showing(shapes));
+        }
+        let mut clockwise = 0;
+        for t in &mut self.triangles {
+            if orient(self.uv[t[0] as usize], self.uv[t[1] as usize], self.uv[t[2] as usize]) < 0.0 {
+                t.swap(1, 2);
+                clockwise += 1;
+            }
+        }
+        tell(&mut self.repairs, clockwise, "clockwise triangle was turned", "clockwise triangles were turned");
+        let flat: Vec<usize> = (0..self.triangles.len()).filter(|&i| !self.firm(self.triangles[i])).collect();
+        let Some(&first) = flat.first() else { return Ok(()) };
+        let [a, b, c] = self.triangles[first].map(|n| self.uv[n as usize]);
+        let what = match flat.len() {
+            1 => format!("{} is {}", self.told(flat.iter().copied()), too_thin(a, b, c)),
+            _ => format!("{} are too flat: the first is {}", self.told(flat.iter().copied()), too_thin(a, b, c)),
+        };
+        Err(Fault::new(what)
+            .at(format!("at {}, {}, {}", told(a), told(b), told(c)))
+            .remedy("Mend the mesh there: collapse or swap its longest side")
+            .showing(self.shapes(flat)))
     }
 
     /// No edge of more than two triangles, no two triangles on the same side of one.
     fn check_edges(&mut self) -> Result<(), Fault> {
         self.sides = sorted_sides(self.uv.len(), &self.triangles);
         for group in self.sides.chunk_by(same_edge).filter(|g| g.len() > 1) {
-            let number = |s: &Side| self.number[s.corner as usize / 3].to_string();
             let forward = |s: &Side| self.triangles[s.corner as usize / 3][s.corner as usize % 3] == s.low;
-            let numbers: Vec<String> = group.iter().map(number).collect();
+            let of = || group.iter().map(|side| side.corner as usize / 3);
             let what = match group {
                 [a, b] if forward(a) == forward(b) => {
-                    format!("The triangles {} overlap: they lie on the same side of an edge", numbers.join(" and "))
+                    format!("{} overlap: they lie on the same side of an edge", self.told(of()))
                 }
                 [_, _] => continue,
-                _ => format!("{} triangles share one edge: {}", group.len(), numbers.join(", ")),
+                _ => format!("{} share one edge", self.told(of())),
             };
             let (a, b) = (self.uv[group[0].low as usize], self.uv[group[0].high as usize]);
             return Err(Fault::new(what)
                 .at(format!("at the edge from {} to {}", told(a), told(b)))
-                .remedy("Take out what is too much: in the plane an edge has one triangle on each side"));
+                .remedy("Take out what is too much: in the plane an edge has one triangle on each side")
+                .showing(self.shapes(of())));
         }
         Ok(())
     }
@@ -320,7 +371,7 @@ impl<'a> Import<'a> {
             longest.values().map(|(length, _)| Some(1.0 / length.max(f64::MIN_POSITIVE))).collect();
         let toggled = toggles(&rows, &odd, &cost).map_err(|blamed| {
             let named = blamed.iter().copied().find(|&p| odd[p as usize]).unwrap_or(first as u32);
-            self.odd_fault(&part, named, count[named as usize])
+            self.odd_fault(&part, named, count[named as usize], split_odd)
         })?;
         let chosen: Vec<Vec<Side>> = longest
             .values()
@@ -361,20 +412,21 @@ impl<'a> Import<'a> {
             let [a, b, c] = [0, 1, 2].map(|i| self.triangles[t][(k + i) % 3]);
             let parts = [[a, m, c], [m, b, c]];
             if parts.iter().any(|&h| !self.firm(h)) {
-                return Err(Fault::new(format!("Triangle {} is too thin to be divided", self.number[t]))
+                return Err(Fault::new(format!("{} is too thin to be divided", self.told([t])))
                     .at(format!("at {}", told(middle)))
-                    .remedy("Divide another boundary segment of its part in the mesh"));
+                    .remedy("Divide another boundary segment of its part in the mesh")
+                    .showing(self.shapes([t])));
             }
             others.push(self.triangles.len());
             self.triangles[t] = parts[0];
             self.triangles.push(parts[1]);
             self.region.push(self.region[t]);
-            self.number.push(self.number[t]);
+            self.element.push(self.element[t]);
         }
         Ok(())
     }
 
-    fn odd_fault(&self, part: &[u32], odd: u32, count: u32) -> Fault {
+    fn odd_fault(&self, part: &[u32], odd: u32, count: u32, split_odd: bool) -> Fault {
         let member = |t: usize| part[t] == odd;
         let triangles: Vec<[u32; 3]> = (0..part.len()).filter(|&t| member(t)).map(|t| self.triangles[t]).collect();
         let mesh = cut(&self.uv, triangles, vec![0; count as usize], &[]);
@@ -382,17 +434,26 @@ impl<'a> Import<'a> {
         let found = loops.iter().find(|l| l.len() % 2 == 1);
         let segments = found.map_or(0, Vec::len);
         let place = found.map_or(DVec2::ZERO, |l| mesh.set.uv[l[0] as usize]);
-        let region = self.region_name(self.region[odd as usize]).name;
-        let remedy = if self.coincident > 0 {
-            "Divide one boundary segment of this part; or merge points that stand at the same place, if the mesh ought to hang together there"
-        } else {
-            "Divide one boundary segment of this part"
+        let region = match self.tags.len() {
+            1 => String::new(),
+            _ => format!(" of {}", self.region_name(self.region[odd as usize]).name),
         };
+        let mut remedy = "Divide one boundary segment of this part".to_owned();
+        if !split_odd {
+            remedy += ", or allow that (--split-odd)";
+        }
+        if self.coincident > 0 {
+            remedy += "; or merge points that stand at the same place, if the mesh ought to hang together there";
+        }
+        let triangles = if count == 1 { "triangle" } else { "triangles" };
+        let side = |ends: [u32; 2]| ends.map(|n| mesh.set.uv[n as usize].extend(self.z)).to_vec();
+        let sides = found.into_iter().flat_map(|l| (0..l.len()).map(|k| side([l[k], l[(k + 1) % l.len()]])));
         Fault::new(format!(
-            "The boundary loop of {segments} segments leaves a part of {region} with {count} triangles; an all-quad mesh needs an even count"
+            "The boundary loop of {segments} segments leaves a part{region} with {count} {triangles}; an all-quad mesh needs an even count"
         ))
         .at(format!("at {}", told(place)))
         .remedy(remedy)
+        .showing(sides)
     }
 
     fn region_name(&self, region: u32) -> Named {

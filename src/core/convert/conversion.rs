@@ -204,8 +204,7 @@ fn from_mesh(
     taking.scale(&mut file);
     let place = path.display().to_string();
     if !is_plane(&file) || taking.used == Some(MeshUse::Shape) {
-        return from_surface(case, &file, taking, watch)
-            .map_err(|fault| if fault.place.is_empty() && !fault.is_stop { fault.at(place) } else { fault });
+        return from_surface(case, &file, &place, taking, watch);
     }
     let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
     let set = &imported.set;
@@ -243,10 +242,18 @@ fn from_mesh(
 }
 
 /// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
-/// case's fields; where there are none those given at its points, or those that its triangles have.
-fn from_surface(case: &Case, file: &MeshFile, taking: &Taking, watch: &mut dyn Watch) -> Result<Background, Fault> {
-    let Sound { mesh, copied, regions, lines, mut repairs } = sound(file, watch)?;
-    let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch)?;
+/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is the file's name.
+fn from_surface(
+    case: &Case,
+    file: &MeshFile,
+    place: &str,
+    taking: &Taking,
+    watch: &mut dyn Watch,
+) -> Result<Background, Fault> {
+    // What the case says of sizes has a place of its own.
+    let here = |fault: Fault| if fault.is_stop { fault } else { fault.at(place) };
+    let Sound { mesh, copied, regions, lines, mut repairs } = sound(file, watch).map_err(here)?;
+    let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
     for spec in &case.fields {
@@ -262,19 +269,20 @@ fn from_surface(case: &Case, file: &MeshFile, taking: &Taking, watch: &mut dyn W
         fields.push(match &file.metric {
             Some(given) => {
                 let copies = copied.iter().map(|&point| given[point as usize]);
-                surface.table(&given.iter().copied().chain(copies).collect::<Vec<_>>())?
+                surface.table(&given.iter().copied().chain(copies).collect::<Vec<_>>()).map_err(here)?
             }
-            None if converts => surface.table(&implied_metric_in_space(&mesh))?,
-            None => surface.table(&implied_sizes(&mesh))?,
+            None if converts => surface.table(&implied_metric_in_space(&mesh)).map_err(here)?,
+            None => surface.table(&implied_sizes(&mesh)).map_err(here)?,
         });
     }
     let faces = surface.regions.clone();
     let lines = Lines { names: lines, of_curve: surface.lines.clone() };
-    let mut made = if converts {
-        from_laid_out(case, &mesh, &surface, fields, lines, &mut repairs)?
+    let made = if converts {
+        from_laid_out(case, &mesh, &surface, fields, lines, &mut repairs)
     } else {
-        from_domain(case, surface.domain, Some(fields), lines, watch)?
+        from_domain(case, surface.domain, Some(fields), lines, watch)
     };
+    let mut made = made.map_err(here)?;
     made.names.faces = faces;
     Ok(Background { repairs, ..made })
 }

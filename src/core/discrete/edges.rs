@@ -13,6 +13,9 @@ pub struct Triangles {
     pub region: Vec<u32>,
     /// Where the corners of each triangle lie on a texture, if they do; empty where there is none.
     pub texture: Vec<Option<[DVec2; 3]>>,
+    /// The element of the file that each triangle comes from ([`MeshFile::origins`](crate::core::io::mesh_file::MeshFile::origins)); empty
+    /// where there is no file.
+    pub origin: Vec<u32>,
     /// Edges on lines that are kept whatever the shape is there: their ends, the smaller one first, and the number of the line; by ascending ends.
     pub lines: Vec<([u32; 2], u32)>,
 }

@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
 use super::edges::{Corner, Edge, Edges, Triangles};
+use super::refuse::place as told;
 use super::surface::{Surface, sides};
 use crate::core::background::cut::Sets;
 use crate::core::background::parity::toggles;
@@ -78,10 +79,12 @@ impl Surface {
             for t in &chart.local {
                 let [a, b, c] = t.map(|node| chart.uv[node as usize]);
                 if !firm(a, b, c) {
-                    let [p, q, r] = t.map(|node| told(points[chart.points[node as usize] as usize]));
+                    let corners = t.map(|node| points[chart.points[node as usize] as usize]);
+                    let [p, q, r] = corners.map(told);
                     return Err(Fault::new("A triangle of the mesh is too flat to be converted as it is")
                         .at(format!("at {p}, {q}, {r}"))
-                        .remedy("Mend the mesh there, or mesh its shape anew (--use shape)"));
+                        .remedy("Mend the mesh there, or mesh its shape anew (--use shape)")
+                        .showing([corners.to_vec()]));
                 }
                 set.triangles.push(t.map(|node| first + node));
                 set.region.push(k as u32);
@@ -133,10 +136,6 @@ fn at_end(triangles: &[[u32; 3]], side: Corner, end: u32) -> Corner {
     if own { side } else { side - side % 3 + (side + 1) % 3 }
 }
 
-fn told(p: DVec3) -> String {
-    format!("({}, {}, {})", p.x, p.y, p.z)
-}
-
 impl Laid {
     /// Divides the triangles at a side; at a slit both banks.
     fn divide(&mut self, [a, b]: [u32; 2], middle: u32) {
@@ -167,15 +166,38 @@ fn divide_odd(mesh: &Triangles, charts: &[Chart], split_odd: bool) -> Result<Vec
     }
     let edges = Edges::of(&mesh.triangles);
     let divided = |rows: &Borders| rows.divided(mesh, &edges, split_odd);
-    divided(&Borders::of_loops(charts, &edges)).or_else(|_| divided(&Borders::of_charts(charts, &edges))).map_err(|blamed| {
-        let triangles: usize = blamed.iter().map(|&k| charts[k as usize].local.len()).sum();
-        let place = charts[blamed[0] as usize].points[0];
-        Fault::new(format!(
-            "A part of the surface with {triangles} triangles has an odd number of sides at its border; an all-quad mesh needs an even count"
-        ))
-        .at(format!("at {}", told(mesh.points[place as usize])))
-        .remedy("Divide one side at its border, or allow that (--split-odd)")
-    })
+    divided(&Borders::of_loops(charts, &edges)).or_else(|_| divided(&Borders::of_charts(charts, &edges))).map_err(
+        |blamed| {
+            let charts: Vec<&Chart> = blamed.iter().map(|&k| &charts[k as usize]).collect();
+            odd_fault(mesh, &edges, &charts, split_odd)
+        },
+    )
+}
+
+/// What charts are refused for that have an odd number of triangles together.
+fn odd_fault(mesh: &Triangles, edges: &Edges, charts: &[&Chart], split_odd: bool) -> Fault {
+    let triangles = match charts.iter().map(|chart| chart.local.len()).sum::<usize>() {
+        1 => "1 triangle".to_owned(),
+        n => format!("{n} triangles"),
+    };
+    // The loops of the surface's own border that make it odd.
+    let mut odd = Vec::new();
+    for (chart, sides) in charts.iter().flat_map(|chart| sides(chart).map(move |sides| (chart, sides))) {
+        let ends = sides.iter().map(|side| side.map(|node| chart.points[node as usize]));
+        let outer = |ends: &[u32; 2]| edges.between(*ends).is_some_and(|edge| edges.get(edge).sides.len() == 1);
+        let outer: Vec<[u32; 2]> = ends.filter(outer).collect();
+        if outer.len() % 2 == 1 {
+            odd.extend(outer);
+        }
+    }
+    let place = odd.first().map_or(charts[0].points[0], |ends| ends[0]);
+    let shape = |ends: &[u32; 2]| ends.map(|end| mesh.points[end as usize]).to_vec();
+    Fault::new(format!(
+        "A part of the surface with {triangles} has an odd number of sides at its border; an all-quad mesh needs an even count"
+    ))
+    .at(format!("at {}", told(mesh.points[place as usize])))
+    .remedy(if split_odd { "Divide one side there" } else { "Divide one side at its border, or allow that (--split-odd)" })
+    .showing(odd.iter().map(shape))
 }
 
 /// What is to be made even, with the edges that it runs along.

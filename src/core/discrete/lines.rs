@@ -5,7 +5,7 @@ use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
 use super::edges::{Edges, Triangles};
-use super::mend::{IN_SIDE, SAME_PLACE};
+use super::mend::IN_SIDE;
 
 /// The edges on line segments between points of the file: their ends, ascending, and the number of the line, by ascending ends and
 /// each once, on the first of its lines. A segment whose ends were made one with others, or got copies (`copied` has the points that
@@ -62,7 +62,7 @@ impl<'a> Places<'a> {
         copies.sort_unstable();
         let own = || mesh.points.iter().zip(0_u32..).zip(&used).filter(|(_, used)| **used).map(|(point, _)| point);
         let tree = RTree::bulk_load(own().map(|(p, k)| GeomWithData::new(p.to_array(), k)).collect());
-        let same = SAME_PLACE * own().map(|(p, _)| p.abs().max_element()).fold(0.0, f64::max);
+        let [same, _] = mesh.same_place(&used);
         Places { mesh, edges, near, used, copies, tree, same }
     }
 

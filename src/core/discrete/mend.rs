@@ -10,8 +10,10 @@ use crate::core::background::cut::Sets;
 use crate::core::io::weld::weld;
 use crate::core::progress::Cancel;
 
-/// Points nearer than this part of the largest coordinate are at one place.
-pub(super) const SAME_PLACE: f64 = 1e-9;
+/// Points nearer than this part of the size of the mesh are at one place.
+const SAME_PLACE: f64 = 1e-9;
+/// And so are those nearer than this part of the largest coordinate.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// A point nearer to a side than this part of the side's length hangs in it.
 pub(super) const IN_SIDE: f64 = 1e-6;
 /// Parts that touch in a point are set apart by this part of the size, and by no more than this part of an edge there.
@@ -27,7 +29,8 @@ impl Triangles {
         self.triangles.as_flattened().iter().for_each(|&k| is_used[k as usize] = true);
         let used: Vec<u32> = (0..self.points.len() as u32).filter(|&k| is_used[k as usize]).collect();
         let places: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
-        let (kept, standing) = weld(&places, SAME_PLACE, cancel);
+        let [near, largest] = self.same_place(&is_used);
+        let (kept, standing) = weld(&places, near / largest.max(f64::MIN_POSITIVE), cancel);
         if kept.len() == places.len() || cancel.is_asked() {
             return 0;
         }
@@ -43,12 +46,23 @@ impl Triangles {
         places.len() - kept.len()
     }
 
-    /// Divides sides on the border in which points of the border hang, so that they meet there. How many points those were.
-    pub fn stitch(&mut self) -> usize {
+    /// How near to each other points are that are at one place, by the size of the mesh, wherever it is, but more than by rounding; and
+    /// the largest coordinate of those in use.
+    pub(super) fn same_place(&self, is_used: &[bool]) -> [f64; 2] {
+        let used = self.points.iter().zip(is_used).filter(|(_, used)| **used).map(|(p, _)| *p);
+        let ends = used.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let [low, high] = ends.unwrap_or([DVec3::ZERO; 2]);
+        let largest = low.abs().max(high.abs()).max_element();
+        [(SAME_PLACE * (high - low).max_element()).max(ROUNDING * largest), largest]
+    }
+
+    /// Divides sides on the border in which points of the border hang, so that they meet there; of those that are `closed` alone, where
+    /// other sides run along the whole of the divided one. How many points those were.
+    pub fn stitch(&mut self, closed: bool) -> usize {
         let mut stitched = 0;
         // A triangle is divided at one of its sides at a time.
         for _ in 0..ROUNDS {
-            let hanging = self.hanging();
+            let hanging = self.hanging(closed);
             if hanging.is_empty() {
                 break;
             }
@@ -67,6 +81,9 @@ impl Triangles {
                     } else {
                         self.triangles.push(piece);
                         self.region.push(self.region[t]);
+                        if !self.origin.is_empty() {
+                            self.origin.push(self.origin[t]);
+                        }
                         if !self.texture.is_empty() {
                             self.texture.push(None);
                         }
@@ -78,7 +95,7 @@ impl Triangles {
     }
 
     /// Points of the border that hang in sides of the border: the side, how far along, the point, ascending.
-    fn hanging(&self) -> Vec<(u32, f64, u32)> {
+    fn hanging(&self, closed: bool) -> Vec<(u32, f64, u32)> {
         let edges = Edges::of(&self.triangles);
         let one = |e: usize| <[u32; 1]>::try_from(edges.get(e).sides).ok();
         let sides: Vec<u32> = (0..edges.len()).filter_map(one).flatten().collect();
@@ -103,12 +120,22 @@ impl Triangles {
             }
         }
         hanging.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        if closed {
+            let is_border =
+                |ends: &[u32]| edges.between([ends[0], ends[1]]).is_some_and(|edge| edges.get(edge).sides.len() == 1);
+            let of_side = hanging.chunk_by(|a, b| a.0 == b.0).filter(|of_side| {
+                let [a, b] = self.side(of_side[0].0);
+                let along: Vec<u32> = [a].into_iter().chain(of_side.iter().map(|h| h.2)).chain([b]).collect();
+                along.windows(2).all(is_border)
+            });
+            return of_side.flatten().copied().collect();
+        }
         hanging
     }
 
     /// Gives parts that touch in a point only, one of which closes around it, points of their own, a little apart. For each new
-    /// point the one that it was; how many places those were.
-    pub fn part(&mut self) -> (Vec<u32>, usize) {
+    /// point the one that it was; how many places those were, and how many more there are in which parts touch.
+    pub fn part(&mut self) -> (Vec<u32>, usize, usize) {
         let corners = 3 * self.triangles.len();
         let edges = Edges::of(&self.triangles);
         let mut sets = Sets::new(corners);
@@ -131,12 +158,13 @@ impl Triangles {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         self.points.iter().for_each(|&p| (low, high) = (low.min(p), high.max(p)));
         let size = (high - low).length();
-        let (mut copies, mut places) = (Vec::new(), 0);
+        let (mut copies, mut places, mut pinched) = (Vec::new(), 0, 0);
         for (point, at_point) in (0_u32..).zip(by_point.iter_mut()) {
             at_point.sort_unstable_by_key(|&c| (fan_of[c as usize], c));
             let fans = at_point.chunk_by(|&a, &b| fan_of[a as usize] == fan_of[b as usize]);
             let fan_count = fans.clone().count();
             if fan_count < 2 || 2 * fan_count <= outer[point as usize] {
+                pinched += usize::from(fan_count > 1);
                 continue;
             }
             places += 1;
@@ -154,7 +182,7 @@ impl Triangles {
                 }
             }
         }
-        (copies, places)
+        (copies, places, pinched)
     }
 }
 
@@ -189,10 +217,10 @@ mod tests {
     fn points_that_hang_in_sides_are_taken_into_them() {
         // Five points of the one border stand on four, or two, sides of the other.
         let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
-        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch()), (3, 2));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false)), (3, 2));
         assert_eq!(borders(&mesh), 16 + 8 - 4 - 2);
         let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.area_vector(t).length()).sum();
-        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch() == 0);
+        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(false) == 0);
     }
 
     #[test]
@@ -200,7 +228,7 @@ mod tests {
         let mut mesh = beside(cube(1), &cube(1), DVec3::ONE);
         assert_eq!(mesh.weld(&Cancel::default()), 1);
         let points = mesh.points.len();
-        let (copies, places) = mesh.part();
+        let (copies, places, _) = mesh.part();
         assert_eq!((copies.len(), places, mesh.points.len()), (2, 1, points + 2));
         let [a, b] = [mesh.points[points], mesh.points[points + 1]];
         assert!(a.distance(b) > 1e-7 && a.distance(b) < 1e-5);

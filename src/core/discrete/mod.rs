@@ -6,6 +6,7 @@
 pub mod edges;
 pub mod mend;
 pub mod lines;
+pub(in crate::core) mod refuse;
 pub mod sound;
 pub mod features;
 pub mod chart;

@@ -1,11 +1,13 @@
 //! Triangles of a file made fit to be a surface: what can be mended for certain is mended and told; what is no mesh is refused.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 
 use glam::DVec3;
 
 use super::edges::{Edges, Groups, Triangles};
 use super::lines::on_edges;
+use super::refuse::{LARGEST, crossed, far_away, one_sided, overlapping, used_points};
+use crate::core::background::import::is_plane;
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::names::Named;
@@ -38,10 +40,11 @@ pub struct Sound {
 /// The triangles of a file: quadrilaterals and polygons cut; points at one place used as one, and points that hang in sides of
 /// the border taken into them; triangles with a node twice or without area, and duplicates, taken out; all
 /// turned so that neighbours agree on which side is outside, where that can be; parts that touch in a point set apart. Lines that
-/// are in a group become those of the edges that they lie on.
+/// are in a group become those of the edges that they lie on. A mesh in a plane z = constant looks up.
 ///
 /// # Errors
-/// No triangles; points that are not finite or beyond 1e100; points that are not there; [`Fault::stopped`].
+/// What cannot be mended for certain, with the elements as the file counts them: no triangles; points that are not there or not where
+/// points can be; polygons that cross themselves; surfaces with one side; overlaps in the plane. [`Fault::stopped`].
 pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     let mut repairs = Vec::new();
     let mut tell = |n: usize, one: &str, several: &str| match n {
@@ -55,31 +58,14 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
         cancel.check()
     };
     begin(0)?;
+    let (given, plane, origin) = (file, is_plane(file), file.origins());
     let (file, cut) = file.clone().triangulated();
     begin(1)?;
     tell(cut, "quadrilateral or polygon was cut into triangles", "quadrilaterals and polygons were cut into triangles");
-    if file.triangles.is_empty() {
-        return Err(Fault::new("The mesh has no triangles").remedy("Give a mesh of triangles"));
-    }
-    if file.triangles.len() > u32::MAX as usize / 8 {
-        return Err(Fault::new(format!("The mesh has {} triangles, more than can be numbered", file.triangles.len())));
-    }
-    for (i, t) in file.triangles.iter().enumerate() {
-        for &k in t {
-            match file.points.get(k as usize) {
-                None => {
-                    let what =
-                        format!("Triangle {} has the point {}, and there are {}", i + 1, k + 1, file.points.len());
-                    return Err(Fault::new(what));
-                }
-                Some(p) if !p.is_finite() || p.abs().max_element() > 1e100 => {
-                    return Err(Fault::new(format!("Point {} is ({}, {}, {})", k + 1, p.x, p.y, p.z))
-                        .remedy("Coordinates must be finite numbers"));
-                }
-                Some(_) => {}
-            }
-        }
-    }
+    let used = used_points(given, &file.triangles, &origin)?;
+    crossed(given, &file.triangles, &origin)?;
+    let orphans = used.iter().filter(|used| !**used).count();
+    tell(orphans, "point without triangles was left out", "points without triangles were left out");
     let tag = |i: usize| file.triangle_tags.get(i).copied().unwrap_or(0);
     let tags: Vec<u32> = (0..file.triangles.len()).map(tag).collect::<BTreeSet<u32>>().into_iter().collect();
     let regions = tags.iter().map(|&tag| file.region(tag)).collect();
@@ -90,33 +76,50 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     let (lines, line_of) = file.line_groups();
     let segments: Vec<([u32; 2], u32)> =
         file.lines.iter().zip(line_of).filter_map(|(&ends, line)| Some((ends, line?))).collect();
-    let mut mesh = Triangles { points: file.points, triangles: file.triangles, region, lines: Vec::new(), texture };
+    let mut mesh =
+        Triangles { points: file.points, triangles: file.triangles, region, lines: Vec::new(), texture, origin };
+    far_away(&mesh)?;
     begin(2)?;
     let welded = mesh.weld(&cancel);
     begin(3)?;
     tell(welded, "point lay on another and was made one with it", "points lay on others and were made one with them");
-    let stitched = mesh.stitch();
+    let stitched = mesh.stitch(false);
     tell(stitched, "point hung in a side and was taken into it", "points hung in sides and were taken into them");
     begin(4)?;
     let doubles = mesh.drop_doubles();
     tell(doubles, "duplicate triangle was left out", "duplicate triangles were left out");
     begin(5)?;
-    let flat = mesh.turn_flat_ones();
+    let flat = mesh.take_out_flat_ones();
     tell(flat, "triangle without area was taken out", "triangles without area were taken out");
     begin(6)?;
-    let turned = mesh.orient();
-    tell(
-        turned,
-        "triangle was turned to agree with its neighbours",
-        "triangles were turned to agree with their neighbours",
-    );
     if mesh.triangles.is_empty() {
-        return Err(Fault::new("No triangle of the mesh has an area"));
+        let shapes = given.triangles.iter().map(|t| t.map(|k| given.points[k as usize]).to_vec());
+        return Err(Fault::new("No triangle of the mesh has an area: the corners of each lie on a line")
+            .remedy("Write it with more digits, or in another unit")
+            .showing(shapes));
+    }
+    if plane {
+        let turned = mesh.look_up();
+        tell(turned, "clockwise triangle was turned", "clockwise triangles were turned");
+        overlapping(given, &mesh.points, &mesh.triangles, &mesh.origin)?;
+    } else {
+        let turned = mesh.orient();
+        one_sided(given, &mesh, &Edges::of(&mesh.triangles))?;
+        tell(
+            turned,
+            "triangle was turned to agree with its neighbours",
+            "triangles were turned to agree with their neighbours",
+        );
     }
     begin(7)?;
-    let (copied, parted) = mesh.part();
+    let (copied, parted, pinched) = mesh.part();
     begin(STEPS)?;
     tell(parted, "point in which parts touched was parted", "points in which parts touched were parted");
+    tell(
+        pinched,
+        "node was split where triangles meet in a point only",
+        "nodes were split where triangles meet in a point only",
+    );
     let lost;
     (mesh.lines, lost) = on_edges(&segments, &mesh, &copied);
     tell(
@@ -127,6 +130,18 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     Ok(Sound { mesh, regions, lines, copied, repairs })
 }
 
+/// The triangles of a file as they are, to be shown where it is refused; without those that have no place.
+pub fn as_given(file: &MeshFile) -> Triangles {
+    let mut mesh = Triangles { origin: file.origins(), ..Triangles::default() };
+    let (file, _) = file.clone().triangulated();
+    (mesh.points, mesh.triangles) = (file.points, file.triangles);
+    let is_there = |k: &u32| mesh.points.get(*k as usize).is_some_and(|p| p.abs().max_element() <= LARGEST);
+    let keep: Vec<bool> = mesh.triangles.iter().map(|t| t.iter().all(is_there)).collect();
+    mesh.region = vec![0; mesh.triangles.len()];
+    mesh.keep(&keep);
+    mesh
+}
+
 impl Triangles {
     fn keep(&mut self, keep: &[bool]) {
         let mut at = keep.iter();
@@ -135,6 +150,8 @@ impl Triangles {
         self.region.retain(|_| at.next() != Some(&false));
         let mut at = keep.iter();
         self.texture.retain(|_| at.next() != Some(&false));
+        let mut at = keep.iter();
+        self.origin.retain(|_| at.next() != Some(&false));
     }
 
     /// Lets a triangle that was changed lie nowhere on the texture.
@@ -162,28 +179,49 @@ impl Triangles {
         keep.iter().filter(|k| !**k).count()
     }
 
-    /// Whether a triangle has no plane of its own, or is no higher than `least`, and the corner opposite to its longest side.
-    fn is_flat(&self, triangle: usize, least: f64) -> Option<usize> {
-        let t = self.triangles[triangle];
+    /// The corner opposite to the longest side.
+    fn apex(&self, triangle: usize) -> usize {
         let p = self.corners(triangle);
         let long = |k: usize| p[(k + 1) % 3].distance_squared(p[(k + 2) % 3]);
-        let apex = (0..3).max_by(|&a, &b| long(a).total_cmp(&long(b)).then(b.cmp(&a)))?;
-        let area = self.area_vector(triangle).length();
-        let flat = area <= FLAT * long(apex) || area <= least * long(apex).sqrt();
-        (flat || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]).then_some(apex)
+        (0..3).max_by(|&a, &b| long(a).total_cmp(&long(b)).then(b.cmp(&a))).unwrap_or(0)
     }
 
-    /// Takes out flat triangles: the one beyond the longest side gets the corner that stands on that side. How many those were.
-    fn turn_flat_ones(&mut self) -> usize {
+    /// Whether a triangle has a node twice.
+    fn is_repeated(&self, triangle: usize) -> bool {
+        let [a, b, c] = self.triangles[triangle];
+        a == b || b == c || c == a
+    }
+
+    /// Takes out triangles that have no plane of their own or are nearly as low as nothing. How many those were.
+    fn take_out_flat_ones(&mut self) -> usize {
         let (low, high) = self
             .points
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
         let least = LOW * (high - low).max_element();
+        let is_flat = |mesh: &Triangles, triangle: usize| {
+            let apex = mesh.apex(triangle);
+            let p = mesh.corners(triangle);
+            let long = p[(apex + 1) % 3].distance_squared(p[(apex + 2) % 3]);
+            let area = mesh.area_vector(triangle).length();
+            area <= FLAT * long || area <= least * long.sqrt()
+        };
+        let turned = self.turn_flat_ones(&is_flat);
+        // What is flat after all that is left out.
+        let keep: Vec<bool> = (0..self.triangles.len()).map(|t| !is_flat(self, t) && !self.is_repeated(t)).collect();
+        self.keep(&keep);
+        turned + keep.iter().filter(|k| !**k).count()
+    }
+
+    /// Takes out flat triangles, and those with a node twice: the one beyond the longest side gets the corner that stands on that
+    /// side. How many those were; some may be left.
+    pub(in crate::core) fn turn_flat_ones(&mut self, is_flat: &dyn Fn(&Triangles, usize) -> bool) -> usize {
         let mut taken = 0;
         for _ in 0..ROUNDS {
-            let flat: Vec<(usize, usize)> =
-                (0..self.triangles.len()).filter_map(|t| Some((t, self.is_flat(t, least)?))).collect();
+            let flat: Vec<(usize, usize)> = (0..self.triangles.len())
+                .filter(|&t| self.is_repeated(t) || is_flat(self, t))
+                .map(|t| (t, self.apex(t)))
+                .collect();
             if flat.is_empty() {
                 break;
             }
@@ -195,10 +233,12 @@ impl Triangles {
                     continue;
                 }
                 let nodes = self.triangles[t];
-                let twice = nodes[0] == nodes[1] || nodes[1] == nodes[2] || nodes[2] == nodes[0];
+                let twice = self.is_repeated(t);
                 let side = (3 * t + (apex + 1) % 3) as u32;
+                // One at the border, on whose corner nothing else stands, is a part of that.
+                let is_free = |k: usize| edges.get(edges.of_side((3 * t + (apex + k) % 3) as u32)).sides.len() == 1;
                 let beyond = edges.get(edges.of_side(side)).sides.iter().copied().find(|&other| other != side);
-                if let Some(other) = beyond.filter(|_| !twice) {
+                if let Some(other) = beyond.filter(|_| !(twice || is_free(0) && is_free(2))) {
                     let o = other as usize / 3;
                     if touched[o] || !keep[o] {
                         continue;
@@ -213,6 +253,9 @@ impl Triangles {
                         self.triangles[o] = [a, nodes[apex], far];
                         self.triangles[t] = [nodes[apex], b, far];
                         self.region[t] = self.region[o];
+                        if !self.origin.is_empty() {
+                            self.origin[t] = self.origin[o];
+                        }
                         self.forget_texture(t);
                         self.forget_texture(o);
                         (touched[o], touched[t]) = (true, true);
@@ -227,14 +270,25 @@ impl Triangles {
             }
             self.keep(&keep);
         }
-        // What is flat after all that is left out.
-        let keep: Vec<bool> = (0..self.triangles.len()).map(|t| self.is_flat(t, least).is_none()).collect();
-        self.keep(&keep);
-        taken + keep.iter().filter(|k| !**k).count()
+        taken
+    }
+
+    /// Turns triangles of a mesh in a plane so that all look up. How many were turned.
+    fn look_up(&mut self) -> usize {
+        let down: Vec<usize> = (0..self.triangles.len()).filter(|&t| self.area_vector(t).z < 0.0).collect();
+        down.iter().for_each(|&t| self.turn(t));
+        down.len()
+    }
+
+    fn turn(&mut self, triangle: usize) {
+        self.triangles[triangle].swap(1, 2);
+        if let Some(Some(places)) = self.texture.get_mut(triangle) {
+            places.swap(1, 2);
+        }
     }
 
     /// Turns triangles so that neighbours at edges of two agree, part by part, each as the larger share of it was. How many were
-    /// turned. A part that has but one side (a Moebius strip) keeps edges at which it disagrees.
+    /// turned. A part that has but one side (a Moebius strip) keeps edges at which it disagrees ([`one_sided`]).
     fn orient(&mut self) -> usize {
         let edges = Edges::of(&self.triangles);
         let mut turned: Vec<Option<bool>> = vec![None; self.triangles.len()];
@@ -246,16 +300,29 @@ impl Triangles {
             turned[first] = Some(false);
             let mut part = vec![first];
             let mut next = 0;
-            while next < part.len() {
+            // Where neighbours disagree is crossed last: in a part with one side they do so there and nowhere else.
+            let mut later: VecDeque<(usize, usize)> = VecDeque::new();
+            loop {
+                if next == part.len() {
+                    let Some((t, other)) = later.pop_front() else { break };
+                    if turned[other].is_none() {
+                        turned[other] = turned[t].map(|turned| !turned);
+                        part.push(other);
+                    }
+                    continue;
+                }
                 let t = part[next];
                 next += 1;
                 for side in 3 * t as u32..3 * t as u32 + 3 {
                     let [a, b] = *edges.get(edges.of_side(side)).sides else { continue };
                     let other = if a == side { b } else { a } as usize / 3;
                     if turned[other].is_none() {
-                        let agree = self.side(a) != self.side(b);
-                        turned[other] = turned[t].map(|turned| turned == agree);
-                        part.push(other);
+                        if self.side(a) == self.side(b) {
+                            later.push_back((t, other));
+                        } else {
+                            turned[other] = turned[t];
+                            part.push(other);
+                        }
                     }
                 }
             }
@@ -265,10 +332,7 @@ impl Triangles {
                 let turn = turned[t] == Some(!flip);
                 turned[t] = Some(turn);
                 if turn {
-                    self.triangles[t].swap(1, 2);
-                    if let Some(Some(places)) = self.texture.get_mut(t) {
-                        places.swap(1, 2);
-                    }
+                    self.turn(t);
                     count += 1;
                 }
             }

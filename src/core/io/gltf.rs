@@ -14,6 +14,7 @@ use gltf::mesh::{Mode, Primitive};
 use gltf::scene::Transform;
 use gltf::{Document, Gltf, Node};
 
+use super::counting::Count;
 use super::mesh_file::{Group, MeshFile, Texture};
 use super::scan::shown;
 use super::weld::{SINGLE, weld};
@@ -57,6 +58,7 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
     let (points, standing) = weld(&mesh.points, SINGLE, pace.cancel());
     pace.cancel().check()?;
     mesh.points = points;
+    mesh.counting.points = Count::Nothing;
     mesh.triangles.iter_mut().flatten().for_each(|corner| *corner = standing[*corner as usize]);
     // Strips turn corners with triangles of no area, which are no triangles.
     let tags = std::mem::take(&mut mesh.triangle_tags);

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
+use super::counting::Counting;
 use crate::core::mesh::names::Named;
 use crate::core::metric::tensor::Metric3;
 
@@ -69,6 +70,8 @@ pub struct MeshFile {
     pub texture: Option<Texture>,
     /// Element types that the file has and that are not read, with their counts ("tetrahedron", 12).
     pub skipped: Vec<(String, usize)>,
+    /// How the file counts its points and elements.
+    pub counting: Counting,
 }
 
 /// Where the corners of elements lie on a texture, by the number of the place: a point may lie at several places, one for each

@@ -1,6 +1,7 @@
 //! Files: cases, meshes, reports. Every file is written beside its place and renamed.
 
 pub mod mesh_file;
+pub mod counting;
 pub mod save;
 pub mod fingerprint;
 pub mod scan;

@@ -20,6 +20,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     let mut s = Scanner::new(name, bytes).watched(pace);
     let mut mesh = MeshFile::default();
     let mut corners: Vec<u32> = Vec::new();
+    let mut faces = 0;
     // A face may stand before its vertices: the largest vertex and where it stands are checked at the end.
     let mut largest = (0, 0);
     let (mut names, mut line_names) = (Names::of(2), Names::of(1));
@@ -49,19 +50,23 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 places.extend(words.clone().map(|word| place(word, texture.places.len())));
                 take_corners(&s, words, mesh.points.len(), "face", &mut largest, &mut corners)?;
                 let tag = names.tag(&mut mesh);
+                faces += 1;
                 match corners[..] {
                     [a, b, c] => {
+                        mesh.counting.triangles.push(mesh.triangles.len(), faces);
                         mesh.triangles.push([a, b, c]);
                         mesh.triangle_tags.push(tag);
                         texture.place_triangle(mesh.triangles.len() - 1, [places[0], places[1], places[2]]);
                     }
                     [a, b, c, d] => {
+                        mesh.counting.quads.push(mesh.quads.len(), faces);
                         mesh.quads.push([a, b, c, d]);
                         mesh.quad_tags.push(tag);
                         texture.place_quad(mesh.quads.len() - 1, [places[0], places[1], places[2], places[3]]);
                     }
                     [] | [_] | [_, _] => return Err(s.fault("A face has fewer than three vertices")),
                     _ => {
+                        mesh.counting.polygons.push(mesh.polygons.len(), faces);
                         mesh.polygons.push(corners.clone());
                         mesh.polygon_tags.push(tag);
                         texture.polygons.push(places.clone());
@@ -88,6 +93,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         let what = format!("A face or line has the vertex {}, and there are {}", largest.0, mesh.points.len());
         return Err(s.fault_at(largest.1, what));
     }
+    mesh.counting.in_one_row = true;
     mesh.texture = texture.of_all(&mesh);
     let has = |dimension| mesh.groups.iter().any(|group| group.dimension == dimension);
     let (faces, lines) = (has(2), has(1));

@@ -12,6 +12,7 @@ use ply_rs_bw::ply::{
 };
 use rustc_hash::FxHashMap;
 
+use super::counting::Count;
 use super::mesh_file::{Group, MeshFile, tag_of};
 use super::save::Shortest;
 use super::scan::shown;
@@ -62,7 +63,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 let mut count = 0;
                 each(name, &header, element, &mut reader, &mut go_on, |face: Face| {
                     count += 1;
-                    face.into_mesh(&mut mesh, tagged)
+                    face.into_mesh(&mut mesh, tagged, count)
                         .map_err(|what| Fault::new(format!("Face {count} {what}")).at(name))
                 })?;
             }
@@ -74,6 +75,8 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
             }
         }
     }
+    mesh.counting.in_one_row = true;
+    mesh.counting.points = Count::From(0);
     let points = mesh.points.len();
     let elements =
         mesh.triangles.as_flattened().iter().chain(mesh.quads.as_flattened()).chain(mesh.polygons.iter().flatten());
@@ -227,7 +230,7 @@ impl PropertyAccess for Face {
 }
 
 impl Face {
-    fn into_mesh(self, mesh: &mut MeshFile, tagged: bool) -> Result<(), String> {
+    fn into_mesh(self, mesh: &mut MeshFile, tagged: bool, number: u64) -> Result<(), String> {
         let corners: Option<Vec<u32>> = self.corners.iter().map(|&corner| u32::try_from(corner).ok()).collect();
         let corners = corners.ok_or("has a negative vertex")?;
         for (k, line) in self.lines.into_iter().enumerate().filter(|(k, line)| *line >= 1.0 && *k < corners.len()) {
@@ -236,15 +239,18 @@ impl Face {
         }
         let tags = match corners[..] {
             [a, b, c] => {
+                mesh.counting.triangles.push(mesh.triangles.len(), number);
                 mesh.triangles.push([a, b, c]);
                 &mut mesh.triangle_tags
             }
             [a, b, c, d] => {
+                mesh.counting.quads.push(mesh.quads.len(), number);
                 mesh.quads.push([a, b, c, d]);
                 &mut mesh.quad_tags
             }
             [] | [_] | [_, _] => return Err("has fewer than three vertices".to_owned()),
             _ => {
+                mesh.counting.polygons.push(mesh.polygons.len(), number);
                 mesh.polygons.push(corners);
                 &mut mesh.polygon_tags
             }

@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 
+use super::counting::{Count, Counting};
 use super::mesh_file::{Group, MeshFile};
 use super::scan::{Scanner, shown};
 use super::weld::{SINGLE, Welder, weld};
@@ -69,7 +70,8 @@ fn read_binary(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fa
         }
         welded.extend(part.iter().map(|t| [0, 1, 2].map(|k| welder.weld(corner(t, k)))));
     }
-    Ok(MeshFile { triangles: welded, points: welder.points(), ..MeshFile::default() })
+    let counting = Counting { points: Count::Nothing, ..Counting::default() };
+    Ok(MeshFile { triangles: welded, points: welder.points(), counting, ..MeshFile::default() })
 }
 
 fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
@@ -113,6 +115,7 @@ fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
     }
     let (points, standing) = weld(&corners, SINGLE, pace.cancel());
     mesh.points = points;
+    mesh.counting.points = Count::Nothing;
     mesh.triangles = standing.as_chunks().0.to_vec();
     Ok(mesh)
 }

@@ -1,9 +1,12 @@
-//! A surface as it was given, before it is a mesh: its triangles in the colours of their charts, features and seams as lines.
+//! A surface as it was given, before it is a mesh: its triangles in the colours of their charts, features and seams as lines, and what
+//! it is refused for.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
 use super::form::folded;
-use super::{Face, Form, Line, Scene, ink, relative};
+use super::{Dot, Face, Form, Line, Scene, ink, relative};
 use crate::core::discrete::census::Division;
 use crate::core::discrete::edges::{Edges, Triangles};
 use crate::core::discrete::features::Feature;
@@ -21,9 +24,14 @@ pub struct Given<'a> {
     pub features: &'a [Option<Feature>],
     /// Its charts, once they are known.
     pub division: Option<&'a Division>,
+    /// Elements that stand out, for it is refused for them, by their corners: points, edges, triangles and polygons.
+    pub marks: &'a [Vec<DVec3>],
     /// In which colours.
     pub palette: &'a Palette,
 }
+
+/// How strongly marked triangles have the colour of errors.
+const MARKED: f32 = 0.55;
 
 /// Triangles and edges that are drawn between two looks at whether to go on.
 const AT_A_TIME: usize = 1 << 14;
@@ -44,11 +52,31 @@ pub fn seam_line(palette: &Palette) -> (Rgba, f32) {
     (palette.weak, 1.25)
 }
 
+/// Which triangles are marked, or are a part of what is; none where nothing is.
+fn marked(mesh: &Triangles, marks: &[Vec<DVec3>]) -> Vec<bool> {
+    let key = |p: DVec3| p.to_array().map(f64::to_bits);
+    let corners: Vec<BTreeSet<[u64; 3]>> =
+        marks.iter().filter(|mark| mark.len() > 2).map(|mark| mark.iter().map(|&p| key(p)).collect()).collect();
+    let mut at: BTreeMap<[u64; 3], Vec<usize>> = BTreeMap::new();
+    for (mark, corners) in corners.iter().enumerate() {
+        corners.iter().for_each(|&corner| at.entry(corner).or_default().push(mark));
+    }
+    if at.is_empty() {
+        return Vec::new();
+    }
+    let is_marked = |t: usize| {
+        let [a, b, c] = mesh.corners(t).map(key);
+        let of = |mark: &usize| corners[*mark].contains(&b) && corners[*mark].contains(&c);
+        at.get(&a).is_some_and(|marks| marks.iter().any(of))
+    };
+    (0..mesh.triangles.len()).map(is_marked).collect()
+}
+
 impl Scene {
     /// The scene of a surface that was given; `None` where nobody wants it any more. `generation` is greater than that of any other
     /// such scene that the card has seen.
     pub fn of_given(given: &Given<'_>, generation: u64, cancel: &Cancel) -> Option<Scene> {
-        let Given { mesh, edges, features, division, palette } = *given;
+        let Given { mesh, edges, features, division, marks, palette } = *given;
         let go_on = |k: usize| !k.is_multiple_of(AT_A_TIME) || !cancel.is_asked();
         let ends = mesh.points.iter().map(|&p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let [low, high] = ends.unwrap_or([DVec3::ZERO; 2]);
@@ -62,6 +90,9 @@ impl Scene {
             }
             None => palette.live,
         };
+        let marked = marked(mesh, marks);
+        let fill =
+            |t: usize| if marked.get(t) == Some(&true) { fill(t).mixed(palette.broken, MARKED) } else { fill(t) };
         let mut faces = Vec::with_capacity(mesh.triangles.len());
         for (t, &[a, b, c]) in mesh.triangles.iter().enumerate() {
             if !go_on(t) {
@@ -98,6 +129,28 @@ impl Scene {
         // What is in disorder lies over the rest.
         standing_out.sort_by_key(|(kind, _)| std::cmp::Reverse(*kind == Feature::Fold));
         let standing_out: Vec<Line> = standing_out.into_iter().map(|(_, line)| line).collect();
+        let (mut outlines, mut dots) = (Vec::new(), Vec::new());
+        for mark in marks {
+            let corners: Vec<[f32; 3]> = mark.iter().map(|&p| relative(p, scene.anchor)).collect();
+            let sides = match corners.len() {
+                n @ (1 | 2) => n - 1,
+                n => n,
+            };
+            let colour = ink(palette.broken);
+            outlines.extend((0..sides).map(|k| Line {
+                ends: [corners[k], corners[(k + 1) % corners.len()]],
+                colour,
+                width: 3.2,
+                dash: [0.0; 2],
+                room: -1.0,
+            }));
+            if let [at] = corners[..] {
+                let (ring, ring_width) = (ink(palette.ground), 1.5);
+                dots.push(Dot { at, radius: 6.5, fill: colour, ring, ring_width, room: 1.0, least: 0.0 });
+            }
+        }
+        scene.over.replace(&outlines, generation);
+        scene.over_dots.replace(&dots, generation);
         scene.faces.replace(&faces, generation);
         scene.edges.replace(&plain, generation);
         scene.boundary.replace(&standing_out, generation);
@@ -141,7 +194,7 @@ mod tests {
         let charts = charts(&mesh, &edges, &found, Bound::default(), &mut Nobody).unwrap();
         let division = Division::of(&mesh, &edges, &found, &charts);
         let draw = |division, palette| {
-            let given = Given { mesh: &mesh, edges: &edges, features: &found, division, palette };
+            let given = Given { mesh: &mesh, edges: &edges, features: &found, division, marks: &[], palette };
             Scene::of_given(&given, 7, &Cancel::default()).unwrap()
         };
         let colours = |scene: &Scene| {
@@ -161,13 +214,30 @@ mod tests {
     }
 
     #[test]
+    fn what_is_marked_stands_out_in_the_colour_of_errors() {
+        let mesh = tent();
+        let edges = Edges::of(&mesh.triangles);
+        let found = features(&mesh, &edges, ANGLE);
+        let [a, b, c] = mesh.corners(0);
+        let marks = [vec![b, c, a], vec![a, b], vec![c]];
+        let given =
+            Given { mesh: &mesh, edges: &edges, features: &found, division: None, marks: &marks, palette: &DARK };
+        let scene = Scene::of_given(&given, 1, &Cancel::default()).unwrap();
+        let plain = ink(DARK.live);
+        let other: Vec<bool> = scene.faces.items().iter().map(|face| face.colour != plain).collect();
+        assert_eq!(other, [true, false, false, false]);
+        assert_eq!((scene.over.items().len(), scene.over_dots.items().len()), (3 + 1, 1));
+        assert!(scene.over.items().iter().all(|line| line.colour == ink(DARK.broken)));
+    }
+
+    #[test]
     fn a_scene_that_nobody_wants_any_more_is_not_made() {
         let mesh = tent();
         let edges = Edges::of(&mesh.triangles);
         let found = features(&mesh, &edges, ANGLE);
         let cancel = Cancel::new();
         cancel.ask();
-        let given = Given { mesh: &mesh, edges: &edges, features: &found, division: None, palette: &DARK };
+        let given = Given { mesh: &mesh, edges: &edges, features: &found, division: None, marks: &[], palette: &DARK };
         assert!(Scene::of_given(&given, 1, &cancel).is_none());
     }
 }

@@ -16,7 +16,7 @@ use crate::core::discrete::census::{Census, Division, count_of};
 use crate::core::discrete::chart::{Bound, charts};
 use crate::core::discrete::edges::{Edges, Triangles};
 use crate::core::discrete::features::{Feature, features, with_lines};
-use crate::core::discrete::sound::sound;
+use crate::core::discrete::sound::{Sound, as_given, sound};
 use crate::core::fault::Fault;
 use crate::core::io::format::read_mesh_watched;
 use crate::core::progress::{Cancel, Stage, Watch};
@@ -46,6 +46,8 @@ pub struct Loaded {
     pub mean_edge: f64,
     /// Its extent along the axes.
     pub extent: DVec3,
+    /// Why it cannot be converted, however it is taken: then it is as the file has it.
+    pub fault: Option<Fault>,
 }
 
 /// What a picture is to show.
@@ -55,6 +57,8 @@ pub struct Wanted {
     pub feature_angle: f64,
     /// How far charts may be stretched; none where it has no charts.
     pub bound: Option<Bound>,
+    /// Elements that it is refused for, by their corners.
+    pub marks: Arc<[Vec<DVec3>]>,
     pub dark: bool,
 }
 
@@ -73,6 +77,8 @@ pub enum Told {
     Progress(Progress),
     Loaded(Result<Arc<Loaded>, Fault>),
     Shown(Arc<Shown>),
+    /// It cannot be shown as it was wished.
+    Refused(Fault),
 }
 
 struct Ask {
@@ -165,7 +171,18 @@ fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
     let (is_plane, has_metric) = (is_plane(&file), file.metric.is_some());
     let skipped: Vec<String> =
         file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
-    let mut found = sound(&file, voice).map_err(place)?;
+    let (mut found, fault) = match sound(&file, voice) {
+        Ok(found) => (found, None),
+        Err(fault) if fault.is_stop => return Err(fault),
+        Err(fault) => {
+            let mesh = as_given(&file);
+            if mesh.triangles.is_empty() {
+                return Err(place(fault));
+            }
+            let nothing = Sound { mesh, copied: vec![], regions: vec![], lines: vec![], repairs: vec![] };
+            (nothing, Some(fault))
+        }
+    };
     drop(file);
     found.repairs.extend(skipped);
     let edges = Edges::of(&found.mesh.triangles);
@@ -181,7 +198,7 @@ fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
     let ends = used.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
     let extent = ends.map_or(DVec3::ZERO, |[low, high]| high - low);
     let (regions, repairs) = (found.regions.len(), found.repairs);
-    Ok(Loaded { mesh: found.mesh, edges, census, is_plane, has_metric, regions, repairs, mean_edge, extent })
+    Ok(Loaded { mesh: found.mesh, edges, census, is_plane, has_metric, regions, repairs, mean_edge, extent, fault })
 }
 
 /// What is known of the mesh beside its triangles, and what it was found for.
@@ -197,7 +214,11 @@ impl Work {
             let ask = asked.try_iter().last().unwrap_or(first);
             voice.cancel = ask.cancel.clone();
             // What was ended has no picture: another one is asked for.
-            let _ = self.show(&ask, voice);
+            if let Err(fault) = self.show(&ask, voice)
+                && !fault.is_stop
+            {
+                voice.say(Told::Refused(fault));
+            }
         }
     }
 
@@ -216,7 +237,14 @@ impl Work {
         };
         let picture = |division: Option<Arc<Division>>, generation: u64| {
             let palette = theme::palette(wanted.dark);
-            let given = Given { mesh, edges, features: &features, division: division.as_deref(), palette };
+            let given = Given {
+                mesh,
+                edges,
+                features: &features,
+                division: division.as_deref(),
+                marks: &wanted.marks,
+                palette,
+            };
             let scene = Scene::of_given(&given, generation, cancel).ok_or_else(Fault::stopped)?;
             let counts = KINDS.map(|kind| count_of(&features, kind));
             Ok::<_, Fault>(Shown { wanted: wanted.clone(), counts, division, scene: Arc::new(scene) })
@@ -250,7 +278,8 @@ mod tests {
     use super::*;
 
     fn wish(degrees: f64) -> Wanted {
-        Wanted { feature_angle: degrees.to_radians(), bound: Some(Bound::default()), dark: true }
+        let marks = Arc::default();
+        Wanted { feature_angle: degrees.to_radians(), bound: Some(Bound::default()), marks, dark: true }
     }
 
     /// What comes within a while.

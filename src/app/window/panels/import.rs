@@ -40,6 +40,7 @@ pub fn show(ui: &mut Ui, state: &State, plain: Frame, commands: &mut Vec<Command
             inset().show(ui, |ui| {
                 ui.set_width(WIDTH - 28.0);
                 title(ui, import, palette);
+                refusal(ui, import, palette);
                 ui.add_enabled_ui(!is_opening, |ui| form(ui, import, commands, palette));
                 counts(ui, import, palette);
             });
@@ -53,6 +54,29 @@ fn title(ui: &mut Ui, import: &Import, palette: &Palette) {
     let text = RichText::new(name).font(theme::semibold(theme::TITLE)).color(ink(palette.strong));
     ui.add(egui::Label::new(text).truncate()).on_hover_text(import.path.display().to_string());
     ui.label(note("A mesh without CAD: how shall it be taken?", palette));
+}
+
+/// Why the mesh was refused, and what to do.
+fn refusal(ui: &mut Ui, import: &Import, palette: &Palette) {
+    let Some(fault) = &import.refused else { return };
+    heading(ui, "Refused", "", palette);
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icons::X_CIRCLE).font(theme::regular(theme::ICON)).color(ink(palette.broken)));
+        ui.vertical(|ui| {
+            ui.add(egui::Label::new(RichText::new(format!("{}.", fault.what)).color(ink(palette.strong))).wrap());
+            if !fault.remedy.is_empty() {
+                ui.add(egui::Label::new(RichText::new(format!("{}.", fault.remedy)).color(ink(palette.text))).wrap());
+            }
+            let name = import.path.display().to_string();
+            let place = fault.place.strip_prefix(&name).unwrap_or(&fault.place).trim_start_matches([',', ' ']);
+            if !place.is_empty() {
+                ui.add(egui::Label::new(note(place, palette)).wrap());
+            }
+        });
+    });
+    if !fault.shapes.is_empty() {
+        swatch(ui, (palette.broken, 3.2), "what it is refused for".to_owned(), palette);
+    }
 }
 
 /// A row of the form: what it is called, and its widgets.
@@ -295,7 +319,7 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
                 ui.label(line_text(named(division.charts, "chart", "charts"), palette));
             });
         }
-        None if import.has_charts() => {
+        None if import.has_charts() && import.refused.is_none() => {
             ui.label(note("The charts are being sought.", palette));
         }
         None => {}
@@ -350,7 +374,7 @@ fn under_way(ui: &mut Ui, import: &Import, is_opening: bool, progress: Option<&P
 
 fn buttons(ui: &mut Ui, import: &Import, is_opening: bool, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let ready = import.loaded.is_some() && !is_opening;
+        let ready = import.is_ready() && !is_opening;
         let convert = Button::new(RichText::new("Convert").font(theme::semibold(theme::BODY)));
         if ui.add_enabled(ready, convert.min_size(Vec2::new(120.0, 28.0))).clicked() {
             commands.push(Command::Convert);

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use eframe::egui_wgpu::Callback;
-use glam::{DQuat, DVec2};
+use glam::{DQuat, DVec2, DVec3};
 
 use super::space::{MARGIN, orbit};
 use super::{Frame, Picture, Views, tools, whole_pixels};
@@ -26,9 +26,17 @@ impl Views {
         let look = state.look.take();
         let hidden = state.space.hidden.share();
         let Some(import) = &mut state.import else { return };
-        let spoken = match &import.shown {
-            Some(shown) => format!("Mesh of {} triangles, as it was given", shown.scene.faces.items().len()),
-            None => "No mesh yet".to_owned(),
+        let marks = import.shown.as_ref().map_or_else(Default::default, |shown| shown.wanted.marks.clone());
+        let spoken = match (&import.shown, marks.len()) {
+            (Some(shown), marks) => {
+                let mesh = format!("Mesh of {} triangles, as it was given", shown.scene.faces.items().len());
+                match marks {
+                    0 => mesh,
+                    1 => mesh + ", one element marked",
+                    n => format!("{mesh}, {n} elements marked"),
+                }
+            }
+            (None, _) => "No mesh yet".to_owned(),
         };
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, spoken.as_str()));
         ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
@@ -41,9 +49,12 @@ impl Views {
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         let mut camera = match import.camera {
             None => {
-                import.fitted = true;
-                let side = if loaded.is_plane { Bearing::Z } else { Bearing::Iso };
-                fit(&loaded, side.turn(), size)
+                // What it is refused for is looked at from near until somebody looks elsewhere.
+                let marks = import.refused.as_ref().map_or(&[][..], |fault| &fault.shapes);
+                import.fitted = marks.is_empty();
+                let side = if loaded.is_plane { Bearing::Z } else { side_of(marks, &loaded) };
+                let all = fit(&loaded, side.turn(), size);
+                if marks.is_empty() { all } else { look_at(marks, loaded.mean_edge, all, size) }
             }
             Some(camera) if import.fitted && import.size != size => fit(&loaded, camera.turn, size),
             Some(camera) => camera,
@@ -80,6 +91,41 @@ impl Views {
 
 fn fit(loaded: &Loaded, turn: DQuat, size: DVec2) -> Camera {
     Camera::fit_in_space(loaded.mesh.points.iter().copied(), turn, size, MARGIN)
+}
+
+/// The side from which elements are rather seen than from behind: the usual one, unless they are at the back.
+fn side_of(marks: &[Vec<DVec3>], loaded: &Loaded) -> Bearing {
+    let middle = |points: &mut dyn Iterator<Item = DVec3>| {
+        let ends = points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        ends.map(|[low, high]| 0.5 * (low + high))
+    };
+    let of_marks = middle(&mut marks.iter().flatten().copied());
+    let corners = loaded.mesh.triangles.as_flattened().iter().map(|&k| loaded.mesh.points[k as usize]);
+    let out = match (of_marks, middle(&mut { corners })) {
+        (Some(marks), Some(all)) if marks.distance(all) > 0.1 * loaded.extent.max_element() => marks - all,
+        _ => return Bearing::Iso,
+    };
+    let [azimuth, elevation, _] = Bearing::Iso.angles();
+    let around = |quarter: i32| azimuth + 90.0 * f64::from(quarter);
+    let sides = [elevation, -elevation]
+        .into_iter()
+        .flat_map(|elevation| (-1..3).map(move |quarter| Bearing::Angles([around(quarter), elevation, 0.0])));
+    let seen = |side: &Bearing| (side.turn() * out).z / out.length();
+    if seen(&Bearing::Iso) > 0.0 {
+        return Bearing::Iso;
+    }
+    sides.max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap_or_default()
+}
+
+/// A camera on some elements, with so much around them that one sees where they are; `all` sees the whole mesh.
+fn look_at(marks: &[Vec<DVec3>], mean_edge: f64, all: Camera, size: DVec2) -> Camera {
+    let ends = || marks.iter().flatten().copied();
+    let (low, high) = ends().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let room = 0.5 * (high - low).max_element() + 2.0 * mean_edge;
+    let around = ends().flat_map(|p| [p - room, p + room]);
+    let near = Camera::fit_in_space(around, all.turn, size, MARGIN);
+    // Nothing is gained by looking from farther than the whole mesh needs.
+    if near.scale > all.scale { near.come_from(&all) } else { all }
 }
 
 fn words(ui: &mut Ui, rect: Rect, text: &str, palette: &Palette) {

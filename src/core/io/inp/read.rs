@@ -6,6 +6,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use crate::core::fault::Fault;
+use crate::core::io::counting::Count;
 use crate::core::io::mesh_file::{Group, MeshFile};
 use crate::core::io::numbering::{Numbering, sort_by_number};
 use crate::core::io::scan::{Scanner, parse_integer, parse_real, shown};
@@ -178,6 +179,9 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     }
     sort_by_number(&mut triangle_numbers, &mut mesh.triangles, &mut []);
     sort_by_number(&mut quad_numbers, &mut mesh.quads, &mut []);
+    mesh.counting.in_one_row = true;
+    mesh.counting.points = Count::of(&node_numbers);
+    (mesh.counting.triangles, mesh.counting.quads) = (Count::of(&triangle_numbers), Count::of(&quad_numbers));
     sets.into_groups(&mut mesh, &triangle_numbers, &quad_numbers);
     mesh.skipped = skipped.into_iter().collect();
     Ok(mesh)

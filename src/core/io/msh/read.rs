@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 use super::input::Input;
 use super::{Shape, shape};
 use crate::core::fault::Fault;
+use crate::core::io::counting::Count;
 use crate::core::io::mesh_file::{Group, MeshFile};
 use crate::core::io::numbering::{Numbering, sort_by_number};
 use crate::core::io::scan::{ByteOrder, Scanner, shown};
@@ -254,6 +255,7 @@ impl Reader<'_> {
             }
         }
         sort_by_number(&mut numbers, &mut self.file.points, &mut []);
+        self.file.counting.points = Count::of(&numbers);
         let numbering = Numbering::new(&numbers);
         self.nodes =
             Some(numbering.map_err(|twice| self.input.scanner.fault_at(start, format!("Node {twice} comes twice")))?);
@@ -352,6 +354,8 @@ impl Reader<'_> {
         sort_by_number(lines, &mut file.lines, &mut file.line_tags);
         sort_by_number(triangles, &mut file.triangles, &mut file.triangle_tags);
         sort_by_number(quads, &mut file.quads, &mut file.quad_tags);
+        file.counting.in_one_row = true;
+        (file.counting.triangles, file.counting.quads) = (Count::of(triangles), Count::of(quads));
         for tags in [&mut file.line_tags, &mut file.triangle_tags, &mut file.quad_tags] {
             if tags.iter().all(|&tag| tag == 0) {
                 *tags = Vec::new();

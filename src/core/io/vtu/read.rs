@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::{METRIC, TAG, UV};
 use crate::core::fault::Fault;
+use crate::core::io::counting::Counting;
 use crate::core::io::mesh_file::{Data, Group, MeshFile, positive_definite};
 use crate::core::io::scan::{Scanner, shown};
 use crate::core::metric::tensor::Metric3;
@@ -96,7 +97,7 @@ fn attribute(tag: &[u8], name: &str) -> Option<String> {
 fn assemble(s: &Scanner, name: &str, arrays: Vec<Array>) -> Result<MeshFile, Fault> {
     let find = |room: &str, name: &str| arrays.iter().find(|a| a.room == room && (name.is_empty() || a.name == name));
     let missing = |what: &str| Fault::new(format!("There are no {what}")).at(name).remedy(AS_TEXT);
-    let mut mesh = MeshFile::default();
+    let mut mesh = MeshFile { counting: Counting::from_zero(), ..MeshFile::default() };
     let points = find("Points", "").ok_or_else(|| missing("points"))?;
     if points.components != 3 || points.values.len() % 3 != 0 || points.values.len() / 3 >= u32::MAX as usize {
         return Err(s.fault_at(points.mark, "The points do not have three coordinates each"));
@@ -133,10 +134,12 @@ fn assemble(s: &Scanner, name: &str, arrays: Vec<Array>) -> Result<MeshFile, Fau
         }
         match (kind as u8, corners.len()) {
             (5, 3) => {
+                mesh.counting.triangles.push(mesh.triangles.len(), cell as u64);
                 mesh.triangles.push([indices[0], indices[1], indices[2]]);
                 triangle_cells.push(cell);
             }
             (9, 4) => {
+                mesh.counting.quads.push(mesh.quads.len(), cell as u64);
                 mesh.quads.push(indices);
                 quad_cells.push(cell);
             }
