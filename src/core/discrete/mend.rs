@@ -26,9 +26,9 @@ impl Triangles {
         let mut is_used = vec![false; self.points.len()];
         self.triangles.as_flattened().iter().for_each(|&k| is_used[k as usize] = true);
         let used: Vec<u32> = (0..self.points.len() as u32).filter(|&k| is_used[k as usize]).collect();
-        let places: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
-        let (kept, standing) = weld(&places, SAME_PLACE, cancel);
-        if kept.len() == places.len() || cancel.is_asked() {
+        let mut kept: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
+        let standing = weld(&mut kept, SAME_PLACE, cancel);
+        if kept.len() == used.len() || cancel.is_asked() {
             return 0;
         }
         // The first point of each place, by the order in which places were kept.
@@ -40,7 +40,7 @@ impl Triangles {
         let mut stands = vec![u32::MAX; self.points.len()];
         used.iter().zip(&standing).for_each(|(&point, &place)| stands[point as usize] = first[place as usize]);
         self.triangles.as_flattened_mut().iter_mut().for_each(|k| *k = stands[*k as usize]);
-        places.len() - kept.len()
+        used.len() - kept.len()
     }
 
     /// Divides sides on the border in which points of the border hang, so that they meet there. How many points those were.
