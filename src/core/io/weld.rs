@@ -162,6 +162,6 @@ mod tests {
     #[test]
     fn points_all_at_zero_are_one_and_none_are_none() {
         assert_eq!(weld(&mut vec![DVec3::ZERO; 3], SINGLE, &Cancel::default()), [0, 0, 0]);
-        assert_eq!(weld(&mut Vec::new(), SINGLE, &Cancel::default()), []);
+        assert!(weld(&mut Vec::new(), SINGLE, &Cancel::default()).is_empty());
     }
 }
