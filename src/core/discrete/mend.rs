@@ -44,11 +44,11 @@ impl Triangles {
     }
 
     /// Divides sides on the border in which points of the border hang, so that they meet there. How many points those were.
-    pub fn stitch(&mut self) -> usize {
+    pub fn stitch(&mut self, cancel: &Cancel) -> usize {
         let mut stitched = 0;
         // A triangle is divided at one of its sides at a time.
         for _ in 0..ROUNDS {
-            let hanging = self.hanging();
+            let hanging = self.hanging(cancel);
             if hanging.is_empty() {
                 break;
             }
@@ -78,8 +78,8 @@ impl Triangles {
     }
 
     /// Points of the border that hang in sides of the border: the side, how far along, the point, ascending.
-    fn hanging(&self) -> Vec<(u32, f64, u32)> {
-        let edges = Edges::of(&self.triangles);
+    fn hanging(&self, cancel: &Cancel) -> Vec<(u32, f64, u32)> {
+        let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return Vec::new() };
         let one = |e: usize| <[u32; 1]>::try_from(edges.get(e).sides).ok();
         let sides: Vec<u32> = (0..edges.len()).filter_map(one).flatten().collect();
         let mut points: Vec<u32> = sides.iter().flat_map(|&side| self.side(side)).collect();
@@ -108,9 +108,9 @@ impl Triangles {
 
     /// Gives parts that touch in a point only, one of which closes around it, points of their own, a little apart. For each new
     /// point the one that it was; how many places those were.
-    pub fn part(&mut self) -> (Vec<u32>, usize) {
+    pub fn part(&mut self, cancel: &Cancel) -> (Vec<u32>, usize) {
         let corners = 3 * self.triangles.len();
-        let edges = Edges::of(&self.triangles);
+        let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return (Vec::new(), 0) };
         let mut sets = Sets::new(corners);
         let next = |c: u32| c - c % 3 + (c + 1) % 3;
         // How many sides of the border begin or end at each point: two for each part that does not close around it.
@@ -189,10 +189,10 @@ mod tests {
     fn points_that_hang_in_sides_are_taken_into_them() {
         // Five points of the one border stand on four, or two, sides of the other.
         let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
-        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch()), (3, 2));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(&Cancel::default())), (3, 2));
         assert_eq!(borders(&mesh), 16 + 8 - 4 - 2);
         let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.area_vector(t).length()).sum();
-        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch() == 0);
+        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(&Cancel::default()) == 0);
     }
 
     #[test]
@@ -200,11 +200,11 @@ mod tests {
         let mut mesh = beside(cube(1), &cube(1), DVec3::ONE);
         assert_eq!(mesh.weld(&Cancel::default()), 1);
         let points = mesh.points.len();
-        let (copies, places) = mesh.part();
+        let (copies, places) = mesh.part(&Cancel::default());
         assert_eq!((copies.len(), places, mesh.points.len()), (2, 1, points + 2));
         let [a, b] = [mesh.points[points], mesh.points[points + 1]];
         assert!(a.distance(b) > 1e-7 && a.distance(b) < 1e-5);
         let mut mesh = beside(plate(2, 0.0), &plate(2, 0.0), DVec3::new(1.0, 1.0, 0.0));
-        assert_eq!((mesh.weld(&Cancel::default()), mesh.part().1), (1, 0));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.part(&Cancel::default()).1), (1, 0));
     }
 }

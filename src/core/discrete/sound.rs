@@ -9,7 +9,7 @@ use super::lines::on_edges;
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::names::Named;
-use crate::core::progress::{Stage, Watch};
+use crate::core::progress::{Cancel, Stage, Watch};
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
 const FLAT: f64 = 1e-6;
@@ -95,16 +95,16 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     let welded = mesh.weld(&cancel);
     begin(3)?;
     tell(welded, "point lay on another and was made one with it", "points lay on others and were made one with them");
-    let stitched = mesh.stitch();
+    let stitched = mesh.stitch(&cancel);
     tell(stitched, "point hung in a side and was taken into it", "points hung in sides and were taken into them");
     begin(4)?;
-    let doubles = mesh.drop_doubles();
+    let doubles = mesh.drop_doubles(&cancel);
     tell(doubles, "duplicate triangle was left out", "duplicate triangles were left out");
     begin(5)?;
     let flat = mesh.turn_flat_ones();
     tell(flat, "triangle without area was taken out", "triangles without area were taken out");
     begin(6)?;
-    let turned = mesh.orient();
+    let turned = mesh.orient(&cancel);
     tell(
         turned,
         "triangle was turned to agree with its neighbours",
@@ -114,7 +114,7 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
         return Err(Fault::new("No triangle of the mesh has an area"));
     }
     begin(7)?;
-    let (copied, parted) = mesh.part();
+    let (copied, parted) = mesh.part(&cancel);
     begin(STEPS)?;
     tell(parted, "point in which parts touched was parted", "points in which parts touched were parted");
     let lost;
@@ -145,7 +145,7 @@ impl Triangles {
     }
 
     /// Takes out triangles with the nodes of an earlier one. How many those were.
-    fn drop_doubles(&mut self) -> usize {
+    fn drop_doubles(&mut self, cancel: &Cancel) -> usize {
         let key = |t: &[u32; 3]| {
             let mut t = *t;
             t.sort_unstable();
@@ -153,6 +153,9 @@ impl Triangles {
         };
         let of = |i: u32| key(&self.triangles[i as usize]);
         let mut groups = Groups::of(self.triangles.len(), self.points.len(), |i| of(i)[0]);
+        if cancel.is_asked() {
+            return 0;
+        }
         let mut keep = vec![true; self.triangles.len()];
         for alike in groups.iter_mut() {
             alike.sort_unstable_by_key(|&i| (of(i), i));
@@ -235,8 +238,8 @@ impl Triangles {
 
     /// Turns triangles so that neighbours at edges of two agree, part by part, each as the larger share of it was. How many were
     /// turned. A part that has but one side (a Moebius strip) keeps edges at which it disagrees.
-    fn orient(&mut self) -> usize {
-        let edges = Edges::of(&self.triangles);
+    fn orient(&mut self, cancel: &Cancel) -> usize {
+        let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return 0 };
         let mut turned: Vec<Option<bool>> = vec![None; self.triangles.len()];
         let mut count = 0;
         for first in 0..self.triangles.len() {
