@@ -18,9 +18,9 @@ const AT_A_TIME: usize = 1 << 14;
 /// compared with the ones that stay. Those lie with whoever welds, and are found here by their number: eight to twelve bytes for each.
 pub struct Welder {
     near: f64,
-    /// Side of the cells that points are found by: larger than the distance, so that a point seldom has to look beyond its own, but no
-    /// more than a few hundred points that stay have room in one.
-    cell: f64,
+    /// How many cells, by which points are found, go into a unit: larger than the distance, so that a point seldom has to look beyond
+    /// its own, but no more than a few hundred points that stay have room in one.
+    cells: f64,
     /// The last point of each drawer, into which cells are laid by their hash; their number is a power of two. And for each point the
     /// one before it in its drawer.
     last: Vec<u32>,
@@ -31,7 +31,7 @@ impl Welder {
     /// A welder within `relative` times the largest coordinate, whichever sign it has.
     pub fn new(relative: f64, largest: f64) -> Welder {
         let near = (relative * largest).max(f64::MIN_POSITIVE);
-        Welder { near, cell: 8.0 * near, last: vec![u32::MAX], before: Vec::new() }
+        Welder { near, cells: 1.0 / (8.0 * near), last: vec![u32::MAX], before: Vec::new() }
     }
 
     /// The place of the point that stands for `p` among those that are kept: an earlier one, or itself, the last.
@@ -44,7 +44,8 @@ impl Welder {
 
     /// The first of the points kept that lies near `p`.
     fn find(&self, kept: &[DVec3], p: DVec3) -> Option<u32> {
-        let (low, high) = (self.cell(p - self.near), self.cell(p + self.near));
+        // Beside the largest number of all lies infinity, and no cell.
+        let (low, high) = (self.cell((p - self.near).max(DVec3::MIN)), self.cell((p + self.near).min(DVec3::MAX)));
         let mut found: Option<u32> = None;
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
@@ -81,8 +82,7 @@ impl Welder {
     }
 
     fn cell(&self, p: DVec3) -> [i64; 3] {
-        // Beside the largest number of all lies infinity, and no cell.
-        (p.clamp(DVec3::MIN, DVec3::MAX) / self.cell).floor().to_array().map(|x| x as i64)
+        (p * self.cells).floor().to_array().map(|x| x as i64)
     }
 
     fn drawer(&self, cell: [i64; 3]) -> usize {
