@@ -77,8 +77,11 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
     Ok(mesh)
 }
 
-/// The validated document and the binary part of a `.glb`.
-fn document<'b>(name: &str, bytes: &'b [u8]) -> Result<(Document, Option<Cow<'b, [u8]>>), Fault> {
+/// The binary part of a `.glb`, where it was read.
+type Blob<'b> = Option<Cow<'b, [u8]>>;
+
+/// The validated document and its binary part.
+fn document<'b>(name: &str, bytes: &'b [u8]) -> Result<(Document, Blob<'b>), Fault> {
     if bytes.starts_with(b"glTF") {
         // The parser subtracts the header from the length without looking.
         let length = bytes.get(8..12).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);

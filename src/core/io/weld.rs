@@ -18,8 +18,8 @@ const AT_A_TIME: usize = 1 << 14;
 /// compared with the ones that stay. Those lie with whoever welds, and are found here by their number: eight to twelve bytes for each.
 pub struct Welder {
     near: f64,
-    /// How many cells, by which points are found, go into a unit: larger than the distance, so that a point seldom has to look beyond
-    /// its own, but no more than a few hundred points that stay have room in one.
+    /// How many of the cells by which points are found go into a unit. They are larger than the distance, so that a point seldom has to
+    /// look beyond its own, but no more than a few hundred points that stay have room in one.
     cells: f64,
     /// The last point of each drawer, into which cells are laid by their hash; their number is a power of two. And for each point the
     /// one before it in its drawer.
@@ -108,6 +108,7 @@ pub fn weld(points: &mut Vec<DVec3>, relative: f64, cancel: &Cancel) -> Vec<u32>
             welder.keep(&points[..kept])
         }));
     }
+    drop(welder);
     points.truncate(kept);
     points.shrink_to_fit();
     standing
