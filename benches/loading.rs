@@ -62,7 +62,7 @@ fn main() {
     let made = sound(&mesh, &mut Nobody).unwrap().mesh;
     // A disc of a million triangles takes minutes to be laid flat; nobody waits for its end here.
     told("charts", Some(8.0), &|watch| {
-        let edges = Edges::of(&made.triangles);
+        let edges = Edges::unless(&made.triangles, &watch.cancel())?;
         charts(&made, &edges, &features(&made, &edges, ANGLE), Bound::default(), watch).map(drop)
     });
 }

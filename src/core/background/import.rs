@@ -26,6 +26,7 @@ use crate::core::mesh::names::Named;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::spectrum::{LogMetric2, LogMetric3};
 use crate::core::metric::tensor::{Metric2, Metric3};
+use crate::core::progress::Cancel;
 
 /// A triangle lower than this part of its longest side is none (as `predicates::firm` has it).
 const FLAT: f64 = 1e-7;
@@ -263,7 +264,7 @@ impl<'a> Import<'a> {
             let long = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
             a != b && b != c && c != a && orient(a, b, c).abs() < FLAT * long
         });
-        let stitched = mesh.stitch(true);
+        let stitched = mesh.stitch(true, &Cancel::default());
         tell(&mut self.repairs, flat, "triangle without area was taken out", "triangles without area were taken out");
         tell(
             &mut self.repairs,

@@ -382,8 +382,9 @@ fn coincident(mesh: &Mesh, copies: &[(PointId, NodeId)]) -> (Vec<NodeId>, f64) {
     // Fixed nodes first, so that free ones are found to be where those are; of several at one point only the first.
     let mut nodes: Vec<NodeId> = copies.chunk_by(|a, b| a.0 == b.0).map(|at_point| at_point[0].1).collect();
     nodes.extend(mesh.nodes().filter(|&n| !mesh.is_fixed(n)));
-    let places: Vec<DVec3> = nodes.iter().map(|&n| mesh.xyz(n)).collect();
-    let standing = weld(&places, SAME_PLACE, &Cancel::default()).1;
+    let mut places: Vec<DVec3> = nodes.iter().map(|&n| mesh.xyz(n)).collect();
+    let near = SAME_PLACE * places.iter().fold(0.0, |largest, p| p.abs().max_element().max(largest));
+    let standing = weld(&mut places, SAME_PLACE, &Cancel::default());
     // A place is kept under a new number the first time it is seen.
     let mut next = 0;
     let is_later = |at: &u32| {
@@ -395,5 +396,5 @@ fn coincident(mesh: &Mesh, copies: &[(PointId, NodeId)]) -> (Vec<NodeId>, f64) {
     let mut found: Vec<NodeId> =
         nodes.iter().zip(later).filter(|(n, later)| *later && !mesh.is_fixed(**n)).map(|(n, _)| *n).collect();
     found.sort_unstable();
-    (found, SAME_PLACE * places.iter().fold(0.0, |largest, p| p.abs().max_element().max(largest)))
+    (found, near)
 }

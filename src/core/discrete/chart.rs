@@ -85,6 +85,7 @@ pub fn charts(
     watch: &mut dyn Watch,
 ) -> Result<Vec<Chart>, Fault> {
     let cancel = watch.cancel();
+    cancel.check()?;
     let total = mesh.triangles.len() as u64;
     watch.tell(Stage::Chart, 0, total);
     let surface = Surface::new(mesh, edges, features, cancel.clone());
@@ -109,7 +110,9 @@ pub fn charts(
             told = told.max(done + (0.5 * share * part.triangles.len() as f64) as u64);
             watch.tell(Stage::Chart, told, total);
         };
-        match surface.chart(&part, bound, &mut tell) {
+        let next = surface.chart(&part, bound, &mut tell);
+        cancel.check()?;
+        match next {
             Next::Taken(chart) => {
                 done += chart.triangles.len() as u64;
                 charts.push(*chart);
@@ -225,10 +228,8 @@ impl<'a> Surface<'a> {
     /// The chart of a part, or what else has to be done with it; tells how far it is, from 0 to 1.
     fn chart(&self, part: &Part, bound: Bound, tell: &mut dyn FnMut(f64)) -> Next {
         let mut chart = self.nodes(part);
-        if self.cancel.is_asked() {
-            return Next::Cut;
-        }
-        let edges = Edges::of(&chart.local);
+        // Also where the work is told to end, and nobody looks at what comes of it.
+        let Ok(edges) = Edges::unless(&chart.local, &self.cancel) else { return Next::Cut };
         let euler = chart.points.len() as i64 - edges.len() as i64 + chart.local.len() as i64;
         let holes = chart.loops.len() as i64 - 1;
         // A single triangle is its own map, whatever its shape.
@@ -237,9 +238,11 @@ impl<'a> Surface<'a> {
             return Next::Cut;
         }
         let xyz: Vec<DVec3> = chart.points.iter().map(|&p| self.mesh.points[p as usize]).collect();
-        let rigid = rigid::map(&xyz, &chart.local, &chart.loops, self.grid, &self.cancel, tell);
+        let rigid = rigid::map(&xyz, &chart.local, &edges, &chart.loops, self.grid, &self.cancel, tell);
         let mapped = match rigid {
-            None if holes == 0 => tutte::map(&xyz, &chart.local, chart.loops[0] as usize, self.grid, &self.cancel),
+            None if holes == 0 && !self.cancel.is_asked() => {
+                tutte::map(&xyz, &chart.local, chart.loops[0] as usize, self.grid, &self.cancel)
+            }
             found => found,
         };
         // Taken as it is where nothing else can be done: what is mended before lets no triangle come to that.

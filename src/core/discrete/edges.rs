@@ -2,6 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::core::fault::Fault;
+use crate::core::progress::Cancel;
+
 /// Triangles in space by the places of their corners in a list of points; whoever makes one has checked the places.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangles {
@@ -88,6 +91,14 @@ pub struct Edges {
 impl Edges {
     /// The edges of the triangles.
     pub fn of(triangles: &[[u32; 3]]) -> Edges {
+        Edges::unless(triangles, &Cancel::default()).unwrap_or_default()
+    }
+
+    /// As [`Edges::of`], unless the work is told to end.
+    ///
+    /// # Errors
+    /// [`Fault::stopped`].
+    pub fn unless(triangles: &[[u32; 3]], cancel: &Cancel) -> Result<Edges, Fault> {
         let key = |corner: Corner| {
             let t = triangles[corner as usize / 3];
             let [a, b] = [t[corner as usize % 3], t[(corner as usize + 1) % 3]];
@@ -95,7 +106,9 @@ impl Edges {
         };
         let nodes = triangles.as_flattened().iter().max().map_or(0, |&last| last as usize + 1);
         let mut sides = Groups::of(3 * triangles.len(), nodes, |corner| key(corner)[0]);
+        cancel.check()?;
         sides.iter_mut().for_each(|sides| sides.sort_unstable_by_key(|&corner| (key(corner)[1], corner)));
+        cancel.check()?;
         let sides = sides.items;
         let mut edges = Edges { of_side: vec![0; sides.len()], ..Edges::default() };
         for (i, &corner) in sides.iter().enumerate() {
@@ -107,7 +120,8 @@ impl Edges {
         }
         edges.start.push(sides.len() as u32);
         edges.sides = sides;
-        edges
+        cancel.check()?;
+        Ok(edges)
     }
 
     /// How many there are.

@@ -28,10 +28,10 @@ impl Triangles {
         let mut is_used = vec![false; self.points.len()];
         self.triangles.as_flattened().iter().for_each(|&k| is_used[k as usize] = true);
         let used: Vec<u32> = (0..self.points.len() as u32).filter(|&k| is_used[k as usize]).collect();
-        let places: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
+        let mut kept: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
         let [near, largest] = self.same_place(&is_used);
-        let (kept, standing) = weld(&places, near / largest.max(f64::MIN_POSITIVE), cancel);
-        if kept.len() == places.len() || cancel.is_asked() {
+        let standing = weld(&mut kept, near / largest.max(f64::MIN_POSITIVE), cancel);
+        if kept.len() == used.len() || cancel.is_asked() {
             return 0;
         }
         // The first point of each place, by the order in which places were kept.
@@ -43,7 +43,7 @@ impl Triangles {
         let mut stands = vec![u32::MAX; self.points.len()];
         used.iter().zip(&standing).for_each(|(&point, &place)| stands[point as usize] = first[place as usize]);
         self.triangles.as_flattened_mut().iter_mut().for_each(|k| *k = stands[*k as usize]);
-        places.len() - kept.len()
+        used.len() - kept.len()
     }
 
     /// How near to each other points are that are at one place, by the size of the mesh, wherever it is, but more than by rounding; and
@@ -58,11 +58,11 @@ impl Triangles {
 
     /// Divides sides on the border in which points of the border hang, so that they meet there; of those that are `closed` alone, where
     /// other sides run along the whole of the divided one. How many points those were.
-    pub fn stitch(&mut self, closed: bool) -> usize {
+    pub fn stitch(&mut self, closed: bool, cancel: &Cancel) -> usize {
         let mut stitched = 0;
         // A triangle is divided at one of its sides at a time.
         for _ in 0..ROUNDS {
-            let hanging = self.hanging(closed);
+            let hanging = self.hanging(closed, cancel);
             if hanging.is_empty() {
                 break;
             }
@@ -95,8 +95,8 @@ impl Triangles {
     }
 
     /// Points of the border that hang in sides of the border: the side, how far along, the point, ascending.
-    fn hanging(&self, closed: bool) -> Vec<(u32, f64, u32)> {
-        let edges = Edges::of(&self.triangles);
+    fn hanging(&self, closed: bool, cancel: &Cancel) -> Vec<(u32, f64, u32)> {
+        let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return Vec::new() };
         let one = |e: usize| <[u32; 1]>::try_from(edges.get(e).sides).ok();
         let sides: Vec<u32> = (0..edges.len()).filter_map(one).flatten().collect();
         let mut points: Vec<u32> = sides.iter().flat_map(|&side| self.side(side)).collect();
@@ -135,9 +135,9 @@ impl Triangles {
 
     /// Gives parts that touch in a point only, one of which closes around it, points of their own, a little apart. For each new
     /// point the one that it was; how many places those were, and how many more there are in which parts touch.
-    pub fn part(&mut self) -> (Vec<u32>, usize, usize) {
+    pub fn part(&mut self, cancel: &Cancel) -> (Vec<u32>, usize, usize) {
         let corners = 3 * self.triangles.len();
-        let edges = Edges::of(&self.triangles);
+        let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return (Vec::new(), 0, 0) };
         let mut sets = Sets::new(corners);
         let next = |c: u32| c - c % 3 + (c + 1) % 3;
         // How many sides of the border begin or end at each point: two for each part that does not close around it.
@@ -217,10 +217,10 @@ mod tests {
     fn points_that_hang_in_sides_are_taken_into_them() {
         // Five points of the one border stand on four, or two, sides of the other.
         let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
-        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false)), (3, 2));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false, &Cancel::default())), (3, 2));
         assert_eq!(borders(&mesh), 16 + 8 - 4 - 2);
         let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.area_vector(t).length()).sum();
-        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(false) == 0);
+        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(false, &Cancel::default()) == 0);
     }
 
     #[test]
@@ -228,11 +228,11 @@ mod tests {
         let mut mesh = beside(cube(1), &cube(1), DVec3::ONE);
         assert_eq!(mesh.weld(&Cancel::default()), 1);
         let points = mesh.points.len();
-        let (copies, places, _) = mesh.part();
+        let (copies, places, _) = mesh.part(&Cancel::default());
         assert_eq!((copies.len(), places, mesh.points.len()), (2, 1, points + 2));
         let [a, b] = [mesh.points[points], mesh.points[points + 1]];
         assert!(a.distance(b) > 1e-7 && a.distance(b) < 1e-5);
         let mut mesh = beside(plate(2, 0.0), &plate(2, 0.0), DVec3::new(1.0, 1.0, 0.0));
-        assert_eq!((mesh.weld(&Cancel::default()), mesh.part().1), (1, 0));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.part(&Cancel::default()).1), (1, 0));
     }
 }

@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
+use super::edges::Edges;
 use super::sparse::Means;
 use super::tutte::stands;
 use crate::core::geometry::predicates::orient;
@@ -31,6 +32,7 @@ const LEAST_WEIGHT: f64 = 1e-2;
 pub fn map(
     xyz: &[DVec3],
     triangles: &[[u32; 3]],
+    edges: &Edges,
     loops: &[u32],
     grid: f64,
     cancel: &Cancel,
@@ -40,8 +42,7 @@ pub fn map(
     let flat: Vec<[DVec2; 3]> = triangles.iter().map(|t| flattened(t.map(|k| xyz[k as usize]))).collect();
     let weights: Vec<[f64; 3]> = flat.iter().map(weights).collect();
     go_on()?;
-    let mut uv = unrolled(triangles, &flat, xyz.len());
-    go_on()?;
+    let mut uv = unrolled(triangles, edges, &flat, xyz.len(), cancel)?;
     let border = loops[0] as usize;
     let size = (0..border).map(|k| xyz[k].distance(xyz[(k + 1) % border])).sum::<f64>();
     // One node is held fast, so that the rest know where they are.
@@ -63,13 +64,15 @@ pub fn map(
     }
     go_on()?;
     let sums: Vec<f64> = row.iter().map(|r| r.iter().map(|w| w.1).sum()).collect();
-    let rows = row.into_iter().zip(&sums).skip(1).map(|(row, sum)| {
+    let going_on = row.into_iter().zip(&sums).take_while(|_| !cancel.is_asked());
+    let rows = going_on.skip(1).map(|(row, sum)| {
         let inside = row.into_iter().filter(|w| w.0 > 0);
         inside.map(|(node, weight)| (node - 1, weight / sum)).collect()
     });
     let means = Means::new(rows);
     go_on()?;
     let solver = means.factored();
+    go_on()?;
     let origin = uv[0];
     uv.iter_mut().for_each(|p| *p -= origin);
     let mut work = 0;
@@ -148,9 +151,15 @@ fn weights(q: &[DVec2; 3]) -> [f64; 3] {
     })
 }
 
-/// The triangles unrolled one after the other from the first: each node where the triangle that meets it first puts it.
-fn unrolled(triangles: &[[u32; 3]], flat: &[[DVec2; 3]], nodes: usize) -> Vec<DVec2> {
-    let edges = super::edges::Edges::of(triangles);
+/// The triangles unrolled one after the other from the first: each node where the triangle that meets it first puts it. `None` where
+/// the work is told to end.
+fn unrolled(
+    triangles: &[[u32; 3]],
+    edges: &Edges,
+    flat: &[[DVec2; 3]],
+    nodes: usize,
+    cancel: &Cancel,
+) -> Option<Vec<DVec2>> {
     let mut uv = vec![None; nodes];
     let mut seen = vec![false; triangles.len()];
     // From the middle of the list outwards as the triangles hang together.
@@ -160,7 +169,12 @@ fn unrolled(triangles: &[[u32; 3]], flat: &[[DVec2; 3]], nodes: usize) -> Vec<DV
     }
     let mut waiting = std::collections::VecDeque::from([first]);
     seen[first] = true;
+    let mut looked = 0_usize;
     while let Some(t) = waiting.pop_front() {
+        looked += 1;
+        if looked.is_multiple_of(AT_A_TIME) && cancel.is_asked() {
+            return None;
+        }
         for side in 0..3 {
             for &other in edges.get(edges.of_side((3 * t + side) as u32)).sides {
                 let (o, k) = (other as usize / 3, other as usize % 3);
@@ -177,7 +191,7 @@ fn unrolled(triangles: &[[u32; 3]], flat: &[[DVec2; 3]], nodes: usize) -> Vec<DV
             }
         }
     }
-    uv.into_iter().map(|p| p.unwrap_or(DVec2::ZERO)).collect()
+    Some(uv.into_iter().map(|p| p.unwrap_or(DVec2::ZERO)).collect())
 }
 
 /// Whether the border loops bound one region of the plane to their left: none crosses or touches itself or another, and one
@@ -221,7 +235,6 @@ pub fn is_embedded(uv: &[DVec2], loops: &[u32]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::discrete::edges::Edges;
     use crate::core::discrete::fixtures::{plate, tube};
     use crate::core::progress::Nobody;
 

@@ -11,7 +11,7 @@ use crate::core::background::import::is_plane;
 use crate::core::fault::Fault;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::names::Named;
-use crate::core::progress::{Stage, Watch};
+use crate::core::progress::{Cancel, Stage, Watch};
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
 const FLAT: f64 = 1e-6;
@@ -83,10 +83,10 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     let welded = mesh.weld(&cancel);
     begin(3)?;
     tell(welded, "point lay on another and was made one with it", "points lay on others and were made one with them");
-    let stitched = mesh.stitch(false);
+    let stitched = mesh.stitch(false, &cancel);
     tell(stitched, "point hung in a side and was taken into it", "points hung in sides and were taken into them");
     begin(4)?;
-    let doubles = mesh.drop_doubles();
+    let doubles = mesh.drop_doubles(&cancel);
     tell(doubles, "duplicate triangle was left out", "duplicate triangles were left out");
     begin(5)?;
     let flat = mesh.take_out_flat_ones();
@@ -103,8 +103,8 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
         tell(turned, "clockwise triangle was turned", "clockwise triangles were turned");
         overlapping(given, &mesh.points, &mesh.triangles, &mesh.origin)?;
     } else {
-        let turned = mesh.orient();
-        one_sided(given, &mesh, &Edges::of(&mesh.triangles))?;
+        let turned = mesh.orient(&cancel);
+        one_sided(given, &mesh, &Edges::unless(&mesh.triangles, &cancel)?)?;
         tell(
             turned,
             "triangle was turned to agree with its neighbours",
@@ -112,7 +112,7 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
         );
     }
     begin(7)?;
-    let (copied, parted, pinched) = mesh.part();
+    let (copied, parted, pinched) = mesh.part(&cancel);
     begin(STEPS)?;
     tell(parted, "point in which parts touched was parted", "points in which parts touched were parted");
     tell(
@@ -162,7 +162,7 @@ impl Triangles {
     }
 
     /// Takes out triangles with the nodes of an earlier one. How many those were.
-    fn drop_doubles(&mut self) -> usize {
+    fn drop_doubles(&mut self, cancel: &Cancel) -> usize {
         let key = |t: &[u32; 3]| {
             let mut t = *t;
             t.sort_unstable();
@@ -170,6 +170,9 @@ impl Triangles {
         };
         let of = |i: u32| key(&self.triangles[i as usize]);
         let mut groups = Groups::of(self.triangles.len(), self.points.len(), |i| of(i)[0]);
+        if cancel.is_asked() {
+            return 0;
+        }
         let mut keep = vec![true; self.triangles.len()];
         for alike in groups.iter_mut() {
             alike.sort_unstable_by_key(|&i| (of(i), i));
@@ -289,8 +292,8 @@ impl Triangles {
 
     /// Turns triangles so that neighbours at edges of two agree, part by part, each as the larger share of it was. How many were
     /// turned. A part that has but one side (a Moebius strip) keeps edges at which it disagrees ([`one_sided`]).
-    fn orient(&mut self) -> usize {
-        let edges = Edges::of(&self.triangles);
+    fn orient(&mut self, cancel: &Cancel) -> usize {
+        let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return 0 };
         let mut turned: Vec<Option<bool>> = vec![None; self.triangles.len()];
         let mut count = 0;
         for first in 0..self.triangles.len() {

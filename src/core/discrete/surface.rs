@@ -73,7 +73,7 @@ pub fn surface(
     bound: Bound,
     watch: &mut dyn Watch,
 ) -> Result<Surface, Fault> {
-    let edges = Edges::of(&mesh.triangles);
+    let edges = Edges::unless(&mesh.triangles, &watch.cancel())?;
     let features = with_lines(features(mesh, &edges, angle), mesh, &edges);
     let charts = charts(mesh, &edges, &features, bound, watch)?;
     let cancel = watch.cancel();

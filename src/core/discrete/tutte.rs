@@ -40,6 +40,9 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
     let inner = xyz.len() - border;
     if inner > 0 {
         let weights = weights(xyz, triangles, border);
+        if cancel.is_asked() {
+            return None;
+        }
         let mut right = [vec![0.0; inner], vec![0.0; inner]];
         let mut rows = Vec::with_capacity(inner);
         for (i, row) in weights.iter().enumerate() {
@@ -57,7 +60,11 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
             }
             rows.push(inside);
         }
-        let solver = Means::new(rows.into_iter()).factored();
+        let means = Means::new(rows.into_iter().take_while(|_| !cancel.is_asked()));
+        if cancel.is_asked() {
+            return None;
+        }
+        let solver = means.factored();
         let [x, y] = right.map(|b| solver.solve(&b, b.clone(), NEAR, &mut || !cancel.is_asked()));
         let (x, y) = (x?, y?);
         uv.extend(x.into_iter().zip(y).map(|(x, y)| DVec2::new(x, y) * radius));

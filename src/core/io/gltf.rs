@@ -6,13 +6,15 @@
 
 mod bytes;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::{DMat4, DQuat, DVec3, Mat4, Quat, Vec3};
+use gltf::binary::Glb;
 use gltf::mesh::{Mode, Primitive};
 use gltf::scene::Transform;
-use gltf::{Document, Gltf, Node};
+use gltf::{Document, Node, json};
 
 use super::counting::Count;
 use super::mesh_file::{Group, MeshFile, Texture};
@@ -41,6 +43,10 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
     let (document, blob) = document(name, bytes)?;
     pace.cancel().check()?;
     let buffers = Buffers::load(name, &document, blob, folder)?;
+    // Buffers within the document are not needed a second time as its text.
+    let mut root = document.into_json();
+    root.buffers.iter_mut().for_each(|buffer| buffer.uri = None);
+    let document = Document::from_json_without_validation(root);
     let most = ALWAYS.max(MOST_TIMES.saturating_mul(bytes.len() + buffers.size()));
     let mut scene = Scene { name, buffers, most, ..Scene::default() };
     let named: Vec<usize> = document.default_scene().iter().map(gltf::Scene::index).collect();
@@ -55,27 +61,29 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
     let mut mesh = scene.mesh;
     // Their bytes are not needed beside what welding needs.
     drop(scene.buffers);
-    let (points, standing) = weld(&mesh.points, SINGLE, pace.cancel());
+    let standing = weld(&mut mesh.points, SINGLE, pace.cancel());
     pace.cancel().check()?;
-    mesh.points = points;
     mesh.counting.points = Count::Nothing;
     mesh.triangles.iter_mut().flatten().for_each(|corner| *corner = standing[*corner as usize]);
     // Strips turn corners with triangles of no area, which are no triangles.
-    let tags = std::mem::take(&mut mesh.triangle_tags);
-    let keep = |[a, b, c]: [u32; 3]| a != b && b != c && c != a;
-    mesh.triangle_tags = mesh.triangles.iter().zip(tags).filter(|(t, _)| keep(**t)).map(|(_, tag)| tag).collect();
+    let keep = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+    let mut of_triangle = mesh.triangles.iter();
+    mesh.triangle_tags.retain(|_| of_triangle.next().is_some_and(keep));
     mesh.texture = scene.texture.of_all(&mesh);
     if let Some(texture) = &mut mesh.texture {
         let mut of_triangle = mesh.triangles.iter();
-        texture.triangles.retain(|_| of_triangle.next().is_some_and(|&t| keep(t)));
+        texture.triangles.retain(|_| of_triangle.next().is_some_and(keep));
     }
-    mesh.triangles.retain(|&t| keep(t));
+    mesh.triangles.retain(keep);
     mesh.skipped = scene.skipped.into_iter().map(|(kind, count)| (kind.to_owned(), count)).collect();
     Ok(mesh)
 }
 
-/// The validated document and the binary part of a `.glb`.
-fn document(name: &str, bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fault> {
+/// The binary part of a `.glb`, where it was read.
+type Blob<'b> = Option<Cow<'b, [u8]>>;
+
+/// The validated document and its binary part.
+fn document<'b>(name: &str, bytes: &'b [u8]) -> Result<(Document, Blob<'b>), Fault> {
     if bytes.starts_with(b"glTF") {
         // The parser subtracts the header from the length without looking.
         let length = bytes.get(8..12).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
@@ -88,8 +96,14 @@ fn document(name: &str, bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fau
         let said: String = error.to_string().chars().filter(|c| !c.is_control()).take(160).collect();
         Fault::new(format!("This is not valid glTF 2.0: {said}")).at(name)
     };
-    let gltf = Gltf::from_slice_without_validation(bytes).map_err(refuse)?;
-    for extension in gltf.document.extensions_required() {
+    let (text, blob) = if bytes.starts_with(b"glTF") {
+        let glb = Glb::from_slice(bytes).map_err(refuse)?;
+        (glb.json, glb.bin)
+    } else {
+        (Cow::Borrowed(bytes), None)
+    };
+    let mut root: json::Root = json::deserialize::from_slice(&text).map_err(|error| refuse(error.into()))?;
+    for extension in &root.extensions_required {
         if !HARMLESS.iter().any(|known| extension.starts_with(known)) {
             return Err(Fault::new(format!(
                 "It requires the extension {}, which is not read",
@@ -99,7 +113,6 @@ fn document(name: &str, bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fau
             .remedy("Export it without compression and quantization"));
         }
     }
-    let mut root = gltf.document.into_json();
     // The validation looks positions up before it has seen that they are there.
     let attributes =
         root.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|primitive| primitive.attributes.values());
@@ -109,13 +122,13 @@ fn document(name: &str, bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fau
     }
     // Looked at above: the validation knows none.
     root.extensions_required.clear();
-    Ok((Document::from_json(root).map_err(refuse)?, gltf.blob))
+    Ok((Document::from_json(root).map_err(refuse)?, blob))
 }
 
 #[derive(Default)]
 struct Scene<'a> {
     name: &'a str,
-    buffers: Buffers,
+    buffers: Buffers<'a>,
     most: usize,
     mesh: MeshFile,
     texture: Texture,
@@ -161,8 +174,9 @@ impl Scene<'_> {
             return Ok(());
         }
         let Some(positions) = primitive.get(&gltf::Semantic::Positions) else { return Ok(()) };
-        let local = self.buffers.positions(self.name, &positions)?;
+        let group = || shown(self.mesh.groups[tag as usize - 1].name.as_bytes());
         let first = self.mesh.points.len();
+        self.buffers.positions(self.name, &positions, &mut self.mesh.points)?;
         let count = primitive.indices().map_or(positions.count(), |a| a.count());
         let bytes = positions.count().saturating_add(first).saturating_mul(48);
         let bytes = bytes.saturating_add(count.saturating_add(self.mesh.triangles.len()).saturating_mul(16));
@@ -171,29 +185,26 @@ impl Scene<'_> {
                 .at(self.name)
                 .remedy("Export fewer copies"));
         }
-        for p in local {
-            let p = placed.transform_point3(p);
+        for point in &mut self.mesh.points[first..] {
+            let p = placed.transform_point3(*point);
             if !p.is_finite() {
-                let what = format!("A vertex of \"{}\" lies at {}, {}, {}", self.group(tag), p.x, p.y, p.z);
+                let what = format!("A vertex of \"{}\" lies at {}, {}, {}", group(), p.x, p.y, p.z);
                 return Err(Fault::new(what).at(self.name).remedy("Coordinates must be finite numbers"));
             }
-            self.mesh.points.push(p);
+            *point = p;
         }
-        let corners = match primitive.indices() {
-            Some(indices) => self.buffers.indices(self.name, &indices)?,
-            None => (0..positions.count() as u32).collect(),
+        let corners: Box<dyn Iterator<Item = u32>> = match primitive.indices() {
+            Some(indices) => Box::new(self.buffers.indices(self.name, &indices)?),
+            None => Box::new(0..positions.count() as u32),
         };
-        if let Some(corner) = corners.iter().find(|&&corner| corner as usize >= positions.count()) {
-            let what =
-                format!("A triangle of \"{}\" has the vertex {corner} of {}", self.group(tag), positions.count());
-            return Err(Fault::new(what).at(self.name));
+        let first_place = self.texture.places.len();
+        if let Some(accessor) = primitive.get(&gltf::Semantic::TexCoords(0)) {
+            self.buffers.texture(&accessor, &mut self.texture.places);
         }
-        let places = match primitive.get(&gltf::Semantic::TexCoords(0)) {
-            Some(accessor) => self.buffers.texture(&accessor),
-            None => Vec::new(),
-        };
-        let first_place = self.texture.places.len() as u32;
-        self.texture.places.extend(&places);
+        let places = self.texture.places.len() - first_place;
+        let most = if primitive.mode() == Mode::Triangles { count / 3 } else { count };
+        self.mesh.triangles.reserve(most);
+        self.mesh.triangle_tags.reserve(most);
         // A mirroring transform turns triangles over.
         let mirrored = placed.determinant() < 0.0;
         let mut add = |[a, b, c]: [u32; 3]| {
@@ -201,24 +212,26 @@ impl Scene<'_> {
             self.mesh.triangles.push(t.map(|corner| first as u32 + corner));
             self.mesh.triangle_tags.push(tag);
             let place = |corner: u32| {
-                if (corner as usize) < places.len() { first_place + corner } else { Texture::NOWHERE }
+                if (corner as usize) < places { first_place as u32 + corner } else { Texture::NOWHERE }
             };
             self.texture.place_triangle(self.mesh.triangles.len() - 1, t.map(place));
         };
-        match primitive.mode() {
-            Mode::TriangleStrip => {
-                for (i, w) in corners.windows(3).enumerate() {
-                    add(if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] });
-                }
+        let [mut first_corner, mut a, mut b] = [0; 3];
+        for (i, corner) in corners.enumerate() {
+            if corner as usize >= positions.count() {
+                let what = format!("A triangle of \"{}\" has the vertex {corner} of {}", group(), positions.count());
+                return Err(Fault::new(what).at(self.name));
             }
-            Mode::TriangleFan => corners.windows(2).skip(1).for_each(|w| add([corners[0], w[0], w[1]])),
-            _ => corners.as_chunks().0.iter().for_each(|&t| add(t)),
+            match primitive.mode() {
+                _ if i == 0 => first_corner = corner,
+                Mode::TriangleStrip if i >= 2 => add(if i % 2 == 0 { [a, b, corner] } else { [b, a, corner] }),
+                Mode::TriangleFan if i >= 2 => add([first_corner, b, corner]),
+                Mode::Triangles if i % 3 == 2 => add([a, b, corner]),
+                _ => {}
+            }
+            (a, b) = (b, corner);
         }
         Ok(())
-    }
-
-    fn group(&self, tag: u32) -> String {
-        shown(self.mesh.groups[tag as usize - 1].name.as_bytes())
     }
 }
 

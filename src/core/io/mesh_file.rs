@@ -110,10 +110,13 @@ impl Texture {
 
     /// The texture with something said of every element of a mesh; none where it has no places.
     pub(super) fn of_all(mut self, mesh: &MeshFile) -> Option<Texture> {
+        if self.places.is_empty() {
+            return None;
+        }
         self.triangles.resize(mesh.triangles.len(), [Self::NOWHERE; 3]);
         self.quads.resize(mesh.quads.len(), [Self::NOWHERE; 4]);
         self.polygons.resize(mesh.polygons.len(), Vec::new());
-        (!self.places.is_empty()).then_some(self)
+        Some(self)
     }
 
     /// Where the corners of a triangle lie, if all lie somewhere.

@@ -247,16 +247,13 @@ impl<'a> Scanner<'a> {
         parse_real(word).ok_or_else(|| self.unlike(word, what))
     }
 
-    /// All words that are left as numbers of any kind.
+    /// The next word as a number of any kind, where there is one.
     ///
     /// # Errors
-    /// When one is none.
-    pub fn reals(&mut self) -> Result<Vec<f64>, Fault> {
-        let mut values = Vec::new();
-        while let Some(word) = self.word() {
-            values.push(parse_real(word).ok_or_else(|| self.unlike(word, "a number"))?);
-        }
-        Ok(values)
+    /// When it is no number.
+    pub fn real_if_any(&mut self) -> Result<Option<f64>, Fault> {
+        let Some(word) = self.word() else { return Ok(None) };
+        parse_real(word).map(Some).ok_or_else(|| self.unlike(word, "a number"))
     }
 
     /// The next word as a finite number.

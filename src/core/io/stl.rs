@@ -62,16 +62,16 @@ fn read_binary(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fa
             largest = largest.max(p.abs().max_element());
         }
     }
-    let mut welder = Welder::new(SINGLE, largest);
+    let (mut welder, mut points) = (Welder::new(SINGLE, largest), Vec::new());
     let mut welded = Vec::with_capacity(triangles.len());
     for part in triangles.chunks(AT_A_TIME) {
         if !pace.goes_on(HEADER + welded.len() * TRIANGLE, bytes.len()) {
             break;
         }
-        welded.extend(part.iter().map(|t| [0, 1, 2].map(|k| welder.weld(corner(t, k)))));
+        welded.extend(part.iter().map(|t| [0, 1, 2].map(|k| welder.weld(&mut points, corner(t, k)))));
     }
     let counting = Counting { points: Count::Nothing, ..Counting::default() };
-    Ok(MeshFile { triangles: welded, points: welder.points(), counting, ..MeshFile::default() })
+    Ok(MeshFile { triangles: welded, points, counting, ..MeshFile::default() })
 }
 
 fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
@@ -113,10 +113,9 @@ fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
             mesh.triangle_tags.push(solid);
         }
     }
-    let (points, standing) = weld(&corners, SINGLE, pace.cancel());
-    mesh.points = points;
+    mesh.triangles = weld(&mut corners, SINGLE, pace.cancel()).as_chunks().0.to_vec();
+    mesh.points = corners;
     mesh.counting.points = Count::Nothing;
-    mesh.triangles = standing.as_chunks().0.to_vec();
     Ok(mesh)
 }
 

@@ -1,8 +1,10 @@
 //! Points at one place made one: for formats that say a mesh triangle by triangle (STL), or that give a point more than
 //! once where its normal or texture differs (glTF).
 
+use std::hash::BuildHasher;
+
 use glam::DVec3;
-use rustc_hash::FxHashMap;
+use rustc_hash::FxBuildHasher;
 
 use crate::core::progress::Cancel;
 
@@ -13,15 +15,15 @@ pub const SINGLE: f64 = 4.0 * f32::EPSILON as f64;
 const AT_A_TIME: usize = 1 << 14;
 
 /// Joins points that lie within some distance of each other; the first of them stays. A chain of points is not drawn together: each is
-/// compared with the ones that stay.
+/// compared with the ones that stay. Those lie with whoever welds, and are found here by their number: eight to twelve bytes for each.
 pub struct Welder {
     near: f64,
-    /// Side of the cells that points are found by: larger than the distance, so that a point seldom has to look beyond its own, but no
-    /// more than a few hundred points that stay have room in one.
-    cell: f64,
-    kept: Vec<DVec3>,
-    /// The last point of each cell, and for each point the one before it in its cell.
-    last: FxHashMap<[i64; 3], u32>,
+    /// How many of the cells by which points are found go into a unit. They are larger than the distance, so that a point seldom has to
+    /// look beyond its own, but no more than a few hundred points that stay have room in one.
+    cells: f64,
+    /// The last point of each drawer, into which cells are laid by their hash; their number is a power of two. And for each point the
+    /// one before it in its drawer.
+    last: Vec<u32>,
     before: Vec<u32>,
 }
 
@@ -29,20 +31,31 @@ impl Welder {
     /// A welder within `relative` times the largest coordinate, whichever sign it has.
     pub fn new(relative: f64, largest: f64) -> Welder {
         let near = (relative * largest).max(f64::MIN_POSITIVE);
-        Welder { near, cell: 8.0 * near, kept: Vec::new(), last: FxHashMap::default(), before: Vec::new() }
+        Welder { near, cells: 1.0 / (8.0 * near), last: vec![u32::MAX], before: Vec::new() }
     }
 
-    /// The place of the point that stands for `p` among those that stay: an earlier one, or itself.
-    pub fn weld(&mut self, p: DVec3) -> u32 {
-        let key = |p: DVec3| (p / self.cell).floor().to_array().map(|x| x as i64);
-        let (low, high) = (key(p - self.near), key(p + self.near));
+    /// The place of the point that stands for `p` among those that are kept: an earlier one, or itself, the last.
+    pub fn weld(&mut self, kept: &mut Vec<DVec3>, p: DVec3) -> u32 {
+        self.find(kept, p).unwrap_or_else(|| {
+            kept.push(p);
+            self.keep(kept)
+        })
+    }
+
+    /// The first of the points kept that lies near `p`.
+    fn find(&self, kept: &[DVec3], p: DVec3) -> Option<u32> {
+        // Beside the largest number of all lies infinity, and no cell.
+        let (low, high) = (self.cell((p - self.near).max(DVec3::MIN)), self.cell((p + self.near).min(DVec3::MAX)));
         let mut found: Option<u32> = None;
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    let mut at = self.last.get(&[x, y, z]).copied().unwrap_or(u32::MAX);
+                    let cell = [x, y, z];
+                    let mut at = self.last[self.drawer(cell)];
                     while at != u32::MAX {
-                        if self.kept[at as usize].distance(p) <= self.near && found.is_none_or(|f| at < f) {
+                        let q = kept[at as usize];
+                        // A drawer has points of other cells too.
+                        if q.distance(p) <= self.near && found.is_none_or(|f| at < f) && self.cell(q) == cell {
                             found = Some(at);
                         }
                         at = self.before[at as usize];
@@ -50,34 +63,55 @@ impl Welder {
                 }
             }
         }
-        if let Some(found) = found {
-            return found;
-        }
-        let (new, key) = (self.kept.len() as u32, key(p));
-        self.kept.push(p);
-        self.before.push(self.last.insert(key, new).unwrap_or(u32::MAX));
-        new
+        found
     }
 
-    /// The points that stay.
-    pub fn points(self) -> Vec<DVec3> {
-        self.kept
+    /// Takes in the last of the points kept; its place.
+    fn keep(&mut self, kept: &[DVec3]) -> u32 {
+        let new = self.before.len();
+        if new == self.last.len() {
+            // More drawers, and all points into them again.
+            self.last = vec![u32::MAX; 2 * new];
+            self.before.clear();
+        }
+        for at in self.before.len()..=new {
+            let drawer = self.drawer(self.cell(kept[at]));
+            self.before.push(std::mem::replace(&mut self.last[drawer], at as u32));
+        }
+        new as u32
+    }
+
+    fn cell(&self, p: DVec3) -> [i64; 3] {
+        (p * self.cells).floor().to_array().map(|x| x as i64)
+    }
+
+    fn drawer(&self, cell: [i64; 3]) -> usize {
+        FxBuildHasher.hash_one(cell) as usize & (self.last.len() - 1)
     }
 }
 
-/// Joins points within `relative` times the largest coordinate. Returns the points that stay, and for each point given the place
-/// of the one that stands for it. Told to end, it
-/// returns nothing.
-pub fn weld(points: &[DVec3], relative: f64, cancel: &Cancel) -> (Vec<DVec3>, Vec<u32>) {
+/// Joins points within `relative` times the largest coordinate: `points` becomes those that stay. Returns for each point given the place
+/// of the one that stands for it. Told to end, it returns nothing, and `points` are of no use.
+pub fn weld(points: &mut Vec<DVec3>, relative: f64, cancel: &Cancel) -> Vec<u32> {
     let mut welder = Welder::new(relative, points.iter().fold(0.0, |largest, p| p.abs().max_element().max(largest)));
     let mut standing = Vec::with_capacity(points.len());
-    for part in points.chunks(AT_A_TIME) {
-        if cancel.is_asked() {
-            return (Vec::new(), Vec::new());
+    // Those that stay move to the front: no room is needed beside that of the points.
+    let mut kept = 0;
+    for k in 0..points.len() {
+        if k % AT_A_TIME == 0 && cancel.is_asked() {
+            return Vec::new();
         }
-        standing.extend(part.iter().map(|&p| welder.weld(p)));
+        let p = points[k];
+        standing.push(welder.find(&points[..kept], p).unwrap_or_else(|| {
+            points[kept] = p;
+            kept += 1;
+            welder.keep(&points[..kept])
+        }));
     }
-    (welder.points(), standing)
+    drop(welder);
+    points.truncate(kept);
+    points.shrink_to_fit();
+    standing
 }
 
 #[cfg(test)]
@@ -88,10 +122,11 @@ mod tests {
     fn points_within_rounding_become_the_first_of_them_and_others_stay_apart() {
         let near = 1000.0 * SINGLE;
         let p = DVec3::new(1000.0, -3.0, 0.5);
-        let points = [p, DVec3::ZERO, p + DVec3::new(0.9 * near, 0.0, 0.0), p + DVec3::new(0.0, 1.1 * near, 0.0)];
-        let (kept, standing) = weld(&points, SINGLE, &Cancel::default());
-        assert_eq!(kept, [p, DVec3::ZERO, points[3]]);
-        assert_eq!(standing, [0, 1, 0, 2]);
+        let mut points =
+            vec![p, DVec3::ZERO, p + DVec3::new(0.9 * near, 0.0, 0.0), p + DVec3::new(0.0, 1.1 * near, 0.0)];
+        let apart = points[3];
+        assert_eq!(weld(&mut points, SINGLE, &Cancel::default()), [0, 1, 0, 2]);
+        assert_eq!(points, [p, DVec3::ZERO, apart]);
     }
 
     #[test]
@@ -99,8 +134,8 @@ mod tests {
         let cell = 8.0 * SINGLE;
         for offset in [0.0, 1.0, -1.0, 7.0] {
             let border = DVec3::new(offset * cell, 0.0, 0.0);
-            let points = [DVec3::ONE, border - 0.2 * SINGLE, border + 0.2 * SINGLE];
-            assert_eq!(weld(&points, SINGLE, &Cancel::default()).1, [0, 1, 1], "{offset}");
+            let mut points = vec![DVec3::ONE, border - 0.2 * SINGLE, border + 0.2 * SINGLE];
+            assert_eq!(weld(&mut points, SINGLE, &Cancel::default()), [0, 1, 1], "{offset}");
         }
     }
 
@@ -114,12 +149,20 @@ mod tests {
             DVec3::from_array(at) * (1.1 * near)
         }));
         // With the square of their number this would not end in minutes.
-        assert_eq!(weld(&points, SINGLE, &Cancel::default()).0.len(), points.len());
+        let number = points.len();
+        weld(&mut points, SINGLE, &Cancel::default());
+        assert_eq!(points.len(), number);
+    }
+
+    #[test]
+    fn points_at_the_largest_number_of_all_end_in_no_search_without_end() {
+        let mut points = vec![DVec3::MAX, DVec3::MIN, DVec3::MAX];
+        assert_eq!(weld(&mut points, SINGLE, &Cancel::default()), [0, 1, 0]);
     }
 
     #[test]
     fn points_all_at_zero_are_one_and_none_are_none() {
-        assert_eq!(weld(&[DVec3::ZERO; 3], SINGLE, &Cancel::default()).1, [0, 0, 0]);
-        assert_eq!(weld(&[], SINGLE, &Cancel::default()).0, []);
+        assert_eq!(weld(&mut vec![DVec3::ZERO; 3], SINGLE, &Cancel::default()), [0, 0, 0]);
+        assert!(weld(&mut Vec::new(), SINGLE, &Cancel::default()).is_empty());
     }
 }

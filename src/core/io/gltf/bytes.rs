@@ -1,5 +1,6 @@
 //! The buffers of a glTF document and the numbers in them, every range checked before it is read.
 
+use std::borrow::Cow;
 use std::path::{Component, Path};
 
 use base64::Engine;
@@ -15,18 +16,18 @@ use crate::core::fault::Fault;
 use crate::core::io::save::load;
 use crate::core::io::scan::shown;
 
-/// What lies in the buffers, by their index.
+/// What lies in the buffers, by their index. The binary part of a `.glb` stays where it was read.
 #[derive(Default)]
-pub(super) struct Buffers(Vec<Vec<u8>>);
+pub(super) struct Buffers<'b>(Vec<Cow<'b, [u8]>>);
 
-impl Buffers {
+impl<'b> Buffers<'b> {
     /// Loads all buffers.
     pub fn load(
         name: &str,
         document: &Document,
-        blob: Option<Vec<u8>>,
+        blob: Option<Cow<'b, [u8]>>,
         folder: Option<&Path>,
-    ) -> Result<Buffers, Fault> {
+    ) -> Result<Buffers<'b>, Fault> {
         let mut blob = blob;
         let mut buffers = Vec::new();
         for buffer in document.buffers() {
@@ -40,11 +41,10 @@ impl Buffers {
                         let text = data.split_once("base64,").map_or("", |(_, text)| text);
                         let lenient =
                             GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
-                        GeneralPurpose::new(&STANDARD, lenient)
-                            .decode(text)
-                            .map_err(|error| fault(format!("is no base64: {error}")))?
+                        let decoded = GeneralPurpose::new(&STANDARD, lenient).decode(text);
+                        Cow::Owned(decoded.map_err(|error| fault(format!("is no base64: {error}")))?)
                     }
-                    None => beside(uri, folder).map_err(&fault)?,
+                    None => Cow::Owned(beside(uri, folder).map_err(&fault)?),
                 },
             };
             if bytes.len() < buffer.length() {
@@ -58,7 +58,7 @@ impl Buffers {
 
     /// Bytes of all buffers.
     pub fn size(&self) -> usize {
-        self.0.iter().map(Vec::len).sum()
+        self.0.iter().map(|bytes| bytes.len()).sum()
     }
 
     /// `count` items of `size` bytes each.
@@ -79,8 +79,8 @@ impl Buffers {
         Some(bytes.chunks(stride).map(move |item| &item[..size]))
     }
 
-    /// Positions: three numbers in single precision each.
-    pub fn positions(&self, name: &str, accessor: &Accessor) -> Result<Vec<DVec3>, Fault> {
+    /// Puts the positions of an accessor, three numbers in single precision each, behind `points`.
+    pub fn positions(&self, name: &str, accessor: &Accessor, points: &mut Vec<DVec3>) -> Result<(), Fault> {
         let fault = |what: &str| Fault::new(format!("The positions of accessor {} {what}", accessor.index())).at(name);
         if accessor.data_type() != DataType::F32 || accessor.dimensions() != Dimensions::Vec3 {
             return Err(fault("are not three numbers in single precision").remedy("Export it without quantization"));
@@ -90,51 +90,55 @@ impl Buffers {
             let axis = |k: usize| f64::from(f32::from_le_bytes([item[k], item[k + 1], item[k + 2], item[k + 3]]));
             DVec3::new(axis(0), axis(4), axis(8))
         };
-        let mut positions: Vec<DVec3> = match accessor.view() {
+        let first = points.len();
+        match accessor.view() {
             Some(view) => {
-                let items = self.items(&view, accessor.offset(), accessor.count(), 12).ok_or_else(short)?;
-                items.map(read).collect()
+                points.extend(self.items(&view, accessor.offset(), accessor.count(), 12).ok_or_else(short)?.map(read))
             }
             // All zero where only a sparse part is given: no more of them than that part could mean.
-            None if accessor.count() <= self.size() => vec![DVec3::ZERO; accessor.count()],
+            None if accessor.count() <= self.size() => points.resize(first + accessor.count(), DVec3::ZERO),
             None => return Err(short()),
-        };
+        }
         if let Some(sparse) = accessor.sparse() {
             let (places, values) = (sparse.indices(), sparse.values());
             let size = places.index_type().size();
             let places = self.items(&places.view(), places.offset(), sparse.count(), size).ok_or_else(short)?;
             let values = self.items(&values.view(), values.offset(), sparse.count(), 12).ok_or_else(short)?;
             for (place, value) in places.zip(values) {
-                *positions.get_mut(whole(place) as usize).ok_or_else(short)? = read(value);
+                *points[first..].get_mut(whole(place) as usize).ok_or_else(short)? = read(value);
             }
         }
-        Ok(positions)
+        Ok(())
     }
 
-    /// Texture coordinates: two numbers each, in single precision or as parts of the greatest whole number. None at all where they
-    /// are given in another way, since a mesh is whole without them.
-    pub fn texture(&self, accessor: &Accessor) -> Vec<DVec2> {
+    /// Puts texture coordinates behind `places`: two numbers each, in single precision or as parts of the greatest whole number.
+    /// None at all where they are given in another way, since a mesh is whole without them.
+    pub fn texture(&self, accessor: &Accessor, places: &mut Vec<DVec2>) {
         let size = match accessor.data_type() {
             DataType::F32 => 4,
             DataType::U16 if accessor.normalized() => 2,
             DataType::U8 if accessor.normalized() => 1,
-            _ => return Vec::new(),
+            _ => return,
         };
         if accessor.dimensions() != Dimensions::Vec2 || accessor.sparse().is_some() {
-            return Vec::new();
+            return;
         }
-        let Some(view) = accessor.view() else { return Vec::new() };
-        let Some(items) = self.items(&view, accessor.offset(), accessor.count(), 2 * size) else { return Vec::new() };
+        let Some(view) = accessor.view() else { return };
+        let Some(items) = self.items(&view, accessor.offset(), accessor.count(), 2 * size) else { return };
         // The unit of whole numbers says nothing: charts have sizes of their own.
         let number = |item: &[u8]| match *item {
             [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
             _ => f64::from(whole(item)),
         };
-        items.map(|item| DVec2::new(number(&item[..size]), number(&item[size..]))).collect()
+        places.extend(items.map(|item| DVec2::new(number(&item[..size]), number(&item[size..]))));
     }
 
     /// Indices: whole numbers of one, two or four bytes.
-    pub fn indices(&self, name: &str, accessor: &Accessor) -> Result<Vec<u32>, Fault> {
+    pub fn indices<'s>(
+        &'s self,
+        name: &str,
+        accessor: &Accessor,
+    ) -> Result<impl Iterator<Item = u32> + use<'s>, Fault> {
         let fault = |what: &str| Fault::new(format!("The indices of accessor {} {what}", accessor.index())).at(name);
         let kind = match (accessor.data_type(), accessor.dimensions(), accessor.sparse()) {
             (DataType::U8, Dimensions::Scalar, None) => IndexType::U8,
@@ -145,7 +149,7 @@ impl Buffers {
         let short = || fault("lie beyond the end of their buffer").remedy("It seems to be damaged: write it again");
         let view = accessor.view().ok_or_else(short)?;
         let items = self.items(&view, accessor.offset(), accessor.count(), kind.size()).ok_or_else(short)?;
-        Ok(items.map(whole).collect())
+        Ok(items.map(whole))
     }
 }
 
