@@ -247,6 +247,23 @@ fn switches_are_read_from_a_case_file() {
 }
 
 #[test]
+fn a_result_that_is_not_valid_is_told_and_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    // Three quadrilaterals on a whole sphere lie in a plane.
+    let line = ["convert", "sphere", "--set", "size_scale=6", "-o", "a.obj", "--report", "a.json"];
+    let (code, out, err) = said(&run(&line, folder.path()));
+    assert_eq!(code, 1, "{err}");
+    assert!(
+        out.contains("NOT VALID")
+            && err.contains("not sound")
+            && err.contains("other sizes")
+            && err.contains("No mesh was written"),
+        "{out}{err}"
+    );
+    assert!(folder.path().join("a.json").is_file() && !folder.path().join("a.obj").exists());
+}
+
+#[test]
 fn a_checked_mesh_that_falls_short_is_exit_1_and_one_that_cannot_be_read_exit_2() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("good.obj"), square_obj(false)).unwrap();

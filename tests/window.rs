@@ -171,6 +171,42 @@ fn a_run_that_is_saved_opens_with_its_changes() {
 }
 
 #[test]
+fn the_mesh_at_hand_is_saved_in_the_format_of_its_name_and_nothing_is_written_over() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let save = |harness: &mut Harness<'static, App>, name: &str| {
+        press(harness, Modifiers::COMMAND, Key::M);
+        let path = folder.path().join(name);
+        harness.state_mut().state.field = path.display().to_string();
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        let begin = Instant::now();
+        while harness.state().state.notice.is_none() && harness.state().state.faults.is_empty() {
+            assert!(begin.elapsed() < Duration::from_secs(20), "nothing is told");
+            std::thread::sleep(Duration::from_millis(5));
+            harness.run_steps(1);
+        }
+        let state = &mut harness.state_mut().state;
+        state.notice = None;
+        let faults = std::mem::take(&mut state.faults);
+        assert!(faults.is_empty() || faults[0].contains(name), "{faults:?}");
+        faults.is_empty().then(|| quadfront::core::io::format::read_mesh(&path, None).unwrap())
+    };
+    apply(&mut harness, Command::Go(Goal::ToQuads(40)));
+    let on_the_way = save(&mut harness, "way.msh").unwrap();
+    assert_eq!(on_the_way.quads.len(), 40);
+    assert!(!on_the_way.triangles.is_empty());
+    apply(&mut harness, Command::Go(Goal::End));
+    let end = save(&mut harness, "end.vtu").unwrap();
+    assert_eq!((end.quads.len() as u64, end.triangles.len()), (quads(&harness), 0));
+    let before = std::fs::read(folder.path().join("end.vtu")).unwrap();
+    assert!(save(&mut harness, "end.vtu").is_none(), "there is such a file");
+    assert_eq!(std::fs::read(folder.path().join("end.vtu")).unwrap(), before);
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(save(&mut harness, "end.stl").is_none(), "STL has no quadrilaterals");
+}
+
+#[test]
 fn the_palette_finds_a_command_by_its_name() {
     let Some(mut harness) = window() else { return };
     press(&mut harness, Modifiers::COMMAND, Key::P);

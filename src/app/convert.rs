@@ -19,7 +19,7 @@ use crate::core::run::shown::Shown;
 
 /// Converts, and writes the mesh, the report and the picture that are asked for.
 ///
-/// Exit 1, as of a check, where the result is not valid: that is a bug, and nobody should go on with such a mesh unwarned.
+/// Exit 1, as of a check, where the result is not valid: then no mesh is written, and report and picture tell what it would be.
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     let (source, destination) = (&arguments.source, &arguments.destination);
     let mesh_target = MeshTarget::of(destination)?;
@@ -39,7 +39,10 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     let mut quads = work::convert_telling(&input.run, at, arguments.events.as_ref(), shows_data, &mut progress)
         .map_err(|fault| if shown.is_some() { fault.at(source.input.clone()) } else { fault })?;
     progress.tell(Stage::Write, 0, 0);
-    write(mesh_target.as_ref(), &quads.file)?;
+    // What is not valid is no mesh for anybody to go on with.
+    if quads.flaw.is_none() {
+        write(mesh_target.as_ref(), &quads.file)?;
+    }
     if let Some(target) = &destination.picture {
         let options = FigureOptions::default();
         let frame = quads.frame(&options.look(false));
@@ -65,6 +68,9 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     }
     let Some(flaw) = &quads.flaw else { return Ok(ExitCode::SUCCESS) };
     complain(flaw);
+    if mesh_target.is_some() {
+        tell("No mesh was written.\n", true);
+    }
     Ok(ExitCode::from(FALLS_SHORT))
 }
 

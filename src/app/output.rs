@@ -78,7 +78,16 @@ impl MeshTarget {
     /// The place and format that the arguments name, if they name one.
     pub fn of(destination: &Destination) -> Result<Option<MeshTarget>, Fault> {
         let Some(target) = destination.out.clone() else { return Ok(None) };
-        let format = match (&target, destination.format) {
+        MeshTarget::new(target, destination.format, destination.msh2).map(Some)
+    }
+
+    /// A file, in the format of its extension.
+    pub fn file(path: PathBuf) -> Result<MeshTarget, Fault> {
+        MeshTarget::new(Target::File(path), None, false)
+    }
+
+    fn new(target: Target, format: Option<Format>, msh2: bool) -> Result<MeshTarget, Fault> {
+        let format = match (&target, format) {
             (_, Some(format)) => format,
             (Target::File(path), None) => Format::from_path(path)?,
             (Target::StandardOutput, None) => {
@@ -93,10 +102,10 @@ impl MeshTarget {
             ))
             .remedy(format!("Write one of {}", known.join(", "))));
         }
-        if destination.msh2 && format != Format::Msh {
+        if msh2 && format != Format::Msh {
             return Err(Fault::new("--msh2 is for .msh").remedy("Leave it out, or write a .msh"));
         }
-        Ok(Some(MeshTarget { target, format, options: WriteOptions { msh2: destination.msh2 } }))
+        Ok(MeshTarget { target, format, options: WriteOptions { msh2 } })
     }
 
     /// Refuses a place where the metric would fall on the file that it is read from.
@@ -110,6 +119,11 @@ impl MeshTarget {
         Err(Fault::new("The metric would be written over the file that it is read from")
             .at(sol.display().to_string())
             .remedy("Name the mesh otherwise: its metric goes to the .sol of the same name"))
+    }
+
+    /// Refuses a place that could not be written.
+    pub fn check(&self) -> Result<(), Fault> {
+        self.target.check()
     }
 
     /// Whether the format is for looking at what there is besides the mesh: data of elements and points.

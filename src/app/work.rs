@@ -145,14 +145,8 @@ pub(super) fn convert(
         Ok(())
     })?;
     watch.tell(Stage::Check, 0, 0);
-    let of = if at.is_some() { Export::of_state } else { Export::of };
-    let mut export = of(&converted.mesh, &converted.names);
-    if shows_data {
-        export.describe(&converted.mesh, &converted.sizing, births.as_ref())?;
-    }
-    // On the way there are triangles; both sides of a crack lie at the same place.
-    let branching = converted.mesh.ground().is_some();
-    let flaw = flaw(&converted.mesh, &export.file, Allow { triangles: at.is_some(), seams: true, branching });
+    let data = shows_data.then_some((&converted.sizing, births.as_ref()));
+    let (export, flaw) = exported(&converted.mesh, &converted.names, data, at.is_some())?;
     let resort = converted.last_resort.quads();
     let report = Report {
         program: Program::this(),
@@ -251,15 +245,37 @@ pub(super) fn statistics(export: &Export, sizing: &Sizing) -> Result<Statistics,
 }
 
 /// Everything that is checked on a mesh: its structure, exact convexity, and the file as others will see it.
+/// A mesh for other programs, with its data where they are to be looked at, and what a check finds wrong with it. On the way to the
+/// end there are triangles and a front.
+///
+/// # Errors
+/// Where the metric fails.
+pub(super) fn exported(
+    mesh: &Mesh,
+    names: &Names,
+    data: Option<(&Sizing, Option<&Births>)>,
+    on_the_way: bool,
+) -> Result<(Export, Option<Fault>), Fault> {
+    let mut export = if on_the_way { Export::of_state(mesh, names) } else { Export::of(mesh, names) };
+    if let Some((sizing, births)) = data {
+        export.describe(mesh, sizing, births)?;
+    }
+    // Both sides of a crack lie at the same place.
+    let allow = Allow { triangles: on_the_way, seams: true, branching: mesh.ground().is_some() };
+    let flaw = flaw(mesh, &export.file, allow);
+    Ok((export, flaw))
+}
+
 fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     if let Err(what) = mesh.check() {
         return Some(Fault::new(format!("The mesh is not sound: {what}")));
     }
-    if let Err(fault) = examine(file).verdict(allow) {
-        return Some(fault);
-    }
     let folded = if allow.triangles { Vec::new() } else { mesh.folded() };
-    let first = mesh.corners(*folded.first()?).next()?;
+    let Some(first) = folded.first().and_then(|&e| mesh.corners(e).next()) else {
+        let fault = examine(file).verdict(allow).err()?;
+        let has_none = fault.remedy.is_empty() && mesh.ground().is_some();
+        return Some(if has_none { fault.remedy("Ask for other sizes there") } else { fault });
+    };
     let [x, y, z] = mesh.xyz(first).to_array().map(number);
     let what = match folded.len() {
         1 => "1 quadrilateral folds over its surface".to_owned(),
@@ -267,7 +283,8 @@ fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     };
     Some(
         Fault::new(format!("The mesh is too coarse for its surface: {what} (the first at {x}, {y}, {z})"))
-            .remedy("Ask for smaller sizes there, for example by a metric of kind \"curvature\""),
+            .remedy("Ask for smaller sizes there, for example by a metric of kind \"curvature\"")
+            .showing(folded.iter().map(|&e| mesh.corners(e).map(|n| mesh.xyz(n)).collect())),
     )
 }
 

@@ -125,6 +125,7 @@ impl App {
             self.state.autosave = Some(autosave);
         }
         self.state.hear_figures();
+        self.state.hear_saving();
         match self.state.watcher.as_ref().and_then(Watcher::news) {
             Some(Ok(name)) => self.state.notice(format!("{name} has changed: Ctrl+R opens it again.")),
             Some(Err(fault)) => self.state.complain(&fault),

@@ -138,6 +138,7 @@ impl State {
                 }
             }
             Command::SaveRun => drop(self.save_run()),
+            Command::SaveMesh => self.ask_for_mesh(),
             Command::Undo => self.take_back(true),
             Command::Redo => self.take_back(false),
             Command::ResetLayout => self.reset_layout = true,
@@ -271,7 +272,7 @@ impl State {
         });
     }
 
-    fn show(&mut self, over: Over) {
+    pub fn show(&mut self, over: Over) {
         self.overlay = if self.overlay == over { Over::Nothing } else { over };
         self.field.clear();
     }

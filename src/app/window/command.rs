@@ -106,6 +106,8 @@ pub enum Command {
     DiscardKept,
     /// Save the run: the case with everything that was changed.
     SaveRun,
+    /// Ask where the mesh of the state is to be written.
+    SaveMesh,
     /// Take back what a person did last.
     Undo,
     /// Do it again.
@@ -178,6 +180,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::Y, Command::Redo),
         (CTRL, Key::O, Command::OpenPath),
         (CTRL, Key::S, Command::SaveRun),
+        (CTRL, Key::M, Command::SaveMesh),
         (CTRL, Key::E, Command::Export),
         (CTRL, Key::B, Command::Bookmark),
         (CTRL, Key::R, Command::Reopen),
@@ -261,6 +264,7 @@ impl Command {
             Command::OpenKept => "Open the run that was not closed".into(),
             Command::DiscardKept => "Discard the run that was not closed".into(),
             Command::SaveRun => "Save the run".into(),
+            Command::SaveMesh => "Save the mesh…".into(),
             Command::Undo => "Undo".into(),
             Command::Redo => "Redo".into(),
             Command::Palette => "Every command by name".into(),

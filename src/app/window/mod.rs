@@ -15,6 +15,7 @@ mod settings;
 mod graphics;
 mod autosave;
 mod figures;
+mod mesh_out;
 mod state;
 mod apply;
 mod viewport;

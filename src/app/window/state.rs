@@ -14,6 +14,7 @@ use super::figures::Figures;
 use super::files::{Dialog, Watcher};
 use super::import::{Import, News};
 use super::measure::{Measuring, Times};
+use super::mesh_out::Saving;
 use super::panels::timeline::Columns;
 use super::session::{Explained, Goal, Moment, Opened, Past, Session, Source, Stops, Told, Tracked, Verdict, Wake};
 use glam::DVec2;
@@ -100,6 +101,8 @@ pub struct State {
     pub notes: bool,
     /// How figures are made, and those that are being made.
     pub figures: Figures,
+    /// Meshes that are being written.
+    pub saving: Vec<Saving>,
     pub opened: Option<Arc<Opened>>,
     pub moment: Option<Arc<Moment>>,
     /// Whether the invariants hold in it.
@@ -211,6 +214,7 @@ pub enum Over {
     Help,
     GoTo,
     Path,
+    Mesh,
 }
 
 impl State {
@@ -228,6 +232,7 @@ impl State {
             autosave: None,
             notes: false,
             figures: Figures::default(),
+            saving: Vec::new(),
             opened: None,
             moment: None,
             verdict: Verdict::Looking,

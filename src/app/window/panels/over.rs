@@ -7,6 +7,7 @@ use eframe::egui::{
 use crate::app::window::command::{Command, keys};
 use crate::app::window::state::{Over, State};
 use crate::app::window::theme::{self, ink};
+use crate::core::io::format::Format;
 use crate::render::palette::Palette;
 
 const WIDTH: f32 = 460.0;
@@ -41,6 +42,15 @@ pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, p
                     {
                         state.open_field();
                     }
+                }
+                Over::Mesh => {
+                    if field(ui, state, "A name such as part.vtu: the extension says the format", "Path of the mesh") {
+                        state.save_mesh_field();
+                    }
+                    ui.add_space(4.0);
+                    let known: Vec<&str> = Format::written().map(Format::extension).collect();
+                    let known = format!("The state at hand is written as it is: .{}", known.join(", ."));
+                    ui.label(super::note(&known, palette));
                 }
                 Over::Nothing => {}
             }

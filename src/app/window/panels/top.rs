@@ -68,6 +68,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         item(ui, Command::Reopen, commands);
         item(ui, Command::Import, commands);
         item(ui, Command::SaveRun, commands);
+        item(ui, Command::SaveMesh, commands);
         item(ui, Command::Notes, commands);
         ui.separator();
         let open = |name: &str| Command::Open(Source::BuiltIn(name.to_owned()));
