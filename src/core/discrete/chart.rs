@@ -70,6 +70,9 @@ impl Default for Bound {
 /// A chart with holes is taken as it is up to here, and slit beyond.
 const WITH_HOLES: Bound = Bound { shape: 2.0, area: 4.0 };
 
+/// A part of more triangles is cut without a look at whether it could be laid flat: its halves take less time and memory, and are
+/// converted at the same time.
+const MOST_TRIANGLES: usize = 1 << 18;
 /// Triangles that are looked at between two looks at whether to go on.
 const AT_A_TIME: usize = 1 << 12;
 
@@ -227,6 +230,9 @@ impl<'a> Surface<'a> {
 
     /// The chart of a part, or what else has to be done with it; tells how far it is, from 0 to 1.
     fn chart(&self, part: &Part, bound: Bound, tell: &mut dyn FnMut(f64)) -> Next {
+        if part.triangles.len() > MOST_TRIANGLES {
+            return Next::Cut;
+        }
         let mut chart = self.nodes(part);
         // Also where the work is told to end, and nobody looks at what comes of it.
         let Ok(edges) = Edges::unless(&chart.local, &self.cancel) else { return Next::Cut };

@@ -17,6 +17,8 @@ pub struct Means {
 
 /// So few nodes are not dissected any more.
 const LEAF: usize = 24;
+/// No more entries of L than this are taken for each row: on surfaces there are about 60 where they are large.
+const MOST_FILLED: usize = 400;
 /// Rows that are eliminated between two looks at whether to go on.
 const AT_A_TIME: usize = 64;
 const NONE: u32 = u32::MAX;
@@ -51,7 +53,7 @@ impl Means {
     }
 
     /// The matrix with its factors, ready to be solved again and again; `places` of the nodes say what is far from what. `None` where
-    /// `goes_on`, which is asked now and then, does not want it any more.
+    /// they say so little that too much would be filled in, or where `goes_on`, which is asked now and then, does not want it any more.
     pub fn factored(self, places: &[DVec3], goes_on: &dyn Fn() -> bool) -> Option<Solver> {
         let n = self.rows();
         let order = self.dissection(places);
@@ -68,6 +70,9 @@ impl Means {
             reach.of(k, self.before(&order, &position, k), &tree).iter().for_each(|&i| start[i as usize + 1] += 1);
         }
         (0..n).for_each(|i| start[i + 1] += start[i]);
+        if start[n] > MOST_FILLED * n {
+            return None;
+        }
         let mut end: Vec<usize> = start[..n].to_vec();
         let mut entries = vec![Entry::default(); start[n]];
         let mut diagonal = vec![0.0; n];
