@@ -82,6 +82,7 @@ impl MeshTarget {
     }
 
     /// A file, in the format of its extension.
+    #[cfg(feature = "window")]
     pub fn file(path: PathBuf) -> Result<MeshTarget, Fault> {
         MeshTarget::new(Target::File(path), None, false)
     }
@@ -122,6 +123,7 @@ impl MeshTarget {
     }
 
     /// Refuses a place that could not be written.
+    #[cfg(feature = "window")]
     pub fn check(&self) -> Result<(), Fault> {
         self.target.check()
     }

@@ -14,12 +14,8 @@ use crate::core::progress::Cancel;
 
 /// Rounds of turning and following.
 const ROUNDS: usize = 40;
-/// Steps of the solver that a round takes on a large surface, about.
-const STEPS: f64 = 400.0;
 /// Triangles that are looked at between two looks at whether to go on.
 const AT_A_TIME: usize = 1 << 14;
-/// So many rows of the matrix are gone through before that is told.
-const TELL: usize = 1 << 20;
 /// Nodes that move by less than this part of the size are at rest.
 const AT_REST: f64 = 1e-4;
 /// The least weight of an edge, as a part of that between equilateral triangles: blunt angles would pull backwards.
@@ -71,22 +67,12 @@ pub fn map(
     });
     let means = Means::new(rows);
     go_on()?;
-    let solver = means.factored();
-    go_on()?;
+    let solver = means.factored(&xyz[1..], &|| !cancel.is_asked())?;
     let origin = uv[0];
     uv.iter_mut().for_each(|p| *p -= origin);
-    let mut work = 0;
     for round in 0..ROUNDS {
-        let mut steps = 0.0;
-        let mut goes_on = || {
-            (steps, work) = (steps + 1.0, work + n);
-            if work > TELL {
-                work = 0;
-                // Nobody knows how many steps a round takes.
-                tell((round as f64 + steps / (steps + STEPS)) / ROUNDS as f64);
-            }
-            !cancel.is_asked()
-        };
+        go_on()?;
+        tell(round as f64 / ROUNDS as f64);
         let mut right = vec![DVec2::ZERO; n];
         for ((t, q), w) in triangles.iter().zip(&flat).zip(&weights) {
             // The turn that brings the triangle nearest to where it lies: from the sums of u.q and u x q over its sides.
@@ -104,9 +90,10 @@ pub fn map(
                 right[t[i] as usize] -= side;
             }
         }
-        let mut side = |axis: usize| -> Option<Vec<f64>> {
+        let side = |axis: usize| -> Option<Vec<f64>> {
+            go_on()?;
             let b: Vec<f64> = (1..n).map(|i| right[i][axis] / sums[i]).collect();
-            solver.solve(&b, uv[1..].iter().map(|p| p[axis]).collect(), 1e-9 * size, &mut goes_on)
+            solver.solve(&b)
         };
         let (x, y) = (side(0)?, side(1)?);
         let mut moved = 0.0_f64;

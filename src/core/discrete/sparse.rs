@@ -1,182 +1,248 @@
-//! Sparse linear systems whose rows are weighted means: x_i = sum_j w_ij x_j + b_i, with positive weights that add up to 1 at most.
-//! Solved by BiCGSTAB (van der Vorst 1992) with an incomplete factorisation that keeps the pattern (ILU(0)), which exists
-//! for such matrices. Plain loops in one order: the same numbers on every machine, which libraries that choose their
-//! arithmetic by the processor do not promise.
+//! Sparse linear systems whose rows are weighted means: x_i = sum_j w_ij x_j + b_i, with positive weights that add up to 1 at most,
+//! where x_j counts in row i where x_i counts in row j. Solved by the factors L and U, which such matrices have without pivots, row by
+//! row along the elimination tree (Davis, Direct Methods for Sparse Linear Systems, 2006, chapter 4, there for symmetric ones), in the
+//! order of a nested dissection (George 1973) by the places of the nodes. Plain loops in one order: the same numbers on every machine,
+//! which libraries that choose their arithmetic by the processor do not promise.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
 
 /// The matrix I - W, row by row: columns ascending, the diagonal among them.
 pub struct Means {
     start: Vec<u32>,
     column: Vec<u32>,
     value: Vec<f64>,
-    /// Where the diagonal of each row stands.
-    diagonal: Vec<u32>,
 }
 
-/// Steps that are tried.
-const MOST_STEPS: usize = 4000;
-
-/// A matrix with its factors.
-pub struct Solver {
-    means: Means,
-    factors: Vec<f64>,
-}
-
-impl Solver {
-    /// The solution for a right side, sought from `x` on until no equation misses by more than `near`, or as near as rounding lets it;
-    /// `None` where there is none, or where `goes_on`, which is asked before each step, does not want it any more.
-    pub fn solve(&self, b: &[f64], x: Vec<f64>, near: f64, goes_on: &mut dyn FnMut() -> bool) -> Option<Vec<f64>> {
-        self.means.solve(&self.factors, b, x, near, goes_on)
-    }
-}
+/// So few nodes are not dissected any more.
+const LEAF: usize = 24;
+/// Rows that are eliminated between two looks at whether to go on.
+const AT_A_TIME: usize = 64;
+const NONE: u32 = u32::MAX;
 
 impl Means {
     /// The matrix of rows of columns with weights; the columns are numbered as the rows.
     pub fn new(rows: impl Iterator<Item = Vec<(u32, f64)>>) -> Means {
-        let mut means = Means { start: vec![0], column: Vec::new(), value: Vec::new(), diagonal: Vec::new() };
+        let mut means = Means { start: vec![0], column: Vec::new(), value: Vec::new() };
         for (i, mut row) in rows.enumerate() {
             row.iter_mut().for_each(|(_, weight)| *weight = -*weight);
             row.push((i as u32, 1.0));
             row.sort_by_key(|&(column, _)| column);
-            for (column, value) in row {
-                if column as usize == i {
-                    means.diagonal.push(means.column.len() as u32);
-                }
-                means.column.push(column);
-                means.value.push(value);
-            }
+            means.column.extend(row.iter().map(|entry| entry.0));
+            means.value.extend(row.iter().map(|entry| entry.1));
             means.start.push(means.column.len() as u32);
         }
         means
     }
 
     fn rows(&self) -> usize {
-        self.diagonal.len()
+        self.start.len() - 1
     }
 
     fn row(&self, i: usize) -> std::ops::Range<usize> {
         self.start[i] as usize..self.start[i + 1] as usize
     }
 
-    fn times(&self, x: &[f64], out: &mut [f64]) {
-        for (i, out) in out.iter_mut().enumerate() {
-            *out = self.row(i).map(|k| self.value[k] * x[self.column[k] as usize]).sum();
-        }
+    /// What `b` misses of the product with `x`.
+    fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
+        let times = |i: usize| self.row(i).map(|k| self.value[k] * x[self.column[k] as usize]).sum::<f64>();
+        b.iter().enumerate().map(|(i, b)| b - times(i)).collect()
     }
 
-    /// The factors L and U in the pattern of the matrix, L with a unit diagonal.
-    fn factors(&self) -> Vec<f64> {
-        let mut f = self.value.clone();
-        let mut place = vec![u32::MAX; self.rows()];
-        for i in 0..self.rows() {
-            let row = self.row(i);
-            row.clone().for_each(|k| place[self.column[k] as usize] = k as u32);
-            for k in row.start..self.diagonal[i] as usize {
-                let j = self.column[k] as usize;
-                let pivot = self.diagonal[j] as usize;
-                f[k] /= f[pivot];
-                for l in pivot + 1..self.row(j).end {
-                    let at = place[self.column[l] as usize];
-                    if at != u32::MAX {
-                        f[at as usize] -= f[k] * f[l];
-                    }
-                }
-            }
-            row.for_each(|k| place[self.column[k] as usize] = u32::MAX);
-        }
-        f
-    }
-
-    fn precondition(&self, f: &[f64], x: &mut [f64]) {
-        for i in 0..self.rows() {
-            let before = self.start[i] as usize..self.diagonal[i] as usize;
-            x[i] -= before.map(|k| f[k] * x[self.column[k] as usize]).sum::<f64>();
-        }
-        for i in (0..self.rows()).rev() {
-            let pivot = self.diagonal[i] as usize;
-            let after = pivot + 1..self.row(i).end;
-            x[i] = (x[i] - after.map(|k| f[k] * x[self.column[k] as usize]).sum::<f64>()) / f[pivot];
-        }
-    }
-
-    /// The matrix with its factors, ready to be solved again and again.
-    pub fn factored(self) -> Solver {
-        let factors = self.factors();
-        Solver { means: self, factors }
-    }
-
-    fn solve(
-        &self,
-        factors: &[f64],
-        b: &[f64],
-        mut x: Vec<f64>,
-        near: f64,
-        goes_on: &mut dyn FnMut() -> bool,
-    ) -> Option<Vec<f64>> {
+    /// The matrix with its factors, ready to be solved again and again; `places` of the nodes say what is far from what. `None` where
+    /// `goes_on`, which is asked now and then, does not want it any more.
+    pub fn factored(self, places: &[DVec3], goes_on: &dyn Fn() -> bool) -> Option<Solver> {
         let n = self.rows();
-        let mut work = vec![0.0; n];
-        let (mut p, mut v) = (vec![0.0; n], vec![0.0; n]);
-        let mut residual = vec![0.0; n];
-        // Begun again from where it stands when it loses its way.
-        for _ in 0..8 {
-            self.times(&x, &mut work);
-            (0..n).for_each(|i| residual[i] = b[i] - work[i]);
-            if largest(&residual) <= near {
-                return Some(x);
-            }
-            let shadow = residual.clone();
-            let (mut rho, mut alpha, mut omega) = (1.0, 1.0, 1.0);
-            p.fill(0.0);
-            v.fill(0.0);
-            for _ in 0..MOST_STEPS {
-                if !goes_on() {
-                    return None;
-                }
-                let new = dot(&shadow, &residual);
-                let beta = new / rho * (alpha / omega);
-                if !beta.is_finite() || new == 0.0 {
-                    break;
-                }
-                rho = new;
-                (0..n).for_each(|i| p[i] = residual[i] + beta * (p[i] - omega * v[i]));
-                let mut y = p.clone();
-                self.precondition(factors, &mut y);
-                self.times(&y, &mut v);
-                alpha = rho / dot(&shadow, &v);
-                if !alpha.is_finite() {
-                    break;
-                }
-                (0..n).for_each(|i| {
-                    x[i] += alpha * y[i];
-                    residual[i] -= alpha * v[i];
-                });
-                let mut z = residual.clone();
-                self.precondition(factors, &mut z);
-                self.times(&z, &mut work);
-                let square = dot(&work, &work);
-                omega = if square > 0.0 { dot(&work, &residual) / square } else { 0.0 };
-                (0..n).for_each(|i| {
-                    x[i] += omega * z[i];
-                    residual[i] -= omega * work[i];
-                });
-                if largest(&residual) <= 0.5 * near || omega == 0.0 || !omega.is_finite() {
-                    break;
-                }
-            }
-            if x.iter().any(|x| !x.is_finite()) {
+        let order = self.dissection(places);
+        let mut position = vec![0_u32; n];
+        order.iter().zip(0..).for_each(|(&old, new)| position[old as usize] = new);
+        let tree = self.tree(&order, &position);
+        let mut reach = Reach { mark: vec![NONE; n], stack: vec![0; n], path: Vec::new() };
+        // How many entries each column of L has below the diagonal, and so many each row of U has behind it.
+        let mut start = vec![0_usize; n + 1];
+        for k in 0..n {
+            if k.is_multiple_of(AT_A_TIME) && !goes_on() {
                 return None;
             }
+            reach.of(k, self.before(&order, &position, k), &tree).iter().for_each(|&i| start[i as usize + 1] += 1);
         }
-        // As near as it gets: whoever asked looks whether that is enough.
-        Some(x)
+        (0..n).for_each(|i| start[i + 1] += start[i]);
+        let mut end: Vec<usize> = start[..n].to_vec();
+        let mut entries = vec![Entry::default(); start[n]];
+        let mut diagonal = vec![0.0; n];
+        let (mut left, mut above) = (vec![0.0; n], vec![0.0; n]);
+        reach.mark.fill(NONE);
+        for k in 0..n {
+            if k.is_multiple_of(AT_A_TIME) && !goes_on() {
+                return None;
+            }
+            let mut pivot = 0.0;
+            for at in self.row(order[k] as usize) {
+                let i = position[self.column[at] as usize] as usize;
+                match i.cmp(&k) {
+                    Ordering::Less => {
+                        left[i] = self.value[at];
+                        above[i] = self.value_at(self.column[at] as usize, order[k]);
+                    }
+                    Ordering::Equal => pivot = self.value[at],
+                    Ordering::Greater => {}
+                }
+            }
+            for &i in reach.of(k, self.before(&order, &position, k), &tree) {
+                let i = i as usize;
+                let (l, u) = (left[i] / diagonal[i], above[i]);
+                (left[i], above[i]) = (0.0, 0.0);
+                for entry in &entries[start[i]..end[i]] {
+                    left[entry.row as usize] -= l * entry.upper;
+                    above[entry.row as usize] -= entry.lower * u;
+                }
+                pivot -= l * u;
+                entries[end[i]] = Entry { row: k as u32, lower: l, upper: u };
+                end[i] += 1;
+            }
+            diagonal[k] = pivot;
+        }
+        Some(Solver { means: self, order, start, entries, diagonal })
+    }
+
+    /// The entry of a row in a column, which is there.
+    fn value_at(&self, row: usize, column: u32) -> f64 {
+        let row = self.row(row);
+        self.column[row.clone()].binary_search(&column).map_or(0.0, |k| self.value[row.start + k])
+    }
+
+    /// What a row, as they are ordered, has before its diagonal.
+    fn before<'a>(&'a self, order: &[u32], position: &'a [u32], k: usize) -> impl Iterator<Item = u32> + 'a {
+        let columns = &self.column[self.row(order[k] as usize)];
+        columns.iter().map(|&column| position[column as usize]).filter(move |&i| (i as usize) < k)
+    }
+
+    /// The elimination tree: for each row the first later one that its elimination changes.
+    fn tree(&self, order: &[u32], position: &[u32]) -> Vec<u32> {
+        let n = self.rows();
+        let (mut parent, mut ancestor) = (vec![NONE; n], vec![NONE; n]);
+        for k in 0..n as u32 {
+            for mut i in self.before(order, position, k as usize) {
+                while i != NONE && i < k {
+                    let next = std::mem::replace(&mut ancestor[i as usize], k);
+                    if next == NONE {
+                        parent[i as usize] = k;
+                    }
+                    i = next;
+                }
+            }
+        }
+        parent
+    }
+
+    /// The rows in an order in which little is filled in: halves by place first, what lies between them last.
+    fn dissection(&self, places: &[DVec3]) -> Vec<u32> {
+        let mut nodes: Vec<u32> = (0..self.rows() as u32).collect();
+        let mut order = Vec::with_capacity(nodes.len());
+        let mut side = vec![0; nodes.len()];
+        let mut sides = 0;
+        self.dissect(&mut nodes, places, &mut side, &mut sides, &mut order);
+        order
+    }
+
+    fn dissect(&self, nodes: &mut [u32], places: &[DVec3], side: &mut [u32], sides: &mut u32, order: &mut Vec<u32>) {
+        if nodes.len() <= LEAF {
+            order.extend_from_slice(nodes);
+            return;
+        }
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for &node in &*nodes {
+            (low, high) = (low.min(places[node as usize]), high.max(places[node as usize]));
+        }
+        let extent = (high - low).to_array();
+        let axis = (1..3).fold(0, |axis, k| if extent[k] > extent[axis] { k } else { axis });
+        let at = |node: u32| places[node as usize][axis];
+        let half = nodes.len() / 2;
+        nodes.select_nth_unstable_by(half, |&a, &b| at(a).total_cmp(&at(b)).then(a.cmp(&b)));
+        let (left, right) = nodes.split_at_mut(half);
+        *sides += 1;
+        right.iter().for_each(|&node| side[node as usize] = *sides);
+        // Those of the left half that touch the right one part the rest of it from there.
+        let touches = |node: &u32| self.row(*node as usize).any(|k| side[self.column[k] as usize] == *sides);
+        let (between, mut left): (Vec<u32>, Vec<u32>) = left.iter().partition(|node| touches(node));
+        self.dissect(&mut left, places, side, sides, order);
+        self.dissect(right, places, side, sides, order);
+        order.extend(between);
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// What of the rows before takes part in the elimination of a row: along the elimination tree.
+struct Reach {
+    mark: Vec<u32>,
+    stack: Vec<u32>,
+    path: Vec<u32>,
 }
 
-fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
+impl Reach {
+    /// The rows, each before those that it changes.
+    fn of(&mut self, k: usize, before: impl Iterator<Item = u32>, parent: &[u32]) -> &[u32] {
+        let mut top = self.stack.len();
+        self.mark[k] = k as u32;
+        for mut i in before {
+            self.path.clear();
+            while self.mark[i as usize] != k as u32 {
+                self.mark[i as usize] = k as u32;
+                self.path.push(i);
+                i = parent[i as usize];
+            }
+            while let Some(i) = self.path.pop() {
+                top -= 1;
+                self.stack[top] = i;
+            }
+        }
+        &self.stack[top..]
+    }
+}
+
+/// An entry of L and that of U across the diagonal.
+#[derive(Clone, Copy, Default)]
+struct Entry {
+    row: u32,
+    lower: f64,
+    upper: f64,
+}
+
+/// A matrix with its factors.
+pub struct Solver {
+    means: Means,
+    /// Which row is eliminated when.
+    order: Vec<u32>,
+    /// Where the entries of each column of L begin.
+    start: Vec<usize>,
+    entries: Vec<Entry>,
+    diagonal: Vec<f64>,
+}
+
+impl Solver {
+    /// The solution for a right side, refined once; `None` where there is none.
+    pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
+        let mut x = self.once(b);
+        let more = self.once(&self.means.residual(&x, b));
+        x.iter_mut().zip(more).for_each(|(x, more)| *x += more);
+        x.iter().all(|x| x.is_finite()).then_some(x)
+    }
+
+    fn once(&self, b: &[f64]) -> Vec<f64> {
+        let mut y: Vec<f64> = self.order.iter().map(|&old| b[old as usize]).collect();
+        let of = |i: usize| &self.entries[self.start[i]..self.start[i + 1]];
+        for i in 0..y.len() {
+            let own = y[i];
+            of(i).iter().for_each(|entry| y[entry.row as usize] -= entry.lower * own);
+        }
+        for i in (0..y.len()).rev() {
+            let known: f64 = of(i).iter().map(|entry| entry.upper * y[entry.row as usize]).sum();
+            y[i] = (y[i] - known) / self.diagonal[i];
+        }
+        let mut x = vec![0.0; y.len()];
+        self.order.iter().zip(y).for_each(|(&old, y)| x[old as usize] = y);
+        x
+    }
 }
 
 #[cfg(test)]
@@ -186,6 +252,7 @@ mod tests {
     #[test]
     fn means_along_a_line_between_two_fixed_ends_are_linear_or_as_the_weights_pull() {
         let n = 1000;
+        let places: Vec<DVec3> = (0..n).map(|i| DVec3::X * f64::from(i * 7 % n)).collect();
         for pull in [0.5, 0.45] {
             let row = |i: u32| {
                 let mut row = Vec::new();
@@ -199,8 +266,7 @@ mod tests {
             };
             let mut b = vec![0.0; n as usize];
             b[n as usize - 1] = 1.0 - pull;
-            let x =
-                Means::new((0..n).map(row)).factored().solve(&b, vec![0.0; n as usize], 1e-13, &mut || true).unwrap();
+            let x = Means::new((0..n).map(row)).factored(&places, &|| true).unwrap().solve(&b).unwrap();
             for i in 0..n as usize {
                 let before = if i == 0 { 0.0 } else { x[i - 1] };
                 let after = if i + 1 == n as usize { 1.0 } else { x[i + 1] };
@@ -208,5 +274,28 @@ mod tests {
             }
             assert!(pull != 0.5 || (x[499] - 500.0 / 1001.0).abs() < 1e-9, "{}", x[499]);
         }
+    }
+
+    #[test]
+    fn means_on_a_grid_with_any_weights_are_met_and_the_factors_stay_few() {
+        const N: u32 = 60;
+        let places: Vec<DVec3> = (0..N * N).map(|k| DVec3::new(f64::from(k % N), f64::from(k / N), 0.0)).collect();
+        let weight = |i: u32, j: u32| f64::from(1 + (i * 31 + j * 17) % 97);
+        let rows = (0..N * N).map(|i| {
+            let (x, y) = (i % N, i / N);
+            let beside =
+                [(x > 0, i.wrapping_sub(1)), (x + 1 < N, i + 1), (y > 0, i.wrapping_sub(N)), (y + 1 < N, i + N)];
+            let row: Vec<(u32, f64)> = beside.iter().filter(|b| b.0).map(|b| (b.1, weight(i, b.1))).collect();
+            // The border is held a little, so that there is one solution.
+            let sum: f64 = row.iter().map(|w| w.1).sum::<f64>() + if row.len() < 4 { 1.0 } else { 0.0 };
+            row.into_iter().map(|(j, w)| (j, w / sum)).collect()
+        });
+        let b: Vec<f64> = (0..N * N).map(|i| f64::from(i * 13 % 29) - 14.0).collect();
+        let solver = Means::new(rows).factored(&places, &|| true).unwrap();
+        let x = solver.solve(&b).unwrap();
+        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |largest, x| x.abs().max(largest));
+        assert!(largest(&solver.means.residual(&x, &b)) < 1e-12 * largest(&x), "{}", largest(&x));
+        assert!(solver.entries.len() < 24 * (N * N) as usize, "{}", solver.entries.len());
+        assert!(Means::new((0..2).map(|_| Vec::new())).factored(&places, &|| false).is_none());
     }
 }

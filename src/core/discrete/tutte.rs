@@ -11,9 +11,6 @@ use super::sparse::Means;
 use crate::core::geometry::predicates::orient;
 use crate::core::progress::Cancel;
 
-/// How nearly each node stands at its mean, on a circle of radius 1.
-const NEAR: f64 = 1e-13;
-
 /// Weights are held within this factor of a node's greatest: triangles with nearly no area pull at nobody without end.
 const LEAST_WEIGHT: f64 = 1e-4;
 
@@ -64,8 +61,8 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
         if cancel.is_asked() {
             return None;
         }
-        let solver = means.factored();
-        let [x, y] = right.map(|b| solver.solve(&b, b.clone(), NEAR, &mut || !cancel.is_asked()));
+        let solver = means.factored(&xyz[border..], &|| !cancel.is_asked())?;
+        let [x, y] = right.map(|b| solver.solve(&b));
         let (x, y) = (x?, y?);
         uv.extend(x.into_iter().zip(y).map(|(x, y)| DVec2::new(x, y) * radius));
     }
