@@ -16,6 +16,8 @@ use crate::render::scene::ColourBy;
 
 /// What a list in a menu leaves of the height of the window.
 const ROOM: f32 = 120.0;
+/// How wide the longest name of a built-in case is.
+const NAMES: f32 = 176.0;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
@@ -80,6 +82,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         ui.menu_button("Built-in cases", |ui| {
             // More than a small window has room for.
             let height = ui.ctx().content_rect().height() - ROOM;
+            ui.set_min_width(NAMES);
             ScrollArea::vertical().max_height(height).show(ui, |ui| {
                 for (name, _) in built_in::CASES {
                     item(ui, open(name), commands);
