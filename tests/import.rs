@@ -331,6 +331,59 @@ fn of_many_settings_the_newest_is_shown() {
     assert_eq!(import.shown.as_ref().unwrap().wanted.feature_angle, 58.0_f64.to_radians());
 }
 
+#[test]
+fn a_mesh_with_an_odd_border_is_converted_once_a_side_of_it_may_be_divided() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    const SWITCH: &str = "divide a side of odd borders";
+    for (name, bend) in [("plane", 0.0), ("bent", 0.1)] {
+        // One triangle is missing at a corner: the border has an odd count of sides.
+        let text = plate(4, bend).trim_end().rsplit_once('\n').unwrap().0.to_owned();
+        let path = folder.path().join(format!("{name}.obj"));
+        std::fs::write(&path, text).unwrap();
+        open(&mut harness, &path);
+        if bend > 0.0 {
+            assert!(harness.query_by_label(SWITCH).is_none(), "its shape is meshed anew, with any count");
+            harness.get_by_label("convert its triangles").click();
+            harness.run_steps(2);
+        }
+        harness.get_by_label("Convert").click();
+        until(&mut harness, "refused", |app| app.state.import.as_ref().is_some_and(|import| import.refused.is_some()));
+        shown(&mut harness);
+        // What to do is said in the words of the panel.
+        harness.get_by_label_contains(&format!("or allow that (below: {SWITCH})."));
+        picture(&mut harness, &format!("odd-{name}"));
+        harness.get_by_label(SWITCH).click();
+        shown(&mut harness);
+        assert!(harness.query_by_label("Refused").is_none());
+        // The leave is taken back, and given again.
+        let is_given =
+            |harness: &Harness<'static, App>| harness.state().state.import.as_ref().unwrap().options.split_odd;
+        let mut after = vec![is_given(&harness)];
+        for command in [Command::Undo, Command::Redo] {
+            harness.state_mut().apply(command);
+            harness.run_steps(2);
+            after.push(is_given(&harness));
+        }
+        assert_eq!(after, [true, false, true]);
+        harness.get_by_label("Convert").click();
+        converted(&mut harness);
+        let state = &harness.state().state;
+        let triangles = state.opened.as_ref().unwrap().background.mesh.element_count();
+        assert_eq!(triangles, 32, "31 and a half of one that was divided");
+        // The run keeps it.
+        let run = state.run().unwrap();
+        assert!(run.case.split_odd && run.case.text.contains("split_odd = true"), "{}", run.case.text);
+        let saved = folder.path().join(format!("{name}.toml"));
+        quadfront::core::io::run_file::write(&saved, &run).unwrap();
+        harness.state_mut().apply(Command::Open(Source::File(saved)));
+        until(&mut harness, "opened again", |app| {
+            app.state.source.as_ref().is_some_and(|source| source.name().ends_with(".toml")) && !app.state.is_busy()
+        });
+        assert!(harness.state().state.run().unwrap().case.split_odd);
+    }
+}
+
 /// A plate of `n` by `n` squares as OBJ, bent up along a parabola.
 fn plate(n: usize, bend: f64) -> String {
     let mut text = String::new();
@@ -406,6 +459,8 @@ fn what_a_conversion_is_refused_for_is_marked_until_the_mesh_is_taken_otherwise(
     // In the unit of the file, whatever it is scaled to.
     let corners: Vec<DVec3> = import.refused.as_ref().unwrap().shapes.concat();
     assert!(corners.iter().all(|p| p.x > 1.9 && p.x < 3.1 && p.y > 1.9 && p.y < 3.1), "{corners:?}");
+    let place = &import.refused.as_ref().unwrap().place;
+    assert!(place.ends_with("sides of triangles 16, 25 and 27"), "{place}");
     let options = import.options.clone();
     // Taken otherwise it is not refused.
     harness.get_by_label("remesh its shape").click();

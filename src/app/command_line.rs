@@ -60,9 +60,6 @@ pub(super) struct Source {
     /// The paper's own reading of every parameter of the front, in place of the case's; --set comes after it
     #[arg(long)]
     pub paper: bool,
-    /// Give a boundary of a fixed odd count of segments one segment more instead of refusing it
-    #[arg(long)]
-    pub split_odd: bool,
     /// No progress and no summary
     #[arg(short, long)]
     pub quiet: bool,
@@ -75,6 +72,9 @@ pub struct MeshOptions {
     /// its shape, meshed anew (a mesh in space)
     #[arg(long = "use", value_name = "triangles|shape", value_parser = ["triangles", "shape"], hide_possible_values = true)]
     pub used: Option<String>,
+    /// Divide a side where triangles that are converted as they are have a border with an odd count of sides, instead of refusing them
+    #[arg(long)]
+    pub split_odd: bool,
     /// Size of elements on MESH, everywhere; with --curvature where it is flat
     #[arg(long, value_name = "H")]
     pub mesh_size: Option<f64>,
@@ -176,6 +176,9 @@ pub(super) struct CheckArguments {
 pub(super) struct RenderArguments {
     #[command(flatten)]
     pub source: Source,
+    /// Divide a side where a border of MESH has an odd count of sides, instead of refusing it
+    #[arg(long)]
+    pub split_odd: bool,
     /// Draw the conversion where so many quadrilaterals stand (nq=100) or after so many steps (step=812); several, in their
     /// order, side by side (nq=50,100,150,end)
     #[arg(long, visible_alias = "strip", value_name = "STOPS", value_parser = stops)]

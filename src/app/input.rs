@@ -135,7 +135,6 @@ pub(super) fn read(source: &Source, mesh: &MeshOptions) -> Result<Input, Fault> 
         parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
     }
     run.case.parameters = parameters.clone();
-    run.case.split_odd |= source.split_odd;
     Ok(Input { run, figure, folder })
 }
 
@@ -217,6 +216,7 @@ fn mesh_words(options: &MeshOptions) -> Vec<MeshWord> {
     // In every case TOML needs a point in what may not be whole.
     let number = |value: Option<f64>| value.map(|value| format!("{value:?}"));
     word("--use", "use", options.used.as_ref().map(|word| format!("\"{word}\"")));
+    word("--split-odd", "split_odd", options.split_odd.then(|| "true".to_owned()));
     word("--feature-angle", "feature_angle", number(options.feature_angle));
     word("--chart-stretch", "chart_stretch", number(options.chart_stretch));
     word("--scale", "scale", number(options.scale));

@@ -23,7 +23,8 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
     }
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
-    let input = input::read(source, &MeshOptions::default())?;
+    let mesh = MeshOptions { split_odd: arguments.split_odd, ..MeshOptions::default() };
+    let input = input::read(source, &mesh)?;
     let shown = input.figure.as_ref();
     let options = arguments.figure.or(shown).map_err(|fault| fault.at(source.input.clone()))?;
     let wanted: Vec<Wanted> = match (&arguments.at, shown) {

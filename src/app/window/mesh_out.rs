@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
+use super::files::free_path;
 use super::session::{Moment, Opened};
 use super::state::{Over, State};
 use crate::app::output::MeshTarget;
@@ -19,9 +20,14 @@ impl State {
     pub fn ask_for_mesh(&mut self) {
         let (Some(moment), Some(opened)) = (&self.moment, &self.opened) else { return };
         let step = if is_done(moment) { String::new() } else { format!("-step-{}", moment.step) };
-        let name = format!("{}{step}.vtu", opened.case.name);
+        let path = free_path(&format!("{}{step}", opened.case.name), "vtu");
         self.show(Over::Mesh);
-        self.field = name;
+        self.field = path.display().to_string();
+    }
+
+    /// Whether the mesh at hand is the one of the end.
+    pub fn is_at_the_end(&self) -> bool {
+        self.moment.as_deref().is_some_and(is_done)
     }
 
     /// Writes the mesh of the state at hand where the field says, in the format of the extension.
@@ -32,10 +38,15 @@ impl State {
             let fault = Fault::new("There is a file of this name").at(path.display().to_string());
             return self.complain(&fault.remedy("Name another one: nothing is written over"));
         }
-        let target = match MeshTarget::file(path.clone()).and_then(|target| target.check().map(|()| target)) {
-            Ok(target) => target,
-            Err(fault) => return self.complain(&fault),
+        let named = |fault: Fault| match fault.place.is_empty() {
+            true => fault.at(path.display().to_string()),
+            false => fault,
         };
+        let target =
+            match MeshTarget::file(path.clone()).map_err(named).and_then(|target| target.check().map(|()| target)) {
+                Ok(target) => target,
+                Err(fault) => return self.complain(&fault),
+            };
         self.overlay = Over::Nothing;
         let (tell, told) = channel();
         let wake = self.wake.clone();

@@ -429,7 +429,8 @@ impl<'a> Import<'a> {
 
     fn odd_fault(&self, part: &[u32], odd: u32, count: u32, split_odd: bool) -> Fault {
         let member = |t: usize| part[t] == odd;
-        let triangles: Vec<[u32; 3]> = (0..part.len()).filter(|&t| member(t)).map(|t| self.triangles[t]).collect();
+        let members: Vec<usize> = (0..part.len()).filter(|&t| member(t)).collect();
+        let triangles: Vec<[u32; 3]> = members.iter().map(|&t| self.triangles[t]).collect();
         let mesh = cut(&self.uv, triangles, vec![0; count as usize], &[]);
         let loops = mesh.loops();
         let found = loops.iter().find(|l| l.len() % 2 == 1);
@@ -448,13 +449,19 @@ impl<'a> Import<'a> {
         }
         let triangles = if count == 1 { "triangle" } else { "triangles" };
         let side = |ends: [u32; 2]| ends.map(|n| mesh.set.uv[n as usize].extend(self.z)).to_vec();
-        let sides = found.into_iter().flat_map(|l| (0..l.len()).map(|k| side([l[k], l[(k + 1) % l.len()]])));
+        let sides: Vec<[u32; 2]> =
+            found.into_iter().flat_map(|l| (0..l.len()).map(|k| [l[k], l[(k + 1) % l.len()]])).collect();
+        let ends: BTreeSet<[u32; 2]> = sides.iter().copied().collect();
+        let is_beside = |t: &[u32; 3]| (0..3).any(|k| ends.contains(&[t[k], t[(k + 1) % 3]]));
+        let beside =
+            members.into_iter().zip(&mesh.set.triangles).filter(|(_, t)| is_beside(t)).map(|(t, _)| self.element[t]);
+        let beside = self.given.elements_told(&beside.collect::<Vec<_>>());
         Fault::new(format!(
             "The boundary loop of {segments} segments leaves a part{region} with {count} {triangles}; an all-quad mesh needs an even count"
         ))
-        .at(format!("at {}", told(place)))
+        .at(format!("at {}, sides of {beside}", told(place)))
         .remedy(remedy)
-        .showing(sides)
+        .showing(sides.into_iter().map(side))
     }
 
     fn region_name(&self, region: u32) -> Named {

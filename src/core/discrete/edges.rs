@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::core::fault::Fault;
+use crate::core::io::counting::Elements;
 use crate::core::progress::Cancel;
 
 /// Triangles in space by the places of their corners in a list of points; whoever makes one has checked the places.
@@ -19,6 +20,8 @@ pub struct Triangles {
     /// The element of the file that each triangle comes from ([`MeshFile::origins`](crate::core::io::mesh_file::MeshFile::origins)); empty
     /// where there is no file.
     pub origin: Vec<u32>,
+    /// What the elements of the file are called.
+    pub elements: Elements,
     /// Edges on lines that are kept whatever the shape is there: their ends, the smaller one first, and the number of the line; by ascending ends.
     pub lines: Vec<([u32; 2], u32)>,
 }
@@ -161,6 +164,12 @@ impl Triangles {
     pub fn area_vector(&self, triangle: usize) -> DVec3 {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)
+    }
+
+    /// What triangles are called, as the file counts its elements ([`Elements::told`]).
+    pub fn told(&self, triangles: &[u32]) -> String {
+        let origin = |&triangle: &u32| self.origin.get(triangle as usize).copied().unwrap_or(triangle);
+        self.elements.told(&triangles.iter().map(origin).collect::<Vec<_>>())
     }
 
     /// Where a side begins and ends.

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
 use super::edges::{Corner, Edge, Edges, Triangles};
-use super::refuse::place as told;
+use super::refuse::{capital, place as told};
 use super::surface::{Surface, sides};
 use crate::core::background::cut::Sets;
 use crate::core::background::parity::toggles;
@@ -23,6 +23,8 @@ struct Laid {
     uv: Vec<DVec2>,
     points: Vec<u32>,
     local: Vec<[u32; 3]>,
+    /// The triangle of the surface that each is, or is a part of.
+    triangles: Vec<u32>,
 }
 
 impl Surface {
@@ -37,6 +39,7 @@ impl Surface {
             uv: chart.uv.iter().map(|&uv| uv + offset(k)).collect(),
             points: chart.points.clone(),
             local: chart.local.clone(),
+            triangles: chart.triangles.clone(),
         };
         let mut charts: Vec<Laid> = self.charts.iter().enumerate().map(laid).collect();
         let mut points = mesh.points.clone();
@@ -53,6 +56,7 @@ impl Surface {
             charts.iter_mut().for_each(|chart| chart.divide([a, b], middle));
         }
         let mut set = TriangleSet::default();
+        let mut flat: Vec<(u32, [DVec3; 3])> = Vec::new();
         let corners_of = |chart: &Laid| -> Vec<[u32; 3]> {
             chart.local.iter().map(|t| t.map(|node| chart.points[node as usize])).collect()
         };
@@ -76,19 +80,17 @@ impl Surface {
                 set.uv.push(uv);
                 set.point.push(PointId(*known));
             }
-            for t in &chart.local {
+            for (t, &given) in chart.local.iter().zip(&chart.triangles) {
                 let [a, b, c] = t.map(|node| chart.uv[node as usize]);
                 if !firm(a, b, c) {
-                    let corners = t.map(|node| points[chart.points[node as usize] as usize]);
-                    let [p, q, r] = corners.map(told);
-                    return Err(Fault::new("A triangle of the mesh is too flat to be converted as it is")
-                        .at(format!("at {p}, {q}, {r}"))
-                        .remedy("Mend the mesh there, or mesh its shape anew (--use shape)")
-                        .showing([corners.to_vec()]));
+                    flat.push((given, t.map(|node| points[chart.points[node as usize] as usize])));
                 }
                 set.triangles.push(t.map(|node| first + node));
                 set.region.push(k as u32);
             }
+        }
+        if !flat.is_empty() {
+            return Err(flat_fault(mesh, &flat));
         }
         let mut numbered = |&(ends, line): &([u32; 2], u32)| {
             let at = fans.corners(ends)?;
@@ -154,6 +156,7 @@ impl Laid {
             self.points.push(middle);
             self.local[t] = [p, new, r];
             self.local.push([new, q, r]);
+            self.triangles.push(self.triangles[t]);
         }
     }
 }
@@ -174,28 +177,47 @@ fn divide_odd(mesh: &Triangles, charts: &[Chart], split_odd: bool) -> Result<Vec
     )
 }
 
+/// What triangles are refused for, each with its corners, that have no area where they are laid.
+fn flat_fault(mesh: &Triangles, flat: &[(u32, [DVec3; 3])]) -> Fault {
+    let mut triangles: Vec<u32> = flat.iter().map(|triangle| triangle.0).collect();
+    triangles.sort_unstable();
+    triangles.dedup();
+    let [verb, as_] = if triangles.len() == 1 { ["is", "it is"] } else { ["are", "they are"] };
+    let [p, q, r] = flat[0].1.map(told);
+    Fault::new(format!("{} {verb} too flat to be converted as {as_}", capital(&mesh.told(&triangles))))
+        .at(format!("at {p}, {q}, {r}"))
+        .remedy("Mend the mesh there, or mesh its shape anew (--use shape)")
+        .showing(flat.iter().map(|triangle| triangle.1.to_vec()))
+}
+
 /// What charts are refused for that have an odd number of triangles together.
 fn odd_fault(mesh: &Triangles, edges: &Edges, charts: &[&Chart], split_odd: bool) -> Fault {
     let triangles = match charts.iter().map(|chart| chart.local.len()).sum::<usize>() {
         1 => "1 triangle".to_owned(),
         n => format!("{n} triangles"),
     };
-    // The loops of the surface's own border that make it odd.
-    let mut odd = Vec::new();
-    for (chart, sides) in charts.iter().flat_map(|chart| sides(chart).map(move |sides| (chart, sides))) {
-        let ends = sides.iter().map(|side| side.map(|node| chart.points[node as usize]));
-        let outer = |ends: &[u32; 2]| edges.between(*ends).is_some_and(|edge| edges.get(edge).sides.len() == 1);
-        let outer: Vec<[u32; 2]> = ends.filter(outer).collect();
-        if outer.len() % 2 == 1 {
-            odd.extend(outer);
-        }
-    }
-    let place = odd.first().map_or(charts[0].points[0], |ends| ends[0]);
+    // The loops of the surface's own border that make it odd, whatever the charts that they run along.
+    let of_charts =
+        charts.iter().flat_map(|chart| sides(chart).flatten().map(|side| side.map(|node| chart.points[node as usize])));
+    let is_outer = |ends: &[u32; 2]| edges.between(*ends).is_some_and(|edge| edges.get(edge).sides.len() == 1);
+    let outer: Vec<[u32; 2]> = of_charts.filter(is_outer).collect();
+    let mut loops = Sets::new(mesh.points.len());
+    outer.iter().for_each(|&[a, b]| loops.join(a, b));
+    let mut count: BTreeMap<u32, usize> = BTreeMap::new();
+    outer.iter().for_each(|ends| *count.entry(loops.find(ends[0])).or_default() += 1);
+    let odd: Vec<[u32; 2]> = outer.into_iter().filter(|ends| count[&loops.find(ends[0])] % 2 == 1).collect();
+    let at = |point: u32| format!("at {}", told(mesh.points[point as usize]));
+    let beside = |ends: &[u32; 2]| edges.between(*ends).map(|edge| edges.get(edge).sides[0] / 3);
+    let beside: Vec<u32> = odd.iter().filter_map(beside).collect();
+    let place = match odd.first() {
+        Some(ends) => format!("{}, sides of {}", at(ends[0]), mesh.told(&beside)),
+        None => at(charts[0].points[0]),
+    };
     let shape = |ends: &[u32; 2]| ends.map(|end| mesh.points[end as usize]).to_vec();
     Fault::new(format!(
         "A part of the surface with {triangles} has an odd number of sides at its border; an all-quad mesh needs an even count"
     ))
-    .at(format!("at {}", told(mesh.points[place as usize])))
+    .at(place)
     .remedy(if split_odd { "Divide one side there" } else { "Divide one side at its border, or allow that (--split-odd)" })
     .showing(odd.iter().map(shape))
 }
@@ -367,12 +389,43 @@ mod tests {
 
     #[test]
     fn a_part_with_an_odd_count_is_refused_unless_a_side_may_be_divided() {
+        // Of several charts.
         let mut mesh = plate(3, 0.2);
         mesh.triangles.pop();
         mesh.region.pop();
+        // A file that has other triangles before these.
+        mesh.origin = (4..21).collect();
         let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
-        assert!(laid.triangles(&mesh, false).unwrap_err().what.contains("17 triangles"));
+        assert!(laid.charts.len() > 1);
+        let fault = laid.triangles(&mesh, false).unwrap_err();
+        assert!(fault.what.contains("17 triangles"), "{fault}");
+        let edges = Edges::of(&mesh.triangles);
+        let border = (0..edges.len()).map(|edge| edges.get(edge).sides).filter(|sides| sides.len() == 1);
+        let beside: Vec<u32> = border.map(|sides| sides[0] / 3).collect();
+        assert!(fault.place.ends_with(&format!(", sides of {}", mesh.told(&beside))), "{fault}");
+        assert!(fault.place.contains("sides of triangles 5, "), "{fault}");
+        assert_eq!(fault.shapes.len(), beside.len());
+        assert!(fault.shapes.iter().all(|shape| shape.len() == 2));
         assert_eq!(laid.triangles(&mesh, true).unwrap().0.triangles.len(), 18);
+    }
+
+    #[test]
+    fn triangles_too_flat_where_they_are_laid_are_called_as_the_file_counts_them_and_shown() {
+        let mut mesh = plate(3, 0.02);
+        mesh.origin = (4..22).collect();
+        let mut laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
+        let chart = &mut laid.charts[0];
+        let place = chart.triangles.iter().position(|&t| t == 7).unwrap();
+        // One end of a side between two triangles is laid on the other.
+        let [a, b, _] = chart.local[place];
+        chart.uv[a as usize] = chart.uv[b as usize];
+        let at_both = |t: &[u32; 3]| t.contains(&a) && t.contains(&b);
+        let flat: Vec<u32> =
+            chart.triangles.iter().zip(&chart.local).filter(|(_, t)| at_both(t)).map(|(&t, _)| t).collect();
+        let fault = laid.triangles(&mesh, false).unwrap_err();
+        assert!(fault.what.starts_with(&capital(&mesh.told(&flat))), "{fault}");
+        assert!(fault.what.contains("12") && fault.what.ends_with("too flat to be converted as they are"), "{fault}");
+        assert!(fault.shapes.contains(&mesh.corners(7).to_vec()), "{:?}", fault.shapes);
     }
 
     #[test]

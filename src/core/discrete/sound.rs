@@ -76,8 +76,15 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
     let (lines, line_of) = file.line_groups();
     let segments: Vec<([u32; 2], u32)> =
         file.lines.iter().zip(line_of).filter_map(|(&ends, line)| Some((ends, line?))).collect();
-    let mut mesh =
-        Triangles { points: file.points, triangles: file.triangles, region, lines: Vec::new(), texture, origin };
+    let mut mesh = Triangles {
+        points: file.points,
+        triangles: file.triangles,
+        region,
+        lines: Vec::new(),
+        texture,
+        origin,
+        elements: given.elements(),
+    };
     far_away(&mesh)?;
     begin(2)?;
     let welded = mesh.weld(&cancel);
@@ -132,7 +139,7 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
 
 /// The triangles of a file as they are, to be shown where it is refused; without those that have no place.
 pub fn as_given(file: &MeshFile) -> Triangles {
-    let mut mesh = Triangles { origin: file.origins(), ..Triangles::default() };
+    let mut mesh = Triangles { origin: file.origins(), elements: file.elements(), ..Triangles::default() };
     let (file, _) = file.clone().triangulated();
     (mesh.points, mesh.triangles) = (file.points, file.triangles);
     let is_there = |k: &u32| mesh.points.get(*k as usize).is_some_and(|p| p.abs().max_element() <= LARGEST);

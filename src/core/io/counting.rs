@@ -1,6 +1,8 @@
 //! How a file counts its points and elements, so that messages call them as the file does: from 0 or 1, by numbers of its own, kind by
 //! kind or all kinds in one row.
 
+use std::sync::Arc;
+
 use super::mesh_file::MeshFile;
 
 /// So many things are told by their numbers; of more it is said how many.
@@ -11,8 +13,8 @@ const TOLD: usize = 5;
 pub enum Count {
     /// One after another from this one.
     From(u64),
-    /// That of each.
-    Listed(Vec<u64>),
+    /// That of each; whoever tells of elements without their file has the same list.
+    Listed(Arc<Vec<u64>>),
     /// The file has no numbers for them.
     Nothing,
 }
@@ -30,6 +32,22 @@ pub struct Counting {
     pub polygons: Count,
     /// Whether all kinds of elements are counted in one row.
     pub in_one_row: bool,
+}
+
+/// The elements of a file as far as it takes to call them by their numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elements {
+    triangles: usize,
+    quads: usize,
+    polygons: usize,
+    counting: Counting,
+}
+
+/// Triangles of no file, counted from 1.
+impl Default for Elements {
+    fn default() -> Self {
+        Elements { triangles: usize::MAX, quads: 0, polygons: 0, counting: Counting::default() }
+    }
 }
 
 impl Default for Count {
@@ -52,7 +70,7 @@ impl Count {
         if numbers.iter().all(|&number| row.next() == Some(Some(number))) {
             Count::From(first)
         } else {
-            Count::Listed(numbers.to_vec())
+            Count::Listed(Arc::new(numbers.to_vec()))
         }
     }
 
@@ -61,8 +79,10 @@ impl Count {
         match self {
             Count::From(first) if before == 0 => *first = number,
             Count::From(first) if first.checked_add(before as u64) == Some(number) => {}
-            Count::From(first) => *self = Count::Listed((*first..).take(before).chain([number]).collect()),
-            Count::Listed(numbers) => numbers.push(number),
+            Count::From(first) => {
+                *self = Count::Listed(Arc::new((*first..).take(before).chain([number]).collect()));
+            }
+            Count::Listed(numbers) => Arc::make_mut(numbers).push(number),
             Count::Nothing => {}
         }
     }
@@ -97,13 +117,35 @@ impl MeshFile {
         origins
     }
 
+    /// Its elements, to be called by their numbers where the file is no more.
+    pub fn elements(&self) -> Elements {
+        let [triangles, quads, polygons] = [self.triangles.len(), self.quads.len(), self.polygons.len()];
+        Elements { triangles, quads, polygons, counting: self.counting.clone() }
+    }
+
+    /// What elements are called: see [`Elements::told`].
+    pub fn elements_told(&self, places: &[u32]) -> String {
+        self.elements().told(places)
+    }
+
+    /// What points are called: "point 7", "points 3, 7 and 9".
+    pub fn points_told(&self, points: &[u32]) -> String {
+        let mut points = points.to_vec();
+        points.sort_unstable();
+        points.dedup();
+        let numbers = points.iter().filter_map(|&point| self.counting.points.number(point as usize));
+        things_told(["point", "points"], points.len(), numbers)
+    }
+}
+
+impl Elements {
     /// What elements are called, by their places among triangles, quadrilaterals and polygons: "triangle 7", "triangles 3, 7 and 9",
     /// "triangles 3, 7, 9, 10, 12 and 40 more"; "element 7" where several kinds are counted in one row.
-    pub fn elements_told(&self, places: &[u32]) -> String {
+    pub fn told(&self, places: &[u32]) -> String {
         let mut places = places.to_vec();
         places.sort_unstable();
         places.dedup();
-        let (triangles, quads) = (self.triangles.len(), self.quads.len());
+        let (triangles, quads) = (self.triangles, self.quads);
         let kind = |place: u32| match place as usize {
             place if place < triangles => (["triangle", "triangles"], &self.counting.triangles, place),
             place if place < triangles + quads => {
@@ -116,22 +158,13 @@ impl MeshFile {
             let (_, count, index) = kind(place);
             count.number(index)
         };
-        let kinds = [triangles, quads, self.polygons.len()].iter().filter(|n| **n > 0).count();
+        let kinds = [triangles, quads, self.polygons].iter().filter(|n| **n > 0).count();
         if self.counting.in_one_row && kinds > 1 {
             places.sort_by_key(number);
             return things_told(["element", "elements"], places.len(), places.iter().filter_map(number));
         }
         let told = places.chunk_by(alike).map(|of| things_told(kind(of[0]).0, of.len(), of.iter().filter_map(number)));
         told.collect::<Vec<_>>().join(" and ")
-    }
-
-    /// What points are called: "point 7", "points 3, 7 and 9".
-    pub fn points_told(&self, points: &[u32]) -> String {
-        let mut points = points.to_vec();
-        points.sort_unstable();
-        points.dedup();
-        let numbers = points.iter().filter_map(|&point| self.counting.points.number(point as usize));
-        things_told(["point", "points"], points.len(), numbers)
     }
 }
 

@@ -22,6 +22,10 @@ use crate::render::scene::{feature_line, seam_line};
 /// Width of the panel, and of what its rows are called.
 const WIDTH: f32 = 344.0;
 const NAMES: f32 = 92.0;
+/// What the ways to use a mesh are called, and the leave to divide a side.
+const REMESH: &str = "remesh its shape";
+const TRIANGLES: &str = "convert its triangles";
+const SPLIT_ODD: &str = "divide a side of odd borders";
 /// How far a chord is from its arc, over the radius, where a person asks for sizes by curvature first.
 const CHORD: f64 = 0.01;
 
@@ -65,7 +69,8 @@ fn refusal(ui: &mut Ui, import: &Import, palette: &Palette) {
         ui.vertical(|ui| {
             ui.add(egui::Label::new(RichText::new(format!("{}.", fault.what)).color(ink(palette.strong))).wrap());
             if !fault.remedy.is_empty() {
-                ui.add(egui::Label::new(RichText::new(format!("{}.", fault.remedy)).color(ink(palette.text))).wrap());
+                let remedy = RichText::new(format!("{}.", in_the_panel(&fault.remedy))).color(ink(palette.text));
+                ui.add(egui::Label::new(remedy).wrap());
             }
             let name = import.path.display().to_string();
             let place = fault.place.strip_prefix(&name).unwrap_or(&fault.place).trim_start_matches([',', ' ']);
@@ -77,6 +82,12 @@ fn refusal(ui: &mut Ui, import: &Import, palette: &Palette) {
     if !fault.shapes.is_empty() {
         swatch(ui, (palette.broken, 3.2), "what it is refused for".to_owned(), palette);
     }
+}
+
+/// What to do, with options of the command line called as the panel calls them.
+fn in_the_panel(remedy: &str) -> String {
+    let words = [("(--use shape)", REMESH), ("(--split-odd)", SPLIT_ODD)];
+    words.into_iter().fold(remedy.to_owned(), |text, (option, word)| text.replace(option, &format!("(below: {word})")))
 }
 
 /// A row of the form: what it is called, and its widgets.
@@ -198,13 +209,19 @@ fn rounded(value: f64) -> f64 {
 
 fn used(ui: &mut Ui, options: &mut MeshOptions, import: &Import, palette: &Palette) {
     let now = import.used();
-    let words =
-        [(MeshUse::Shape, "shape", "remesh its shape"), (MeshUse::Triangles, "triangles", "convert its triangles")];
+    let words = [(MeshUse::Shape, "shape", REMESH), (MeshUse::Triangles, "triangles", TRIANGLES)];
     for (k, (use_, word, text)) in words.into_iter().enumerate() {
         row(ui, if k == 0 { "use" } else { "" }, "What the mesh is used for (--use)", palette, |ui| {
             if ui.radio(now == use_, text).clicked() && now != use_ {
                 options.used = (use_ != import.use_by_default()).then(|| word.to_owned());
             }
+        });
+    }
+    if now == MeshUse::Triangles {
+        let tip = "Quadrilaterals need an even number of sides around the mesh and around each hole. Where the number is odd, the \
+                   longest side is divided in two; otherwise such a mesh is refused (--split-odd)";
+        row(ui, "", tip, palette, |ui| {
+            ui.checkbox(&mut options.split_odd, SPLIT_ODD).on_hover_text(tip);
         });
     }
 }

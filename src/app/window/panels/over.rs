@@ -1,7 +1,7 @@
 //! What opens over the window: every command by name, keys, and fields for a step or a path.
 
 use eframe::egui::{
-    self, Align2, Area, Button, Context, Frame, Key, Margin, Order, RichText, ScrollArea, TextEdit, Ui, Vec2,
+    self, Align2, Area, Button, Context, Frame, Key, Label, Margin, Order, RichText, ScrollArea, TextEdit, Ui, Vec2,
 };
 
 use crate::app::window::command::{Command, keys};
@@ -47,10 +47,7 @@ pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, p
                     if field(ui, state, "A name such as part.vtu: the extension says the format", "Path of the mesh") {
                         state.save_mesh_field();
                     }
-                    ui.add_space(4.0);
-                    let known: Vec<&str> = Format::written().map(Format::extension).collect();
-                    let known = format!("The state at hand is written as it is: .{}", known.join(", ."));
-                    ui.label(super::note(&known, palette));
+                    about_the_mesh(ui, state.is_at_the_end(), palette);
                 }
                 Over::Nothing => {}
             }
@@ -74,6 +71,23 @@ fn field(ui: &mut Ui, state: &mut State, hint: &str, name: &str) -> bool {
         response.request_focus();
     }
     entered
+}
+
+/// What is saved, how and where.
+fn about_the_mesh(ui: &mut Ui, is_at_the_end: bool, palette: &Palette) {
+    let known: Vec<&str> = Format::written().map(Format::extension).collect();
+    let mut lines =
+        vec![format!("Enter saves the mesh at hand, in the format of the extension: .{}", known.join(", ."))];
+    if !is_at_the_end {
+        lines.push("It is on the way and has triangles yet; Esc, then End, goes to the finished one".to_owned());
+    }
+    if let Ok(folder) = std::env::current_dir() {
+        lines.push(format!("A name without a folder is one in {}", folder.display()));
+    }
+    for line in lines {
+        ui.add_space(4.0);
+        ui.add(Label::new(super::note(line, palette)).wrap());
+    }
 }
 
 fn palette_list(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {

@@ -1,6 +1,8 @@
 //! The bar of menus, what is open, and the field for commands.
 
-use eframe::egui::{self, Align, Align2, Button, Layout, MenuBar, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
+use eframe::egui::{
+    self, Align, Align2, Button, Layout, MenuBar, RichText, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo,
+};
 
 use crate::app::window::command::{Command, LAYERS};
 use crate::app::window::icons;
@@ -11,6 +13,11 @@ use crate::core::io::built_in;
 use crate::render::camera::Bearing;
 use crate::render::palette::Palette;
 use crate::render::scene::ColourBy;
+
+/// What a list in a menu leaves of the height of the window.
+const ROOM: f32 = 120.0;
+/// How wide the longest name of a built-in case is.
+const NAMES: f32 = 176.0;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
@@ -72,9 +79,16 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         item(ui, Command::Notes, commands);
         ui.separator();
         let open = |name: &str| Command::Open(Source::BuiltIn(name.to_owned()));
-        for (name, _) in built_in::CASES.iter().take(40) {
-            item(ui, open(name), commands);
-        }
+        ui.menu_button("Built-in cases", |ui| {
+            // More than a small window has room for.
+            let height = ui.ctx().content_rect().height() - ROOM;
+            ui.set_min_width(NAMES);
+            ScrollArea::vertical().max_height(height).show(ui, |ui| {
+                for (name, _) in built_in::CASES {
+                    item(ui, open(name), commands);
+                }
+            });
+        });
         ui.menu_button("Figures of the paper", |ui| {
             for (name, _) in built_in::FIGURES {
                 item(ui, open(name), commands);
