@@ -11,7 +11,7 @@ use crate::core::convert::phase::Phase;
 use crate::core::convert::walk::{Stop, Tell, Told, walk_editing};
 use crate::core::fault::Fault;
 use crate::core::geometry::place::number;
-use crate::core::io::case::Case;
+use crate::core::io::case::{Case, DomainSource, MeshUse};
 use crate::core::io::export::Export;
 use crate::core::io::mesh_file::MeshFile;
 use crate::core::io::report::{CaseTold, LastResort, Program, Report};
@@ -146,7 +146,10 @@ pub(super) fn convert(
     })?;
     watch.tell(Stage::Check, 0, 0);
     let data = shows_data.then_some((&converted.sizing, births.as_ref()));
-    let (export, flaw) = exported(&converted.mesh, &converted.names, data, at.is_some())?;
+    let (export, mut flaw) = exported(&converted.mesh, &converted.names, data, at.is_some())?;
+    if converted.mesh.ground().is_some() && takes_triangles(case) {
+        flaw = flaw.map(|fault| fault.remedy("Its triangles leave no better here: mesh its shape anew (--use shape)"));
+    }
     let resort = converted.last_resort.quads();
     let report = Report {
         program: Program::this(),
@@ -264,6 +267,11 @@ pub(super) fn exported(
     let allow = Allow { triangles: on_the_way, seams: true, branching: mesh.ground().is_some() };
     let flaw = flaw(mesh, &export.file, allow);
     Ok((export, flaw))
+}
+
+/// Whether the triangles of a mesh are converted as they are.
+fn takes_triangles(case: &Case) -> bool {
+    matches!(&case.domain, DomainSource::Mesh { taking, .. } if taking.used == Some(MeshUse::Triangles))
 }
 
 fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
