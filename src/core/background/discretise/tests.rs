@@ -1,7 +1,13 @@
 use super::*;
+use crate::core::discrete::chart::Bound;
+use crate::core::discrete::features::ANGLE;
+use crate::core::discrete::sound::sound;
+use crate::core::discrete::surface::surface;
 use crate::core::geometry::fixtures::*;
+use crate::core::io::mesh_file::MeshFile;
 use crate::core::metric::field::{BadMetric, Place};
 use crate::core::metric::tensor::Metric2;
+use crate::core::progress::Nobody;
 
 /// The same size everywhere.
 pub struct Uniform(pub f64);
@@ -204,4 +210,47 @@ fn shared_curves_are_divided_once() {
     let divided = divide(&domain, &Uniform(0.1)).unwrap();
     assert_eq!(divided.nodes.len(), 40 + 29);
     assert_eq!(&divided.nodes[..domain.vertices.len()], &domain.vertices[..]);
+}
+
+/// A floor and a wall with a narrow gap between them, straight along the wall and bent along the floor.
+#[test]
+fn a_bent_chord_beside_a_divided_one_is_divided_too() {
+    let points = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.5, 0.03, 0.0],
+        [-1.0, 0.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 0.0, 1.0],
+    ];
+    let floor = [[0, 2, 5], [2, 6, 5], [2, 1, 6], [3, 0, 5], [1, 4, 6]];
+    let wall = [[0, 7, 8], [0, 8, 1], [3, 7, 0], [1, 8, 4]];
+    let file = MeshFile {
+        points: points.into_iter().map(DVec3::from).collect(),
+        triangles: floor.into_iter().chain(wall).collect(),
+        ..MeshFile::default()
+    };
+    let given = sound(&file, &mut Nobody).unwrap();
+    let domain = surface(&given.mesh, &given.regions, ANGLE, Bound::default(), &mut Nobody).unwrap().domain;
+    let spatial = domain.spatial.clone().unwrap();
+    let between = |id: &CurveId| {
+        let ends = domain.curves[id.index()].ends.map(|v| spatial.vertices[spatial.vertex_of[v as usize] as usize]);
+        ends.iter().all(|p| *p == DVec3::ZERO || *p == DVec3::X)
+    };
+    let rules = (0..domain.curves.len() as u32).map(CurveId).filter(|id| domain.curves[id.index()].first == *id);
+    let (straight, bent): (Vec<CurveId>, Vec<CurveId>) =
+        rules.filter(between).partition(|id| spatial.curves[id.index()].is_chord());
+    let ([straight], [bent]) = (&straight[..], &bent[..]) else { panic!("{straight:?} {bent:?}") };
+    for n in [1, 2, 5] {
+        let mut division = Division::measure(&domain, &Uniform(5.0)).unwrap();
+        division.pieces[straight.index()][0].segments = n;
+        assert_eq!(division.segments(*bent), 1);
+        division.open_lenses();
+        // By an even number, so that loops stay even.
+        assert_eq!(division.segments(*bent), if n == 1 { 1 } else { 3 });
+        assert_eq!(division.segments(*straight), n);
+    }
 }
