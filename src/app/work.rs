@@ -291,8 +291,7 @@ fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     };
     Some(
         Fault::new(format!("The mesh is too coarse for its surface: {what} (the first at {x}, {y}, {z})"))
-            .remedy("Ask for smaller sizes there, for example by a metric of kind \"curvature\"")
-            .showing(folded.iter().map(|&e| mesh.corners(e).map(|n| mesh.xyz(n)).collect())),
+            .remedy("Ask for smaller sizes there, for example by a metric of kind \"curvature\""),
     )
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
-use super::files::free_path;
+use super::files::{answers, free_path};
 use super::session::{Moment, Opened};
 use super::state::State;
 use glam::DVec2;
@@ -257,15 +257,7 @@ impl State {
 
     /// Hears of the figures that were being made.
     pub fn hear_figures(&mut self) {
-        let mut told = Vec::new();
-        self.figures.making.retain(|making| match making.try_recv() {
-            Ok(answer) => {
-                told.push(answer);
-                false
-            }
-            Err(error) => error == std::sync::mpsc::TryRecvError::Empty,
-        });
-        for answer in told {
+        for answer in answers(&mut self.figures.making) {
             match answer {
                 Ok(names) => self.notice(format!("The figure was saved as {names}.")),
                 Err(fault) => self.complain(&fault),

@@ -41,6 +41,19 @@ impl Source {
     }
 }
 
+/// What was answered of what is waited for; that and what will never be answered is waited for no more.
+pub fn answers<T>(waiting: &mut Vec<Receiver<T>>) -> Vec<T> {
+    let mut answers = Vec::new();
+    waiting.retain(|receiver| match receiver.try_recv() {
+        Ok(answer) => {
+            answers.push(answer);
+            false
+        }
+        Err(error) => error == TryRecvError::Empty,
+    });
+    answers
+}
+
 /// What can be opened, by extension.
 fn extensions() -> Vec<&'static str> {
     let meshes = Format::ALL.into_iter().map(Format::extension);

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, channel};
 
-use super::files::free_path;
+use super::files::{answers, free_path};
 use super::session::{Moment, Opened};
 use super::state::{Over, State};
 use crate::app::output::MeshTarget;
@@ -60,15 +60,7 @@ impl State {
 
     /// Hears of the meshes that were being written.
     pub fn hear_saving(&mut self) {
-        let mut told = Vec::new();
-        self.saving.retain(|saving| match saving.try_recv() {
-            Ok(answer) => {
-                told.push(answer);
-                false
-            }
-            Err(error) => error == TryRecvError::Empty,
-        });
-        for answer in told {
+        for answer in answers(&mut self.saving) {
             match answer {
                 Ok(said) => self.notice(said),
                 Err(fault) => self.complain(&fault),

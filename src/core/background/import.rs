@@ -141,7 +141,7 @@ impl<'a> Import<'a> {
         crossed(given, &file.triangles, &origins)?;
         let mut z = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for (_, p) in file.points.iter().enumerate().filter(|(i, _)| used[*i]) {
+        for (p, _) in file.points.iter().zip(&used).filter(|(_, used)| **used) {
             z = (z.0.min(p.z), z.1.max(p.z));
             (low, high) = (low.min(p.truncate()), high.max(p.truncate()));
         }
