@@ -3,12 +3,12 @@
 //! exponent at most 1.1 up to a million.
 #![allow(clippy::unwrap_used)]
 
-use quadfront::core::convert::conversion::{Background, background};
-use quadfront::core::io::built_in;
-use quadfront::core::io::case::Case;
-use quadfront::core::io::export::Export;
-use quadfront::core::io::statistics::Statistics;
+use quadfront::core::case::Case;
+use quadfront::core::case::built_in;
+use quadfront::core::prepare::{Background, background};
 use quadfront::core::progress::Nobody;
+use quadfront::core::record::export::Export;
+use quadfront::core::record::statistics::Statistics;
 
 mod meter;
 

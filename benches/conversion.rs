@@ -4,9 +4,9 @@
 //! 1 KiB a quadrilateral at the peak.
 #![allow(clippy::unwrap_used)]
 
-use quadfront::core::convert::conversion::{Background, background};
+use quadfront::core::case::built_in;
 use quadfront::core::convert::converter::Converter;
-use quadfront::core::io::built_in;
+use quadfront::core::prepare::{Background, background};
 use quadfront::core::progress::{Nobody, Stage, Watch};
 
 mod meter;

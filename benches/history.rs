@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec2;
+use quadfront::core::case::built_in;
+use quadfront::core::case::parameters::Parameters;
 use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::parameters::Parameters;
-use quadfront::core::io::built_in;
+use quadfront::core::kernel::tensor::Metric2;
 use quadfront::core::mesh::half_edge::Mesh;
 use quadfront::core::mesh::ids::PointId;
 use quadfront::core::mesh::triangle_set::TriangleSet;
 use quadfront::core::metric::field::{Field, FieldSpec, Sizing};
-use quadfront::core::metric::tensor::Metric2;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::explain::SegmentTold;
 use quadfront::core::run::front_table::FrontTable;

@@ -9,14 +9,15 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use peak_alloc::PeakAlloc;
-use quadfront::core::discrete::chart::{Bound, charts};
+use quadfront::core::discrete::chart::charts;
 use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
+use quadfront::core::discrete::flat::Bound;
 use quadfront::core::discrete::sound::sound;
 use quadfront::core::fault::Fault;
-use quadfront::core::io::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
-use quadfront::core::io::mesh_file::MeshFile;
+use quadfront::core::formats::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
+use quadfront::core::soup::mesh_file::MeshFile;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;

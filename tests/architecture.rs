@@ -1,9 +1,31 @@
-//! The arrows of ARCHITECTURE.md, read from the sources: app -> render -> core and never back, and what core may not know.
+//! The arrows of ARCHITECTURE.md, read from the sources: app -> render -> core and never back, what core may not know, the floors
+//! of core's rooms, and no circle between files that stand side by side.
 
 #![allow(clippy::unwrap_used)]
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// The rooms of core, from the lowest floor to the highest: a room imports only from rooms before it in this list.
+const FLOORS: [&str; 16] = [
+    "fault",
+    "progress",
+    "kernel",
+    "geometry",
+    "metric",
+    "mesh",
+    "soup",
+    "formats",
+    "discrete",
+    "background",
+    "case",
+    "front",
+    "prepare",
+    "convert",
+    "run",
+    "record",
+];
 
 /// What no source of a room may mention, with the reason.
 const FORBIDDEN: [(&str, &[(&str, &str)]); 2] = [
@@ -149,4 +171,175 @@ fn an_arrow_that_runs_back_is_seen() {
     ] {
         assert!(offences("core", "a.rs", line).is_empty(), "{line}");
     }
+}
+
+/// A module by its path below `src` (`core::mesh::half_edge`), with the modules that its code names.
+type Arrows = BTreeMap<String, BTreeSet<String>>;
+
+/// The module of a file, by its path below `src`.
+fn module(path: &Path) -> String {
+    let path = path.with_extension("");
+    let names: Vec<_> = path.iter().map(|name| name.to_str().unwrap()).filter(|name| *name != "mod").collect();
+    names.join("::")
+}
+
+/// The paths that a text names after a start such as `crate::`, groups in braces taken apart.
+fn paths(text: &str) -> Vec<String> {
+    let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).unwrap_or(text.len());
+    let (head, rest) = text.split_at(end);
+    let Some(group) = rest.strip_prefix('{').filter(|_| head.is_empty() || head.ends_with("::")) else {
+        return vec![head.to_owned()];
+    };
+    let (mut depth, mut starts, mut length) = (0, vec![0], group.len());
+    for (i, c) in group.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => {
+                length = i;
+                break;
+            }
+            '}' => depth -= 1,
+            ',' if depth == 0 => starts.push(i + 1),
+            _ => {}
+        }
+    }
+    let within = |start: &usize| paths(group[*start..length].trim_start());
+    starts.iter().flat_map(within).map(|path| format!("{head}{path}")).collect()
+}
+
+/// The absolute paths (without `crate`) that the code of a module names by `crate::` and `super::`.
+fn named(module: &str, text: &str) -> Vec<String> {
+    let text = code(text).into_iter().map(|(_, line)| line + "\n").collect::<String>();
+    let starts = |word: &str| {
+        let is_path = |at: &usize| !text[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
+        text.match_indices(word).map(|(at, _)| at).filter(is_path).collect::<Vec<_>>()
+    };
+    let mut found = Vec::new();
+    for at in starts("crate::") {
+        found.extend(paths(&text[at + "crate::".len()..]));
+    }
+    for at in starts("super::") {
+        let mut rest = &text[at..];
+        let mut folder: Vec<&str> = module.split("::").collect();
+        while let Some(after) = rest.strip_prefix("super::") {
+            folder.pop();
+            rest = after;
+        }
+        found.extend(paths(rest).into_iter().map(|path| format!("{}::{path}", folder.join("::"))));
+    }
+    found
+}
+
+/// The arrows between modules, given by module and text.
+fn arrows(texts: &BTreeMap<String, String>) -> Arrows {
+    let known = |path: &str| {
+        let mut path = path;
+        loop {
+            if texts.contains_key(path) {
+                return Some(path.to_owned());
+            }
+            path = path.rsplit_once("::")?.0;
+        }
+    };
+    let of = |(module, text): (&String, &String)| {
+        let targets = named(module, text).iter().filter_map(|path| known(path)).filter(|to| to != module).collect();
+        (module.clone(), targets)
+    };
+    texts.iter().map(of).collect()
+}
+
+/// The imports of core that lead from a room to one above it.
+fn upward(arrows: &Arrows) -> Vec<String> {
+    let room = |module: &str| module.split("::").nth(1).map(str::to_owned);
+    let floor = |module: &str| FLOORS.iter().position(|name| Some(*name) == room(module).as_deref());
+    let mut found = Vec::new();
+    for (from, targets) in arrows.iter().filter(|(from, _)| from.starts_with("core::")) {
+        let Some(own) = floor(from) else {
+            found.push(format!("{from} stands on no floor: name its room in FLOORS"));
+            continue;
+        };
+        let higher = targets.iter().filter(|to| floor(to).is_some_and(|other| other > own));
+        found.extend(higher.map(|to| format!("{from} imports {to}, which stands on a higher floor")));
+    }
+    found
+}
+
+/// Circles between modules side by side in one folder, each with what stands below it. A parent and its own modules may know each
+/// other.
+fn circles(arrows: &Arrows) -> Vec<String> {
+    let mut beside: BTreeMap<String, Arrows> = BTreeMap::new();
+    for (from, targets) in arrows {
+        for to in targets {
+            let (a, b): (Vec<&str>, Vec<&str>) = (from.split("::").collect(), to.split("::").collect());
+            let shared = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
+            if shared < a.len().min(b.len()) {
+                let folder = beside.entry(a[..shared].join("::")).or_default();
+                folder.entry(a[..=shared].join("::")).or_default().insert(b[..=shared].join("::"));
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for (folder, arrows) in &beside {
+        let mut reached: Arrows = arrows.clone();
+        while let Some((from, to)) = step(&reached) {
+            reached.entry(from).or_default().insert(to);
+        }
+        let closed: Vec<&str> = reached.iter().filter(|(a, to)| to.contains(*a)).map(|(a, _)| a.as_str()).collect();
+        if !closed.is_empty() {
+            found.push(format!("a circle in {folder}: {}", closed.join(", ")));
+        }
+    }
+    found
+}
+
+/// An arrow that follows from two others and is not there yet.
+fn step(arrows: &Arrows) -> Option<(String, String)> {
+    arrows.iter().find_map(|(a, targets)| {
+        let farther = targets.iter().filter_map(|b| arrows.get(b)).flatten();
+        farther.filter(|c| !targets.contains(*c)).map(|c| (a.clone(), c.clone())).next()
+    })
+}
+
+/// All modules of core and their texts; tests and their fixtures may know what they like.
+fn core_texts() -> BTreeMap<String, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&root.join("core"), &mut files);
+    let is_test = |path: &PathBuf| path.ends_with("tests.rs") || path.ends_with("fixtures.rs");
+    let read = |path: PathBuf| (module(path.strip_prefix(&root).unwrap()), fs::read_to_string(&path).unwrap());
+    files.into_iter().filter(|path| !is_test(path)).map(read).collect()
+}
+
+#[test]
+fn rooms_of_core_import_only_from_lower_floors() {
+    let found = upward(&arrows(&core_texts()));
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+#[test]
+fn no_circle_runs_between_files_side_by_side() {
+    let found = circles(&arrows(&core_texts()));
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+#[test]
+fn a_planted_import_upward_and_a_planted_circle_are_seen() {
+    let mut texts = core_texts();
+    let plant = |texts: &mut BTreeMap<String, String>, module: &str, line: &str| {
+        let text = texts.get_mut(module).unwrap();
+        text.insert_str(0, line);
+    };
+    plant(&mut texts, "core::mesh::ids", "use crate::core::{fault::Fault, run::run::Run};\n");
+    let found = upward(&arrows(&texts));
+    assert_eq!(found, ["core::mesh::ids imports core::run::run, which stands on a higher floor"]);
+    assert_eq!(circles(&arrows(&texts)).len(), 1, "rooms stand side by side too");
+    let mut texts = core_texts();
+    plant(&mut texts, "core::mesh::ids", "use super::half_edge::{Mesh, setters};\n");
+    let found = circles(&arrows(&texts));
+    assert!(found.len() == 1 && found[0].starts_with("a circle in core::mesh:"), "{found:?}");
+    let mut texts = core_texts();
+    plant(&mut texts, "core::mesh::half_edge::setters", "use super::{Mesh, super::half_edge::copies};\n");
+    assert!(circles(&arrows(&texts)).is_empty(), "a module may know its parent");
+    texts.insert("core::attic".to_owned(), String::new());
+    assert_eq!(upward(&arrows(&texts)), ["core::attic stands on no floor: name its room in FLOORS"]);
 }

@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use quadfront::core::convert::conversion::background;
-use quadfront::core::io::built_in;
-use quadfront::core::io::case::Case;
-use quadfront::core::io::export::Export;
-use quadfront::core::io::statistics::Statistics;
+use quadfront::core::case::Case;
+use quadfront::core::case::built_in;
+use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
+use quadfront::core::record::export::Export;
+use quadfront::core::record::statistics::Statistics;
 
 fn statistics(case: &Case) -> Statistics {
     let made = background(case, &mut Nobody).unwrap();

@@ -4,14 +4,14 @@
 
 use std::collections::BTreeMap;
 
+use quadfront::core::case::built_in;
+use quadfront::core::case::parameters::Parameters;
 use quadfront::core::convert::candidates::Candidate;
-use quadfront::core::convert::conversion::background;
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::{Event, Purpose, Why};
-use quadfront::core::convert::parameters::Parameters;
 use quadfront::core::convert::phase::Phase;
 use quadfront::core::convert::walk::{Told, walk};
-use quadfront::core::io::built_in;
+use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 /// Calls `look` with a converter of a built-in case.

@@ -2,11 +2,11 @@
 //! parameter may go without another choice.
 #![allow(clippy::unwrap_used)]
 
+use quadfront::core::case::built_in;
+use quadfront::core::case::parameters::Parameters;
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::Event;
-use quadfront::core::convert::parameters::Parameters;
 use quadfront::core::convert::phase::Phase;
-use quadfront::core::io::built_in;
 use quadfront::core::mesh::ids::NodeId;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::explain::{Corner, EdgeKind, EdgeTold, ElementTold, NodeTold, SegmentTold, Verdict};

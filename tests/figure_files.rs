@@ -5,8 +5,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use quadfront::core::io::figure;
-use quadfront::core::io::run_file;
+use quadfront::core::record::figure;
+use quadfront::core::record::run_file;
 
 fn run(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_quadfront")).args(arguments).current_dir(folder).output().unwrap()

@@ -3,16 +3,16 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec2;
-use quadfront::core::convert::conversion::background;
+use quadfront::core::case::built_in;
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::{Event, Purpose};
 use quadfront::core::convert::phase::Phase;
 use quadfront::core::front::segment::Segment;
-use quadfront::core::io::built_in;
+use quadfront::core::kernel::tensor::Metric2;
 use quadfront::core::mesh::half_edge::Mesh;
 use quadfront::core::mesh::ids::{HalfEdgeId, NodeId};
-use quadfront::core::mesh::operators::Refusal;
-use quadfront::core::metric::tensor::Metric2;
+use quadfront::core::mesh::refusals::Refusal;
+use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 fn mesh_of(name: &str) -> Mesh {

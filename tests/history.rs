@@ -5,12 +5,12 @@
 use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
-use quadfront::core::convert::conversion::Background;
+use quadfront::core::case::built_in;
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::Event;
 use quadfront::core::convert::phase::Phase;
-use quadfront::core::io::built_in;
 use quadfront::core::mesh::ids::NodeId;
+use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::breakpoint::Condition;
 use quadfront::core::run::history::{BUDGET, Changes, History};

@@ -164,7 +164,7 @@ fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says(
     assert!((height(&state.moment.as_ref().unwrap().mesh) - 3.0).abs() < 1e-6);
     // A run that is saved keeps it, and opens without a question.
     let saved = folder.path().join("run.toml");
-    quadfront::core::io::run_file::write(&saved, &run).unwrap();
+    quadfront::core::record::run_file::write(&saved, &run).unwrap();
     harness.state_mut().apply(Command::Open(Source::File(saved)));
     until(&mut harness, "opened again", |app| {
         app.state.source.as_ref().is_some_and(|source| source.name().ends_with("run.toml")) && !app.state.is_busy()
@@ -375,7 +375,7 @@ fn a_mesh_with_an_odd_border_is_converted_once_a_side_of_it_may_be_divided() {
         let run = state.run().unwrap();
         assert!(run.case.split_odd && run.case.text.contains("split_odd = true"), "{}", run.case.text);
         let saved = folder.path().join(format!("{name}.toml"));
-        quadfront::core::io::run_file::write(&saved, &run).unwrap();
+        quadfront::core::record::run_file::write(&saved, &run).unwrap();
         harness.state_mut().apply(Command::Open(Source::File(saved)));
         until(&mut harness, "opened again", |app| {
             app.state.source.as_ref().is_some_and(|source| source.name().ends_with(".toml")) && !app.state.is_busy()

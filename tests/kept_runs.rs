@@ -196,7 +196,7 @@ fn a_file_that_goes_bad_while_it_is_open_is_told_and_the_window_keeps_what_it_ha
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("plate.toml");
-    let (_, text) = quadfront::core::io::built_in::all().find(|case| case.0 == "uniform").unwrap();
+    let (_, text) = quadfront::core::case::built_in::all().find(|case| case.0 == "uniform").unwrap();
     std::fs::write(&path, text).unwrap();
     let mut harness = window(Source::File(path.clone()), &folder.path().join("runs"));
     apply(&mut harness, Command::Go(Goal::Step(30)));

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use peak_alloc::PeakAlloc;
-use quadfront::core::io::format::{Format, WriteOptions, read_bytes, write_to};
-use quadfront::core::io::mesh_file::{Group, MeshFile};
+use quadfront::core::formats::format::{Format, WriteOptions, read_bytes, write_to};
+use quadfront::core::soup::mesh_file::{Group, MeshFile};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;

@@ -4,18 +4,19 @@
 use std::path::Path;
 
 use glam::DVec3;
+use quadfront::core::case::Case;
 use quadfront::core::convert::conversion::convert;
-use quadfront::core::discrete::chart::{Bound, charts};
+use quadfront::core::discrete::chart::charts;
 use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
+use quadfront::core::discrete::flat::Bound;
 use quadfront::core::discrete::sound::sound;
 use quadfront::core::fault::Fault;
-use quadfront::core::io::case::Case;
-use quadfront::core::io::export::Export;
-use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
-use quadfront::core::io::mesh_file::{Group, MeshFile};
-use quadfront::core::mesh::soundness::{Allow, examine};
+use quadfront::core::formats::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
 use quadfront::core::progress::Nobody;
+use quadfront::core::record::export::Export;
+use quadfront::core::soup::mesh_file::{Group, MeshFile};
+use quadfront::core::soup::soundness::{Allow, examine};
 
 /// A plate of `n` by `n` squares of two regions, bent up along a parabola.
 fn plate(n: u32, height: f64) -> MeshFile {

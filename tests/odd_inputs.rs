@@ -7,8 +7,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use quadfront::core::io::format::{Format, read_bytes};
-use quadfront::core::mesh::soundness::{Allow, examine};
+use quadfront::core::formats::format::{Format, read_bytes};
+use quadfront::core::soup::soundness::{Allow, examine};
 
 /// A mesh as an OBJ file says it: points, faces by their points from 0, and lines of text after that.
 #[derive(Clone, Default)]

@@ -3,11 +3,11 @@
 
 use glam::DVec2;
 use proptest::prelude::*;
+use quadfront::core::kernel::tensor::Metric2;
 use quadfront::core::mesh::half_edge::{Mesh, NewElement};
 use quadfront::core::mesh::ids::{ElementId, HalfEdgeId, NodeId, PointId};
-use quadfront::core::mesh::operators::Refusal;
+use quadfront::core::mesh::refusals::Refusal;
 use quadfront::core::mesh::triangle_set::TriangleSet;
-use quadfront::core::metric::tensor::Metric2;
 
 /// A grid of `n` by `n` squares, each cut along one diagonal chosen by the bits, its inner nodes moved a little; from
 /// three squares a side on, the middle one is a hole.
@@ -128,7 +128,7 @@ fn apply(mesh: &mut Mesh, operation: Operation) -> Option<bool> {
             let (c, d) = (mesh.origin(mesh.previous(h)), mesh.origin(mesh.previous(t)));
             let quad = [mesh.origin(h), d, mesh.origin(t), c];
             let [a, b, c, d] = quad.map(|n| mesh.uv(n));
-            if !quadfront::core::geometry::predicates::convex(a, b, c, d) {
+            if !quadfront::core::kernel::predicates::convex(a, b, c, d) {
                 return None;
             }
             mesh.replace(&[e, f], &[NewElement::quad(quad, 0)]);

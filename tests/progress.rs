@@ -2,15 +2,16 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec3;
+use quadfront::core::case::built_in;
+use quadfront::core::case::{Case, DomainSource};
 use quadfront::core::convert::conversion;
 use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
 use quadfront::core::discrete::sound::sound;
-use quadfront::core::io::built_in;
-use quadfront::core::io::case::{Case, DomainSource};
-use quadfront::core::io::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
-use quadfront::core::io::mesh_file::MeshFile;
+use quadfront::core::formats::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
+use quadfront::core::prepare::background;
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
+use quadfront::core::soup::mesh_file::MeshFile;
 
 /// Writes down what it is told, and asks for the end as soon as it has been told so much.
 #[derive(Default)]
@@ -98,10 +99,10 @@ fn every_format_tells_how_far_it_is_and_ends_when_it_is_told_to() {
 #[test]
 fn a_metric_beside_the_mesh_is_part_of_what_can_be_ended() {
     let mut mesh = plate(60);
-    mesh.metric = Some(vec![quadfront::core::metric::tensor::Metric3::isotropic(0.1); mesh.points.len()]);
+    mesh.metric = Some(vec![quadfront::core::kernel::tensor::Metric3::isotropic(0.1); mesh.points.len()]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("plate.mesh");
-    quadfront::core::io::format::write_mesh(&path, Format::Medit, &mesh, WriteOptions::default()).unwrap();
+    quadfront::core::formats::format::write_mesh(&path, Format::Medit, &mesh, WriteOptions::default()).unwrap();
     let mut witness = Witness::default();
     assert!(read_mesh_watched(&path, None, &mut witness).unwrap().metric.is_some());
     for after in 1..=witness.told.len() {
@@ -122,7 +123,7 @@ fn mending_and_charts_are_told_and_can_be_ended_anywhere() {
         taking.chart_stretch = 1.1;
     }
     let mut witness = Witness::default();
-    let made = conversion::background(&case, &mut witness).unwrap();
+    let made = background(&case, &mut witness).unwrap();
     let of = |wanted: Stage| witness.told.iter().filter(move |told| told.0 == wanted).map(|told| told.1);
     assert_eq!(of(Stage::Mend).count(), 9);
     assert!(of(Stage::Chart).count() > 3 && of(Stage::Chart).is_sorted(), "{:?}", witness.told);
@@ -130,10 +131,10 @@ fn mending_and_charts_are_told_and_can_be_ended_anywhere() {
     stages.dedup();
     assert!(stages.is_sorted(), "{stages:?}");
     // The same, watched by somebody who lets it end.
-    let again = conversion::background(&case, &mut Witness::who_ends_it(usize::MAX)).unwrap();
+    let again = background(&case, &mut Witness::who_ends_it(usize::MAX)).unwrap();
     assert_eq!(again.mesh.element_count(), made.mesh.element_count());
     for after in (1..=witness.told.len()).step_by(3) {
-        let fault = conversion::background(&case, &mut Witness::who_ends_it(after)).unwrap_err();
+        let fault = background(&case, &mut Witness::who_ends_it(after)).unwrap_err();
         assert!(fault.is_stop && fault.place.is_empty(), "after {after}: {fault}");
     }
 }

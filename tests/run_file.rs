@@ -6,10 +6,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use quadfront::core::io::built_in;
-use quadfront::core::io::run_file::{self, Keeper};
+use quadfront::core::case::built_in;
 use quadfront::core::mesh::ids::NodeId;
 use quadfront::core::progress::Nobody;
+use quadfront::core::record::run_file::{self, Keeper};
 use quadfront::core::run::history::History;
 use quadfront::core::run::run::{Bookmark, Edit, EditKind, Run};
 

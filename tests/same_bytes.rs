@@ -8,14 +8,14 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-use quadfront::core::convert::conversion::background;
+use quadfront::core::case::built_in;
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::phase::Phase;
-use quadfront::core::io::built_in;
-use quadfront::core::io::export::Export;
-use quadfront::core::io::fingerprint::Fingerprint;
-use quadfront::core::io::format::{Format, WriteOptions, write_to};
+use quadfront::core::formats::format::{Format, WriteOptions, write_to};
+use quadfront::core::kernel::fingerprint::Fingerprint;
+use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
+use quadfront::core::record::export::Export;
 use rayon::prelude::*;
 
 /// Shares of all steps, in quarters, at which a state is compared.
@@ -83,8 +83,7 @@ fn told(table: &str, name: &str, reading: Reading) -> (String, Vec<u64>) {
 
 #[test]
 fn every_built_in_case_gives_the_bytes_that_it_gave_before() {
-    let pairs: Vec<_> =
-        built_in::all().flat_map(|(name, _)| [(name, Reading::Own), (name, Reading::Paper)]).collect();
+    let pairs: Vec<_> = built_in::all().flat_map(|(name, _)| [(name, Reading::Own), (name, Reading::Paper)]).collect();
     if std::env::var("QUADFRONT_SAME_BYTES").is_ok_and(|value| value == "write") {
         let all: Vec<String> = pairs.par_iter().map(|&(name, reading)| rows(name, reading, None)).collect();
         fs::write(table(), all.concat()).unwrap();

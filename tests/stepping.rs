@@ -2,11 +2,11 @@
 //! walk leads to a step, its state has the same bytes.
 #![allow(clippy::unwrap_used)]
 
-use quadfront::core::convert::conversion::background;
+use quadfront::core::case::built_in;
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::Event;
 use quadfront::core::convert::phase::Phase;
-use quadfront::core::io::built_in;
+use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 /// A hash of the canonical serialisation (FNV-1a): enough to tell states apart.

@@ -163,7 +163,7 @@ fn a_run_that_is_saved_opens_with_its_changes() {
     let before = kinds(&harness);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.toml");
-    quadfront::core::io::run_file::write(&path, &harness.state().state.run().unwrap()).unwrap();
+    quadfront::core::record::run_file::write(&path, &harness.state().state.run().unwrap()).unwrap();
     apply(&mut harness, Command::Open(Source::File(path)));
     assert_eq!(kinds(&harness), before);
     let kept = &harness.state().state.kept;
@@ -190,7 +190,7 @@ fn the_mesh_at_hand_is_saved_in_the_format_of_its_name_and_nothing_is_written_ov
         state.notice = None;
         let faults = std::mem::take(&mut state.faults);
         assert!(faults.is_empty() || faults[0].contains(name), "{faults:?}");
-        faults.is_empty().then(|| quadfront::core::io::format::read_mesh(&path, None).unwrap())
+        faults.is_empty().then(|| quadfront::core::formats::format::read_mesh(&path, None).unwrap())
     };
     apply(&mut harness, Command::Go(Goal::ToQuads(40)));
     let on_the_way = save(&mut harness, "way.msh").unwrap();

@@ -6,13 +6,13 @@
 mod random;
 
 use glam::DVec2;
-use quadfront::core::convert::conversion::{Background, background};
-use quadfront::core::io::built_in;
-use quadfront::core::io::case::Case;
+use quadfront::core::case::Case;
+use quadfront::core::case::built_in;
+use quadfront::core::kernel::tensor::Metric2;
 use quadfront::core::mesh::half_edge::Mesh;
 use quadfront::core::mesh::ids::NodeId;
 use quadfront::core::metric::field::{MetricSource, Sizing};
-use quadfront::core::metric::tensor::Metric2;
+use quadfront::core::prepare::{Background, background};
 use quadfront::core::progress::Nobody;
 
 use random::Random;

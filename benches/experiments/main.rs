@@ -9,7 +9,7 @@ mod report;
 mod settings;
 mod work;
 
-use quadfront::core::io::built_in::CASES;
+use quadfront::core::case::built_in::CASES;
 
 use background::{Subject, backgrounds};
 use outcome::{Outcome, convert};

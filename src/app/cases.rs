@@ -4,9 +4,9 @@ use serde_json::json;
 
 use super::command_line::CasesArguments;
 use super::output::Target;
-use crate::core::convert::parameters::nearest;
+use crate::core::case::built_in;
 use crate::core::fault::Fault;
-use crate::core::io::built_in;
+use crate::core::kernel::spelling::nearest;
 
 /// Lists the built-in cases, or prints the file of one.
 pub(super) fn cases(arguments: &CasesArguments) -> Result<(), Fault> {

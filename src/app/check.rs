@@ -8,8 +8,8 @@ use super::output::{self, tell};
 use super::progress::Progress;
 use super::{FALLS_SHORT, complain};
 use crate::core::fault::Fault;
-use crate::core::io::format::Format;
-use crate::core::mesh::soundness::{Allow, Soundness, examine};
+use crate::core::formats::format::Format;
+use crate::core::soup::soundness::{Allow, Soundness, examine};
 
 /// Examines a mesh: success where it is sound, exit 1 where it falls short.
 pub(super) fn check(arguments: &CheckArguments) -> Result<ExitCode, Fault> {

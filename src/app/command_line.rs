@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use super::figure::FigureOptions;
 use super::input::{InputFormat, Stops, Until, input_format, mesh_format, setting, stops, until};
 use super::output::Target;
-use crate::core::io::format::Format;
+use crate::core::formats::format::Format;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
 #[derive(Parser)]

@@ -8,14 +8,14 @@ use super::input::Until;
 use super::output::{self, MeshTarget, tell};
 use super::progress::Progress;
 use super::{FALLS_SHORT, complain, input, work};
-use crate::core::convert::parameters::Parameters;
+use crate::core::case::Case;
+use crate::core::case::parameters::Parameters;
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
-use crate::core::io::case::Case;
-use crate::core::io::mesh_file::MeshFile;
-use crate::core::io::report::background_summary;
 use crate::core::progress::{Stage, Watch};
+use crate::core::record::report::background_summary;
 use crate::core::run::shown::Shown;
+use crate::core::soup::mesh_file::MeshFile;
 
 /// Converts, and writes the mesh, the report and the picture that are asked for.
 ///

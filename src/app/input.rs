@@ -6,21 +6,21 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::command_line::{MeshOptions, Source};
-use crate::core::convert::parameters::nearest;
+#[cfg(feature = "window")]
+use crate::core::case::Taking;
+use crate::core::case::built_in;
+use crate::core::case::{self, Case};
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
-use crate::core::io::built_in;
-#[cfg(feature = "window")]
-use crate::core::io::case::Taking;
-use crate::core::io::case::{self, Case};
-use crate::core::io::figure;
-use crate::core::io::format::{self, Format};
-use crate::core::io::mesh_file::MeshFile;
-use crate::core::io::run_file;
-use crate::core::io::save::load;
+use crate::core::formats::format::{self, Format};
+use crate::core::formats::save::load;
+use crate::core::kernel::spelling::nearest;
 use crate::core::progress::Watch;
+use crate::core::record::figure;
+use crate::core::record::run_file;
 use crate::core::run::run::Run;
 use crate::core::run::shown::Shown;
+use crate::core::soup::mesh_file::MeshFile;
 
 /// With --curvature the finest elements have the size of --mesh-size over this.
 const FINEST: f64 = 100.0;

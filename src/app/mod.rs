@@ -20,7 +20,7 @@ use std::time::Duration;
 use clap::Parser;
 
 use crate::core::fault::Fault;
-use crate::core::io::save;
+use crate::core::formats::save;
 use command_line::{Cli, Command, OpenArguments};
 use progress::INTERRUPT;
 

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use crate::core::io::report::grouped;
 use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::record::report::grouped;
 
 /// What Ctrl-C asks.
 pub(super) static INTERRUPT: LazyLock<Cancel> = LazyLock::new(Cancel::new);

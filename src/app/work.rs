@@ -4,27 +4,28 @@ use std::collections::BTreeMap;
 use std::io;
 
 use crate::core::background::adapt::Adapted;
-use crate::core::convert::conversion::{self, Background, Converted};
+use crate::core::case::parameters::Parameters;
+use crate::core::case::{Case, DomainSource, MeshUse};
+use crate::core::convert::conversion::{self, Converted};
 use crate::core::convert::converter::{Converter, Counts};
-use crate::core::convert::parameters::Parameters;
 use crate::core::convert::phase::Phase;
 use crate::core::convert::walk::{Stop, Tell, Told, walk_editing};
 use crate::core::fault::Fault;
-use crate::core::geometry::place::number;
-use crate::core::io::case::{Case, DomainSource, MeshUse};
-use crate::core::io::export::Export;
-use crate::core::io::mesh_file::MeshFile;
-use crate::core::io::report::{CaseTold, LastResort, Program, Report};
-use crate::core::io::statistics::{Measured, Statistics};
+use crate::core::kernel::decimal::number;
 use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::names::Names;
-use crate::core::mesh::soundness::{Allow, examine};
-use crate::core::mesh::touched::Touched;
 use crate::core::metric::field::Sizing;
+use crate::core::prepare::{self, Background};
 use crate::core::progress::{Stage, Watch};
+use crate::core::record::export::Export;
+use crate::core::record::report::{CaseTold, LastResort, Program, Report};
+use crate::core::record::statistics::{Measured, Statistics};
 use crate::core::run::births::Births;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{ShownState, fingerprint};
+use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::soundness::{Allow, examine};
 use crate::render::look::{Layer, Look};
 use crate::render::picture::{Picture, Seen};
 
@@ -63,7 +64,7 @@ pub(super) struct Quads {
 
 /// Makes the triangles of a case; with the data that are to be looked at where these are shown.
 pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
-    let Background { mesh, sizing, names, repairs, .. } = conversion::background(case, watch)?;
+    let Background { mesh, sizing, names, repairs, .. } = prepare::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
     let frame = {
         let (parameters, phase) = (&case.parameters, &Phase::Select);

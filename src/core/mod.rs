@@ -1,14 +1,19 @@
-//! The converter and what it stands on. Deliberately absent: screens, clocks, threads' own state, unseeded randomness.
+//! The converter and what it stands on, from the lowest floor to the highest: a room imports only from those above it in
+//! this list (`tests/architecture.rs`). Deliberately absent: screens, clocks, threads' own state, unseeded randomness.
 
 pub mod fault;
 pub mod progress;
+pub mod kernel;
 pub mod geometry;
 pub mod metric;
-pub mod journal;
 pub mod mesh;
+pub mod soup;
+pub mod formats;
 pub mod discrete;
 pub mod background;
+pub mod case;
 pub mod front;
+pub mod prepare;
 pub mod convert;
 pub mod run;
-pub mod io;
+pub mod record;

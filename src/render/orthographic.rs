@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::camera::Bearing;
 use super::look::HiddenLines;
 use super::picture::{Line, Picture};
-use crate::core::io::mesh_file::MeshFile;
+use crate::core::soup::mesh_file::MeshFile;
 
 /// Parts of a line that are judged each for itself.
 const PARTS: usize = 12;

@@ -102,9 +102,9 @@ fn share(p: DVec2, a: DVec2, b: DVec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::kernel::tensor::Metric2;
     use crate::core::mesh::ids::PointId;
     use crate::core::mesh::triangle_set::TriangleSet;
-    use crate::core::metric::tensor::Metric2;
 
     fn square() -> Mesh {
         let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();

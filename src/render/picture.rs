@@ -8,15 +8,15 @@ use super::orthographic::{self, Cover, View};
 use super::look::{Layer, Layers, Look};
 use super::number;
 use super::scene::Decision;
-use crate::core::convert::parameters::Parameters;
+use crate::core::case::parameters::Parameters;
 use crate::core::convert::phase::Phase;
 use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
-use crate::core::io::export::Export;
-use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::names::Names;
+use crate::core::record::export::Export;
+use crate::core::soup::mesh_file::MeshFile;
 
 /// Metric ellipses are drawn at this share of unit length.
 const ELLIPSE: f64 = 0.25;
@@ -380,9 +380,9 @@ fn corner(mesh: &Mesh, segment: &Segment, side: Side) -> (DVec2, [DVec2; 2]) {
 mod tests {
     use super::*;
     use crate::core::convert::phase::Base;
+    use crate::core::kernel::tensor::Metric2;
     use crate::core::mesh::ids::PointId;
     use crate::core::mesh::triangle_set::TriangleSet;
-    use crate::core::metric::tensor::Metric2;
     use crate::render::look::Ink;
     use glam::DVec3;
 

@@ -3,8 +3,8 @@
 use std::fs;
 
 use glam::DVec3;
-use quadfront::core::io::format::{Format, read_bytes, read_mesh};
-use quadfront::core::mesh::soundness::{Allow, examine};
+use quadfront::core::formats::format::{Format, read_bytes, read_mesh};
+use quadfront::core::soup::soundness::{Allow, examine};
 
 use super::data;
 

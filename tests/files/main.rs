@@ -13,9 +13,9 @@ mod refused;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use quadfront::core::io::format::{Format, WriteOptions, write_to};
-use quadfront::core::io::mesh_file::{Data, Group, MeshFile};
-use quadfront::core::metric::tensor::Metric3;
+use quadfront::core::formats::format::{Format, WriteOptions, write_to};
+use quadfront::core::kernel::tensor::Metric3;
+use quadfront::core::soup::mesh_file::{Data, Group, MeshFile};
 
 const TEXT: WriteOptions = WriteOptions { msh2: false };
 

@@ -3,10 +3,10 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use quadfront::core::io::format::{Format, read_bytes};
-use quadfront::core::io::medit;
-use quadfront::core::io::mesh_file::MeshFile;
-use quadfront::core::mesh::soundness::examine;
+use quadfront::core::formats::format::{Format, read_bytes};
+use quadfront::core::formats::medit;
+use quadfront::core::soup::mesh_file::MeshFile;
+use quadfront::core::soup::soundness::examine;
 
 use super::foreign::SETS;
 use super::{MSH2, TEXT, bytes_of, data, plates};

@@ -6,13 +6,13 @@ use std::fmt::Write;
 use std::path::Path;
 
 use glam::DVec3;
+use quadfront::core::case::Case;
 use quadfront::core::convert::conversion::convert;
-use quadfront::core::io::case::Case;
-use quadfront::core::io::export::Export;
-use quadfront::core::io::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
-use quadfront::core::io::mesh_file::{Group, MeshFile};
-use quadfront::core::mesh::soundness::{Allow, examine};
+use quadfront::core::formats::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
 use quadfront::core::progress::Nobody;
+use quadfront::core::record::export::Export;
+use quadfront::core::soup::mesh_file::{Group, MeshFile};
+use quadfront::core::soup::soundness::{Allow, examine};
 
 use super::{MSH2, TEXT, bytes_of, data};
 

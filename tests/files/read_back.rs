@@ -5,10 +5,10 @@ use std::path::Path;
 use std::process::Command;
 
 use glam::DVec3;
-use quadfront::core::io::format::{Format, read_bytes, read_mesh, write_mesh};
-use quadfront::core::io::mesh_file::{FRONT, Group, MeshFile};
-use quadfront::core::io::save::{abandon, save};
-use quadfront::core::metric::tensor::Metric3;
+use quadfront::core::formats::format::{Format, read_bytes, read_mesh, write_mesh};
+use quadfront::core::formats::save::{abandon, save};
+use quadfront::core::kernel::tensor::Metric3;
+use quadfront::core::soup::mesh_file::{FRONT, Group, MeshFile};
 
 use super::{MSH2, TEXT, bytes_of, plates};
 

@@ -1,7 +1,7 @@
 //! The scale of sizes at which a random case has about the number of quadrilaterals that is wanted.
 
+use quadfront::core::case::{Case, DomainSource};
 use quadfront::core::geometry::domain::Domain;
-use quadfront::core::io::case::{Case, DomainSource};
 use quadfront::core::metric::field::{Field, MetricSource, Sizing};
 
 /// Sets the case's size_scale so that it needs about `quads` quadrilaterals. A case that cannot be measured stays as it

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::sync::mpsc;
 use std::time::Duration;
 
-use quadfront::core::convert::conversion::{background, convert};
-use quadfront::core::io::case::Case;
+use quadfront::core::case::Case;
+use quadfront::core::convert::conversion::convert;
+use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 use super::promise::keep;

@@ -21,10 +21,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use promise::{Kept, keep};
+use quadfront::core::case::Case;
+use quadfront::core::case::built_in::{CASES, named};
 use quadfront::core::convert::conversion::convert;
 use quadfront::core::fault::Fault;
-use quadfront::core::io::built_in::{CASES, named};
-use quadfront::core::io::case::Case;
 use quadfront::core::progress::Nobody;
 use random::Random;
 

@@ -1,11 +1,11 @@
 //! The promise holds whatever operations fail: they are refused at random (failure injection), few or most of them.
 
-use quadfront::core::convert::conversion::background;
+use quadfront::core::case::Case;
+use quadfront::core::case::built_in::{CASES, named};
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::phase::Phase;
-use quadfront::core::io::built_in::{CASES, named};
-use quadfront::core::io::case::Case;
 use quadfront::core::mesh::refusals::Refusals;
+use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 use super::promise::keep_by;

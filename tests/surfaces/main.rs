@@ -8,20 +8,21 @@ mod random;
 use std::path::Path;
 
 use glam::DVec3;
-use quadfront::core::convert::conversion::{Converted, background, convert};
+use quadfront::core::case::Case;
+use quadfront::core::case::built_in;
+use quadfront::core::convert::conversion::{Converted, convert};
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::Event;
 use quadfront::core::convert::phase::Phase;
 use quadfront::core::front::segment::Segment;
-use quadfront::core::io::built_in;
-use quadfront::core::io::case::Case;
-use quadfront::core::io::export::Export;
-use quadfront::core::io::mesh_file::MeshFile;
-use quadfront::core::io::statistics::Statistics;
-use quadfront::core::mesh::soundness::{Allow, Defect, Soundness, examine};
 use quadfront::core::metric::field::MetricSource;
 use quadfront::core::metric::measure::triangle_area;
+use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
+use quadfront::core::record::export::Export;
+use quadfront::core::record::statistics::Statistics;
+use quadfront::core::soup::mesh_file::MeshFile;
+use quadfront::core::soup::soundness::{Allow, Defect, Soundness, examine};
 
 /// A converted case with everything that is held against it.
 pub(crate) struct Made {

@@ -18,7 +18,7 @@ use place::{Place, left_behind};
 use super::session::{Opened, Source, Wake};
 use crate::app::command_line::MeshOptions;
 use crate::core::fault::Fault;
-use crate::core::io::run_file::Keeper;
+use crate::core::record::run_file::Keeper;
 use crate::core::run::run::{Bookmark, Camera, Edit, Run};
 
 /// After a failure it is tried again so often.
@@ -284,7 +284,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::core::io::built_in;
+    use crate::core::case::built_in;
     use crate::core::run::run::EditKind;
 
     fn run(edits: u64) -> Run {

@@ -6,7 +6,7 @@ use super::figures::Formats;
 use super::session::{Goal, Source};
 use super::state::Place;
 use crate::app::command_line::MeshOptions;
-use crate::core::io::built_in;
+use crate::core::case::built_in;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};

@@ -13,10 +13,11 @@ use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Siz
 use crate::app::work::{self, Frame};
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
-use crate::core::io::export::Export;
-use crate::core::io::{run_file, save};
+use crate::core::formats::save;
 use crate::core::mesh::names::Names;
 use crate::core::progress::Nobody;
+use crate::core::record::export::Export;
+use crate::core::record::run_file;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{Shown, ShownState, fingerprint};
 use crate::render::camera::Bearing;

@@ -11,10 +11,11 @@ use eframe::egui::ColorImage;
 use super::session::{Source, Wake};
 use crate::app::command_line::MeshOptions;
 use crate::app::input;
+use crate::core::case::built_in;
 use crate::core::fault::Fault;
-use crate::core::io::figure::KEYWORD;
-use crate::core::io::format::Format;
-use crate::core::io::{built_in, save};
+use crate::core::formats::format::Format;
+use crate::core::formats::save;
+use crate::core::record::figure::KEYWORD;
 
 /// How often a file is looked at that may change.
 const LOOK: Duration = Duration::from_millis(700);

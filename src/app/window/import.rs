@@ -15,8 +15,8 @@ use super::session::Wake;
 use super::state::Progress;
 use crate::app::command_line::MeshOptions;
 use crate::app::input;
+use crate::core::case::{MeshUse, Taking};
 use crate::core::fault::Fault;
-use crate::core::io::case::{MeshUse, Taking};
 use crate::render::camera::Camera;
 
 /// How many changes can be taken back.

@@ -18,17 +18,17 @@ pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
 use crate::app::command_line::MeshOptions;
-use crate::core::convert::conversion::Background;
+use crate::core::case::Case;
 use crate::core::convert::event::{Event, Why};
 use crate::core::fault::Fault;
-use crate::core::io::case::Case;
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::core::run::breakpoint::Condition;
 use crate::core::run::explain::SegmentTold;
 use crate::core::run::recorder::{Recorder, Stretch};
 use crate::core::run::run::{Edit, Run};
-use crate::core::run::timeline::Sample;
+use crate::core::run::sample::Sample;
 use crate::core::run::watch::Watched;
 use worker::Worker;
 

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::apply::layer;
 use super::state::{Place, State};
 use crate::core::fault::Fault;
-use crate::core::io::save;
+use crate::core::formats::save;
 use crate::render::look::HiddenLines;
 use crate::render::scene::{ColourBy, Layers};
 

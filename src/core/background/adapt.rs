@@ -8,13 +8,13 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use crate::core::fault::Fault;
-use crate::core::geometry::predicates::firm;
+use crate::core::kernel::predicates::firm;
+use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::quality::{length_over, quality_over};
 use crate::core::metric::field::MetricSource;
 use crate::core::metric::measure::triangle_quality;
-use crate::core::metric::tensor::Metric2;
 use crate::core::progress::{Stage, Watch};
 
 /// Longest and shortest length of a unit edge.

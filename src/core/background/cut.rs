@@ -5,6 +5,7 @@
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
+use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
 
@@ -77,7 +78,7 @@ pub fn cut(uv: &[DVec2], triangles: Vec<[u32; 3]>, region: Vec<u32>, lines: &[([
     let next = |c: u32| if c % 3 == 2 { c - 2 } else { c + 1 };
     let corners = 3 * triangles.len();
     let node_of = |c: u32| triangles[c as usize / 3][c as usize % 3];
-    let (mut fans, mut sectors) = (Sets::new(corners), Sets::new(corners));
+    let (mut fans, mut sectors) = (DisjointSets::new(corners), DisjointSets::new(corners));
     let mut joined = vec![false; corners];
     for pair in sorted_sides(uv.len(), &triangles).chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
         let [a, b] = pair else { continue };
@@ -143,7 +144,7 @@ impl CutMesh {
         let points = self.set.point.iter().map(|p| p.index() + 1).max().unwrap_or(0);
         let mut images = vec![0_u32; joined.len()];
         joined.iter().for_each(|&first| images[first as usize] += 1);
-        let mut sets = Sets::new(points);
+        let mut sets = DisjointSets::new(points);
         let mut point_at: Vec<Option<u32>> = vec![None; joined.len()];
         for (node, &origin) in self.origin.iter().enumerate() {
             let first = joined[origin as usize] as usize;
@@ -190,31 +191,6 @@ impl CutMesh {
             }
         }
         loops
-    }
-}
-
-/// Disjoint sets of what is numbered from 0.
-pub struct Sets(Vec<u32>);
-
-impl Sets {
-    /// Each number in a set of its own.
-    pub fn new(n: usize) -> Self {
-        Sets((0..n as u32).collect())
-    }
-
-    /// The lowest number of the set of `x`.
-    pub fn find(&mut self, mut x: u32) -> u32 {
-        while self.0[x as usize] != x {
-            self.0[x as usize] = self.0[self.0[x as usize] as usize];
-            x = self.0[x as usize];
-        }
-        x
-    }
-
-    /// Makes one set of the sets of `a` and `b`.
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
     }
 }
 

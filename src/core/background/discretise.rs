@@ -2,12 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::cut::Sets;
 use super::length::{Piece, about, give, measure, share_out};
-use super::parity;
 use crate::core::fault::Fault;
 use crate::core::geometry::curve::distance_to_segment;
-use crate::core::geometry::domain::{CurveId, DirectedCurve, Domain};
+use crate::core::geometry::domain::Domain;
+use crate::core::geometry::domain_curve::{CurveId, DirectedCurve};
+use crate::core::kernel::disjoint_sets::DisjointSets;
+use crate::core::kernel::parity;
 use crate::core::metric::field::MetricSource;
 
 /// More segments than this on all curves together are refused: the sizes cannot be meant.
@@ -308,7 +309,7 @@ impl<'a> Division<'a> {
     /// The first vertex at the same point of space for each vertex of the plane. Vertices are joined by the curves whose
     /// images end in them: where faces, or the sides of a cut, have no curve in common, they meet in a place and are apart.
     fn joined_vertices(&self) -> Vec<u32> {
-        let mut sets = Sets::new(self.domain.vertices.len());
+        let mut sets = DisjointSets::new(self.domain.vertices.len());
         for curve in &self.domain.curves {
             let first = &self.domain.curves[curve.first.index()];
             sets.join(curve.ends[0], first.ends[0]);

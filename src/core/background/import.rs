@@ -6,27 +6,27 @@
 //! Deliberately absent: reading files (`core/io`).
 
 use std::borrow::Cow;
-use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use super::cut::{Cut, CutMesh, Sets, Side, cut, sorted_sides};
-use super::parity::toggles;
+use super::cut::{Cut, CutMesh, Side, cut, sorted_sides};
 use super::triangulate::too_thin;
 use crate::core::discrete::edges::Triangles;
 use crate::core::discrete::lines::on_edges;
 use crate::core::discrete::refuse::{capital, crossed, overlapping, used_points};
 use crate::core::fault::Fault;
-use crate::core::geometry::place::{number, told};
-use crate::core::geometry::predicates::{firm, orient};
-use crate::core::io::mesh_file::MeshFile;
+use crate::core::kernel::decimal::{number, told};
+use crate::core::kernel::disjoint_sets::DisjointSets;
+use crate::core::kernel::parity::toggles;
+use crate::core::kernel::predicates::{firm, orient};
+use crate::core::kernel::spectrum::{LogMetric2, LogMetric3};
+use crate::core::kernel::tensor::{Metric2, Metric3};
 use crate::core::mesh::names::Named;
 use crate::core::mesh::triangle_set::TriangleSet;
-use crate::core::metric::spectrum::{LogMetric2, LogMetric3};
-use crate::core::metric::tensor::{Metric2, Metric3};
 use crate::core::progress::Cancel;
+use crate::core::soup::mesh_file::MeshFile;
 
 /// A triangle lower than this part of its longest side is none (as `predicates::firm` has it).
 const FLAT: f64 = 1e-7;
@@ -82,20 +82,6 @@ pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
     overlapping(given, &import.places(), &import.triangles, &import.element)?;
     import.even_parts(split_odd)?;
     Ok(import.finish())
-}
-
-/// Whether all points of a mesh that elements have lie in one plane of constant z.
-pub fn is_plane(file: &MeshFile) -> bool {
-    let elements = file.triangles.as_flattened().iter().chain(file.quads.as_flattened());
-    let points = elements.chain(file.polygons.iter().flatten()).filter_map(|&k| file.points.get(k as usize));
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for p in points {
-        (low, high) = (low.min(*p), high.max(*p));
-    }
-    let extent = high - low;
-    // Points that are not finite are refused with their numbers later on.
-    let least = 1e-9 * extent.x.max(extent.y).max(high.z.abs());
-    extent.z.partial_cmp(&least) != Some(Ordering::Greater)
 }
 
 /// A mesh of triangles and larger elements with these cut; one of quadrilaterals alone stays, and is refused: it is what a
@@ -333,7 +319,7 @@ impl<'a> Import<'a> {
 
     /// Every part has an even number of triangles, if need be after dividing sides.
     fn even_parts(&mut self, split_odd: bool) -> Result<(), Fault> {
-        let mut parts = Sets::new(self.triangles.len());
+        let mut parts = DisjointSets::new(self.triangles.len());
         let on_line = |side: &Side| self.lines.contains_key(&(side.low, side.high));
         let one_region = |a: &Side, b: &Side| self.region[a.corner as usize / 3] == self.region[b.corner as usize / 3];
         for pair in self.sides.chunk_by(same_edge) {

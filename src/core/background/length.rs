@@ -5,8 +5,8 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::core::fault::Fault;
-use crate::core::geometry::domain::DomainCurve;
-use crate::core::geometry::place::told;
+use crate::core::geometry::domain_curve::DomainCurve;
+use crate::core::kernel::decimal::told;
 use crate::core::metric::field::MetricSource;
 
 /// A piece of a curve between two corners.

@@ -1,6 +1,5 @@
 //! The background triangle mesh (spec 3): curves divided, loops made even, triangulated, adapted to the metric.
 
-pub mod parity;
 pub mod length;
 pub mod discretise;
 pub mod cut;

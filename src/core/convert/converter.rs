@@ -5,6 +5,7 @@
 //! who steps back uses the same mechanism.
 
 mod formation;
+mod post_processing;
 mod taking_back;
 
 use std::sync::Arc;
@@ -15,16 +16,16 @@ use super::component::{Component, live_components};
 use super::event::Event;
 use super::finish::{Finished, Finishing};
 use super::last_resort::{Outcome, Plan};
-use super::parameters::Parameters;
 use super::phase::{Attempt, Base, Part, Phase};
+use crate::core::case::parameters::Parameters;
 use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
 use crate::core::front::selection::{Choice, Queue};
-use crate::core::io::fingerprint::Fingerprint;
-use crate::core::journal::Mark;
+use crate::core::kernel::fingerprint::Fingerprint;
 use crate::core::mesh::half_edge::{Mesh, Undone};
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::journal::Mark;
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::{Stage, Watch};
 

@@ -8,7 +8,7 @@ use super::converter::Converter;
 use super::event::{Event, Why};
 use super::phase::{Attempt, Base};
 use crate::core::front::sector::Side;
-use crate::core::geometry::predicates::convex;
+use crate::core::kernel::predicates::convex;
 use crate::core::mesh::half_edge::NewElement;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::quality::length_over;

@@ -27,13 +27,13 @@ use smallvec::SmallVec;
 use super::component::{Dual, NONE};
 use super::matching::Matching;
 use super::t_join::t_join;
-use crate::core::geometry::predicates::{convex, firm, orient};
+use crate::core::kernel::predicates::{convex, firm, orient};
+use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::refusals::Operation;
 use crate::core::metric::field::{BadMetric, MetricSource};
 use crate::core::metric::measure::quad_quality;
-use crate::core::metric::tensor::Metric2;
 
 /// What the last resort did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]

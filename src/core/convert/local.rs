@@ -9,10 +9,10 @@ use super::energy;
 use super::event::{Event, Purpose};
 use super::phase::Phase;
 use crate::core::fault::Fault;
-use crate::core::journal::Mark;
+use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::metric::tensor::Metric2;
+use crate::core::mesh::journal::Mark;
 
 /// Looks at edges for one enhancement: four times a ring's size (spec 2.8).
 const ENHANCEMENTS: u8 = 48;

@@ -1,7 +1,6 @@
 //! From triangles to quadrilaterals: the merging front (paper 4.3), the guarantee (spec 2.10), and what makes the mesh
 //! better in the end (spec 10).
 
-pub mod parameters;
 pub mod event;
 pub mod phase;
 pub mod converter;
@@ -26,5 +25,4 @@ mod worklist;
 pub mod clean_up;
 pub mod unfold;
 pub mod finish;
-mod layers;
 pub mod conversion;

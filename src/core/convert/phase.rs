@@ -7,8 +7,8 @@ use smallvec::SmallVec;
 use super::component::Component;
 use super::last_resort::Plan;
 use crate::core::front::sector::Side;
-use crate::core::journal::Mark;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::journal::Mark;
 
 /// The base segment of the quadrilateral at hand. Its half-edge changes with every swap beside it: nodes name it.
 #[derive(Clone, Copy, Debug, PartialEq)]

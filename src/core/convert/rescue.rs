@@ -3,7 +3,7 @@
 use super::converter::Converter;
 use super::phase::{Attempt, Base};
 use crate::core::front::sector::Side;
-use crate::core::journal::Mark;
+use crate::core::mesh::journal::Mark;
 
 /// Every other edge at B, then at A, is tried up to here; the two Lee-Lo pairs come after.
 const ALTERNATIVES: u8 = 4;

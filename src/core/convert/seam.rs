@@ -6,9 +6,9 @@ use smallvec::SmallVec;
 
 use super::converter::Converter;
 use super::event::{Event, Unmerged};
-use super::top::{MOST_SWAPS, Recovery};
+use super::top::{MOST_SWAPS, Recovery, recover_step};
 use crate::core::front::sector::Side;
-use crate::core::geometry::predicates::{convex, firm};
+use crate::core::kernel::predicates::{convex, firm};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
@@ -132,7 +132,7 @@ impl Converter<'_> {
         }
         // The edge B-C (fig. 18b).
         for _ in 0..MOST_SWAPS {
-            match self.recover_step(c, b, &[a, b, c]).map_err(|_| Unmerged::NotRecovered)? {
+            match recover_step(&mut self.mesh, c, b, &[a, b, c]).map_err(|_| Unmerged::NotRecovered)? {
                 Recovery::Found => break,
                 Recovery::Changed(_) => {}
             }

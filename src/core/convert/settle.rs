@@ -5,7 +5,7 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::energy;
-use crate::core::geometry::predicates::convex;
+use crate::core::kernel::predicates::convex;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::metric::field::MetricSource;
@@ -88,7 +88,7 @@ pub fn all_convex(mesh: &Mesh, core: &Nodes) -> bool {
 fn is_sound(mesh: &Mesh, e: ElementId) -> bool {
     if mesh.is_triangle(e) {
         let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
-        return crate::core::geometry::predicates::firm(a, b, c);
+        return crate::core::kernel::predicates::firm(a, b, c);
     }
     let [a, b, c, d] = mesh.quad(e).map(|n| mesh.uv(n));
     convex(a, b, c, d)

@@ -8,9 +8,9 @@ use super::converter::Converter;
 use super::event::{Event, SideEdge, Why};
 use super::phase::{Attempt, Base};
 use crate::core::front::sector::{Side, Spoke, Spokes};
+use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::metric::measure::angle;
-use crate::core::metric::tensor::Metric2;
 
 /// Half a divided side must be at least this long in the metric.
 const LEAST_HALF: f64 = 0.5;

@@ -1,10 +1,8 @@
 //! Recovery of the top edge (paper 4.3.4, definition of the top edge, i to vi; spec 2.4): swaps along the line, one a
 //! step, with node removal where no swap is possible. Every crossing is found by exact predicates.
 
-use super::converter::Converter;
 use super::event::{Event, Purpose, Why};
-use super::phase::Phase;
-use crate::core::geometry::predicates::orient;
+use crate::core::kernel::predicates::orient;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 
@@ -21,47 +19,34 @@ pub(super) enum Recovery {
     Changed(Event),
 }
 
-impl Converter<'_> {
-    /// The edges that the top edge crosses, from C on, where the next step recovers it and none of them is dead; none where it is
-    /// there.
-    pub fn top_crossings(&self) -> Option<Vec<[NodeId; 2]>> {
-        let Phase::RecoverTop { tops: [c, d], .. } = *self.phase() else { return None };
-        if self.mesh.are_joined(c, d) {
-            return Some(Vec::new());
-        }
-        let found = crossings(&self.mesh, c, d).ok()?;
-        Some(found.into_iter().map(|h| [self.mesh.origin(h), self.mesh.target(h)]).collect())
+/// One step of the recovery of the edge from C to D; nodes in `keep` are not removed.
+pub(super) fn recover_step(mesh: &mut Mesh, c: NodeId, d: NodeId, keep: &[NodeId]) -> Result<Recovery, Why> {
+    if mesh.are_joined(c, d) {
+        return Ok(Recovery::Found);
     }
-
-    /// One step of the recovery of the edge from C to D.
-    pub(super) fn recover_step(&mut self, c: NodeId, d: NodeId, keep: &[NodeId]) -> Result<Recovery, Why> {
-        if self.mesh.are_joined(c, d) {
-            return Ok(Recovery::Found);
+    let crossings = crossings(mesh, c, d)?;
+    for &h in &crossings {
+        if mesh.can_swap(h).is_ok() {
+            // A swap that still crosses is only worth it where it brings an end of the new edge to C or D.
+            let t = mesh.twin(h).ok_or(Why::NotDisc)?;
+            let new = [mesh.origin(mesh.previous(h)), mesh.origin(mesh.previous(t))];
+            if crosses(mesh, new, c, d) && crossings.len() > 1 && !new.contains(&c) && !new.contains(&d) {
+                continue;
+            }
+            let across = [mesh.origin(h), mesh.target(h)];
+            mesh.swap(h);
+            return Ok(Recovery::Changed(Event::TopSwapped { across, new }));
         }
-        let crossings = crossings(&self.mesh, c, d)?;
-        for &h in &crossings {
-            if self.mesh.can_swap(h).is_ok() {
-                // A swap that still crosses is only worth it where it brings an end of the new edge to C or D.
-                let t = self.mesh.twin(h).ok_or(Why::NotDisc)?;
-                let new = [self.mesh.origin(self.mesh.previous(h)), self.mesh.origin(self.mesh.previous(t))];
-                if crosses(&self.mesh, new, c, d) && crossings.len() > 1 && !new.contains(&c) && !new.contains(&d) {
-                    continue;
-                }
-                let across = [self.mesh.origin(h), self.mesh.target(h)];
-                self.mesh.swap(h);
-                return Ok(Recovery::Changed(Event::TopSwapped { across, new }));
+    }
+    // No swap is possible: remove a node that keeps one from being valid (iii).
+    for &h in &crossings {
+        for node in [mesh.origin(h), mesh.target(h)] {
+            if !keep.contains(&node) && mesh.delete_node(node).is_ok() {
+                return Ok(Recovery::Changed(Event::NodeRemoved { node, purpose: Purpose::Recovery }));
             }
         }
-        // No swap is possible: remove a node that keeps one from being valid (iii).
-        for &h in &crossings {
-            for node in [self.mesh.origin(h), self.mesh.target(h)] {
-                if !keep.contains(&node) && self.mesh.delete_node(node).is_ok() {
-                    return Ok(Recovery::Changed(Event::NodeRemoved { node, purpose: Purpose::Recovery }));
-                }
-            }
-        }
-        Err(Why::TopTooLong)
     }
+    Err(Why::TopTooLong)
 }
 
 /// Whether the line between two nodes crosses the line from C to D properly.
@@ -74,7 +59,7 @@ fn crosses(mesh: &Mesh, [e, f]: [NodeId; 2], c: NodeId, d: NodeId) -> bool {
 }
 
 /// The edges that the line from C to D crosses, from C on, all of them live.
-fn crossings(mesh: &Mesh, c: NodeId, d: NodeId) -> Result<Vec<HalfEdgeId>, Why> {
+pub(super) fn crossings(mesh: &Mesh, c: NodeId, d: NodeId) -> Result<Vec<HalfEdgeId>, Why> {
     let (p, q) = (mesh.uv(c), mesh.uv(d));
     // The triangle at C that holds the direction to D (ii).
     let mut start = None;

@@ -15,12 +15,12 @@ use super::energy;
 use super::event::{Event, Mending};
 use super::settle::{Nodes, put, settle};
 use super::worklist::{ListMark, Worklist};
-use crate::core::io::weld::weld;
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId, PointId};
 use crate::core::mesh::refusals::Operation;
 use crate::core::metric::field::MetricSource;
 use crate::core::progress::Cancel;
+use crate::core::soup::weld::weld;
 
 /// A quadrilateral with a corner whose sine against the surface is below this is to be mended.
 const FOLDED: f64 = 1e-3;

@@ -4,7 +4,7 @@
 use super::chart::Chart;
 use super::edges::{Edges, Triangles};
 use super::features::Feature;
-use crate::core::background::cut::Sets;
+use crate::core::kernel::disjoint_sets::DisjointSets;
 
 /// Counts of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,20 +24,21 @@ impl Census {
     pub fn of(mesh: &Triangles, edges: &Edges) -> Census {
         let points = mesh.points.len();
         let mut is_used = vec![false; points];
-        let mut parts = Sets::new(points);
+        let mut parts = DisjointSets::new(points);
         for &[a, b, c] in &mesh.triangles {
             [a, b, c].iter().for_each(|&k| is_used[k as usize] = true);
             parts.join(a, b);
             parts.join(b, c);
         }
         let mut on_border = vec![false; points];
-        let mut loops = Sets::new(points);
+        let mut loops = DisjointSets::new(points);
         for edge in (0..edges.len()).map(|edge| edges.get(edge)).filter(|edge| edge.sides.len() == 1) {
             edge.ends.iter().for_each(|&end| on_border[end as usize] = true);
             loops.join(edge.ends[0], edge.ends[1]);
         }
-        let roots =
-            |sets: &mut Sets, of: &[bool]| (0..points as u32).filter(|&k| of[k as usize] && sets.find(k) == k).count();
+        let roots = |sets: &mut DisjointSets, of: &[bool]| {
+            (0..points as u32).filter(|&k| of[k as usize] && sets.find(k) == k).count()
+        };
         Census {
             nodes: is_used.iter().filter(|used| **used).count(),
             triangles: mesh.triangles.len(),
@@ -111,9 +112,10 @@ impl Division {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::discrete::chart::{Bound, charts};
+    use crate::core::discrete::chart::charts;
     use crate::core::discrete::features::{ANGLE, features};
     use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
+    use crate::core::discrete::flat::Bound;
     use crate::core::progress::Nobody;
 
     fn divided(mesh: &Triangles) -> (Census, Vec<Option<Feature>>, Division) {

@@ -13,9 +13,11 @@ use glam::{DVec2, DVec3};
 
 use super::edges::{Corner, Edges, Groups, Triangles};
 use super::features::Feature;
-use super::{rigid, tutte};
-use crate::core::background::cut::Sets;
+use super::flat::{Bound, Stretch, stretch};
+use super::rigid;
+use super::tutte;
 use crate::core::fault::Fault;
+use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::progress::{Cancel, Stage, Watch};
 
 /// Triangles and their map to the plane.
@@ -33,38 +35,6 @@ pub struct Chart {
     pub uv: Vec<DVec2>,
     /// How much it is stretched.
     pub stretch: Stretch,
-}
-
-/// How far a map to the plane is from keeping shapes and areas.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    /// The greatest ratio of the lengths in space that equal lengths of the plane have at one place (1: shapes are kept).
-    pub shape: f64,
-    /// Ratio of the greatest to the least area in space of equal areas of the plane.
-    pub area: f64,
-}
-
-impl Default for Stretch {
-    fn default() -> Self {
-        Stretch { shape: 1.0, area: 1.0 }
-    }
-}
-
-/// How much a chart may be stretched.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
-    /// Bound for [`Stretch::shape`].
-    pub shape: f64,
-    /// Bound for [`Stretch::area`].
-    pub area: f64,
-}
-
-impl Default for Bound {
-    fn default() -> Self {
-        // Far below what the arithmetic would bear (50 and 1e4, spec 4): the mesh is made in the plane, and follows its metric the
-        // better the less that changes from triangle to triangle.
-        Bound { shape: 4.0, area: 16.0 }
-    }
 }
 
 /// A chart with holes is taken as it is up to here, and slit beyond.
@@ -131,12 +101,6 @@ pub fn charts(
     cancel.check()?;
     charts.sort_unstable_by_key(|chart| chart.triangles[0]);
     Ok(charts)
-}
-
-impl Bound {
-    pub(super) fn allows(self, stretch: Stretch) -> bool {
-        stretch.shape <= self.shape && stretch.area <= self.area
-    }
 }
 
 /// What is to become of a part.
@@ -256,7 +220,7 @@ impl<'a> Surface<'a> {
             is_single.then(|| rigid::flattened([0, 1, 2].map(|k| xyz[chart.local[0][k] as usize])).to_vec())
         });
         if let Some(uv) = mapped {
-            chart.stretch = tutte::stretch(&xyz, &chart.local, &uv);
+            chart.stretch = stretch(&xyz, &chart.local, &uv);
             chart.uv = uv;
             let bound = if holes == 0 { bound } else { WITH_HOLES };
             if is_single || bound.allows(chart.stretch) {
@@ -269,7 +233,7 @@ impl<'a> Surface<'a> {
     /// The nodes of a part: corners that are held together by its edges; none where the work is told to end.
     pub fn nodes(&self, part: &Part) -> Chart {
         let triangles = &part.triangles;
-        let mut nodes = Sets::new(3 * triangles.len());
+        let mut nodes = DisjointSets::new(3 * triangles.len());
         let mut border_sides: Vec<Corner> = Vec::new();
         let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
         for (at, &t) in triangles.iter().enumerate() {

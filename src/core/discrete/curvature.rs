@@ -7,8 +7,8 @@ use super::edges::{Edge, Edges, Triangles};
 use super::features::features;
 use crate::core::fault::Fault;
 use crate::core::geometry::surface::Bend;
+use crate::core::kernel::tensor::Metric3;
 use crate::core::metric::curvature::Curvature;
-use crate::core::metric::tensor::Metric3;
 
 /// The symmetric tensors are summed as xx, xy, xz, yy, yz, zz.
 type Sum = [f64; 6];

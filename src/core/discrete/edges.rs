@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use crate::core::fault::Fault;
-use crate::core::io::counting::Elements;
 use crate::core::progress::Cancel;
+use crate::core::soup::counting::Elements;
 
 /// Triangles in space by the places of their corners in a list of points; whoever makes one has checked the places.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Triangles {
     pub region: Vec<u32>,
     /// Where the corners of each triangle lie on a texture, if they do; empty where there is none.
     pub texture: Vec<Option<[DVec2; 3]>>,
-    /// The element of the file that each triangle comes from ([`MeshFile::origins`](crate::core::io::mesh_file::MeshFile::origins)); empty
+    /// The element of the file that each triangle comes from ([`MeshFile::origins`](crate::core::soup::mesh_file::MeshFile::origins)); empty
     /// where there is no file.
     pub origin: Vec<u32>,
     /// What the elements of the file are called.

@@ -9,14 +9,14 @@ use super::chart::Chart;
 use super::edges::{Corner, Edge, Edges, Triangles};
 use super::refuse::{capital, place as told};
 use super::surface::{Surface, sides};
-use crate::core::background::cut::Sets;
-use crate::core::background::parity::toggles;
 use crate::core::fault::Fault;
-use crate::core::geometry::predicates::firm;
+use crate::core::kernel::disjoint_sets::DisjointSets;
+use crate::core::kernel::parity::toggles;
+use crate::core::kernel::predicates::firm;
+use crate::core::kernel::spectrum::LogMetric3;
+use crate::core::kernel::tensor::Metric3;
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
-use crate::core::metric::spectrum::LogMetric3;
-use crate::core::metric::tensor::Metric3;
 
 /// A chart while sides of it are divided.
 struct Laid {
@@ -107,12 +107,12 @@ struct Fans {
     triangles: Vec<[u32; 3]>,
     edges: Edges,
     /// Of corners.
-    sets: Sets,
+    sets: DisjointSets,
 }
 
 impl Fans {
     fn of(triangles: Vec<[u32; 3]>) -> Fans {
-        let (edges, sets) = (Edges::of(&triangles), Sets::new(3 * triangles.len()));
+        let (edges, sets) = (Edges::of(&triangles), DisjointSets::new(3 * triangles.len()));
         let mut fans = Fans { triangles, edges, sets };
         for edge in 0..fans.edges.len() {
             let Edge { ends, sides } = fans.edges.get(edge);
@@ -201,7 +201,7 @@ fn odd_fault(mesh: &Triangles, edges: &Edges, charts: &[&Chart], split_odd: bool
         charts.iter().flat_map(|chart| sides(chart).flatten().map(|side| side.map(|node| chart.points[node as usize])));
     let is_outer = |ends: &[u32; 2]| edges.between(*ends).is_some_and(|edge| edges.get(edge).sides.len() == 1);
     let outer: Vec<[u32; 2]> = of_charts.filter(is_outer).collect();
-    let mut loops = Sets::new(mesh.points.len());
+    let mut loops = DisjointSets::new(mesh.points.len());
     outer.iter().for_each(|&[a, b]| loops.join(a, b));
     let mut count: BTreeMap<u32, usize> = BTreeMap::new();
     outer.iter().for_each(|ends| *count.entry(loops.find(ends[0])).or_default() += 1);
@@ -336,9 +336,9 @@ fn implied_by([a, b, c]: [DVec3; 3]) -> Option<Metric3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::discrete::chart::Bound;
     use crate::core::discrete::features::ANGLE;
     use crate::core::discrete::fixtures::{cube, plate, sphere, torus};
+    use crate::core::discrete::flat::Bound;
     use crate::core::discrete::surface::surface;
     use crate::core::mesh::names::Named;
     use crate::core::progress::Nobody;

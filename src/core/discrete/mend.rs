@@ -6,9 +6,9 @@ use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 
 use super::edges::{Edges, Groups, Triangles};
-use crate::core::background::cut::Sets;
-use crate::core::io::weld::weld;
+use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::progress::Cancel;
+use crate::core::soup::weld::weld;
 
 /// Points nearer than this part of the size of the mesh are at one place.
 const SAME_PLACE: f64 = 1e-9;
@@ -138,7 +138,7 @@ impl Triangles {
     pub fn part(&mut self, cancel: &Cancel) -> (Vec<u32>, usize, usize) {
         let corners = 3 * self.triangles.len();
         let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return (Vec::new(), 0, 0) };
-        let mut sets = Sets::new(corners);
+        let mut sets = DisjointSets::new(corners);
         let next = |c: u32| c - c % 3 + (c + 1) % 3;
         // How many sides of the border begin or end at each point: two for each part that does not close around it.
         let mut outer = vec![0; self.points.len()];

@@ -9,6 +9,7 @@ pub mod lines;
 pub(in crate::core) mod refuse;
 pub mod sound;
 pub mod features;
+pub mod flat;
 pub mod chart;
 pub mod sparse;
 pub mod tutte;

@@ -6,10 +6,10 @@ use rstar::{AABB, RTree};
 
 use super::edges::{Edges, Triangles};
 use crate::core::fault::Fault;
-use crate::core::geometry::place::{number, told};
-use crate::core::geometry::predicates::orient;
-use crate::core::io::mesh_file::MeshFile;
-use crate::core::mesh::soundness::{Defect, examine};
+use crate::core::kernel::decimal::{number, told};
+use crate::core::kernel::predicates::orient;
+use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::soundness::{Defect, examine};
 
 /// Coordinates beyond this, and meshes smaller than one over this, cannot be reckoned with: products of several of them have no number.
 pub(in crate::core) const LARGEST: f64 = 1e30;

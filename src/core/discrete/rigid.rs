@@ -3,13 +3,10 @@
 //! promises that the result is one to one, so that it is looked at before it is taken.
 
 use glam::{DVec2, DVec3};
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
 
 use super::edges::Edges;
+use super::flat::{is_embedded, snapped, stands};
 use super::sparse::Means;
-use super::tutte::stands;
-use crate::core::geometry::predicates::orient;
 use crate::core::progress::Cancel;
 
 /// Rounds of turning and following.
@@ -110,11 +107,6 @@ pub fn map(
     (stands(triangles, &uv) && is_embedded(&uv, loops)).then_some(uv)
 }
 
-/// The nearest multiple of the grid.
-pub fn snapped(p: DVec2, grid: f64) -> DVec2 {
-    (p / grid).round() * grid
-}
-
 /// A triangle in a plane of its own.
 pub fn flattened([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
     let (e, f) = (b - a, c - a);
@@ -179,44 +171,6 @@ fn unrolled(
         }
     }
     Some(uv.into_iter().map(|p| p.unwrap_or(DVec2::ZERO)).collect())
-}
-
-/// Whether the border loops bound one region of the plane to their left: none crosses or touches itself or another, and one
-/// alone runs anticlockwise. Then triangles that all lie the right way round cover each place once: the times that they cover a place are
-/// the turns of the loops around it, 1 within the one and 0 in its holes. By exact predicates.
-pub fn is_embedded(uv: &[DVec2], loops: &[u32]) -> bool {
-    let mut next: Vec<u32> = Vec::new();
-    let mut anticlockwise = 0;
-    for &long in loops {
-        let first = next.len() as u32;
-        next.extend((1..long).map(|k| first + k));
-        next.push(first);
-        let polygon = &uv[first as usize..next.len()];
-        let doubled: f64 = (0..polygon.len())
-            .map(|k| (polygon[k] - polygon[0]).perp_dot(polygon[(k + 1) % polygon.len()] - polygon[0]))
-            .sum();
-        anticlockwise += usize::from(doubled > 0.0);
-    }
-    let side = |k: usize| [uv[k], uv[next[k] as usize]];
-    let boxed = |k: usize| Rectangle::from_corners(side(k)[0].to_array(), side(k)[1].to_array());
-    let tree = RTree::bulk_load((0..next.len()).map(|k| GeomWithData::new(boxed(k), k)).collect());
-    let meet = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
-        let apart = |s: f64, t: f64| (s > 0.0 && t > 0.0) || (s < 0.0 && t < 0.0);
-        !apart(orient(a, b, c), orient(a, b, d)) && !apart(orient(c, d, a), orient(c, d, b))
-    };
-    // Neighbours share a corner; they must not fold back on each other.
-    let folds = |[a, b]: [DVec2; 2], c: DVec2| orient(a, b, c) == 0.0 && (a - b).dot(c - b) >= 0.0;
-    let is_free = |k: usize| {
-        let own = side(k);
-        let near = tree.locate_in_envelope_intersecting(AABB::from_corners(own[0].to_array(), own[1].to_array()));
-        near.map(|found| found.data).all(|l| match l {
-            _ if l == k => true,
-            _ if l == next[k] as usize => !folds(own, side(l)[1]),
-            _ if k == next[l] as usize => !folds(side(l), own[1]),
-            _ => !meet(own, side(l)),
-        })
-    };
-    anticlockwise == 1 && (0..next.len()).all(is_free)
 }
 
 #[cfg(test)]

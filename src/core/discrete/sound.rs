@@ -7,11 +7,10 @@ use glam::DVec3;
 use super::edges::{Edges, Groups, Triangles};
 use super::lines::on_edges;
 use super::refuse::{LARGEST, crossed, far_away, one_sided, overlapping, used_points};
-use crate::core::background::import::is_plane;
 use crate::core::fault::Fault;
-use crate::core::io::mesh_file::MeshFile;
 use crate::core::mesh::names::Named;
 use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::soup::mesh_file::MeshFile;
 
 /// A triangle flatter than this part of its longest side has no plane of its own.
 const FLAT: f64 = 1e-6;
@@ -58,7 +57,7 @@ pub fn sound(file: &MeshFile, watch: &mut dyn Watch) -> Result<Sound, Fault> {
         cancel.check()
     };
     begin(0)?;
-    let (given, plane, origin) = (file, is_plane(file), file.origins());
+    let (given, plane, origin) = (file, file.is_plane(), file.origins());
     let (file, cut) = file.clone().triangulated();
     begin(1)?;
     tell(cut, "quadrilateral or polygon was cut into triangles", "quadrilaterals and polygons were cut into triangles");

@@ -6,21 +6,24 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use super::chart::{Bound, Chart, charts};
+use super::chart::{Chart, charts};
 use super::edges::{Edge, Edges, Triangles};
 use super::features::{ANGLE, features, with_lines};
+use super::flat::Bound;
 use crate::core::fault::Fault;
-use crate::core::geometry::complex::{Lifted, Named, assemble};
-use crate::core::geometry::domain::{Domain, FaceSpec};
+use crate::core::geometry::complex::{Lifted, assemble};
+use crate::core::geometry::domain::Domain;
 use crate::core::geometry::facets::Facets;
 use crate::core::geometry::ground::Ground;
 use crate::core::geometry::image::Image;
 use crate::core::geometry::lifting::Piece;
+use crate::core::geometry::named_curve::NamedCurve;
 use crate::core::geometry::space_curve::SpaceCurve;
+use crate::core::geometry::spec::FaceSpec;
+use crate::core::kernel::tensor::Metric3;
 use crate::core::mesh::names;
 use crate::core::metric::field::Field;
 use crate::core::metric::gradation::bound_gradation;
-use crate::core::metric::tensor::Metric3;
 use crate::core::progress::Watch;
 
 /// An element turns by no more than this where its size is not given (radians).
@@ -97,7 +100,7 @@ pub fn surface(
         });
         let points = chain.points.iter().map(|&p| mesh.points[p as usize]).collect();
         let corners = if chain.feature { corners(mesh, &chain.points, angle) } else { Vec::new() };
-        curves.push(Named {
+        curves.push(NamedCurve {
             name: format!("curve {}", number + 1),
             curve: Arc::new(SpaceCurve::of_sides(points, corners)),
             segments: None,
@@ -291,7 +294,7 @@ fn pieces(
     edges: &Edges,
     chains: &[Chain],
     links: &[Option<Link>],
-    curves: &[Named],
+    curves: &[NamedCurve],
 ) -> Vec<Vec<Piece>> {
     let mut loops: Vec<(bool, Vec<Piece>)> = Vec::new();
     for sides in sides(chart) {

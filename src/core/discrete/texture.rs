@@ -3,10 +3,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::chart::{Bound, Chart, Part, Surface};
+use super::chart::{Chart, Part, Surface};
 use super::edges::{Corner, Edges};
-use super::rigid::{is_embedded, snapped};
-use super::tutte::{stands, stretch};
+use super::flat::{Bound, is_embedded, snapped, stands, stretch};
 
 /// A texture in more pieces than one for so many triangles, and one more, is no map of the surface: it would be cut to shreds.
 const TRIANGLES_A_PIECE: usize = 64;

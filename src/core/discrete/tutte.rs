@@ -5,10 +5,8 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::chart::Stretch;
-use super::rigid::snapped;
+use super::flat::{snapped, stands};
 use super::sparse::Means;
-use crate::core::geometry::predicates::orient;
 use crate::core::progress::Cancel;
 
 /// Weights are held within this factor of a node's greatest: triangles with nearly no area pull at nobody without end.
@@ -70,14 +68,6 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
     stands(triangles, &uv).then_some(uv)
 }
 
-/// Whether all triangles lie the right way round, by an exact predicate.
-pub fn stands(triangles: &[[u32; 3]], uv: &[DVec2]) -> bool {
-    triangles.iter().all(|t| {
-        let [a, b, c] = t.map(|k| uv[k as usize]);
-        orient(a, b, c) > 0.0
-    })
-}
-
 /// For each node inside, its neighbours with their mean-value weights: (tan(alpha/2) + tan(beta/2)) / length, with the angles at
 /// the node on both sides of the edge. Neighbours ascend.
 fn weights(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize) -> Vec<Vec<(u32, f64)>> {
@@ -114,32 +104,4 @@ fn half_angle_tangent(a: DVec3, b: DVec3) -> f64 {
     let sine = a.cross(b).length();
     let cosine = a.dot(b);
     sine / (a.length() * b.length() + cosine).max(1e-12 * sine).max(f64::MIN_POSITIVE)
-}
-
-/// How much the map stretches. Triangles that are nearly flat in space say nothing of it and are passed over.
-pub fn stretch(xyz: &[DVec3], triangles: &[[u32; 3]], uv: &[DVec2]) -> Stretch {
-    let (mut shape, mut least, mut most) = (1.0_f64, f64::INFINITY, 0.0_f64);
-    for t in triangles {
-        let [p, q, r] = t.map(|k| xyz[k as usize]);
-        let (e, f) = (q - p, r - p);
-        let area = e.cross(f).length();
-        let longest = e.length_squared().max(f.length_squared()).max(e.distance_squared(f));
-        if area < 1e-3 * longest {
-            continue;
-        }
-        // First fundamental form of the map from the plane to space: its eigenvalues are the squares of the singular values.
-        let [a, b, c] = t.map(|k| uv[k as usize]);
-        let (g, h) = (b - a, c - a);
-        let det = g.perp_dot(h);
-        let (x_u, x_v) = ((e * h.y - f * g.y) / det, (f * g.x - e * h.x) / det);
-        let (uu, uv, vv) = (x_u.length_squared(), x_u.dot(x_v), x_v.length_squared());
-        let (mean, radius) = (0.5 * (uu + vv), (0.25 * (uu - vv) * (uu - vv) + uv * uv).sqrt());
-        let product = (area / det).abs();
-        // The smaller eigenvalue by the product: the difference would lose it.
-        let ratio = (mean + radius) / product;
-        shape = shape.max(if ratio.is_finite() { ratio } else { f64::INFINITY });
-        (least, most) = (least.min(product), most.max(product));
-    }
-    let area = if most > 0.0 { most / least } else { 1.0 };
-    Stretch { shape, area: if area.is_finite() { area } else { f64::INFINITY } }
 }

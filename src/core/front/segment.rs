@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::sector::Side;
-use crate::core::convert::parameters::{Parameters, Selection, SelectionWindow};
+use crate::core::case::parameters::{Parameters, Selection, SelectionWindow};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 

@@ -9,10 +9,10 @@ use std::collections::BinaryHeap;
 use smallvec::SmallVec;
 
 use super::segment::{Key, Segment};
-use crate::core::convert::parameters::{Parameters, Selection};
-use crate::core::journal::{Entry, Mark};
+use crate::core::case::parameters::{Parameters, Selection};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::journal::{Entry, Mark};
 
 /// A segment that waits to be chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -5,10 +5,11 @@ use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use rustc_hash::FxHashMap;
 
-use super::curve::Curve;
-use super::domain::{CurveId, CurveKind, CurveSpec, DomainCurve, FaceSpec};
-use super::place::told;
+use super::course::Course;
+use super::domain_curve::{CurveId, CurveKind, DomainCurve};
+use super::spec::{CurveSpec, FaceSpec};
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::told;
 
 /// How messages call a loop of a face: its single curve where it has one, else its number.
 pub fn loop_name(spec: &FaceSpec, i: usize) -> String {
@@ -106,7 +107,7 @@ pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCur
         let internal = (kind != CurveKind::Boundary).then_some(face);
         curves.push(DomainCurve {
             name: spec.name.clone(),
-            curve: Curve::new(&spec.shape).map_err(named)?,
+            curve: Course::of_shape(&spec.shape).map_err(named)?,
             segments: spec.segments,
             place: spec.place.clone(),
             ends: [0; 2],

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::surface::{EDGES, Edge, NurbsSurface, SurfacePoint};
-use crate::core::metric::tensor::Metric2;
+use crate::core::kernel::tensor::Metric2;
 
 /// A whole turn that misses 360 true degrees by less than this (radians) is a disc.
 const ROUND: f64 = 1e-6;
@@ -463,7 +463,8 @@ pub fn singular_edges(surface: &NurbsSurface) -> Vec<Edge> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::geometry::primitive::{Frame, cone, sphere, torus};
+    use crate::core::geometry::frame::Frame;
+    use crate::core::geometry::primitive::{cone, sphere, torus};
     use crate::core::geometry::surface::NurbsSurface;
 
     fn frame() -> Frame {

@@ -13,85 +13,20 @@ use rustc_hash::FxHashMap;
 use super::assembly::{join_ends, join_equal_ends, loop_name, placed};
 use super::atlas::Atlas;
 use super::chart::{Chart, singular_edges};
-use super::curve::Curve;
-use super::domain::{Borders, CurveId, CurveKind, DirectedCurve, Domain, DomainCurve, Extent, FaceSpec, Spatial};
+use super::course::Course;
+use super::domain::{Borders, Domain, Extent, Spatial};
+use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 use super::ground::Ground;
-use super::image::Image;
 use super::lifting::{Lift, Piece};
-use super::primitive::SurfaceShape;
-use super::space_curve::{SpaceCurve, SpaceShape, told_xyz};
+use super::named_curve::NamedCurve;
+use super::space_curve::{SpaceCurve, told_xyz};
+use super::spec::{ComplexSpec, FaceSpec, SurfaceFaceSpec};
 use super::surface::{Edge, NurbsSurface};
-use super::whole_surface::whole;
+use super::whole_surface::{FacePart, whole};
 use crate::core::fault::Fault;
 
 /// Ends of curves in space nearer than this part of the size of all are one vertex.
 const SAME_VERTEX: f64 = 1e-9;
-
-/// A surface of a case.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SurfaceSpec {
-    /// Its name.
-    pub name: String,
-    /// Its shape.
-    pub shape: SurfaceShape,
-    /// Where it stands, for messages.
-    pub place: String,
-}
-
-/// A curve of a case with surfaces.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpaceCurveSpec {
-    /// Its name.
-    pub name: String,
-    /// Its shape.
-    pub shape: SpaceShape,
-    /// Number of segments where the case fixes it.
-    pub segments: Option<u32>,
-    /// Where it stands, for messages.
-    pub place: String,
-}
-
-/// A face of a case with surfaces; without an outer loop it is all of its surface, but for the holes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SurfaceFaceSpec {
-    /// Its surface.
-    pub surface: String,
-    /// Its name and its curves.
-    pub face: FaceSpec,
-}
-
-/// What [`build`] makes a domain of.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ComplexSpec {
-    /// All surfaces.
-    pub surfaces: Vec<SurfaceSpec>,
-    /// All curves.
-    pub curves: Vec<SpaceCurveSpec>,
-    /// All faces, at least one.
-    pub faces: Vec<SurfaceFaceSpec>,
-}
-
-/// A named curve in space.
-pub(in crate::core) struct Named {
-    pub name: String,
-    pub curve: Arc<SpaceCurve>,
-    pub segments: Option<u32>,
-    pub place: String,
-    /// Vertices in space at its start and end.
-    pub ends: [u32; 2],
-}
-
-/// A face, or a part of one that is too much for one chart.
-pub(super) struct Part {
-    pub spec: FaceSpec,
-    pub surface: Arc<NurbsSurface>,
-    /// The singular edge about which its chart is to be drawn; `None`: that is to be found.
-    pub about: Option<Edge>,
-    /// Whether it is the surface as a whole: the outer loop is the surface's own edge.
-    pub whole: bool,
-    /// Of one of two halves between poles: the axis between them, and the range of this half along it.
-    pub half: Option<(usize, [f64; 2])>,
-}
 
 /// Builds the domain of faces on surfaces. Faces stand in it by name.
 ///
@@ -101,7 +36,7 @@ pub(super) struct Part {
 pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
     let surfaces = surfaces(spec)?;
     let find = |name: &str| surfaces.iter().find(|(known, _)| known == name).map(|(_, s)| Arc::clone(s));
-    let mut curves: Vec<Named> = Vec::new();
+    let mut curves: Vec<NamedCurve> = Vec::new();
     for given in &spec.curves {
         if curves.iter().any(|c| c.name == given.name) {
             let fault = Fault::new(format!("There are two curves \"{}\"", given.name)).remedy("Rename one of them");
@@ -109,7 +44,7 @@ pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
         }
         let curve = SpaceCurve::new(&given.shape, &find)
             .map_err(|fault| placed(fault.at(format!("curve \"{}\"", given.name)), &given.place))?;
-        curves.push(Named {
+        curves.push(NamedCurve {
             name: given.name.clone(),
             curve: Arc::new(curve),
             segments: given.segments,
@@ -135,7 +70,7 @@ pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
         if face.face.outer.is_empty() {
             whole(&face.face, &surface, &mut curves, &mut parts);
         } else {
-            parts.push(Part { spec: face.face.clone(), surface, about: None, whole: false, half: None });
+            parts.push(FacePart { spec: face.face.clone(), surface, about: None, whole: false, half: None });
         }
     }
     let vertices = join_in_space(&mut curves);
@@ -170,7 +105,7 @@ fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Faul
 }
 
 /// Joins ends of curves in space into vertices; ends that were given as numbers come first, theirs is the place.
-fn join_in_space(curves: &mut [Named]) -> Vec<DVec3> {
+fn join_in_space(curves: &mut [NamedCurve]) -> Vec<DVec3> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for p in curves.iter().flat_map(|c| c.curve.polyline()) {
         (low, high) = (low.min(p), high.max(p));
@@ -220,7 +155,7 @@ pub(in crate::core) struct Lifted {
 }
 
 /// Finds the chart of a face and the images of its curves there.
-fn lift(part: &Part, curves: &[Named]) -> Result<Lifted, Fault> {
+fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
     let spec = &part.spec;
     let find = |name: &String| {
         curves.iter().position(|c| c.name == *name).ok_or_else(|| {
@@ -278,7 +213,7 @@ fn lift(part: &Part, curves: &[Named]) -> Result<Lifted, Fault> {
 
 /// Charts in which a face with these outer curves may lie: about the singular point that is nearest to them, then the
 /// others; the parametric plane where there is none, or last.
-fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[Named]) -> Vec<Chart> {
+fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[NamedCurve]) -> Vec<Chart> {
     let points: Vec<DVec3> = outer.iter().flat_map(|&c| curves[c].curve.polyline()).collect();
     let domain = surface.domain();
     let mut edges: Vec<(f64, Edge)> = singular_edges(surface)
@@ -297,7 +232,7 @@ fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[Named]) ->
 }
 
 /// Where a whole surface was divided between its poles, each hole and line belongs to the half in which it lies.
-fn keep_own(part: &mut Part, curves: &[Named]) -> Result<(), Fault> {
+fn keep_own(part: &mut FacePart, curves: &[NamedCurve]) -> Result<(), Fault> {
     let Some((axis, [first, last])) = part.half else { return Ok(()) };
     let chart = Chart::sheet(Arc::clone(&part.surface));
     let margin = 1e-9 * (last - first);
@@ -333,7 +268,7 @@ type Placed = (usize, usize, Option<(usize, usize)>, CurveKind, Piece);
 
 /// Puts the lifted faces side by side and makes the domain of them.
 pub(in crate::core) fn assemble(
-    curves: &[Named],
+    curves: &[NamedCurve],
     vertices: &[DVec3],
     specs: &[FaceSpec],
     lifts: Vec<Lifted>,
@@ -377,7 +312,7 @@ pub(in crate::core) fn assemble(
         let internal = (kind != CurveKind::Boundary).then_some(f as u32);
         domain_curves.push(DomainCurve {
             name: named.name.clone(),
-            curve: Curve::of_image(image),
+            curve: Course::of_image(image),
             segments: named.segments,
             place: named.place.clone(),
             ends: [0; 2],
@@ -430,26 +365,4 @@ pub(in crate::core) fn assemble(
         polylines: curves.iter().map(|c| (c.name.clone(), c.curve.polyline())).collect(),
     }));
     Ok(domain)
-}
-
-/// An image of a curve in a chart on some sheet; see [`Lift`].
-pub(super) fn image_on(chart: &Arc<Chart>, named: &Named, move_by: DVec2, face: &str) -> Result<Image, Fault> {
-    if let Some((surface, trim)) = named.curve.trim()
-        && Arc::ptr_eq(surface, chart.surface())
-    {
-        return Ok(Image::of_trim(chart, &named.curve, trim, move_by));
-    }
-    let (start, off) = chart.locate(named.curve.point(0.0));
-    let refuse = |distance: f64, at: DVec3| {
-        let what = format!("The curve \"{}\" does not lie on the surface of the face \"{face}\"", named.name);
-        let fault = Fault::new(format!("{what}: it is {} away", super::place::number(distance)))
-            .at(format!("at {}", told_xyz(at)))
-            .remedy("Mend the curve, or name another one");
-        placed(fault, &named.place)
-    };
-    if off > super::image::ON_SURFACE * chart.surface().size() {
-        return Err(refuse(off, named.curve.point(0.0)));
-    }
-    let guess = if move_by == DVec2::ZERO { start } else { chart.of_uv(chart.uv(start) + move_by) };
-    Image::projected(chart, &named.curve, guess).map_err(|off| refuse(off.distance, off.at))
 }

@@ -5,11 +5,11 @@ use glam::DVec2;
 use rstar::RTree;
 
 use super::curve::distance_to_segment;
-use super::domain::{CurveId, DomainCurve};
+use super::domain_curve::{CurveId, DomainCurve};
 use super::inside::Chord;
-use super::place::told;
-use super::predicates::orient;
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::told;
+use crate::core::kernel::predicates::orient;
 
 /// What judges: lengths below `tolerance` are nothing; two curves may run closer than that only within `near` of a vertex
 /// that they share (they may be tangent there).

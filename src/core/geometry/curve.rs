@@ -1,16 +1,13 @@
-//! Planar curves: segment, circular arc, polyline, NURBS, and images of curves in space, all with a parameter in [0, 1].
+//! Planar curves: segment, circular arc, polyline, NURBS, all with a parameter in [0, 1].
 //!
 //! Deliberately absent: names, and which curves meet where (see `domain`).
 
-use std::sync::Arc;
-
 use glam::DVec2;
 
-use super::domain::CurveShape;
-use super::image::Image;
 use super::nurbs::NurbsCurve;
-use super::place::{number, told};
+use super::spec::CurveShape;
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::{number, told};
 
 /// Coordinates beyond this are refused, so that no square of one overflows.
 const LARGEST: f64 = 1e100;
@@ -40,20 +37,6 @@ enum Path {
         points: Vec<DVec2>,
     },
     Nurbs(NurbsCurve),
-    Image(Pictured),
-}
-
-/// The image of a curve in space in a face's chart; two are equal where they are the same one.
-#[derive(Clone, Debug)]
-struct Pictured {
-    image: Arc<Image>,
-    breaks: Vec<f64>,
-}
-
-impl PartialEq for Pictured {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.image, &other.image)
-    }
 }
 
 impl Curve {
@@ -138,14 +121,6 @@ impl Curve {
         Ok(curve)
     }
 
-    /// The image of a curve in space in a face's chart.
-    pub fn of_image(image: Arc<Image>) -> Curve {
-        let (corners, breaks) = (image.curve().corners(), image.curve().breaks());
-        let mut curve = Curve { path: Path::Image(Pictured { image, breaks }), closed: false, corners };
-        curve.closed = curve.start() == curve.end();
-        curve
-    }
-
     /// The point at `t` in [0, 1].
     pub fn point(&self, t: f64) -> DVec2 {
         match &self.path {
@@ -160,7 +135,6 @@ impl Curve {
                 lerp(points[i], points[i + 1], s)
             }
             Path::Nurbs(nurbs) => nurbs.at(knot_parameter(nurbs, t)).0,
-            Path::Image(pictured) => pictured.image.point(t),
         }
     }
 
@@ -180,7 +154,6 @@ impl Curve {
                 let (first, last) = nurbs.basis().domain();
                 (last - first) * nurbs.at(knot_parameter(nurbs, t)).1
             }
-            Path::Image(pictured) => pictured.image.at(t).1,
         }
     }
 
@@ -192,7 +165,6 @@ impl Curve {
                 let (p, d) = nurbs.at(knot_parameter(nurbs, t));
                 (p, (last - first) * d)
             }
-            Path::Image(pictured) => pictured.image.at(t),
             _ => (self.point(t), self.derivative(t)),
         }
     }
@@ -218,13 +190,7 @@ impl Curve {
             Path::Segment { .. } | Path::Polyline { .. } => true,
             Path::Arc { .. } => false,
             Path::Nurbs(nurbs) => nurbs.basis().degree() == 1,
-            Path::Image(pictured) => pictured.image.straight(),
         }
-    }
-
-    /// Whether it is an image that runs straight from one of its breaks to the next.
-    pub fn polygonal(&self) -> bool {
-        matches!(&self.path, Path::Image(pictured) if pictured.image.polygonal())
     }
 
     /// Whether its ends are numbers that were given, and not computed.
@@ -249,19 +215,9 @@ impl Curve {
                 breaks.retain(|&t| t < 1.0);
                 breaks.dedup();
             }
-            Path::Image(pictured) => return pictured.breaks.clone(),
         }
         breaks.push(1.0);
         breaks
-    }
-
-    /// Lower and upper corner of its bounding box, to a millionth of its size.
-    pub fn bounds(&self) -> (DVec2, DVec2) {
-        let (low, high) = self.hull();
-        let tolerance = 1e-6 * (high - low).max_element();
-        self.polyline(tolerance)
-            .iter()
-            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, p)| (low.min(*p), high.max(*p)))
     }
 
     /// Points of the curve with their parameters, from 0 to 1, so dense that the chords are about `tolerance` from the
@@ -278,57 +234,19 @@ impl Curve {
                 let n = (turn.abs() / step).ceil().max(1.0);
                 (0..=n as usize).map(|i| i as f64 / n).map(|t| (t, self.point(t))).collect()
             }
-            Path::Image(pictured) if pictured.image.straight() || pictured.image.polygonal() => {
-                pictured.breaks.iter().map(|&t| (t, self.point(t))).collect()
+            Path::Nurbs(nurbs) => {
+                chords(&|t| self.point(t), &self.breaks(), nurbs.basis().degree(), self.hull(), tolerance)
             }
-            Path::Nurbs(_) | Path::Image(_) => {
-                let degree = if let Path::Nurbs(nurbs) = &self.path { nurbs.basis().degree() } else { 4 };
-                let (low, high) = self.hull();
-                let tolerance = tolerance.max(1e-9 * (high - low).max_element());
-                let breaks = self.breaks();
-                let mut points = vec![(0.0, self.point(0.0))];
-                for w in breaks.windows(2) {
-                    let parts = if degree == 1 { 1 } else { 2 * degree.min(16) };
-                    for i in 1..=parts {
-                        let t = if i == parts { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / parts as f64 };
-                        let before = points[points.len() - 1];
-                        self.refine(
-                            before,
-                            (t, self.point(t)),
-                            tolerance,
-                            if degree == 1 { 0 } else { 11 },
-                            &mut points,
-                        );
-                    }
-                }
-                points
-            }
-        }
-    }
-
-    /// Appends points after `a` up to and with `b`, halving while the curve leaves the chord by more than `tolerance`.
-    fn refine(&self, a: (f64, DVec2), b: (f64, DVec2), tolerance: f64, depth: u32, points: &mut Vec<(f64, DVec2)>) {
-        let at = |s: f64| a.0 + (b.0 - a.0) * s;
-        let middle = (at(0.5), self.point(at(0.5)));
-        let off = [self.point(at(0.25)), middle.1, self.point(at(0.75))]
-            .iter()
-            .any(|p| distance_to_segment(*p, a.1, b.1) > tolerance);
-        if depth == 0 || !off || middle.0 <= a.0 || middle.0 >= b.0 {
-            points.push(b);
-        } else {
-            self.refine(a, middle, tolerance, depth - 1, points);
-            self.refine(middle, b, tolerance, depth - 1, points);
         }
     }
 
     /// A box that holds the curve, not always the smallest.
-    fn hull(&self) -> (DVec2, DVec2) {
+    pub(super) fn hull(&self) -> (DVec2, DVec2) {
         match &self.path {
             Path::Segment { from, to } => (from.min(*to), from.max(*to)),
             Path::Arc { centre, radius, .. } => (*centre - DVec2::splat(*radius), *centre + DVec2::splat(*radius)),
             Path::Polyline { points } => extent(points.iter().copied()),
             Path::Nurbs(nurbs) => extent(nurbs.control_points()),
-            Path::Image(pictured) => extent(pictured.image.places()),
         }
     }
 
@@ -354,9 +272,50 @@ impl Curve {
                 };
                 knots.iter().filter(sharp).map(|(k, _)| (k - first) / (last - first)).collect()
             }
-            // Those of the curve in space.
-            Path::Image(_) => self.corners.clone(),
         }
+    }
+}
+
+/// Points of a smooth curve with their parameters, from 0 to 1, so dense that the chords are about `tolerance` from it: all
+/// breaks are among them. A curve of degree 1 is straight between them. `hull` is a box that holds the curve.
+pub(super) fn chords(
+    point: &dyn Fn(f64) -> DVec2,
+    breaks: &[f64],
+    degree: usize,
+    (low, high): (DVec2, DVec2),
+    tolerance: f64,
+) -> Vec<(f64, DVec2)> {
+    let tolerance = tolerance.max(1e-9 * (high - low).max_element());
+    let mut points = vec![(0.0, point(0.0))];
+    for w in breaks.windows(2) {
+        let parts = if degree == 1 { 1 } else { 2 * degree.min(16) };
+        for i in 1..=parts {
+            let t = if i == parts { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / parts as f64 };
+            let before = points[points.len() - 1];
+            refine(point, before, (t, point(t)), tolerance, if degree == 1 { 0 } else { 11 }, &mut points);
+        }
+    }
+    points
+}
+
+/// Appends points after `a` up to and with `b`, halving while the curve leaves the chord by more than `tolerance`.
+fn refine(
+    point: &dyn Fn(f64) -> DVec2,
+    a: (f64, DVec2),
+    b: (f64, DVec2),
+    tolerance: f64,
+    depth: u32,
+    points: &mut Vec<(f64, DVec2)>,
+) {
+    let at = |s: f64| a.0 + (b.0 - a.0) * s;
+    let middle = (at(0.5), point(at(0.5)));
+    let off =
+        [point(at(0.25)), middle.1, point(at(0.75))].iter().any(|p| distance_to_segment(*p, a.1, b.1) > tolerance);
+    if depth == 0 || !off || middle.0 <= a.0 || middle.0 >= b.0 {
+        points.push(b);
+    } else {
+        refine(point, a, middle, tolerance, depth - 1, points);
+        refine(point, middle, b, tolerance, depth - 1, points);
     }
 }
 
@@ -390,7 +349,7 @@ fn knot_parameter(nurbs: &NurbsCurve, t: f64) -> f64 {
     if t >= 1.0 { last } else { (first + t * (last - first)).min(last) }
 }
 
-fn extent(points: impl Iterator<Item = DVec2>) -> (DVec2, DVec2) {
+pub(super) fn extent(points: impl Iterator<Item = DVec2>) -> (DVec2, DVec2) {
     points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
@@ -403,6 +362,7 @@ fn sound(points: &[DVec2]) -> Result<(), Fault> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::course::Course;
     use super::*;
     use std::f64::consts::{PI, TAU};
 
@@ -428,7 +388,7 @@ mod tests {
         let circle = arc(DVec2::new(3.0, 4.0), 0.5, 1.0, 1.0 + TAU).unwrap();
         assert!(circle.closed());
         assert_eq!(circle.start(), circle.end());
-        let (low, high) = circle.bounds();
+        let (low, high) = Course::Plane(circle.clone()).bounds();
         assert!((low - DVec2::new(2.5, 3.5)).length() < 1e-5 && (high - DVec2::new(3.5, 4.5)).length() < 1e-5);
         assert!(!arc(DVec2::ZERO, 1.0, 0.0, PI).unwrap().closed());
     }

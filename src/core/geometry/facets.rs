@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use super::chart::ChartPoint;
 use crate::core::fault::Fault;
-use crate::core::metric::plane_triangles::PlaneTriangles;
+use crate::core::kernel::plane_triangles::PlaneTriangles;
 
 /// Triangles in the plane and in space.
 #[derive(Clone, Debug)]

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::domain::{CurveShape, CurveSpec, Domain, FaceSpec};
+use super::domain::Domain;
+use super::spec::{CurveShape, CurveSpec, FaceSpec};
 
 /// Curves and faces of a case.
 pub type Specs = (Vec<CurveSpec>, Vec<FaceSpec>);

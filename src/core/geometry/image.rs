@@ -22,7 +22,7 @@ const TABLE: usize = 48;
 pub struct Image {
     ground: Ground,
     curve: Arc<SpaceCurve>,
-    course: Course,
+    placing: Placing,
     /// Added to the chart's own coordinates: where the chart lies in the plane of all, and on which sheet of a closed surface.
     pub shift: DVec2,
     straight: bool,
@@ -30,8 +30,9 @@ pub struct Image {
     table: Vec<(f64, DVec2)>,
 }
 
+/// How the place of a parameter is found.
 #[derive(Clone, Debug)]
-enum Course {
+enum Placing {
     /// It is given in u and v, which are moved by whole periods.
     Trim { chart: Arc<Chart>, trim: Box<Curve>, move_by: DVec2 },
     /// Each point is sought on the surface, from the table.
@@ -56,7 +57,7 @@ impl Image {
             ground: Ground::Chart(Arc::clone(chart)),
             curve: Arc::clone(curve),
             straight: chart.keeps_lines() && trim.straight(),
-            course: Course::Trim { chart: Arc::clone(chart), trim: Box::new(trim.clone()), move_by },
+            placing: Placing::Trim { chart: Arc::clone(chart), trim: Box::new(trim.clone()), move_by },
             shift: DVec2::ZERO,
             table: Vec::new(),
         };
@@ -97,7 +98,7 @@ impl Image {
         Ok(Image {
             ground: Ground::Chart(Arc::clone(chart)),
             curve: Arc::clone(curve),
-            course: Course::Projected(Arc::clone(chart)),
+            placing: Placing::Projected(Arc::clone(chart)),
             shift: DVec2::ZERO,
             straight: false,
             table,
@@ -110,7 +111,7 @@ impl Image {
         Image {
             ground: Ground::Facets(Arc::clone(facets)),
             curve: Arc::clone(curve),
-            course: Course::Straight,
+            placing: Placing::Straight,
             shift: DVec2::ZERO,
             straight: false,
             table: places.iter().enumerate().map(|(k, &p)| (k as f64 / last, p)).collect(),
@@ -131,14 +132,14 @@ impl Image {
 
     /// The place at `t`.
     pub fn point(&self, t: f64) -> DVec2 {
-        let own = match &self.course {
-            Course::Trim { chart, trim, move_by } => chart.of_uv(trim.point(t) + *move_by),
-            course => {
+        let own = match &self.placing {
+            Placing::Trim { chart, trim, move_by } => chart.of_uv(trim.point(t) + *move_by),
+            placing => {
                 let k = self.table.partition_point(|entry| entry.0 <= t).clamp(1, self.table.len() - 1);
                 let (a, b) = (self.table[k - 1], self.table[k]);
                 let guess = lerp(a.1, b.1, (t - a.0) / (b.0 - a.0));
-                match course {
-                    Course::Projected(chart) => chart.project(self.curve.point(t), guess).0,
+                match placing {
+                    Placing::Projected(chart) => chart.project(self.curve.point(t), guess).0,
                     _ => guess,
                 }
             }
@@ -159,7 +160,7 @@ impl Image {
 
     /// Whether it runs straight from one place of its table to the next.
     pub fn polygonal(&self) -> bool {
-        matches!(self.course, Course::Straight)
+        matches!(self.placing, Placing::Straight)
     }
 
     /// Its places at the points of the table.
@@ -169,10 +170,10 @@ impl Image {
 
     /// u and v of its surface at the points of the table.
     pub fn uvs(&self) -> impl Iterator<Item = DVec2> + '_ {
-        self.table.iter().map(|entry| match &self.course {
-            Course::Trim { trim, move_by, .. } => trim.point(entry.0) + *move_by,
-            Course::Projected(chart) => chart.uv(entry.1),
-            Course::Straight => entry.1,
+        self.table.iter().map(|entry| match &self.placing {
+            Placing::Trim { trim, move_by, .. } => trim.point(entry.0) + *move_by,
+            Placing::Projected(chart) => chart.uv(entry.1),
+            Placing::Straight => entry.1,
         })
     }
 }

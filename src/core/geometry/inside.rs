@@ -5,8 +5,8 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use smallvec::SmallVec;
 
-use super::domain::{CurveId, DomainCurve};
-use super::predicates::orient;
+use super::domain_curve::{CurveId, DomainCurve};
+use crate::core::kernel::predicates::orient;
 
 /// A chord of a curve's fine polyline: the curve and the number of the chord.
 pub type Chord = GeomWithData<Rectangle<[f64; 2]>, (CurveId, u32)>;

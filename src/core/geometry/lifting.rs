@@ -7,9 +7,9 @@ use glam::DVec2;
 use rustc_hash::FxHashMap;
 
 use super::chart::Chart;
-use super::complex::{Named, image_on};
 use super::image::Image;
-use super::space_curve::told_uv;
+use super::named_curve::{NamedCurve, image_on};
+use super::space_curve::{told_uv, told_xyz};
 use crate::core::fault::Fault;
 
 /// Ends of images nearer than this part of the surface's size meet.
@@ -32,7 +32,7 @@ pub struct Piece {
 /// Images of curves in one chart.
 pub(super) struct Lift<'a> {
     chart: &'a Arc<Chart>,
-    curves: &'a [Named],
+    curves: &'a [NamedCurve],
     face: &'a str,
     /// By curve and sheet.
     images: FxHashMap<(usize, usize), Result<Image, Fault>>,
@@ -52,7 +52,7 @@ struct Chain<'a> {
 }
 
 impl<'a> Lift<'a> {
-    pub fn new(chart: &'a Arc<Chart>, curves: &'a [Named], face: &'a str) -> Lift<'a> {
+    pub fn new(chart: &'a Arc<Chart>, curves: &'a [NamedCurve], face: &'a str) -> Lift<'a> {
         let surface = chart.surface();
         let period = [0, 1].map(|axis| surface.period(axis));
         let mut moves = vec![DVec2::ZERO];
@@ -165,7 +165,7 @@ impl<'a> Lift<'a> {
         let names: Vec<String> = list.iter().map(|c| format!("\"{}\"", self.curves[*c].name)).collect();
         let fault =
             Fault::new(format!("The {what} does not close on its surface: no chain of all of {}", names.join(", ")))
-                .at(format!("it breaks off at {} ({})", super::space_curve::told_xyz(on), told_uv(uv)));
+                .at(format!("it breaks off at {} ({})", told_xyz(on), told_uv(uv)));
         Err(fault.remedy(if self.moves.len() > 1 {
             "Let the ends meet; a loop that goes round a closed surface needs a seam, which it names twice"
         } else {

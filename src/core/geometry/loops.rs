@@ -3,10 +3,10 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use super::domain::{CurveId, CurveKind, DirectedCurve, DomainCurve};
-use super::place::{number, told};
-use super::predicates::orient;
+use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::{number, told};
+use crate::core::kernel::predicates::orient;
 
 /// Chains curves, given in any order and direction, into one closed loop that begins with the first of them.
 ///

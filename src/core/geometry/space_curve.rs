@@ -6,60 +6,16 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::curve::{Curve, piece};
-use super::domain::CurveShape;
+use super::frame::{Frame, sin_cos};
 use super::nurbs::NurbsCurve;
-use super::primitive::{Frame, arc, sin_cos};
+use super::primitive::arc;
+use super::spec::SpaceShape;
 use super::surface::NurbsSurface;
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::number;
 
 /// Coordinates beyond this are refused, so that no square of one overflows.
 const LARGEST: f64 = 1e100;
-
-/// The shape of a curve as a case with surfaces gives it; angles in degrees.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SpaceShape {
-    /// A straight line.
-    Segment {
-        /// Start.
-        from: DVec3,
-        /// End.
-        to: DVec3,
-    },
-    /// A circular arc about an axis; a full turn makes a closed curve.
-    Arc {
-        /// Centre, axis, and where the angle is 0.
-        frame: Frame,
-        /// Radius, positive.
-        radius: f64,
-        /// Angles of start and end.
-        angles: [f64; 2],
-    },
-    /// Straight lines through points, whose corners are kept as nodes.
-    Polyline {
-        /// Corners.
-        points: Vec<DVec3>,
-        /// Whether the last corner is joined to the first.
-        closed: bool,
-    },
-    /// A rational B-spline.
-    Nurbs {
-        /// Degree.
-        degree: usize,
-        /// Knots.
-        knots: Vec<f64>,
-        /// Positive weights, one a point; empty means all 1.
-        weights: Vec<f64>,
-        /// Control points.
-        points: Vec<DVec3>,
-    },
-    /// A curve in the parametric plane of a surface.
-    On {
-        /// Name of the surface.
-        surface: String,
-        /// Its course in u and v.
-        shape: CurveShape,
-    },
-}
 
 /// A curve that has been checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -346,11 +302,11 @@ fn sound(points: &[DVec3]) -> Result<(), Fault> {
 
 /// A point of the parametric plane as messages show it.
 pub fn told_uv(uv: DVec2) -> String {
-    format!("u = {}, v = {}", super::place::number(uv.x), super::place::number(uv.y))
+    format!("u = {}, v = {}", number(uv.x), number(uv.y))
 }
 
 /// A point of space as messages show it.
 pub fn told_xyz(p: DVec3) -> String {
-    let [x, y, z] = [p.x, p.y, p.z].map(super::place::number);
+    let [x, y, z] = [p.x, p.y, p.z].map(number);
     format!("({x}, {y}, {z})")
 }

@@ -5,15 +5,27 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::chart::{Chart, singular_edges};
-use super::complex::{Named, Part};
 use super::curve::Curve;
-use super::domain::{CurveShape, FaceSpec};
+use super::named_curve::NamedCurve;
 use super::space_curve::SpaceCurve;
+use super::spec::{CurveShape, FaceSpec};
 use super::surface::{EDGES, Edge, NurbsSurface};
 
 /// What the names of the parts of a face end in that is divided between its poles.
 const LOWER_HALF: &str = ", lower half";
 const UPPER_HALF: &str = ", upper half";
+
+/// A face, or a part of one that is too much for one chart.
+pub(super) struct FacePart {
+    pub spec: FaceSpec,
+    pub surface: Arc<NurbsSurface>,
+    /// The singular edge about which its chart is to be drawn; `None`: that is to be found.
+    pub about: Option<Edge>,
+    /// Whether it is the surface as a whole: the outer loop is the surface's own edge.
+    pub whole: bool,
+    /// Of one of two halves between poles: the axis between them, and the range of this half along it.
+    pub half: Option<(usize, [f64; 2])>,
+}
 
 /// A part of a surface: the ranges of u and v, what its name ends in, and about which singular edge its chart is drawn.
 type Covered = ([[f64; 2]; 2], &'static str, Option<Edge>);
@@ -21,14 +33,19 @@ type Covered = ([[f64; 2]; 2], &'static str, Option<Edge>);
 /// The whole of a surface as a face: its own edges as curves (called "face: v0" and so on by the edge's parameter), seams
 /// twice in the loop. Between two poles it is divided in the middle; from an apex that is no pole run two more lines besides the
 /// seam, since fewer than three edges at a node inside a mesh are too few.
-pub(super) fn whole(face: &FaceSpec, surface: &Arc<NurbsSurface>, curves: &mut Vec<Named>, parts: &mut Vec<Part>) {
+pub(super) fn whole(
+    face: &FaceSpec,
+    surface: &Arc<NurbsSurface>,
+    curves: &mut Vec<NamedCurve>,
+    parts: &mut Vec<FacePart>,
+) {
     let domain = surface.domain();
     let (closed, degenerate) = (surface.closed(), surface.degenerate());
     let mut add = |name: String, from: DVec2, to: DVec2| {
         let name = format!("{}: {name}", face.name);
         if !curves.iter().any(|c| c.name == name) {
             let trim = Curve::new(&CurveShape::Segment { from, to }).expect("an edge has a length");
-            curves.push(Named {
+            curves.push(NamedCurve {
                 name: name.clone(),
                 curve: Arc::new(SpaceCurve::on(Arc::clone(surface), trim)),
                 segments: None,
@@ -98,7 +115,7 @@ pub(super) fn whole(face: &FaceSpec, surface: &Arc<NurbsSurface>, curves: &mut V
                 spec.repeated.push(add(format!("{} {third}/3{suffix}", ["u", "v"][1 - axis]), from, to));
             }
         }
-        parts.push(Part {
+        parts.push(FacePart {
             spec,
             surface: Arc::clone(surface),
             about,

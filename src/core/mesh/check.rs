@@ -2,7 +2,7 @@
 
 use super::half_edge::Mesh;
 use super::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::geometry::predicates::{convex, positive};
+use crate::core::kernel::predicates::{convex, positive};
 
 impl Mesh {
     /// Checks the whole mesh: twins, walks, anchors, free lists, repeated nodes, exact positivity, metrics.

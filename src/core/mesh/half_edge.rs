@@ -12,7 +12,9 @@ mod difference;
 mod faces;
 mod ground;
 mod setters;
+mod permission;
 mod taking_back;
+pub mod touched;
 
 pub use difference::{Difference, FreeLists};
 pub use faces::Part;
@@ -26,8 +28,8 @@ use glam::DVec2;
 use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
 use super::refusals::Refusals;
 use super::triangle_set::TriangleSet;
-use crate::core::journal::Journal;
-use crate::core::metric::tensor::Metric2;
+use crate::core::kernel::tensor::Metric2;
+use crate::core::mesh::journal::Journal;
 
 /// Absence in the arrays; outside of them absence is `Option`.
 const NONE: u32 = u32::MAX;
@@ -420,7 +422,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::journal::Mark;
+    use crate::core::mesh::journal::Mark;
 
     #[test]
     fn a_mesh_put_in_order_records_where_it_did_before() {

@@ -9,31 +9,9 @@ use smallvec::SmallVec;
 
 use super::half_edge::{Mesh, NewElement};
 use super::ids::{ElementId, HalfEdgeId, NodeId};
-use super::refusals::Operation;
-use crate::core::geometry::predicates::{convex, firm};
-use crate::core::metric::tensor::Metric2;
-
-/// Why an operation cannot be done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
-    /// The edge lies on a boundary.
-    OnBoundary,
-    /// The node is fixed.
-    FixedNode,
-    /// The operation is for triangles, and an element is none.
-    NotTriangles,
-    /// An element would be inverted, flat, or not convex.
-    NotPositive,
-    /// The ends have a common neighbour besides the two opposite nodes, or an element holds both: merging them would
-    /// glue what is apart.
-    Link,
-    /// The nodes of the new edge are joined already.
-    Joined,
-    /// The node has not three or four triangles around it.
-    Valence,
-    /// Nothing speaks against it, but a test wants it to fail; see [`Refusals`](super::refusals::Refusals).
-    Injected,
-}
+use super::refusals::{Operation, Refusal};
+use crate::core::kernel::predicates::{convex, firm};
+use crate::core::kernel::tensor::Metric2;
 
 impl Mesh {
     // ---- edge swapping (paper 4.2.1, fig. 5) ----

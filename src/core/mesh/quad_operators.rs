@@ -9,9 +9,9 @@ use smallvec::SmallVec;
 
 use super::half_edge::{Mesh, NewElement};
 use super::ids::{ElementId, HalfEdgeId, NodeId};
-use super::operators::Refusal;
 use super::refusals::Operation;
-use crate::core::metric::tensor::Metric2;
+use super::refusals::Refusal;
+use crate::core::kernel::tensor::Metric2;
 
 impl Mesh {
     /// Whether the node has more edges than the least that a structure allows: three inside, two on a boundary.

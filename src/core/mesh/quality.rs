@@ -5,8 +5,8 @@ use glam::DVec2;
 
 use super::half_edge::Mesh;
 use super::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::kernel::tensor::Metric2;
 use crate::core::metric::measure::{quad_quality, triangle_quality};
-use crate::core::metric::tensor::Metric2;
 
 /// Length of `d` over two metrics: the logarithmic mean of the lengths in each (spec 2.1), by the approximation
 /// (4 sqrt(la lb) + la + lb) / 6, which is within 0.2 % of it where one is up to four times the other and costs no

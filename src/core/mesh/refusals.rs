@@ -7,11 +7,27 @@
 //!
 //! The templates of the last resort ask nobody: the guarantee rests on them.
 
-use glam::DVec2;
-
-use super::half_edge::Mesh;
-use super::ids::{ElementId, NodeId};
-use super::operators::Refusal;
+/// Why an operation cannot be done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// The edge lies on a boundary.
+    OnBoundary,
+    /// The node is fixed.
+    FixedNode,
+    /// The operation is for triangles, and an element is none.
+    NotTriangles,
+    /// An element would be inverted, flat, or not convex.
+    NotPositive,
+    /// The ends have a common neighbour besides the two opposite nodes, or an element holds both: merging them would
+    /// glue what is apart.
+    Link,
+    /// The nodes of the new edge are joined already.
+    Joined,
+    /// The node has not three or four triangles around it.
+    Valence,
+    /// Nothing speaks against it, but a test wants it to fail; see [`Refusals`].
+    Injected,
+}
 
 /// What can be refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,7 +64,7 @@ pub enum Operation {
     Recut,
 }
 
-/// Which operations a mesh refuses, at random but always the same; see [`Mesh::set_refusals`].
+/// Which operations a mesh refuses, at random but always the same; see [`Mesh::set_refusals`](super::half_edge::Mesh::set_refusals).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refusals {
     seed: u64,
@@ -62,7 +78,7 @@ impl Refusals {
     }
 
     /// Whether the operation is refused at a place, which the words name.
-    fn refuses(&self, operation: Operation, place: impl IntoIterator<Item = u64>) -> bool {
+    pub(super) fn refuses(&self, operation: Operation, place: impl IntoIterator<Item = u64>) -> bool {
         // The mixing function of splitmix64, word by word.
         let mix = |hash: u64, word: u64| {
             let mut z = (hash ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -72,54 +88,6 @@ impl Refusals {
         };
         let hash = place.into_iter().fold(mix(self.seed, operation as u64), mix);
         ((hash >> 11) as f64) < self.share * (1_u64 << 53) as f64
-    }
-}
-
-impl Mesh {
-    /// Lets operations fail from now on as `refusals` says; `None`, as in every new mesh, lets all succeed that can. For
-    /// tests of what depends on operations that may fail.
-    pub fn set_refusals(&mut self, refusals: Option<Refusals>) {
-        self.refusals = refusals;
-    }
-
-    /// Asks whether an operation at some nodes may be done.
-    ///
-    /// # Errors
-    /// [`Refusal::Injected`], where refusals are set.
-    #[inline]
-    pub(in crate::core) fn permit(&self, operation: Operation, nodes: &[NodeId]) -> Result<(), Refusal> {
-        match &self.refusals {
-            None => Ok(()),
-            Some(refusals) => self.permit_by(refusals, operation, nodes),
-        }
-    }
-
-    #[cold]
-    fn permit_by(&self, refusals: &Refusals, operation: Operation, nodes: &[NodeId]) -> Result<(), Refusal> {
-        let words = nodes.iter().flat_map(|&n| [u64::from(n.0), self.uv(n).x.to_bits(), self.uv(n).y.to_bits()]);
-        if refusals.refuses(operation, words) { Err(Refusal::Injected) } else { Ok(()) }
-    }
-
-    /// Asks whether a node may move to `uv`.
-    ///
-    /// # Errors
-    /// [`Refusal::Injected`], where refusals are set.
-    #[inline]
-    pub(in crate::core) fn permit_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
-        match &self.refusals {
-            Some(refusals)
-                if refusals.refuses(Operation::Move, [u64::from(node.0), uv.x.to_bits(), uv.y.to_bits()]) =>
-            {
-                Err(Refusal::Injected)
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Whether an operation on two neighbouring triangles, in either order, may be done.
-    pub(in crate::core) fn permits_pair(&self, operation: Operation, [t, u]: [ElementId; 2]) -> bool {
-        let words = [t.min(u), t.max(u)].map(|e| u64::from(e.0));
-        !self.refusals.is_some_and(|refusals| refusals.refuses(operation, words))
     }
 }
 

@@ -3,10 +3,10 @@
 
 use glam::{DVec2, DVec3};
 
-use super::box_tree::{BoxTree, Spot, share_along};
-use super::tensor::{LARGEST_ANISOTROPY, Metric3};
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::Line;
+use crate::core::kernel::box_tree::{BoxTree, Spot, share_along};
+use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric3};
 
 /// The size of a field that asks for nothing, as a multiple of the extent of its curves. It matters only where no other
 /// field bounds the sizes.

@@ -3,9 +3,9 @@
 //! A chord of length h over an arc of radius rho is `eps rho` away from it where `h = 2 rho sqrt(eps (2 - eps))`. The two
 //! principal curvatures give the two sizes in their directions.
 
-use super::tensor::{LARGEST_ANISOTROPY, Metric3};
 use crate::core::fault::Fault;
 use crate::core::geometry::surface::Bend;
+use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric3};
 
 /// Sizes by principal curvatures.
 #[derive(Clone, Copy, Debug)]

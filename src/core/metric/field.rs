@@ -9,26 +9,13 @@ use glam::{DVec2, DVec3};
 
 use super::boundary_layer::{BoundaryLayer, Distance};
 use super::curvature::Curvature;
+use super::place::MetricPlace;
 use super::table::Table;
-use super::tensor::{LARGEST_ANISOTROPY, Metric2, Metric3, check_sizes};
 use crate::core::fault::Fault;
 use crate::core::geometry::atlas::Atlas;
 use crate::core::geometry::domain::Line;
-use crate::core::geometry::surface::Bend;
+use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric2, Metric3, check_sizes};
 use by_formula::FormulaField;
-
-/// A place where a metric is asked for: its point in space and its parametric coordinates (equal in the plane).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// Point in space.
-    pub xyz: DVec3,
-    /// Parametric coordinates of its surface.
-    pub uv: DVec2,
-    /// Where it lies in the plane in which it is meshed (in planar domains the same as `uv`).
-    pub chart: DVec2,
-    /// The curvature of the surface, where a field asks for it.
-    pub bend: Option<Bend>,
-}
 
 /// A field that yields no metric at some place: what is wrong and where.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +23,7 @@ pub struct BadMetric {
     /// What is wrong ("h1 = -0.02 is not positive").
     pub what: String,
     /// Where.
-    pub place: Place,
+    pub place: MetricPlace,
 }
 
 impl From<Box<BadMetric>> for Fault {
@@ -48,14 +35,6 @@ impl From<Box<BadMetric>> for Fault {
             format!("({}, {}, {}), u = {}, v = {}", p.x, p.y, p.z, uv.x, uv.y)
         };
         Fault::new(bad.what).at(place).remedy("The metric must be positive and finite on the whole domain")
-    }
-}
-
-impl Place {
-    /// A place in a planar domain, where the parametric coordinates are x and y.
-    #[inline]
-    pub fn in_plane(uv: DVec2) -> Place {
-        Place { xyz: uv.extend(0.0), uv, chart: uv, bend: None }
     }
 }
 
@@ -217,7 +196,7 @@ impl Field {
 
     /// The field's metric at a place, intersected with that of the fields before it.
     #[inline]
-    fn intersect(&self, others: Option<Metric3>, place: &Place) -> Result<Metric3, Box<BadMetric>> {
+    fn intersect(&self, others: Option<Metric3>, place: &MetricPlace) -> Result<Metric3, Box<BadMetric>> {
         let m = match &self.0 {
             Kind::Uniform(m) => *m,
             Kind::Formula(field) => field.metric(place)?,
@@ -239,13 +218,13 @@ fn at(fault: Fault, place: &str) -> Fault {
 
 /// What is wrong with a metric and where; `origin` is where its field stands.
 #[cold]
-fn bad(what: String, origin: &str, place: &Place) -> Box<BadMetric> {
+fn bad(what: String, origin: &str, place: &MetricPlace) -> Box<BadMetric> {
     let what = if origin.is_empty() { what } else { format!("{what} ({origin})") };
     Box::new(BadMetric { what, place: *place })
 }
 
 #[cold]
-fn nowhere(place: &Place, origin: &str) -> Box<BadMetric> {
+fn nowhere(place: &MetricPlace, origin: &str) -> Box<BadMetric> {
     bad("a metric is asked for where the coordinates are not finite".into(), origin, place)
 }
 
@@ -291,7 +270,7 @@ impl Sizing {
     /// # Errors
     /// Where a field gives no positive finite tensor: which size, its value, the place.
     #[inline]
-    pub fn metric3(&self, place: &Place) -> Result<Metric3, Box<BadMetric>> {
+    pub fn metric3(&self, place: &MetricPlace) -> Result<Metric3, Box<BadMetric>> {
         let mut m = self.fields[0].intersect(None, place)?;
         for field in &self.fields[1..] {
             m = field.intersect(Some(m), place)?;
@@ -309,7 +288,7 @@ impl Sizing {
     /// As [`Sizing::metric3`].
     pub fn metric3_at(&self, chart: DVec2) -> Result<Metric3, Box<BadMetric>> {
         match &self.atlas {
-            None => self.metric3(&Place::in_plane(chart)),
+            None => self.metric3(&MetricPlace::in_plane(chart)),
             Some(atlas) => {
                 let at = atlas.at(chart);
                 self.metric3(&self.place(atlas, chart, at.xyz, at.uv))
@@ -318,9 +297,9 @@ impl Sizing {
     }
 
     #[inline]
-    fn place(&self, atlas: &Atlas, chart: DVec2, xyz: DVec3, uv: DVec2) -> Place {
+    fn place(&self, atlas: &Atlas, chart: DVec2, xyz: DVec3, uv: DVec2) -> MetricPlace {
         let bend = if self.bends { atlas.bent(chart).bend() } else { None };
-        Place { xyz, uv, chart, bend }
+        MetricPlace { xyz, uv, chart, bend }
     }
 
     /// Eq. (3): `M = J^T M3D J`.
@@ -348,7 +327,7 @@ impl MetricSource for Sizing {
     #[inline]
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
         match &self.atlas {
-            None => Ok(self.metric3(&Place::in_plane(uv))?.plane()),
+            None => Ok(self.metric3(&MetricPlace::in_plane(uv))?.plane()),
             Some(atlas) => self.on_surface(atlas, uv),
         }
     }

@@ -12,7 +12,7 @@ mod parser;
 
 use rustc_hash::FxHashMap;
 
-use super::field::Place;
+use super::place::MetricPlace;
 use crate::core::fault::Fault;
 use parser::Parser;
 
@@ -189,7 +189,7 @@ impl Program {
     /// # Panics
     /// When `out` is shorter than [`Program::outputs`].
     #[inline]
-    pub fn eval(&self, place: &Place, out: &mut [f64]) {
+    pub fn eval(&self, place: &MetricPlace, out: &mut [f64]) {
         let mut on_stack = [0.0; FILE_ON_STACK];
         let mut on_heap = Vec::new();
         let file: &mut [f64] = if self.slots <= FILE_ON_STACK {

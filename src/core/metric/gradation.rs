@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::tensor::{Metric2, Metric3};
+use crate::core::kernel::tensor::{Metric2, Metric3};
 
 /// A tensor whose sizes can be let grow along an edge.
 pub trait Gradable: Copy {

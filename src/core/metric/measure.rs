@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::field::{BadMetric, MetricSource};
-use super::tensor::Metric2;
+use crate::core::kernel::tensor::Metric2;
 
 /// Eq. (4): the length of `d` in the metric `m`.
 #[inline]
@@ -106,7 +106,7 @@ mod tests {
     struct Linear;
     impl MetricSource for Linear {
         fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
-            let place = crate::core::metric::field::Place::in_plane(uv);
+            let place = crate::core::metric::place::MetricPlace::in_plane(uv);
             if uv.x > 1.0 {
                 return Err(Box::new(BadMetric { what: "too far".into(), place }));
             }

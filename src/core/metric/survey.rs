@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::field::{MetricSource, Sizing};
-use super::tensor::Metric2;
 use crate::core::fault::Fault;
+use crate::core::kernel::tensor::Metric2;
 
 /// What a survey found at its points and near them.
 #[derive(Clone, Copy, Debug, PartialEq)]

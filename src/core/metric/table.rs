@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use super::plane_triangles::PlaneTriangles;
-use super::spectrum::LogMetric3;
-use super::tensor::Metric3;
 use crate::core::fault::Fault;
+use crate::core::kernel::plane_triangles::PlaneTriangles;
+use crate::core::kernel::spectrum::LogMetric3;
+use crate::core::kernel::tensor::Metric3;
 
 /// The mesh and the logarithms at its nodes.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use crate::core::convert::converter::Converter;
 use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::ids::ElementId;
-use crate::core::mesh::touched::Touched;
 
 /// The step that made each quadrilateral: the last one after which its element was one and before which it was none, however often it
 /// was changed since (as [`History::made`](super::history::History::made) says).
@@ -51,8 +51,8 @@ impl Births {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::case::built_in;
     use crate::core::convert::phase::Phase;
-    use crate::core::io::built_in;
     use crate::core::progress::Nobody;
     use crate::core::run::history::{BUDGET, History};
     use crate::core::run::run::Run;

@@ -18,8 +18,8 @@ use super::front_count::FrontCount;
 use super::history::History;
 use super::log::Angles;
 use crate::core::convert::event::Event;
-use crate::core::convert::parameters::nearest;
 use crate::core::fault::Fault;
+use crate::core::kernel::spelling::nearest;
 
 /// What a condition is asked of.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::history::Changes;
 use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::touched::Touched;
+use crate::core::mesh::half_edge::touched::Touched;
 
 /// Copies that are kept: one that is looked at, one that is on its way there, one to be brought up to date.
 const KEPT: usize = 3;
@@ -105,7 +105,7 @@ impl Copies {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::io::built_in;
+    use crate::core::case::built_in;
     use crate::core::progress::Nobody;
     use crate::core::run::history::History;
     use crate::core::run::run::Run;

@@ -7,13 +7,13 @@ use glam::DVec2;
 use serde::Serialize;
 
 use super::front_table::{FrontTable, Loop, Row};
+use crate::core::case::parameters::{Parameters, Selection};
 use crate::core::convert::converter::Converter;
-use crate::core::convert::parameters::{Parameters, Selection};
 use crate::core::front::sector::Side;
+use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::metric::measure::angle;
-use crate::core::metric::tensor::Metric2;
 
 /// A metric with its eigenpairs: sizes h = 1 / sqrt(lambda) along orthonormal directions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use crate::core::convert::event::Event;
 use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::mesh::touched::Touched;
 
 const NONE: u32 = u32::MAX;
 
@@ -193,9 +193,9 @@ fn is_one_chain(mesh: &Mesh, event: &Event) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::case::built_in;
     use crate::core::convert::converter::Converter;
     use crate::core::convert::phase::Phase;
-    use crate::core::io::built_in;
     use crate::core::progress::Nobody;
     use crate::core::run::run::Run;
 

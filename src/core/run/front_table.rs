@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 
 use serde::{Serialize, Serializer};
 
+use crate::core::case::parameters::{Parameters, Selection};
 use crate::core::convert::converter::Converter;
-use crate::core::convert::parameters::{Parameters, Selection};
 use crate::core::front::segment::{Key, Segment, layer};
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 

@@ -13,13 +13,13 @@ use super::keyframes::{Keyframe, Keyframes};
 use super::log::Log;
 use super::recorder::{Recorder, SPACING, Stretch};
 use super::run::{EditKind, Run};
-use crate::core::convert::conversion::Background;
 use crate::core::convert::converter::Converter;
 use crate::core::convert::event::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::mesh::touched::Touched;
+use crate::core::prepare::Background;
 use crate::core::progress::Watch;
 
 /// Bytes that a history may take unless it is told otherwise: 512 MiB.

@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::front_count::FrontCount;
-use super::timeline::Sample;
+use super::sample::Sample;
 use crate::core::convert::event::Event;
 
 /// Steps of a chunk of events.

@@ -9,7 +9,7 @@
 //! | what a figure shows of it | [`shown::Shown`] |
 //! | running ahead on another thread | [`history::History::lend`], [`recorder::Recorder`], [`history::History::accept`] |
 //! | one event a step, the number of quadrilaterals, where to go next | [`log::Log`], `playback` |
-//! | invariants and figures along the run | [`timeline`] |
+//! | invariants and figures along the run, lanes of its work | [`sample`], [`timeline`] |
 //! | when quadrilaterals were made, without a history | [`births`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`watch`] |
 //! | why this segment, what is this node | [`explain`], [`front_table`] |
@@ -21,6 +21,7 @@
 pub mod run;
 pub mod shown;
 pub mod front_count;
+pub mod sample;
 pub mod log;
 pub mod timeline;
 pub mod keyframes;

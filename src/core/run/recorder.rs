@@ -8,14 +8,14 @@ use super::front_count::{FrontTracker, changes_front};
 use super::keyframes::{Keyframe, Keyframes};
 use super::log::{Angles, Log};
 use super::run::Run;
-use super::timeline::{Measures, Sample};
+use super::sample::{Measures, Sample};
 use crate::core::convert::converter::Converter;
 use crate::core::convert::event::Event;
 use crate::core::convert::phase::Phase;
 use crate::core::fault::Fault;
+use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::half_edge::{FreeLists, Mesh};
 use crate::core::mesh::ids::ElementId;
-use crate::core::mesh::touched::Touched;
 use crate::core::metric::measure::angle;
 
 /// A keyframe is set at the first chance after so many steps: replaying them takes about a millisecond.

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::shown::Shown;
-use crate::core::convert::conversion::{self, Background};
+use crate::core::case::Case;
+use crate::core::case::parameters::Parameters;
 use crate::core::convert::converter::Converter;
-use crate::core::convert::parameters::Parameters;
 use crate::core::fault::Fault;
-use crate::core::io::case::Case;
 use crate::core::mesh::ids::NodeId;
+use crate::core::prepare::{Background, background};
 use crate::core::progress::Watch;
 
 /// Parameters that the background mesh is made with: they can be changed for a whole run only.
@@ -169,9 +169,9 @@ impl Run {
     /// The background mesh of the run.
     ///
     /// # Errors
-    /// As [`conversion::background`].
+    /// As [`background`].
     pub fn background(&self, watch: &mut dyn Watch) -> Result<Background, Fault> {
-        conversion::background(&self.case_in_force(), watch)
+        background(&self.case_in_force(), watch)
     }
 
     /// A converter at step 0, with the edits of step 0 made.
@@ -212,7 +212,7 @@ impl Run {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::io::built_in;
+    use crate::core::case::built_in;
 
     fn run() -> Run {
         Run::of(built_in::named("example1").unwrap().unwrap())

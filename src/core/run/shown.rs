@@ -2,7 +2,7 @@
 
 use crate::core::convert::phase::Phase;
 use crate::core::convert::walk::Stop;
-use crate::core::io::fingerprint::Fingerprint;
+use crate::core::kernel::fingerprint::Fingerprint;
 use crate::core::mesh::half_edge::Mesh;
 
 /// A state of a run as a figure shows it.

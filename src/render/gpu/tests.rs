@@ -96,7 +96,7 @@ fn looks_right(bytes: &[u8]) {
 /// The window's scene of a whole sphere, of whose lines only the near or the far half is drawn.
 #[test]
 fn the_far_side_of_a_sphere_is_hidden_but_for_hidden_lines() {
-    use crate::core::io::built_in;
+    use crate::core::case::built_in;
     use crate::core::progress::Nobody;
     use crate::core::run::{history::History, run::Run};
     use crate::render::camera::Bearing;

@@ -149,7 +149,7 @@ impl Cover {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::io::built_in;
+    use crate::core::case::built_in;
     use crate::core::progress::Nobody;
     use crate::core::run::history::History;
     use crate::core::run::run::Run;

@@ -161,10 +161,11 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::discrete::chart::{Bound, charts};
+    use crate::core::discrete::chart::charts;
     use crate::core::discrete::features::{ANGLE, features};
-    use crate::core::io::mesh_file::MeshFile;
+    use crate::core::discrete::flat::Bound;
     use crate::core::progress::Nobody;
+    use crate::core::soup::mesh_file::MeshFile;
     use crate::render::palette::{DARK, LIGHT};
 
     /// A tent: two squares with a fold between them.

@@ -247,10 +247,10 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::core::io::built_in;
+    use crate::core::case::built_in;
+    use crate::core::kernel::tensor::Metric2;
     use crate::core::mesh::ids::PointId;
     use crate::core::mesh::triangle_set::TriangleSet;
-    use crate::core::metric::tensor::Metric2;
     use crate::core::progress::Nobody;
     use crate::core::run::history::{Changes, History};
     use crate::core::run::run::Run;

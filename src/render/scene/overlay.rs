@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::mesh::FADES;
 use super::{Dot, Layers, Line, Scene, Spot, ink, relative};
-use crate::core::convert::parameters::Parameters;
+use crate::core::case::parameters::Parameters;
 use crate::core::convert::phase::Phase;
 use crate::core::front::segment::Segment;
 use crate::core::mesh::half_edge::Mesh;
@@ -258,9 +258,9 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::kernel::tensor::Metric2;
     use crate::core::mesh::ids::PointId;
     use crate::core::mesh::triangle_set::TriangleSet;
-    use crate::core::metric::tensor::Metric2;
     use crate::render::palette::DARK;
     use crate::render::scene::{Drawn, Form, Shading};
     use glam::{DVec2, DVec3};

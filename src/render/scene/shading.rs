@@ -145,9 +145,9 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
+    use crate::core::kernel::tensor::Metric2;
     use crate::core::mesh::ids::PointId;
     use crate::core::mesh::triangle_set::TriangleSet;
-    use crate::core::metric::tensor::Metric2;
 
     fn strip() -> Mesh {
         let uv: Vec<_> = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0)]

@@ -5,7 +5,7 @@ use resvg::usvg::{Options, Tree};
 
 use super::svg::page::{FAMILY, FONT};
 use crate::core::fault::Fault;
-use crate::core::io::figure::KEYWORD;
+use crate::core::record::figure::KEYWORD;
 
 /// What a picture may have of pixels on one side, and over all.
 const MOST: u32 = 20_000;
@@ -77,7 +77,7 @@ fn encode(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::io::figure::text_in;
+    use crate::core::record::figure::text_in;
 
     fn decoded(bytes: &[u8]) -> (png::Info<'static>, Vec<u8>) {
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();

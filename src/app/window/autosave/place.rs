@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use crate::core::fault::Fault;
-use crate::core::io::run_file;
+use crate::core::record::run_file;
 
 /// Where runs are kept: in `XDG_STATE_HOME` or what the system has in its place. `None` where it has nothing.
 pub fn folder() -> Option<PathBuf> {

@@ -11,14 +11,14 @@ use glam::DVec3;
 use crate::app::window::session::{EVERY, Wake, words_of};
 use crate::app::window::state::Progress;
 use crate::app::window::theme;
-use crate::core::background::import::is_plane;
 use crate::core::discrete::census::{Census, Division, count_of};
-use crate::core::discrete::chart::{Bound, charts};
+use crate::core::discrete::chart::charts;
 use crate::core::discrete::edges::{Edges, Triangles};
 use crate::core::discrete::features::{Feature, features, with_lines};
+use crate::core::discrete::flat::Bound;
 use crate::core::discrete::sound::{Sound, as_given, sound};
 use crate::core::fault::Fault;
-use crate::core::io::format::read_mesh_watched;
+use crate::core::formats::format::read_mesh_watched;
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::render::scene::{Given, Scene};
 
@@ -168,7 +168,7 @@ impl Watch for Voice {
 fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
     let file = read_mesh_watched(path, None, voice)?;
     let place = |fault: Fault| if fault.is_stop { fault } else { fault.at(path.display().to_string()) };
-    let (is_plane, has_metric) = (is_plane(&file), file.metric.is_some());
+    let (is_plane, has_metric) = (file.is_plane(), file.metric.is_some());
     let skipped: Vec<String> =
         file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
     let (mut found, fault) = match sound(&file, voice) {

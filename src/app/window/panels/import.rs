@@ -13,9 +13,9 @@ use crate::app::window::import::{Import, KINDS, UNITS};
 use crate::app::window::state::{Progress, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
+use crate::core::case::{MeshUse, Taking};
 use crate::core::discrete::features::Feature;
-use crate::core::io::case::{MeshUse, Taking};
-use crate::core::io::save::Shortest;
+use crate::core::kernel::decimal::Shortest;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{feature_line, seam_line};
 

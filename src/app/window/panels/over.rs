@@ -7,7 +7,7 @@ use eframe::egui::{
 use crate::app::window::command::{Command, keys};
 use crate::app::window::state::{Over, State};
 use crate::app::window::theme::{self, ink};
-use crate::core::io::format::Format;
+use crate::core::formats::format::Format;
 use crate::render::palette::Palette;
 
 const WIDTH: f32 = 460.0;

@@ -7,7 +7,7 @@ use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
-use crate::core::convert::parameters::Parameters;
+use crate::core::case::parameters::Parameters;
 use crate::render::palette::Palette;
 
 /// A number: key, name, range, decimals, unit, what the paper says, and what it does.

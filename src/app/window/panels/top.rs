@@ -9,7 +9,7 @@ use crate::app::window::icons;
 use crate::app::window::session::{Goal, Source};
 use crate::app::window::state::{Place, State};
 use crate::app::window::theme::{self, ink};
-use crate::core::io::built_in;
+use crate::core::case::built_in;
 use crate::render::camera::Bearing;
 use crate::render::palette::Palette;
 use crate::render::scene::ColourBy;

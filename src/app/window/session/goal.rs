@@ -52,7 +52,7 @@ fn back(log: &Log, step: u64, by: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::io::built_in;
+    use crate::core::case::built_in;
     use crate::core::progress::Nobody;
     use crate::core::run::history::History;
     use crate::core::run::run::Run;

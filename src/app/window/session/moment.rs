@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::core::case::parameters::Parameters;
 use crate::core::convert::candidates::Candidates;
 use crate::core::convert::event::Event;
-use crate::core::convert::parameters::Parameters;
 use crate::core::convert::phase::Phase;
 use crate::core::front::segment::Segment;
 use crate::core::mesh::half_edge::Mesh;

@@ -19,7 +19,7 @@ use crate::core::run::explain::SegmentTold;
 use crate::core::run::history::{BUDGET, History};
 use crate::core::run::recorder::{Recorder, Stretch};
 use crate::core::run::run::{Edit, Run};
-use crate::core::run::timeline::Sample;
+use crate::core::run::sample::Sample;
 use crate::core::run::watch::Watched;
 
 /// Steps that the recorder does before it hands them over: few at first, since somebody may be waiting.

@@ -1,13 +1,14 @@
 use super::*;
-use crate::core::discrete::chart::Bound;
 use crate::core::discrete::features::ANGLE;
+use crate::core::discrete::flat::Bound;
 use crate::core::discrete::sound::sound;
 use crate::core::discrete::surface::surface;
 use crate::core::geometry::fixtures::*;
-use crate::core::io::mesh_file::MeshFile;
-use crate::core::metric::field::{BadMetric, Place};
-use crate::core::metric::tensor::Metric2;
+use crate::core::kernel::tensor::Metric2;
+use crate::core::metric::field::BadMetric;
+use crate::core::metric::place::MetricPlace;
 use crate::core::progress::Nobody;
+use crate::core::soup::mesh_file::MeshFile;
 
 /// The same size everywhere.
 pub struct Uniform(pub f64);
@@ -194,7 +195,7 @@ fn a_metric_that_fails_is_placed_on_its_curve() {
     impl MetricSource for Bad {
         fn metric(&self, p: DVec2) -> Result<Metric2, Box<BadMetric>> {
             if p.x > 0.5 {
-                let place = Place::in_plane(p);
+                let place = MetricPlace::in_plane(p);
                 return Err(Box::new(BadMetric { what: "h1 = -1 is not positive".to_owned(), place }));
             }
             Uniform(0.1).metric(p)

@@ -5,7 +5,7 @@ use super::*;
 use crate::core::background::discretise::tests::Uniform;
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::geometry::fixtures::{built, square, square_with_hole};
-use crate::core::io::mesh_file::Group;
+use crate::core::soup::mesh_file::Group;
 
 fn mesh(points: &[(f64, f64)], triangles: &[[u32; 3]]) -> MeshFile {
     MeshFile {
@@ -139,7 +139,7 @@ fn triangles_between_the_banks_of_a_crack_are_refused_by_the_numbers_of_the_file
     let mut file = star();
     file.points.push(DVec3::new(0.5, 0.5, 0.0));
     file.triangles.extend([[0, 4, 5], [4, 5, 2]]);
-    file.counting.triangles = crate::core::io::counting::Count::From(11);
+    file.counting.triangles = crate::core::soup::counting::Count::From(11);
     let fault = import(&file, false).unwrap_err();
     let says = fault.to_string();
     assert!(says.contains("Triangles 15 and 16 are too flat: the first is without area"), "{says}");

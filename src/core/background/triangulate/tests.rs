@@ -157,7 +157,7 @@ fn a_hub_and_collinear_nodes_do_no_harm() {
         fn metric(
             &self,
             uv: DVec2,
-        ) -> Result<crate::core::metric::tensor::Metric2, Box<crate::core::metric::field::BadMetric>> {
+        ) -> Result<crate::core::kernel::tensor::Metric2, Box<crate::core::metric::field::BadMetric>> {
             let h = if uv.x > 0.999 { 2e-4 } else { 1.0 };
             Uniform(h).metric(uv)
         }
@@ -196,7 +196,7 @@ fn time_of_a_hundred_thousand_nodes() {
 }
 
 /// A star-shaped polygon around the origin with radii in `low..high`.
-fn star(name: &str, centre: (f64, f64), radii: &[f64]) -> crate::core::geometry::domain::CurveSpec {
+fn star(name: &str, centre: (f64, f64), radii: &[f64]) -> crate::core::geometry::spec::CurveSpec {
     let points: Vec<(f64, f64)> = radii
         .iter()
         .enumerate()

@@ -7,7 +7,7 @@ use crate::core::convert::event::Cleaning;
 use crate::core::convert::settle::{Nodes, put};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
-use crate::core::mesh::operators::Refusal;
+use crate::core::mesh::refusals::Refusal;
 use crate::core::metric::field::MetricSource;
 use crate::core::metric::measure::angle;
 

@@ -4,7 +4,7 @@
 use super::Converter;
 use crate::core::convert::event::{Event, Why};
 use crate::core::convert::phase::{Attempt, Base, Phase};
-use crate::core::convert::top::{MOST_SWAPS, Recovery};
+use crate::core::convert::top::{MOST_SWAPS, Recovery, crossings, recover_step};
 use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
@@ -81,9 +81,20 @@ impl Converter<'_> {
         }
     }
 
+    /// The edges that the top edge crosses, from C on, where the next step recovers it and none of them is dead; none where it is
+    /// there.
+    pub fn top_crossings(&self) -> Option<Vec<[NodeId; 2]>> {
+        let Phase::RecoverTop { tops: [c, d], .. } = *self.phase() else { return None };
+        if self.mesh.are_joined(c, d) {
+            return Some(Vec::new());
+        }
+        let found = crossings(&self.mesh, c, d).ok()?;
+        Some(found.into_iter().map(|h| [self.mesh.origin(h), self.mesh.target(h)]).collect())
+    }
+
     pub(super) fn step_top(&mut self, base: Base, attempt: Attempt, tops: [NodeId; 2], swaps: u8) -> (Phase, Event) {
         let [c, d] = tops;
-        match self.recover_step(c, d, &[base.a, base.b, c, d]) {
+        match recover_step(&mut self.mesh, c, d, &[base.a, base.b, c, d]) {
             Ok(Recovery::Found) => (Phase::Form { base, attempt, tops }, Event::TopFound { ends: tops, swaps }),
             Ok(Recovery::Changed(_)) if swaps == MOST_SWAPS => self.fail(base, attempt, Why::TopTooLong),
             Ok(Recovery::Changed(event)) => (Phase::RecoverTop { base, attempt, tops, swaps: swaps + 1 }, event),

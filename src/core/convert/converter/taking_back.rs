@@ -5,10 +5,10 @@ use crate::core::convert::component::Component;
 use crate::core::convert::finish::{Finished, PartMarks};
 use crate::core::convert::last_resort::Outcome;
 use crate::core::convert::phase::Phase;
-use crate::core::journal::Mark;
+use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::half_edge::{Mesh, Undone};
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::mesh::touched::Touched;
+use crate::core::mesh::journal::Mark;
 
 /// What a step needs to be taken back.
 #[derive(Clone, Debug)]

@@ -3,10 +3,10 @@ use proptest::test_runner::{RngAlgorithm, TestRng};
 
 use super::*;
 use crate::core::convert::component::live_components;
-use crate::core::geometry::predicates::positive;
+use crate::core::kernel::predicates::positive;
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
-use crate::core::metric::field::Place;
+use crate::core::metric::place::MetricPlace;
 
 /// Plans the last resort and carries all of it out.
 fn last_resort(mesh: &mut Mesh, component: &[ElementId], source: &dyn MetricSource) -> Result<Outcome, Stuck> {
@@ -327,7 +327,7 @@ fn a_missing_metric_at_a_new_node_is_an_error_and_the_mesh_is_as_it_was() {
     struct Nowhere;
     impl MetricSource for Nowhere {
         fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
-            Err(Box::new(BadMetric { what: "nothing here".into(), place: Place::in_plane(uv) }))
+            Err(Box::new(BadMetric { what: "nothing here".into(), place: MetricPlace::in_plane(uv) }))
         }
     }
     let uv = [(0.0, 0.0), (2.0, 0.0), (3.0, 3.0), (1.9, 0.5)].map(|(x, y)| DVec2::new(x, y)).to_vec();

@@ -1,7 +1,7 @@
 use super::*;
 use crate::core::discrete::features::{ANGLE, features};
 use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
-use crate::core::geometry::predicates::orient;
+use crate::core::kernel::predicates::orient;
 use crate::core::progress::Nobody;
 
 /// The charts, after looking that they are what charts must be.

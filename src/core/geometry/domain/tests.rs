@@ -2,6 +2,7 @@ use std::f64::consts::PI;
 
 use super::super::fixtures::*;
 use super::*;
+use crate::core::geometry::spec::CurveShape;
 
 fn refusal((curves, faces): Specs) -> String {
     Domain::build(curves, faces).unwrap_err().to_string()

@@ -1,6 +1,8 @@
 use super::*;
-use crate::core::geometry::primitive::{Frame, cone, plane, revolution, sphere, torus};
-use crate::core::geometry::space_curve::{SpaceCurve, SpaceShape};
+use crate::core::geometry::frame::Frame;
+use crate::core::geometry::primitive::{cone, plane, revolution, sphere, torus};
+use crate::core::geometry::space_curve::SpaceCurve;
+use crate::core::geometry::spec::SpaceShape;
 
 fn upright() -> Frame {
     Frame::new(DVec3::new(1.0, -2.0, 0.5), DVec3::new(0.0, 0.0, 3.0), None).unwrap()

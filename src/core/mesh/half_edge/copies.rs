@@ -1,8 +1,8 @@
 //! The same mesh in another form: along a Hilbert curve, without its journal, as bytes.
 
 use super::{Mesh, NONE};
-use crate::core::journal::Journal;
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::journal::Journal;
 use crate::core::mesh::order::{grouped, hilbert_order};
 
 impl Mesh {

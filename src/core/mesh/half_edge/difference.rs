@@ -7,10 +7,10 @@ use glam::DVec2;
 
 use super::taking_back::Element;
 use super::{Mesh, NONE};
-use crate::core::journal::{Journal, Mark};
+use crate::core::kernel::tensor::Metric2;
+use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::mesh::touched::Touched;
-use crate::core::metric::tensor::Metric2;
+use crate::core::mesh::journal::{Journal, Mark};
 
 /// The free lists of a state, to find what of them stayed.
 #[derive(Clone, Debug, Default, PartialEq)]

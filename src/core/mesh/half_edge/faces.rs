@@ -2,8 +2,8 @@
 //! points, so that each can be converted by itself.
 
 use super::{Mesh, NONE};
-use crate::core::journal::Journal;
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::journal::Journal;
 
 /// A face taken out of a mesh: its nodes and elements in their order, and which slots they have there.
 pub struct Part {
@@ -93,7 +93,7 @@ impl Mesh {
             let more_nodes = mesh.uv.len() - nodes.len();
             let more_elements = mesh.sides.len() - elements.len();
             self.uv.resize(first_node + more_nodes, glam::DVec2::ZERO);
-            self.metric.resize(first_node + more_nodes, crate::core::metric::tensor::Metric2::isotropic(1.0));
+            self.metric.resize(first_node + more_nodes, crate::core::kernel::tensor::Metric2::isotropic(1.0));
             self.anchor.resize(first_node + more_nodes, NONE);
             self.point.resize(first_node + more_nodes, NONE);
             self.origin.resize(4 * (first_element + more_elements), NONE);

@@ -4,9 +4,9 @@ use glam::DVec2;
 
 use super::taking_back::Element;
 use super::{Mesh, NONE};
-use crate::core::journal::Entry;
+use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::metric::tensor::Metric2;
+use crate::core::mesh::journal::Entry;
 
 impl Mesh {
     #[inline]

@@ -3,9 +3,9 @@
 use glam::DVec2;
 
 use super::Mesh;
-use crate::core::journal::{Entry, Journal, Mark};
+use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::metric::tensor::Metric2;
+use crate::core::mesh::journal::{Entry, Journal, Mark};
 
 /// What stands in the slots of an element.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
-use super::{BadMetric, Place, bad};
+use super::{BadMetric, bad};
 use crate::core::fault::Fault;
+use crate::core::kernel::tensor::{Metric3, check_sizes, orthonormal};
 use crate::core::metric::formula::Program;
-use crate::core::metric::tensor::{Metric3, check_sizes, orthonormal};
+use crate::core::metric::place::MetricPlace;
 
 /// A formula field: the program gives the sizes that are given, then three components of each direction that is given.
 #[derive(Clone, Debug)]
@@ -67,7 +68,7 @@ impl FormulaField {
     }
 
     #[inline]
-    pub fn metric(&self, place: &Place) -> Result<Metric3, Box<BadMetric>> {
+    pub fn metric(&self, place: &MetricPlace) -> Result<Metric3, Box<BadMetric>> {
         let mut out = [0.0; 12];
         self.program.eval(place, &mut out);
         let bad = |what| bad(what, &self.place, place);

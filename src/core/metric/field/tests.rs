@@ -103,7 +103,7 @@ fn missing_directions_are_completed() {
         assert!((m.uu - diagonal.uu).abs() + (m.uv - diagonal.uv).abs() < 1e-12, "{m:?}");
     }
     let space = sizing(&[formula(&[], &["1", "2", "4"], [None, Some(["0", "0", "1"]), Some(["1", "0", "0"])])]);
-    let m = space.metric3(&Place::in_plane(DVec2::ZERO)).unwrap();
+    let m = space.metric3(&MetricPlace::in_plane(DVec2::ZERO)).unwrap();
     assert_eq!((m.yy, m.zz, m.xx), (1.0, 0.25, 0.0625));
 }
 

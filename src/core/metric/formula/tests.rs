@@ -1,8 +1,8 @@
 use super::*;
 use glam::{DVec2, DVec3};
 
-fn place(x: f64, y: f64) -> Place {
-    Place { xyz: DVec3::new(x, y, 0.5), ..Place::in_plane(DVec2::new(x, y)) }
+fn place(x: f64, y: f64) -> MetricPlace {
+    MetricPlace { xyz: DVec3::new(x, y, 0.5), ..MetricPlace::in_plane(DVec2::new(x, y)) }
 }
 
 fn value(text: &str, x: f64, y: f64) -> f64 {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Corner, EdgeKind, EdgeTold, ElementTold, MetricTold, NodeTold, SegmentTold, Verdict};
-use crate::core::convert::parameters::{Parameters, Selection, SelectionWindow};
+use crate::core::case::parameters::{Parameters, Selection, SelectionWindow};
 use crate::core::mesh::ids::ElementId;
 use crate::core::run::front_table::Row;
 

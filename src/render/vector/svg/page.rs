@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::DVec2;
 
 use super::Sheet;
-use crate::core::io::figure;
+use crate::core::record::figure;
 
 /// The font of figures: those characters of IBM Plex Sans that they need.
 pub(in crate::render::vector) const FONT: &[u8] =

@@ -1,5 +1,5 @@
 use super::*;
-use crate::core::io::mesh_file::MeshFile;
+use crate::core::soup::mesh_file::MeshFile;
 use crate::render::look::{Ink, Layers};
 use crate::render::picture::Mark;
 use glam::DVec3;
@@ -123,5 +123,5 @@ fn the_ground_can_be_left_out_and_the_run_is_carried() {
     let sheet = Sheet { run: Some("run = \"<&>\"\n"), look, ..sheet(100.0, None) };
     let svg = write(&Picture::of_mesh(&triangle()), &sheet);
     assert!(!svg.contains("<rect"), "{svg}");
-    assert_eq!(crate::core::io::figure::text_in(svg.as_bytes()).unwrap().trim_start(), "run = \"<&>\"\n");
+    assert_eq!(crate::core::record::figure::text_in(svg.as_bytes()).unwrap().trim_start(), "run = \"<&>\"\n");
 }

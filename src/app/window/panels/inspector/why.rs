@@ -6,7 +6,7 @@ use super::{heading, sentence};
 use crate::app::window::session::{Explained, Moment};
 use crate::app::window::state::State;
 use crate::app::window::words;
-use crate::core::convert::parameters::{Selection, SelectionWindow};
+use crate::core::case::parameters::{Selection, SelectionWindow};
 use crate::core::run::explain::{SegmentTold, Verdict};
 use crate::core::run::front_table::Row;
 use crate::render::palette::Palette;

@@ -3,7 +3,7 @@
 use crate::app::window::session::Tracked;
 use crate::app::window::state::State;
 use crate::app::window::words;
-use crate::core::run::timeline::Sample;
+use crate::core::run::sample::Sample;
 
 /// The rows: each with the kinds that share it.
 const ROWS: [(&str, &[&str]); 5] = [

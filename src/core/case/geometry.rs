@@ -1,0 +1,139 @@
+//! `[[curve]]` and `[[face]]` of a case file.
+
+use std::f64::consts::TAU;
+
+use super::table::{Table, Value};
+use crate::core::fault::Fault;
+use crate::core::geometry::spec::{CurveShape, CurveSpec, FaceSpec};
+use crate::core::kernel::spelling::nearest;
+
+/// Reads the curves; whether they make sense is for `geometry` to say.
+pub(super) fn curves(document: &Table<'_>) -> Result<Vec<CurveSpec>, Fault> {
+    let mut curves = Vec::new();
+    for table in document.tables("curve")? {
+        let name = name(&table)?;
+        let shape = shape(&table)?;
+        let segments = table.get("segments").map(|v| v.count(1, 100_000_000)).transpose()?;
+        curves.push(CurveSpec { name, shape, segments, place: table.place() });
+    }
+    Ok(curves)
+}
+
+/// Reads the faces, whose curves must be there.
+pub(super) fn faces(document: &Table<'_>, curves: &[CurveSpec]) -> Result<Vec<FaceSpec>, Fault> {
+    let names: Vec<&str> = curves.iter().map(|c| c.name.as_str()).collect();
+    let mut faces = Vec::new();
+    for table in document.tables("face")? {
+        table.only(&["name", "outer", "holes", "cracks", "repeated"])?;
+        let outer = known_curves(&table.need("outer", "[\"south\", \"east\", \"north\", \"west\"]")?, &names)?;
+        faces.push(face(&table, outer, &names)?);
+    }
+    Ok(faces)
+}
+
+/// Reads what a face has besides its outer loop.
+pub(super) fn face(table: &Table<'_>, outer: Vec<String>, names: &[&str]) -> Result<FaceSpec, Fault> {
+    let name = name(table)?;
+    let some = |key| table.get(key).map_or(Ok(Vec::new()), |value| known_curves(&value, names));
+    let holes = match table.get("holes") {
+        None => Vec::new(),
+        Some(value) => {
+            let wrong = |_| value.wrong("a list of lists of names", "holes = [[\"hole\"]]");
+            let list = value.list().map_err(wrong)?;
+            list.iter().map(|hole| known_curves(hole, names)).collect::<Result<_, _>>()?
+        }
+    };
+    let (cracks, repeated) = (some("cracks")?, some("repeated")?);
+    Ok(FaceSpec { name, outer, holes, cracks, repeated, place: table.place() })
+}
+
+/// Reads a list of names of curves that must be there; edges of whole surfaces, such as "ball: v0", are known later.
+pub(super) fn known_curves(value: &Value<'_>, curves: &[&str]) -> Result<Vec<String>, Fault> {
+    let names = value.texts()?;
+    if names.is_empty() {
+        return Err(value
+            .fault(format!("{} is empty", value.key()))
+            .remedy("Name at least one curve, or leave it out"));
+    }
+    for name in names.iter().filter(|name| !name.contains(": ")) {
+        if !curves.contains(&name.as_str()) {
+            let nearest = nearest(name, curves.iter().copied());
+            let fault = value.fault(format!("There is no curve \"{}\"", name.escape_debug()));
+            return Err(match nearest {
+                Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
+                None => fault.remedy("Add it as [[curve]]"),
+            });
+        }
+    }
+    Ok(names)
+}
+
+pub(super) fn name(table: &Table<'_>) -> Result<String, Fault> {
+    let value = table.need("name", "\"hole\"")?;
+    let name = value.text()?;
+    if name.is_empty() || name.chars().any(char::is_control) {
+        return Err(value.wrong("a name", "name = \"hole\""));
+    }
+    Ok(name.to_owned())
+}
+
+fn shape(table: &Table<'_>) -> Result<CurveShape, Fault> {
+    shape_of(table, &[])
+}
+
+/// Reads a curve of the plane from a table that may have these keys besides.
+pub(super) fn shape_of(table: &Table<'_>, besides: &[&'static str]) -> Result<CurveShape, Fault> {
+    let keys = |own: &[&'static str]| table.only(&[&["name", "kind", "segments"], own, besides].concat());
+    let kind = table.need("kind", "\"segment\"")?;
+    match kind.text()? {
+        "segment" => {
+            keys(&["from", "to"])?;
+            let from = table.need("from", "[0, 0]")?.point()?;
+            let to = table.need("to", "[1, 0]")?.point()?;
+            Ok(CurveShape::Segment { from, to })
+        }
+        "arc" => {
+            keys(&["centre", "radius", "from_angle", "to_angle"])?;
+            let centre = table.need("centre", "[0, 0]")?.point()?;
+            let radius = table.need("radius", "0.5")?.positive()?;
+            let (from, to) = (table.need("from_angle", "0")?, table.need("to_angle", "90")?);
+            let (from_angle, mut to_angle) = (from.degrees()?, to.degrees()?);
+            let turn = to.number()? - from.number()?;
+            if turn == 0.0 || turn.abs() > 360.0 {
+                return Err(to
+                    .fault("The arc turns by nothing or by more than 360 degrees")
+                    .remedy("Write to_angle greater than from_angle for anticlockwise, less for clockwise"));
+            }
+            if turn.abs() == 360.0 {
+                to_angle = from_angle + TAU.copysign(turn);
+            }
+            Ok(CurveShape::Arc { centre, radius, from_angle, to_angle })
+        }
+        "circle" => {
+            keys(&["centre", "radius", "start_angle"])?;
+            let centre = table.need("centre", "[0, 0]")?.point()?;
+            let radius = table.need("radius", "0.5")?.positive()?;
+            let from_angle = table.get("start_angle").map_or(Ok(0.0), |v| v.degrees())?;
+            Ok(CurveShape::Arc { centre, radius, from_angle, to_angle: from_angle + TAU })
+        }
+        "polyline" => {
+            keys(&["points", "closed"])?;
+            let points = table.need("points", "[[0, 0], [1, 0], [1, 1]]")?.points()?;
+            let closed = table.get("closed").map_or(Ok(false), |v| v.flag())?;
+            Ok(CurveShape::Polyline { points, closed })
+        }
+        "nurbs" => {
+            keys(&["degree", "knots", "weights", "points"])?;
+            Ok(CurveShape::Nurbs {
+                degree: table.need("degree", "3")?.count(1, 20)? as usize,
+                knots: table.need("knots", "[0, 0, 0, 0, 1, 1, 1, 1]")?.numbers()?,
+                weights: table.get("weights").map_or(Ok(Vec::new()), |v| v.numbers())?,
+                points: table.need("points", "[[0, 0], [1, 0], [1, 1], [2, 1]]")?.points()?,
+            })
+        }
+        _ => {
+            Err(kind
+                .wrong("a kind of curve", "\"segment\", \"arc\", \"circle\", \"polyline\" or \"nurbs\" after kind ="))
+        }
+    }
+}

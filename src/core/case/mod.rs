@@ -1,0 +1,290 @@
+//! Case files: geometry, metric and parameters as one TOML file, strict and versioned; documented in
+//! `assets/cases/README.md`. Deliberately absent: what the words mean geometrically (`geometry::domain`) and whether a
+//! formula can be evaluated (`metric::formula`).
+
+pub mod parameters;
+pub(in crate::core) mod table;
+mod geometry;
+mod surfaces;
+mod elements;
+mod metric;
+mod taking;
+pub mod built_in;
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+use toml::de::DeTable;
+
+use parameters::Parameters;
+use table::{Source, Table};
+pub use taking::{MeshUse, Taking};
+
+use crate::core::fault::Fault;
+use crate::core::formats::save::load;
+use crate::core::geometry::spec::ComplexSpec;
+use crate::core::geometry::spec::{CurveSpec, FaceSpec};
+use crate::core::metric::field::FieldSpec;
+
+/// The version of case files that this program reads.
+pub const VERSION: u32 = 1;
+
+/// Where the domain of a case comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DomainSource {
+    /// Curves and the faces that they bound.
+    Curves {
+        /// All curves.
+        curves: Vec<CurveSpec>,
+        /// All faces, at least one.
+        faces: Vec<FaceSpec>,
+    },
+    /// Surfaces, curves on them and the faces that they bound.
+    Surfaces(ComplexSpec),
+    /// A small background that the case itself holds: the fixtures of the paper's figures.
+    Elements {
+        /// Coordinates of its points.
+        points: Vec<DVec2>,
+        /// Triangles, by the numbers of their points from 0; live.
+        triangles: Vec<[u32; 3]>,
+        /// Quadrilaterals that stand already.
+        quads: Vec<[u32; 4]>,
+    },
+    /// A triangle mesh in a file.
+    Mesh {
+        /// The mesh.
+        path: PathBuf,
+        /// Its metric at the nodes (Medit `.sol`).
+        sol: Option<PathBuf>,
+        /// How it is used.
+        taking: Taking,
+    },
+}
+
+/// A case: everything that a conversion starts from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Short name: that of the file without its extension.
+    pub name: String,
+    /// One line for people; the name where the file has none.
+    pub title: String,
+    /// Free text: where the case is from, which words are the paper's and which are ours.
+    pub notes: String,
+    /// Parameters, defaults where the file is silent.
+    pub parameters: Parameters,
+    /// Curves or a mesh.
+    pub domain: DomainSource,
+    /// Metric fields, intersected; empty only with a mesh, whose own metric is then taken.
+    pub fields: Vec<FieldSpec>,
+    /// Bound of the metric's gradation (spec 3, item 5), greater than 1; `None`: not bounded.
+    pub gradation: Option<f64>,
+    /// Whether a boundary whose count of segments is odd, and fixed, may be given one segment more; otherwise it is refused.
+    pub split_odd: bool,
+    /// The file's own text, for reports; empty for a mesh without a case file.
+    pub text: String,
+}
+
+impl Case {
+    /// Reads a case file; a mesh that it names lies relative to it.
+    ///
+    /// # Errors
+    /// What the system says of the file, or see [`Case::parse`].
+    pub fn read(path: &Path) -> Result<Case, Fault> {
+        let place = path.display().to_string();
+        let bytes = load(path)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Case::from_bytes(&bytes, &name, &place, folder)
+    }
+
+    /// A case from the bytes of a file: see [`Case::parse`].
+    ///
+    /// # Errors
+    /// Bytes that are not UTF-8, or see [`Case::parse`].
+    pub fn from_bytes(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            Fault::new(format!("The file is not text (byte {})", error.valid_up_to()))
+                .at(file)
+                .remedy("Name a TOML case file; meshes are known by their extension")
+        })?;
+        Case::parse(text, name, file, folder)
+    }
+
+    /// Parses the text of a case called `name`; messages call the file `file`, meshes lie relative to `folder`.
+    ///
+    /// # Errors
+    /// Text that is not TOML, another version, unknown or missing keys, values of the wrong kind or out of range, names
+    /// that are not there: with file and line.
+    pub fn parse(text: &str, name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
+        // A byte order mark is what some editors write first.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let source = Source { file, text };
+        let document = DeTable::parse(text).map_err(|error| {
+            let place = error.span().map_or(file.to_owned(), |span| source.place(span.start));
+            Fault::new(format!("This is not TOML: {}", error.message().replace('\n', ", ")))
+                .at(place)
+                .remedy("See assets/cases/README.md for how a case is written")
+        })?;
+        let table = Table::document(&source, &document);
+        check_version(&table)?;
+        table.only(&[
+            "version",
+            "title",
+            "notes",
+            "parameters",
+            "gradation",
+            "split_odd",
+            "surface",
+            "curve",
+            "face",
+            "metric",
+            "background",
+            "mesh",
+            "sol",
+            "use",
+            "feature_angle",
+            "chart_stretch",
+            "scale",
+        ])?;
+        let word = |key| table.get(key).map(|v| v.text()).transpose();
+        let domain = domain(&table, folder)?;
+        let curves: Vec<&str> = match &domain {
+            DomainSource::Curves { curves, .. } => curves.iter().map(|c| c.name.as_str()).collect(),
+            DomainSource::Surfaces(spec) => spec.curves.iter().map(|c| c.name.as_str()).collect(),
+            DomainSource::Elements { .. } | DomainSource::Mesh { .. } => Vec::new(),
+        };
+        let fields = metric::fields(&table, &curves)?;
+        check_fields(&table, &domain, &fields)?;
+        Ok(Case {
+            name: name.to_owned(),
+            title: word("title")?.unwrap_or(name).to_owned(),
+            notes: word("notes")?.unwrap_or_default().trim().to_owned(),
+            parameters: parameters(&table)?,
+            gradation: gradation(&table)?,
+            split_odd: table.get("split_odd").map_or(Ok(false), |v| v.flag())?,
+            domain,
+            fields,
+            text: text.to_owned(),
+        })
+    }
+
+    /// The case that a mesh file without a case is: default parameters, the metric of `sol` or of its own triangles.
+    pub fn of_mesh(path: PathBuf, sol: Option<PathBuf>) -> Case {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Case {
+            title: format!("Mesh {}", path.file_name().unwrap_or_default().to_string_lossy()),
+            name,
+            notes: String::new(),
+            parameters: Parameters::default(),
+            domain: DomainSource::Mesh { path, sol, taking: Taking::default() },
+            fields: Vec::new(),
+            gradation: None,
+            split_odd: false,
+            text: String::new(),
+        }
+    }
+}
+
+fn check_version(table: &Table<'_>) -> Result<(), Fault> {
+    let value = table.get("version").ok_or_else(|| {
+        table.fault("The version of the case format is missing").remedy("Begin the file with version = 1")
+    })?;
+    match value.count(1, u32::MAX)? {
+        VERSION => Ok(()),
+        newer => Err(value
+            .fault(format!("version = {newer} is newer than what this program reads"))
+            .remedy(format!("Use a newer quadfront, or write the case in version {VERSION}"))),
+    }
+}
+
+fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
+    let file = |key| {
+        let value = table.get(key);
+        value.map(|v| v.text().map(|name| folder.join(name))).transpose()
+    };
+    let alone = |own: &str, others: &[&str]| match others.iter().find_map(|key| table.get(key)) {
+        None => Ok(()),
+        Some(value) => {
+            let key = value.key();
+            let named =
+                if ["surface", "curve", "face"].contains(&key) { format!("every [[{key}]]") } else { key.to_owned() };
+            let fault = value.fault(format!("The case has a {own} and a {key}"));
+            Err(fault.remedy(format!("Leave out either {own} or {named}")))
+        }
+    };
+    if let Some(value) = table.get("background") {
+        alone("background", &["surface", "curve", "face", "mesh", "sol"])?;
+        return elements::elements(&value.table()?);
+    }
+    if let Some(path) = file("mesh")? {
+        alone("mesh", &["surface", "curve", "face"])?;
+        return Ok(DomainSource::Mesh { path, sol: file("sol")?, taking: taking::taking(table)? });
+    }
+    for key in ["sol", "use", "feature_angle", "chart_stretch", "scale"] {
+        if let Some(value) = table.get(key) {
+            return Err(value.fault(format!("{key} is given without mesh")).remedy("Write mesh = \"...\" too"));
+        }
+    }
+    if table.get("surface").is_some() {
+        let complex = surfaces::complex(table)?;
+        if complex.faces.is_empty() {
+            return Err(table.fault("The case has no face").remedy("Add [[face]] with a name and a surface"));
+        }
+        return Ok(DomainSource::Surfaces(complex));
+    }
+    let curves = geometry::curves(table)?;
+    let faces = geometry::faces(table, &curves)?;
+    if faces.is_empty() {
+        return Err(table.fault("The case has no face").remedy("Add [[curve]] and [[face]], or mesh = \"...\""));
+    }
+    Ok(DomainSource::Curves { curves, faces })
+}
+
+fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) -> Result<(), Fault> {
+    match domain {
+        DomainSource::Curves { .. } | DomainSource::Surfaces(_) | DomainSource::Elements { .. }
+            if fields.is_empty() =>
+        {
+            Err(table
+                .fault("The case has no metric")
+                .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1"))
+        }
+        DomainSource::Mesh { sol: Some(_), .. } if !fields.is_empty() => {
+            Err(table.fault("The case has sol and [[metric]]").remedy("Leave one of them out"))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn parameters(table: &Table<'_>) -> Result<Parameters, Fault> {
+    let mut parameters = Parameters::default();
+    if let Some(value) = table.get("parameters") {
+        let own = value.table()?;
+        own.only(&Parameters::KEYS)?;
+        for entry in own.entries() {
+            if entry.key() == "layered_loops" {
+                parameters.layered_loops = entry.texts()?;
+                continue;
+            }
+            if entry.key() == "faces" {
+                parameters.faces = entry.texts()?;
+                continue;
+            }
+            parameters.set(entry.key(), &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?;
+        }
+    }
+    Ok(parameters)
+}
+
+fn gradation(table: &Table<'_>) -> Result<Option<f64>, Fault> {
+    let Some(value) = table.get("gradation") else { return Ok(None) };
+    let bound = value.number()?;
+    if bound > 1.0 && bound <= 100.0 {
+        Ok(Some(bound))
+    } else {
+        Err(value.wrong("greater than 1 and at most 100", "gradation = 1.3"))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,420 @@
+//! The parameters of a conversion: thresholds of the paper (spec 1) and limits. Radians here, degrees in files, on the
+//! command line and in [`Parameters::text_of`].
+
+use crate::core::fault::Fault;
+use crate::core::kernel::spelling::nearest;
+
+/// Which front segment the next quadrilateral grows from (spec 2.2, 10).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Selection {
+    /// The paper's table 1: classes by frontal angles, within reach of the smallest H-value.
+    Table1,
+    /// The shortest metric length.
+    Shortest,
+    /// The smallest frontal angle.
+    SmallestAngle,
+    /// Q-Morph's order: state, level, metric length.
+    Level,
+}
+
+/// What is held against `c` times the smallest H-value (spec 1, "the worst ambiguity").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SelectionWindow {
+    /// Metric length times H: near H for unit edges, larger for long ones.
+    MetricLengthTimesH,
+    /// The H-value of eq. (6).
+    HValue,
+    /// The physical length: the paper's words.
+    PhysicalLength,
+}
+
+/// Everything that can be set beside the case's geometry and metric. Angles in radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameters {
+    /// Every target size is multiplied by this.
+    pub size_scale: f64,
+    /// The selection factor c of section 4.3.1: 1.5-2.0 in the paper, which used 2.0.
+    pub c: f64,
+    /// Below this frontal angle the neighbouring front segment is the side edge (table 1).
+    pub theta_rect: f64,
+    /// At or below this frontal angle a front corner is closed by a seam (section 4.3.7).
+    pub theta_seam: f64,
+    /// Above this frontal angle a corner is a reversal (fig. 12).
+    pub theta_revr: f64,
+    /// A live side edge longer than this times the base is split (section 4.3.2).
+    pub side_split: f64,
+    /// A side edge may be off its target direction by this (eq. 8).
+    pub side_deviation: f64,
+    /// Metric area below which the front is split at a triangle (section 4.3.6, ii b).
+    pub eps1: f64,
+    /// Metric width over height above which the front is split at a triangle (section 4.3.6, ii c).
+    pub eps2: f64,
+    /// Rows that are offset from the boundary before anything else (0: none).
+    pub layers: u32,
+    /// Curves on whose loops rows are offset; none: on all loops. Belongs to the case: later changes have no effect.
+    pub layered_loops: Vec<String>,
+    /// Faces that are converted, and the others left out; none: all. Belongs to the case: later changes have no effect.
+    pub faces: Vec<String>,
+    /// Order of base segments.
+    pub selection: Selection,
+    /// What is held against `c` times the smallest H-value.
+    pub selection_window: SelectionWindow,
+    /// Aim a side edge at the bisector of a frontal angle up to 225 degrees, and at the right angle beyond; off: always at
+    /// the right angle, as the paper says.
+    pub bisector: bool,
+    /// Place the new top nodes of each quadrilateral (spec 10, rule 2); off: the paper's eq. (9) on front nodes.
+    pub placement: bool,
+    /// Smooth around each new quadrilateral (4.3.6).
+    pub smoothing: bool,
+    /// Local structural enhancement (4.3.6).
+    pub enhancement: bool,
+    /// Seam small frontal angles (4.3.6).
+    pub seaming: bool,
+    /// Split the front at slender elements (4.3.6).
+    pub splitting: bool,
+    /// Clean-up and smoothing of the whole mesh at the end (4.3.7).
+    pub post_processing: bool,
+    /// A mesh that would need more quadrilaterals is refused before any memory is spent on it.
+    pub max_quads: u64,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Parameters {
+            size_scale: 1.0,
+            c: 2.0,
+            theta_rect: 135_f64.to_radians(),
+            theta_seam: 30_f64.to_radians(),
+            theta_revr: 225_f64.to_radians(),
+            side_split: 1.5,
+            side_deviation: 30_f64.to_radians(),
+            eps1: 0.1,
+            eps2: 5.0,
+            layers: 0,
+            layered_loops: Vec::new(),
+            faces: Vec::new(),
+            selection: Selection::Table1,
+            selection_window: SelectionWindow::MetricLengthTimesH,
+            bisector: true,
+            placement: true,
+            smoothing: true,
+            enhancement: true,
+            seaming: true,
+            splitting: true,
+            post_processing: true,
+            max_quads: 20_000_000,
+        }
+    }
+}
+
+impl Selection {
+    /// The words of files and of `--set`, in the order of the variants.
+    const WORDS: [(&'static str, Selection); 4] = [
+        ("table1", Selection::Table1),
+        ("shortest", Selection::Shortest),
+        ("smallest_angle", Selection::SmallestAngle),
+        ("level", Selection::Level),
+    ];
+}
+
+impl SelectionWindow {
+    const WORDS: [(&'static str, SelectionWindow); 3] = [
+        ("metric_length_times_h", SelectionWindow::MetricLengthTimesH),
+        ("h_value", SelectionWindow::HValue),
+        ("physical_length", SelectionWindow::PhysicalLength),
+    ];
+}
+
+impl Parameters {
+    /// The keys of files and of `--set`, in the order in which they are documented.
+    pub const KEYS: [&'static str; 22] = [
+        "size_scale",
+        "c",
+        "theta_rect",
+        "theta_seam",
+        "theta_revr",
+        "side_split",
+        "side_deviation",
+        "eps1",
+        "eps2",
+        "layers",
+        "layered_loops",
+        "faces",
+        "selection",
+        "selection_window",
+        "bisector",
+        "placement",
+        "smoothing",
+        "enhancement",
+        "seaming",
+        "splitting",
+        "post_processing",
+        "max_quads",
+    ];
+
+    /// The paper's own reading of everything (spec 1): its words where ours differ, the values that it used where it gives a
+    /// range. Front segments are chosen by physical length, side edges stand at right angles, nodes are moved by eq. (9) and
+    /// not placed.
+    pub fn paper() -> Parameters {
+        Parameters {
+            c: 2.0,
+            theta_rect: 135_f64.to_radians(),
+            theta_seam: 30_f64.to_radians(),
+            selection: Selection::Table1,
+            selection_window: SelectionWindow::PhysicalLength,
+            bisector: false,
+            placement: false,
+            ..Parameters::default()
+        }
+    }
+
+    /// The paper's reading for the mesh that these parameters ask for: its size, its limit and the rows that are offset stay,
+    /// and so do the faces: they belong to the case.
+    #[must_use]
+    pub fn read_as_paper(&self) -> Parameters {
+        Parameters {
+            size_scale: self.size_scale,
+            layers: self.layers,
+            layered_loops: self.layered_loops.clone(),
+            faces: self.faces.clone(),
+            max_quads: self.max_quads,
+            ..Parameters::paper()
+        }
+    }
+
+    /// Sets one parameter from its text, as files and `--set KEY=VALUE` give it (angles in degrees). A number in quotes is
+    /// refused: files pass their texts with them.
+    ///
+    /// # Errors
+    /// An unknown key (with the nearest known one), a value of the wrong kind, a value out of range. Nothing is changed.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), Fault> {
+        let value = value.trim();
+        match key {
+            "size_scale" => self.size_scale = number(key, value, 1e-9, 1e9)?,
+            "c" => self.c = number(key, value, 0.5, 10.0)?,
+            "theta_rect" => self.theta_rect = angle(key, value, 90.0, 180.0, 135.0)?,
+            "theta_seam" => self.theta_seam = angle(key, value, 0.0, 90.0, 30.0)?,
+            "theta_revr" => self.theta_revr = angle(key, value, 180.0, 360.0, 225.0)?,
+            "side_split" => self.side_split = number(key, value, 1.0, 10.0)?,
+            "side_deviation" => self.side_deviation = angle(key, value, 0.0, 90.0, 30.0)?,
+            "eps1" => self.eps1 = number(key, value, 0.0, 1.0)?,
+            "eps2" => self.eps2 = number(key, value, 1.0, 1000.0)?,
+            "layers" => self.layers = count(key, value, 0, 1000)? as u32,
+            "layered_loops" => self.layered_loops = names(value, ','),
+            "faces" => self.faces = names(value, ';'),
+            "selection" => self.selection = word(key, value, &Selection::WORDS)?,
+            "selection_window" => self.selection_window = word(key, value, &SelectionWindow::WORDS)?,
+            "bisector" => self.bisector = flag(key, value)?,
+            "placement" => self.placement = flag(key, value)?,
+            "smoothing" => self.smoothing = flag(key, value)?,
+            "enhancement" => self.enhancement = flag(key, value)?,
+            "seaming" => self.seaming = flag(key, value)?,
+            "splitting" => self.splitting = flag(key, value)?,
+            "post_processing" => self.post_processing = flag(key, value)?,
+            "max_quads" => self.max_quads = count(key, value, 1, 200_000_000)?,
+            _ => return Err(unknown_key(key, &Self::KEYS)),
+        }
+        Ok(())
+    }
+
+    /// The value of a parameter as [`Parameters::set`] takes it; `None` for an unknown key.
+    pub fn text_of(&self, key: &str) -> Option<String> {
+        Some(match key {
+            "size_scale" => self.size_scale.to_string(),
+            "c" => self.c.to_string(),
+            "theta_rect" => degrees(self.theta_rect),
+            "theta_seam" => degrees(self.theta_seam),
+            "theta_revr" => degrees(self.theta_revr),
+            "side_split" => self.side_split.to_string(),
+            "side_deviation" => degrees(self.side_deviation),
+            "eps1" => self.eps1.to_string(),
+            "eps2" => self.eps2.to_string(),
+            "layers" => self.layers.to_string(),
+            "layered_loops" => self.layered_loops.join(", "),
+            "faces" => self.faces.join("; "),
+            "selection" => said(self.selection, &Selection::WORDS),
+            "selection_window" => said(self.selection_window, &SelectionWindow::WORDS),
+            "bisector" => self.bisector.to_string(),
+            "placement" => self.placement.to_string(),
+            "smoothing" => self.smoothing.to_string(),
+            "enhancement" => self.enhancement.to_string(),
+            "seaming" => self.seaming.to_string(),
+            "splitting" => self.splitting.to_string(),
+            "post_processing" => self.post_processing.to_string(),
+            "max_quads" => self.max_quads.to_string(),
+            _ => return None,
+        })
+    }
+}
+
+/// The fault of a key that nobody knows: names the nearest known one, or all of them where none is near.
+pub fn unknown_key(key: &str, known: &[&str]) -> Fault {
+    let nearest = nearest(key, known.iter().copied());
+    let fault = Fault::new(format!("The key \"{key}\" is not known"));
+    match nearest {
+        Some(near) => fault.remedy(format!("The nearest known one is \"{near}\"")),
+        _ => fault.remedy(format!("Known here: {}", known.join(", "))),
+    }
+}
+
+fn number(key: &str, value: &str, least: f64, most: f64) -> Result<f64, Fault> {
+    let number = value.parse::<f64>().ok().filter(|n| !n.is_nan());
+    let number = number.ok_or_else(|| {
+        let fault = Fault::new(format!("{key} = {} is not a number", quoted(value)));
+        match leading_number(value) {
+            Some(plain) => {
+                let extra = if plain.len() == value.trim_matches('"').len() { "quotes" } else { "a unit" };
+                fault.remedy(format!("Write it without {extra}: {key} = {plain}"))
+            }
+            None => fault.remedy(format!("Write a number from {least} to {most}")),
+        }
+    })?;
+    if !(least..=most).contains(&number) {
+        return Err(
+            Fault::new(format!("{key} = {value} is out of range")).remedy(format!("It may be from {least} to {most}"))
+        );
+    }
+    Ok(number)
+}
+
+fn angle(key: &str, value: &str, least: f64, most: f64, usual: f64) -> Result<f64, Fault> {
+    let number = value.parse::<f64>().ok().filter(|n| !n.is_nan());
+    let number = number.ok_or_else(|| {
+        let plain = leading_number(value).map_or_else(|| usual.to_string(), str::to_owned);
+        Fault::new(format!("{key} = {} is not a number", quoted(value)))
+            .remedy(format!("Write degrees without a unit: {key} = {plain}"))
+    })?;
+    if !(least..=most).contains(&number) {
+        return Err(Fault::new(format!("{key} = {value} is out of range"))
+            .remedy(format!("It may be from {least} to {most} degrees, and is {usual} by default")));
+    }
+    Ok(number.to_radians())
+}
+
+fn count(key: &str, value: &str, least: u64, most: u64) -> Result<u64, Fault> {
+    let number = value.parse::<u64>().ok().filter(|n| (least..=most).contains(n));
+    number.ok_or_else(|| {
+        Fault::new(format!("{key} = {} is not a whole number from {least} to {most}", quoted(value)))
+            .remedy(format!("Write for example {key} = {least}"))
+    })
+}
+
+fn flag(key: &str, value: &str) -> Result<bool, Fault> {
+    value.parse::<bool>().map_err(|_| {
+        Fault::new(format!("{key} = {} is neither true nor false", quoted(value)))
+            .remedy(format!("Write {key} = true or {key} = false"))
+    })
+}
+
+fn word<T: Copy>(key: &str, value: &str, words: &[(&str, T)]) -> Result<T, Fault> {
+    words.iter().find(|w| w.0 == value).map(|w| w.1).ok_or_else(|| {
+        let known: Vec<_> = words.iter().map(|w| format!("\"{}\"", w.0)).collect();
+        Fault::new(format!("{key} = {} is not known", quoted(value))).remedy(format!("Known: {}", known.join(", ")))
+    })
+}
+
+/// Names between commas.
+/// Names between separators: commas, but for names that have commas themselves.
+fn names(value: &str, separator: char) -> Vec<String> {
+    value.split(separator).map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
+}
+
+fn said<T: PartialEq>(value: T, words: &[(&'static str, T)]) -> String {
+    words.iter().find(|w| w.1 == value).expect("every variant has its word").0.to_owned()
+}
+
+/// Degrees as a person wrote them: what the conversion to radians and back adds to the last digits is taken off.
+fn degrees(radians: f64) -> String {
+    ((radians.to_degrees() * 1e9).round() / 1e9).to_string()
+}
+
+/// A value as a message shows it: texts in quotes (files pass texts with theirs); escapes keep a message on its one line.
+fn quoted(value: &str) -> String {
+    if value.parse::<f64>().is_ok() {
+        return value.to_owned();
+    }
+    format!("\"{}\"", value.trim_matches('"').escape_debug())
+}
+
+/// The number that a text such as "135deg" starts with.
+fn leading_number(value: &str) -> Option<&str> {
+    let value = value.trim_matches('"');
+    let end = value.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-')).unwrap_or(value.len());
+    let start = value.get(..end)?;
+    start.parse::<f64>().ok().map(|_| start)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_can_be_read_and_set_to_what_was_read() {
+        let standard = Parameters::default();
+        let mut parameters = standard.clone();
+        for key in Parameters::KEYS {
+            let text = standard.text_of(key).unwrap();
+            parameters.set(key, &text).unwrap();
+        }
+        assert_eq!(parameters, standard);
+        assert_eq!(standard.text_of("theta_rect").unwrap(), "135");
+    }
+
+    #[test]
+    fn the_paper_s_reading_leaves_the_size_of_the_case_alone() {
+        let mut own = Parameters::default();
+        for (key, value) in
+            [("size_scale", "0.5"), ("layers", "2"), ("max_quads", "1000"), ("c", "1.5"), ("seaming", "false")]
+        {
+            own.set(key, value).unwrap();
+        }
+        let paper = own.read_as_paper();
+        let text = |key| paper.text_of(key).unwrap();
+        assert_eq!(["size_scale", "layers", "max_quads"].map(text), ["0.5", "2", "1000"]);
+        assert_eq!(["c", "theta_rect", "theta_seam"].map(text), ["2", "135", "30"]);
+        assert_eq!(["selection_window", "bisector", "placement"].map(text), ["physical_length", "false", "false"]);
+        assert_eq!(text("seaming"), "true");
+    }
+
+    #[test]
+    fn an_angle_with_a_unit_is_refused_with_the_way_to_write_it() {
+        let fault = Parameters::default().set("theta_rect", "120deg").unwrap_err();
+        assert_eq!(
+            fault.to_string(),
+            "theta_rect = \"120deg\" is not a number. Write degrees without a unit: theta_rect = 120."
+        );
+    }
+
+    #[test]
+    fn an_unknown_key_names_the_nearest_known_one() {
+        let fault = Parameters::default().set("theta_rekt", "135").unwrap_err();
+        assert!(fault.remedy.contains("\"theta_rect\""), "{fault}");
+        let fault = Parameters::default().set("colour", "3").unwrap_err();
+        assert!(fault.remedy.starts_with("Known here: size_scale, c,"), "{fault}");
+    }
+
+    #[test]
+    fn values_out_of_range_and_not_finite_are_refused_and_change_nothing() {
+        let mut parameters = Parameters::default();
+        for (key, value) in [
+            ("c", "0.4"),
+            ("c", "11"),
+            ("size_scale", "0"),
+            ("size_scale", "-1"),
+            ("size_scale", "NaN"),
+            ("size_scale", "inf"),
+            ("theta_rect", "60"),
+            ("theta_seam", "91"),
+            ("layers", "-1"),
+            ("layers", "2.5"),
+            ("max_quads", "0"),
+            ("selection", "largest"),
+            ("selection_window", "length"),
+            ("bisector", "1"),
+            ("seaming", "\"true\""),
+        ] {
+            assert!(parameters.set(key, value).is_err(), "{key} = {value}");
+        }
+        assert_eq!(parameters, Parameters::default());
+    }
+}

@@ -1,0 +1,230 @@
+//! `[[surface]]` of a case file, and the curves and faces of a case that has one.
+
+use glam::DVec3;
+
+use super::geometry::{self, known_curves, name, shape_of};
+use super::table::{Table, Value};
+use crate::core::fault::Fault;
+use crate::core::geometry::frame::Frame;
+use crate::core::geometry::spec::SpaceShape;
+use crate::core::geometry::spec::SurfaceShape;
+use crate::core::geometry::spec::{ComplexSpec, SpaceCurveSpec, SurfaceFaceSpec, SurfaceSpec};
+use crate::core::kernel::spelling::nearest;
+
+/// Reads surfaces, curves and faces; whether they make sense is for `geometry` to say.
+pub(super) fn complex(document: &Table<'_>) -> Result<ComplexSpec, Fault> {
+    let mut surfaces = Vec::new();
+    for table in document.tables("surface")? {
+        surfaces.push(SurfaceSpec { name: name(&table)?, shape: surface(&table)?, place: table.place() });
+    }
+    let mut curves = Vec::new();
+    for table in document.tables("curve")? {
+        let segments = table.get("segments").map(|v| v.count(1, 100_000_000)).transpose()?;
+        curves.push(SpaceCurveSpec {
+            name: name(&table)?,
+            shape: curve(&table, &surfaces)?,
+            segments,
+            place: table.place(),
+        });
+    }
+    let names: Vec<&str> = curves.iter().map(|c: &SpaceCurveSpec| c.name.as_str()).collect();
+    let mut faces = Vec::new();
+    for table in document.tables("face")? {
+        table.only(&["name", "surface", "outer", "holes", "cracks", "repeated"])?;
+        let surface = known_surface(&table.need("surface", "\"plate\"")?, &surfaces)?;
+        let outer = table.get("outer").map_or(Ok(Vec::new()), |value| known_curves(&value, &names))?;
+        faces.push(SurfaceFaceSpec { surface, face: geometry::face(&table, outer, &names)? });
+    }
+    Ok(ComplexSpec { surfaces, curves, faces })
+}
+
+fn known_surface(value: &Value<'_>, surfaces: &[SurfaceSpec]) -> Result<String, Fault> {
+    let name = value.text()?;
+    if surfaces.iter().any(|s| s.name == name) {
+        return Ok(name.to_owned());
+    }
+    let fault = value.fault(format!("There is no surface \"{}\"", name.escape_debug()));
+    Err(match nearest(name, surfaces.iter().map(|s| s.name.as_str())) {
+        Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
+        None => fault.remedy("Add it as [[surface]]"),
+    })
+}
+
+/// A point or direction of space; two numbers lie in z = 0.
+fn vector(value: &Value<'_>) -> Result<DVec3, Fault> {
+    let wrong = || value.wrong("a point of space", &format!("{} = [0.5, 1.0, 0.0]", value.key()));
+    let numbers = value.list().map_err(|_| wrong())?;
+    match numbers.as_slice() {
+        [x, y] => Ok(DVec3::new(x.number()?, y.number()?, 0.0)),
+        [x, y, z] => Ok(DVec3::new(x.number()?, y.number()?, z.number()?)),
+        _ => Err(wrong()),
+    }
+}
+
+fn vectors(value: &Value<'_>) -> Result<Vec<DVec3>, Fault> {
+    value.list()?.iter().map(vector).collect()
+}
+
+/// Centre (default: the origin), axis (default: z) and start of something that turns.
+fn frame(table: &Table<'_>) -> Result<Frame, Fault> {
+    let or = |key, default| table.get(key).map_or(Ok(default), |v| vector(&v));
+    let start = table.get("start").map(|v| vector(&v)).transpose()?;
+    Frame::new(or("centre", DVec3::ZERO)?, or("axis", DVec3::Z)?, start).map_err(|fault| fault.at(table.place()))
+}
+
+fn range(table: &Table<'_>, keys: [&str; 2], default: [f64; 2]) -> Result<[f64; 2], Fault> {
+    let number = |i: usize| table.get(keys[i]).map_or(Ok(default[i]), |v| v.number());
+    Ok([number(0)?, number(1)?])
+}
+
+const WHOLE: [f64; 2] = [0.0, 360.0];
+const ANGLES: [&str; 2] = ["from_angle", "to_angle"];
+
+fn surface(table: &Table<'_>) -> Result<SurfaceShape, Fault> {
+    const TURNS: &[&str] = &["name", "kind", "centre", "axis", "start", "from_angle", "to_angle"];
+    let keys = |own: &[&'static str]| table.only(&[&["name", "kind"], own].concat());
+    let turning = |own: &[&'static str]| table.only(&[TURNS, own].concat());
+    let kind = table.need("kind", "\"cylinder\"")?;
+    match kind.text()? {
+        "plane" => {
+            keys(&["corner", "u", "v"])?;
+            let corner = table.get("corner").map_or(Ok(DVec3::ZERO), |v| vector(&v))?;
+            let sides = [vector(&table.need("u", "[1, 0, 0]")?)?, vector(&table.need("v", "[0, 1, 0]")?)?];
+            Ok(SurfaceShape::Plane { corner, sides })
+        }
+        shape @ ("cylinder" | "cone") => {
+            turning(if shape == "cone" { &["radius", "top_radius", "height"] } else { &["radius", "height"] })?;
+            let radius = table.need("radius", "1")?.positive()?;
+            let top = match (shape, table.get("top_radius")) {
+                ("cylinder", _) => radius,
+                (_, None) => 0.0,
+                (_, Some(value)) => value.number()?,
+            };
+            Ok(SurfaceShape::Cone {
+                frame: frame(table)?,
+                radii: [radius, top],
+                height: table.need("height", "2")?.positive()?,
+                angles: range(table, ANGLES, WHOLE)?,
+            })
+        }
+        "sphere" => {
+            turning(&["radius", "from_latitude", "to_latitude"])?;
+            Ok(SurfaceShape::Sphere {
+                frame: frame(table)?,
+                radius: table.need("radius", "1")?.positive()?,
+                angles: range(table, ANGLES, WHOLE)?,
+                latitudes: range(table, ["from_latitude", "to_latitude"], [-90.0, 90.0])?,
+            })
+        }
+        "torus" => {
+            turning(&["radius", "tube", "from_tube", "to_tube"])?;
+            Ok(SurfaceShape::Torus {
+                frame: frame(table)?,
+                radius: table.need("radius", "2")?.positive()?,
+                tube: table.need("tube", "0.5")?.positive()?,
+                angles: range(table, ANGLES, WHOLE)?,
+                tube_angles: range(table, ["from_tube", "to_tube"], WHOLE)?,
+            })
+        }
+        "extrusion" => {
+            keys(&["curve", "direction"])?;
+            let curve = table.need("curve", "\"profile\"")?.text()?.to_owned();
+            Ok(SurfaceShape::Extrusion { curve, along: vector(&table.need("direction", "[0, 0, 1]")?)? })
+        }
+        "revolution" => {
+            turning(&["curve"])?;
+            let curve = table.need("curve", "\"profile\"")?.text()?.to_owned();
+            Ok(SurfaceShape::Revolution { curve, frame: frame(table)?, angles: range(table, ANGLES, WHOLE)? })
+        }
+        "bezier" => {
+            keys(&["points", "weights"])?;
+            let (points, columns, weights) = net(table)?;
+            let degrees = [points.len() / columns.max(1), columns].map(|n| n.saturating_sub(1));
+            let knots = degrees.map(|p| [vec![0.0; p + 1], vec![1.0; p + 1]].concat());
+            Ok(SurfaceShape::Nurbs { degrees, knots, weights, points, columns })
+        }
+        "nurbs" => {
+            keys(&["degree_u", "degree_v", "knots_u", "knots_v", "points", "weights"])?;
+            let degree = |key| table.need(key, "3")?.count(1, 20);
+            let degrees = [degree("degree_u")? as usize, degree("degree_v")? as usize];
+            let knots = |key| table.need(key, "[0, 0, 0, 0, 1, 1, 1, 1]")?.numbers();
+            let (points, columns, weights) = net(table)?;
+            Ok(SurfaceShape::Nurbs { degrees, knots: [knots("knots_u")?, knots("knots_v")?], weights, points, columns })
+        }
+        _ => Err(kind.wrong(
+            "a kind of surface",
+            "\"plane\", \"cylinder\", \"cone\", \"sphere\", \"torus\", \"extrusion\", \"revolution\", \"bezier\" or \
+             \"nurbs\" after kind =",
+        )),
+    }
+}
+
+/// Rows of control points with their weights.
+fn net(table: &Table<'_>) -> Result<(Vec<DVec3>, usize, Vec<f64>), Fault> {
+    let value = table.need("points", "[[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0.5]]]")?;
+    let rows: Vec<Vec<DVec3>> = value.list()?.iter().map(vectors).collect::<Result<_, _>>()?;
+    let columns = rows.first().map_or(0, Vec::len);
+    if columns == 0 || rows.iter().any(|row| row.len() != columns) {
+        return Err(value
+            .fault("The rows of control points are not all of the same length")
+            .remedy("Give a list of rows, one for each place along u, each with the points along v"));
+    }
+    let weights = match table.get("weights") {
+        None => Vec::new(),
+        Some(value) => {
+            let rows: Vec<Vec<f64>> = value.list()?.iter().map(Value::numbers).collect::<Result<_, _>>()?;
+            if rows.iter().any(|row| row.len() != columns) {
+                return Err(value
+                    .fault("weights has not a number for each point")
+                    .remedy("Give rows as those of points"));
+            }
+            rows.concat()
+        }
+    };
+    Ok((rows.concat(), columns, weights))
+}
+
+fn curve(table: &Table<'_>, surfaces: &[SurfaceSpec]) -> Result<SpaceShape, Fault> {
+    if let Some(value) = table.get("on") {
+        return Ok(SpaceShape::On { surface: known_surface(&value, surfaces)?, shape: shape_of(table, &["on"])? });
+    }
+    let keys = |own: &[&'static str]| table.only(&[&["name", "kind", "segments"], own].concat());
+    let kind = table.need("kind", "\"segment\"")?;
+    match kind.text()? {
+        "segment" => {
+            keys(&["from", "to"])?;
+            let from = vector(&table.need("from", "[0, 0, 0]")?)?;
+            Ok(SpaceShape::Segment { from, to: vector(&table.need("to", "[1, 0, 0]")?)? })
+        }
+        "arc" => {
+            keys(&["centre", "axis", "start", "radius", "from_angle", "to_angle"])?;
+            let angle = |key, example| table.need(key, example)?.number();
+            let angles = [angle("from_angle", "0")?, angle("to_angle", "90")?];
+            Ok(SpaceShape::Arc { frame: frame(table)?, radius: table.need("radius", "0.5")?.positive()?, angles })
+        }
+        "circle" => {
+            keys(&["centre", "axis", "start", "radius", "start_angle"])?;
+            let from = table.get("start_angle").map_or(Ok(0.0), |v| v.number())?;
+            let radius = table.need("radius", "0.5")?.positive()?;
+            Ok(SpaceShape::Arc { frame: frame(table)?, radius, angles: [from, from + 360.0] })
+        }
+        "polyline" => {
+            keys(&["points", "closed"])?;
+            let points = vectors(&table.need("points", "[[0, 0, 0], [1, 0, 0], [1, 1, 0]]")?)?;
+            Ok(SpaceShape::Polyline { points, closed: table.get("closed").map_or(Ok(false), |v| v.flag())? })
+        }
+        "nurbs" => {
+            keys(&["degree", "knots", "weights", "points"])?;
+            Ok(SpaceShape::Nurbs {
+                degree: table.need("degree", "3")?.count(1, 20)? as usize,
+                knots: table.need("knots", "[0, 0, 0, 0, 1, 1, 1, 1]")?.numbers()?,
+                weights: table.get("weights").map_or(Ok(Vec::new()), |v| v.numbers())?,
+                points: vectors(&table.need("points", "[[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 1, 1]]")?)?,
+            })
+        }
+        _ => {
+            Err(kind
+                .wrong("a kind of curve", "\"segment\", \"arc\", \"circle\", \"polyline\" or \"nurbs\" after kind ="))
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! How the mesh of a case is used: its triangles or its shape, where it is folded, how far its charts may be stretched, its scale.
+
+use super::table::Table;
+use crate::core::discrete::features::ANGLE;
+use crate::core::discrete::flat::Bound;
+use crate::core::fault::Fault;
+use crate::core::kernel::tensor::Metric3;
+use crate::core::soup::mesh_file::MeshFile;
+
+/// What a mesh is used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshUse {
+    /// Its triangles are converted as they are.
+    Triangles,
+    /// Its shape is meshed anew.
+    Shape,
+}
+
+/// How a mesh is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taking {
+    /// For what; where nothing is said, a mesh in the plane for its triangles and one in space for its shape.
+    pub used: Option<MeshUse>,
+    /// Folds beyond this are edges to keep (radians).
+    pub feature_angle: f64,
+    /// How far shapes may be stretched where the mesh is laid into the plane.
+    pub chart_stretch: f64,
+    /// What all coordinates are multiplied by.
+    pub scale: f64,
+}
+
+impl Taking {
+    /// The least and the greatest fold, in degrees.
+    pub const ANGLES: [f64; 2] = [1.0, 180.0];
+    /// The least and the greatest stretch.
+    pub const STRETCHES: [f64; 2] = [1.1, 50.0];
+    /// The least and the greatest scale.
+    pub const SCALES: [f64; 2] = [1e-9, 1e9];
+}
+
+impl Default for Taking {
+    fn default() -> Self {
+        Taking { used: None, feature_angle: ANGLE, chart_stretch: Bound::default().shape, scale: 1.0 }
+    }
+}
+
+impl Taking {
+    /// The bound of charts.
+    pub fn bound(&self) -> Bound {
+        Bound { shape: self.chart_stretch, area: self.chart_stretch * self.chart_stretch }
+    }
+
+    /// Scales a mesh; metrics, which are of its own unit, with it.
+    pub fn scale(&self, file: &mut MeshFile) {
+        if self.scale == 1.0 {
+            return;
+        }
+        file.points.iter_mut().for_each(|p| *p *= self.scale);
+        let k = 1.0 / (self.scale * self.scale);
+        let scaled = |m: &Metric3| Metric3 {
+            xx: m.xx * k,
+            xy: m.xy * k,
+            xz: m.xz * k,
+            yy: m.yy * k,
+            yz: m.yz * k,
+            zz: m.zz * k,
+        };
+        if let Some(metric) = &mut file.metric {
+            metric.iter_mut().for_each(|m| *m = scaled(m));
+        }
+    }
+}
+
+/// Reads the keys beside `mesh`.
+pub(super) fn taking(table: &Table<'_>) -> Result<Taking, Fault> {
+    let mut taking = Taking::default();
+    if let Some(value) = table.get("use") {
+        taking.used = Some(match value.text()? {
+            "triangles" => MeshUse::Triangles,
+            "shape" => MeshUse::Shape,
+            _ => return Err(value.wrong("a use of a mesh", "use = \"triangles\" or use = \"shape\"")),
+        });
+    }
+    let between = |key: &str, default: f64, [least, most]: [f64; 2], what: &str, unit: &str| match table.get(key) {
+        None => Ok(default),
+        Some(value) => match value.number()? {
+            number if (least..=most).contains(&number) => Ok(number),
+            _ => {
+                let most = if most < 1e6 { format!("{most}") } else { format!("{most:e}") };
+                let least = if least > 1e-6 { format!("{least}") } else { format!("{least:e}") };
+                Err(value.wrong(&format!("{what} from {least} to {most}{unit}"), &format!("{key} = {default}")))
+            }
+        },
+    };
+    let degrees = between("feature_angle", ANGLE.to_degrees(), Taking::ANGLES, "an angle", " degrees")?;
+    taking.feature_angle = degrees.to_radians();
+    taking.chart_stretch = between("chart_stretch", taking.chart_stretch, Taking::STRETCHES, "a stretch", "")?;
+    taking.scale = between("scale", 1.0, Taking::SCALES, "a factor", "")?;
+    Ok(taking)
+}

@@ -1,0 +1,201 @@
+//! Which format a file has, and the one way in and out for meshes.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::gltf;
+use super::inp;
+use super::medit;
+use super::msh;
+use super::obj;
+use super::ply;
+use super::save::{load_watched, save};
+use super::stl;
+use super::vtu;
+use crate::core::fault::Fault;
+use crate::core::progress::{Nobody, Pace, Reading, Watch};
+use crate::core::soup::mesh_file::MeshFile;
+
+/// The formats of meshes, read and written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Gmsh, `.msh`.
+    Msh,
+    /// Medit, `.mesh`, with the metric in `.sol` beside it.
+    Medit,
+    /// VTK XML, `.vtu`.
+    Vtu,
+    /// Wavefront, `.obj`.
+    Obj,
+    /// Abaqus, `.inp`.
+    Inp,
+    /// Stanford, `.ply`.
+    Ply,
+    /// Stereolithography, `.stl`; read only, since it has no quadrilaterals.
+    Stl,
+    /// Khronos, `.gltf`; read only, likewise.
+    Gltf,
+    /// The same in one binary file, `.glb`.
+    Glb,
+}
+
+/// How to write.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Gmsh's version 2.2 instead of 4.1.
+    pub msh2: bool,
+}
+
+impl Format {
+    /// All formats; those that are written come first.
+    pub const ALL: [Format; 9] = [
+        Format::Msh,
+        Format::Medit,
+        Format::Vtu,
+        Format::Obj,
+        Format::Inp,
+        Format::Ply,
+        Format::Stl,
+        Format::Gltf,
+        Format::Glb,
+    ];
+
+    /// The formats that are written: those that have quadrilaterals.
+    pub fn written() -> impl Iterator<Item = Format> {
+        Format::ALL.into_iter().filter(|format| format.is_written())
+    }
+
+    /// Whether it is written, and not only read.
+    pub fn is_written(self) -> bool {
+        !matches!(self, Format::Stl | Format::Gltf | Format::Glb)
+    }
+
+    /// The extension of its files, without the dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Msh => "msh",
+            Format::Medit => "mesh",
+            Format::Vtu => "vtu",
+            Format::Obj => "obj",
+            Format::Inp => "inp",
+            Format::Ply => "ply",
+            Format::Stl => "stl",
+            Format::Gltf => "gltf",
+            Format::Glb => "glb",
+        }
+    }
+
+    /// The format of a file by its extension, in capitals or not.
+    ///
+    /// # Errors
+    /// For an unknown extension, or none: the fault lists the known ones.
+    pub fn from_path(path: &Path) -> Result<Format, Fault> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        if let Some(&format) = Format::ALL.iter().find(|format| format.extension() == extension) {
+            return Ok(format);
+        }
+        let place = path.display().to_string();
+        if extension == "meshb" || extension == "solb" {
+            let text = &extension[..extension.len() - 1];
+            return Err(Fault::new("Medit's binary form is not read or written")
+                .at(place)
+                .remedy(format!("Use its text form, .{text}")));
+        }
+        let known: Vec<String> = Format::ALL.iter().map(|format| format!(".{}", format.extension())).collect();
+        let what = if extension.is_empty() {
+            "The name has no extension to tell the format by".to_string()
+        } else {
+            format!("The format \".{extension}\" is not known")
+        };
+        Err(Fault::new(what).at(place).remedy(format!("Known are {}", known.join(", "))))
+    }
+}
+
+/// Reads a mesh in the format of its extension. The metric comes from `sol` when given, which may be the `.sol` to a mesh
+/// of any format; otherwise a `.mesh` takes the `.sol` of the same stem beside it if there is one.
+///
+/// # Errors
+/// One fault with file, line and remedy for whatever is wrong.
+pub fn read_mesh(path: &Path, sol: Option<&Path>) -> Result<MeshFile, Fault> {
+    read_mesh_watched(path, sol, &mut Nobody)
+}
+
+/// As [`read_mesh`], while somebody watches.
+///
+/// # Errors
+/// As [`read_mesh`], and [`Fault::stopped`].
+pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch) -> Result<MeshFile, Fault> {
+    let pace = Reading::watched(watch);
+    let format = Format::from_path(path)?;
+    let bytes = load_watched(path, &pace)?;
+    let mut mesh = read_in(&path.display().to_string(), &bytes, format, path.parent(), &pace)?;
+    let beside = path.with_extension("sol");
+    let sol = sol.or_else(|| (format == Format::Medit && beside.is_file()).then_some(beside.as_path()));
+    if let Some(sol) = sol {
+        let bytes = load_watched(sol, &pace)?;
+        let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace)?;
+        mesh.metric = Some(metric);
+    }
+    Ok(mesh)
+}
+
+/// Reads a mesh from bytes; `name` is how messages call them.
+///
+/// # Errors
+/// One fault with name, line and remedy for whatever is wrong.
+pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
+    read_in(name, bytes, format, None, &Reading::watched(&mut Nobody))
+}
+
+/// As [`read_bytes`], with the folder in which files lie that the mesh names.
+fn read_in(
+    name: &str,
+    bytes: &[u8],
+    format: Format,
+    folder: Option<&Path>,
+    pace: &dyn Pace,
+) -> Result<MeshFile, Fault> {
+    if bytes.trim_ascii().is_empty() {
+        return Err(Fault::new("The file is empty").at(name).remedy("Write it again"));
+    }
+    let read = match format {
+        Format::Msh => msh::read(name, bytes, pace),
+        Format::Medit => medit::read(name, bytes, pace),
+        Format::Vtu => vtu::read(name, bytes, pace),
+        Format::Obj => obj::read(name, bytes, pace),
+        Format::Inp => inp::read(name, bytes, pace),
+        Format::Ply => ply::read(name, bytes, pace),
+        Format::Stl => stl::read(name, bytes, pace),
+        Format::Gltf | Format::Glb => gltf::read(name, bytes, folder, pace),
+    };
+    // A reader that was told to end has seen a part of the file, and may have complained of that.
+    pace.cancel().check().and(read)
+}
+
+/// Writes a mesh to a stream. The metric of Medit, which is a file of its own, is not written.
+///
+/// # Errors
+/// What `out` says.
+pub fn write_to(out: &mut dyn Write, format: Format, mesh: &MeshFile, options: WriteOptions) -> io::Result<()> {
+    match format {
+        Format::Msh => msh::write(out, mesh, if options.msh2 { msh::Version::V2 } else { msh::Version::V4 }),
+        Format::Medit => medit::write(out, mesh),
+        Format::Vtu => vtu::write(out, mesh),
+        Format::Obj => obj::write(out, mesh),
+        Format::Inp => inp::write(out, mesh),
+        Format::Ply => ply::write(out, mesh),
+        Format::Stl | Format::Gltf | Format::Glb => Err(io::Error::other("it has no quadrilaterals")),
+    }
+}
+
+/// Writes a mesh to a file, whole or not at all; for Medit the metric goes to the `.sol` of the same stem.
+///
+/// # Errors
+/// A fault that names the file and says why it cannot be written.
+pub fn write_mesh(path: &Path, format: Format, mesh: &MeshFile, options: WriteOptions) -> Result<(), Fault> {
+    save(path, |out| write_to(out, format, mesh, options))?;
+    if let (Format::Medit, Some(metric)) = (format, &mesh.metric) {
+        save(&path.with_extension("sol"), |out| medit::write_metric(out, mesh, metric))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,333 @@
+//! Reading Abaqus input files.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use crate::core::fault::Fault;
+use crate::core::formats::numbering::{Numbering, sort_by_number};
+use crate::core::formats::scan::{Scanner, parse_integer, parse_real, shown};
+use crate::core::progress::Pace;
+use crate::core::soup::counting::Count;
+use crate::core::soup::mesh_file::{Group, MeshFile};
+
+/// What an element type of Abaqus is to us: its number of corners, 0 for what is skipped.
+fn corners_of(kind: &str) -> Result<usize, ()> {
+    let shells = ["STRI", "S", "CPS", "CPE", "CPEG", "CAX", "M3D", "R3D", "SFM3D", "DS", "DC2D"];
+    let lines = ["T2D", "T3D", "B2", "B3", "R2D", "RAX"];
+    let letters_end =
+        |prefix: &str| kind.strip_prefix(prefix).filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+    for prefix in shells {
+        if let Some(rest) = letters_end(prefix) {
+            return match rest.as_bytes()[0] {
+                b'3' => Ok(3),
+                b'4' => Ok(4),
+                _ => Err(()),
+            };
+        }
+    }
+    for prefix in lines {
+        if let Some(rest) = letters_end(prefix) {
+            return if rest.as_bytes()[0] == b'3' || (prefix.starts_with('B') && rest.as_bytes()[0] == b'2') {
+                Err(())
+            } else {
+                Ok(2)
+            };
+        }
+    }
+    Ok(0)
+}
+
+/// The section that lines of data belong to.
+enum Section {
+    Nodes,
+    /// Elements of so many corners, and the set that they are in.
+    Elements(usize, Option<usize>),
+    Skipped(String),
+    /// The numbers of a set's elements; or the first, the last and the step of them.
+    Set(usize, bool),
+    /// Edges of elements.
+    Surface(usize),
+    Other,
+}
+
+/// Sets of elements and surfaces of their edges, by name, in the order of the file.
+#[derive(Default)]
+struct Sets {
+    sets: List<Run>,
+    surfaces: List<(u64, usize)>,
+}
+
+/// Things by name, in capitals or not.
+struct List<T> {
+    all: Vec<(String, Vec<T>)>,
+    known: FxHashMap<String, usize>,
+}
+
+/// Numbers from the first to the last.
+#[derive(Clone, Copy)]
+struct Run {
+    first: u64,
+    last: u64,
+    step: u64,
+}
+
+/// Reads nodes and elements; sets of elements become regions (of several that an element is in, the smallest), surfaces of edges
+/// groups of lines. Sets of nodes, parts and everything else are passed over. Nodes and elements come in the order of their numbers.
+///
+/// # Errors
+/// A fault with the line for a malformed node or element, an element of higher order, and numbers that come twice.
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).watched(pace);
+    let mut mesh = MeshFile::default();
+    let (mut node_numbers, mut triangle_numbers, mut quad_numbers) = (Vec::new(), Vec::new(), Vec::new());
+    let mut nodes: Option<Numbering> = None;
+    let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
+    let mut section = Section::Other;
+    let mut sets = Sets::default();
+    let mut any = false;
+    while let Some(line) = s.line() {
+        if line.is_empty() || line.starts_with(b"**") {
+            continue;
+        }
+        if let Some(keyword) = line.strip_prefix(b"*") {
+            section = keyword_line(&s, keyword, &mut sets)?;
+            if matches!(section, Section::Elements(..)) && nodes.is_none() {
+                nodes = Some(number(&s, &mut node_numbers, &mut mesh.points)?);
+            }
+            any = true;
+            continue;
+        }
+        let mut fields = line.split(|&b| b == b',').map(<[u8]>::trim_ascii);
+        match &section {
+            Section::Nodes => {
+                if nodes.is_some() {
+                    return Err(s.fault("Nodes come behind elements").remedy("Put all nodes first"));
+                }
+                node_numbers.push(whole(&s, fields.next(), "the number of a node")?);
+                let mut p = DVec3::ZERO;
+                for axis in 0..3 {
+                    // Abaqus takes what is left out for zero.
+                    let word = fields.next().filter(|word| !word.is_empty()).unwrap_or(b"0");
+                    p[axis] = match parse_real(word) {
+                        Some(x) if x.is_finite() => x,
+                        _ => return Err(s.fault(format!("\"{}\" stands where a coordinate is expected", shown(word)))),
+                    };
+                }
+                mesh.points.push(p);
+            }
+            Section::Elements(count, set) => {
+                let number = whole(&s, fields.next(), "the number of an element")?;
+                if let Some(set) = set {
+                    sets.sets.all[*set].1.push(Run { first: number, last: number, step: 1 });
+                }
+                let mut corners = [0; 4];
+                for corner in &mut corners[..*count] {
+                    let node = whole(&s, fields.next(), "a node of the element")?;
+                    *corner = nodes.as_ref().and_then(|nodes| nodes.index(node)).ok_or_else(|| {
+                        s.fault(format!("Element {number} has the node {node}, which does not exist"))
+                    })?;
+                }
+                match *count {
+                    2 => mesh.lines.push([corners[0], corners[1]]),
+                    3 => {
+                        mesh.triangles.push([corners[0], corners[1], corners[2]]);
+                        triangle_numbers.push(number);
+                    }
+                    _ => {
+                        mesh.quads.push(corners);
+                        quad_numbers.push(number);
+                    }
+                }
+            }
+            Section::Skipped(kind) => match skipped.get_mut(kind) {
+                Some(count) => *count += 1,
+                None => drop(skipped.insert(kind.clone(), 1)),
+            },
+            Section::Set(set, is_run) => {
+                // What is no number names another set.
+                let numbers: Vec<u64> = fields.filter_map(number_of).collect();
+                let runs = &mut sets.sets.all[*set].1;
+                match numbers[..] {
+                    [first, last, ref rest @ ..] if *is_run => {
+                        runs.push(Run { first, last, step: rest.first().copied().unwrap_or(1) });
+                    }
+                    _ => runs.extend(numbers.into_iter().map(|number| Run { first: number, last: number, step: 1 })),
+                }
+            }
+            Section::Surface(surface) => {
+                let side = |word: &[u8]| match word {
+                    [b'E' | b'e', k @ b'1'..=b'4'] => Some(usize::from(k - b'1')),
+                    _ => None,
+                };
+                let [element, side] = [fields.next(), fields.next()]
+                    .map(Option::unwrap_or_default)
+                    .map(|word| (number_of(word), side(word)));
+                if let (Some(element), Some(side)) = (element.0, side.1) {
+                    sets.surfaces.all[*surface].1.push((element, side));
+                }
+            }
+            Section::Other => {}
+        }
+    }
+    if !any {
+        return Err(Fault::new("There is no keyword line (*NODE, ...)").at(name).remedy("Is it an Abaqus input file?"));
+    }
+    if nodes.is_none() {
+        number(&s, &mut node_numbers, &mut mesh.points)?;
+    }
+    sort_by_number(&mut triangle_numbers, &mut mesh.triangles, &mut []);
+    sort_by_number(&mut quad_numbers, &mut mesh.quads, &mut []);
+    mesh.counting.in_one_row = true;
+    mesh.counting.points = Count::of(&node_numbers);
+    (mesh.counting.triangles, mesh.counting.quads) = (Count::of(&triangle_numbers), Count::of(&quad_numbers));
+    sets.into_groups(&mut mesh, &triangle_numbers, &quad_numbers);
+    mesh.skipped = skipped.into_iter().collect();
+    Ok(mesh)
+}
+
+impl Sets {
+    /// Makes groups of the sets that have triangles or quadrilaterals and of the surfaces that have edges of these.
+    fn into_groups(self, mesh: &mut MeshFile, triangle_numbers: &[u64], quad_numbers: &[u64]) {
+        let triangles = triangle_numbers.len();
+        let mut numbers: Vec<(u64, usize)> = triangle_numbers.iter().chain(quad_numbers).copied().zip(0..).collect();
+        numbers.sort_unstable();
+        let from = |number: u64| numbers.partition_point(|known| known.0 < number);
+        let index = |number: u64| numbers.get(from(number)).filter(|known| known.0 == number).map(|known| known.1);
+        // Runs that say the same over and over again are not followed for ever.
+        let mut left = 16 * numbers.len();
+        let mut members: Vec<(usize, Vec<usize>)> = Vec::new();
+        for (place, (_, runs)) in self.sets.all.iter().enumerate() {
+            let mut own = Vec::new();
+            for run in runs {
+                let all = numbers[from(run.first)..].iter().take_while(|known| known.0 <= run.last);
+                for known in all.take(left) {
+                    left -= 1;
+                    if (known.0 - run.first).is_multiple_of(run.step.max(1)) {
+                        own.push(known.1);
+                    }
+                }
+            }
+            own.sort_unstable();
+            own.dedup();
+            if !own.is_empty() {
+                members.push((place, own));
+            }
+        }
+        members.sort_by_key(|(place, own)| (own.len(), *place));
+        let mut tags = vec![0; numbers.len()];
+        for (place, own) in members {
+            let tag = place as u32 + 1;
+            let mut any = false;
+            for element in own.into_iter().filter(|&element| tags[element] == 0).collect::<Vec<_>>() {
+                tags[element] = tag;
+                any = true;
+            }
+            if any {
+                mesh.groups.push(Group { dimension: 2, tag, name: self.sets.all[place].0.clone() });
+            }
+        }
+        if tags.iter().any(|tag| *tag != 0) {
+            mesh.quad_tags = tags.split_off(triangles);
+            mesh.triangle_tags = tags;
+        }
+        let lines = mesh.lines.len();
+        for ((name, sides), tag) in self.surfaces.all.into_iter().zip(1..) {
+            let before = mesh.lines.len();
+            for (element, side) in sides.into_iter().filter_map(|(number, side)| Some((index(number)?, side))) {
+                let corners = match element.checked_sub(triangles) {
+                    None => &mesh.triangles[element][..],
+                    Some(quad) => &mesh.quads[quad][..],
+                };
+                if side < corners.len() {
+                    mesh.lines.push([corners[side], corners[(side + 1) % corners.len()]]);
+                }
+            }
+            if mesh.lines.len() > before {
+                mesh.line_tags.resize(before, 0);
+                mesh.line_tags.resize(mesh.lines.len(), tag);
+                mesh.groups.push(Group { dimension: 1, tag, name });
+            }
+        }
+        if mesh.lines.len() == lines {
+            mesh.line_tags.clear();
+        }
+        mesh.groups.sort_by_key(|group| (group.dimension, group.tag));
+    }
+}
+
+fn number_of(word: &[u8]) -> Option<u64> {
+    parse_integer(word).and_then(|value| u64::try_from(value).ok())
+}
+
+/// Puts the points into the order of their numbers, which must not come twice.
+fn number(s: &Scanner, numbers: &mut [u64], points: &mut [DVec3]) -> Result<Numbering, Fault> {
+    sort_by_number(numbers, points, &mut []);
+    Numbering::new(numbers).map_err(|twice| {
+        s.fault(format!("Node {twice} comes twice before here"))
+            .remedy("Parts and instances are not read: save one flat mesh")
+    })
+}
+
+fn whole(s: &Scanner, field: Option<&[u8]>, what: &str) -> Result<u64, Fault> {
+    let word = field.unwrap_or_default();
+    let value = parse_integer(word).and_then(|value| u64::try_from(value).ok());
+    value.ok_or_else(|| s.fault(format!("\"{}\" stands where {what} is expected", shown(word))))
+}
+
+/// What a keyword line begins.
+fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fault> {
+    let text = String::from_utf8_lossy(line);
+    let mut parts = text.split(',').map(str::trim);
+    let keyword = parts.next().unwrap_or_default().to_ascii_uppercase();
+    let options: Vec<(String, &str)> = parts
+        .map(|part| part.split_once('=').unwrap_or((part, "")))
+        .map(|(key, value)| (key.trim().to_ascii_uppercase(), value.trim().trim_matches('"')))
+        .collect();
+    let option = |key: &str| options.iter().find(|option| option.0 == key).map(|option| option.1);
+    match keyword.as_str() {
+        "NODE" => Ok(Section::Nodes),
+        "ELEMENT" => {
+            let kind = option("TYPE").filter(|kind| !kind.is_empty()).ok_or_else(|| s.fault("*ELEMENT has no TYPE"))?;
+            let kind = shown(kind.to_ascii_uppercase().as_bytes());
+            match corners_of(&kind) {
+                Ok(0) => Ok(Section::Skipped(format!("element {kind}"))),
+                Ok(count) => Ok(Section::Elements(count, option("ELSET").map(|name| sets.sets.place(name)))),
+                Err(()) => Err(s
+                    .fault(format!("Elements of type {kind} are not read"))
+                    .remedy("Save the mesh with elements of order 1 (S3, S4)")),
+            }
+        }
+        "ELSET" => Ok(match option("ELSET") {
+            Some(name) => Section::Set(sets.sets.place(name), option("GENERATE").is_some()),
+            None => Section::Other,
+        }),
+        // Where no type is given it is that of elements.
+        "SURFACE" => Ok(match (option("NAME"), option("TYPE")) {
+            (Some(name), kind) if kind.is_none_or(|kind| kind.eq_ignore_ascii_case("ELEMENT")) => {
+                Section::Surface(sets.surfaces.place(name))
+            }
+            _ => Section::Other,
+        }),
+        _ => Ok(Section::Other),
+    }
+}
+
+impl<T> Default for List<T> {
+    fn default() -> Self {
+        List { all: Vec::new(), known: FxHashMap::default() }
+    }
+}
+
+impl<T> List<T> {
+    /// The place of a name; a new one where it is not known.
+    fn place(&mut self, name: &str) -> usize {
+        let new = self.all.len();
+        let place = *self.known.entry(name.to_ascii_uppercase()).or_insert(new);
+        if place == new {
+            self.all.push((name.to_owned(), Vec::new()));
+        }
+        place
+    }
+}

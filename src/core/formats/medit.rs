@@ -1,0 +1,265 @@
+//! Medit's text formats: meshes (`.mesh`) and the metrics that lie beside them (`.sol`).
+//!
+//! Deliberately absent: the binary forms (`.meshb`, `.solb`), refused by the dispatcher; what a mesh knows besides
+//! vertices, edges, triangles and quadrilaterals (corners, ridges, required vertices) is skipped.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use glam::DVec3;
+
+use super::scan::{Scanner, shown};
+use crate::core::fault::Fault;
+use crate::core::kernel::decimal::Shortest;
+use crate::core::kernel::tensor::Metric3;
+use crate::core::progress::{Nobody, Pace, Reading};
+use crate::core::soup::mesh_file::{MeshFile, positive_definite, tag_of};
+
+/// Reads a mesh from the bytes of a `.mesh` file; `name` is how messages call it. References become tags.
+///
+/// # Errors
+/// A fault with the line for what is not such a file.
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).with_comments(b'#').watched(pace);
+    let dimension = header(&mut s)?;
+    let mut mesh = MeshFile::default();
+    let mut skipped = BTreeMap::new();
+    // Elements may stand before the vertices: the largest index and where it stands are checked at the end.
+    let mut largest = (0, 0);
+    while let Some(word) = s.word() {
+        match word {
+            b"End" => break,
+            b"Vertices" => {
+                if !mesh.points.is_empty() {
+                    return Err(s.fault("Vertices come twice"));
+                }
+                let count = s.count("a number of vertices", 2 * dimension + 2)?;
+                mesh.points.reserve_exact(count);
+                for _ in 0..count {
+                    let mut p = DVec3::ZERO;
+                    for axis in 0..dimension {
+                        p[axis] = s.finite("a coordinate")?;
+                    }
+                    s.integer("a reference")?;
+                    mesh.points.push(p);
+                }
+            }
+            b"Edges" => elements(&mut s, &mut mesh.lines, &mut mesh.line_tags, &mut largest)?,
+            b"Triangles" => elements(&mut s, &mut mesh.triangles, &mut mesh.triangle_tags, &mut largest)?,
+            b"Quadrilaterals" => elements(&mut s, &mut mesh.quads, &mut mesh.quad_tags, &mut largest)?,
+            b"Tetrahedra" | b"Hexahedra" | b"Prisms" | b"Pyramids" => {
+                let name = match word {
+                    b"Tetrahedra" => "tetrahedron",
+                    b"Hexahedra" => "hexahedron",
+                    b"Prisms" => "prism",
+                    _ => "pyramid",
+                };
+                let count = s.count("a number of elements", 10)?;
+                if count > 0 {
+                    *skipped.entry(name.to_string()).or_default() += count;
+                }
+                to_keyword(&mut s);
+            }
+            _ if word[0].is_ascii_alphabetic() => {
+                let higher = [&b"P2"[..], b"Q2", b"P3", b"Q3", b"P4", b"Q4"].iter().any(|order| word.ends_with(order));
+                if higher && [&b"Edges"[..], b"Triangles", b"Quadri"].iter().any(|kind| word.starts_with(kind)) {
+                    return Err(s
+                        .fault(format!("Elements of higher order ({}) are not read", shown(word)))
+                        .remedy("Save the mesh with elements of order 1"));
+                }
+                to_keyword(&mut s);
+            }
+            _ => {
+                return Err(s
+                    .fault(format!("\"{}\" stands where a keyword (Vertices, ...) is expected", shown(word)))
+                    .remedy("The count of the section before it may be wrong"));
+            }
+        }
+    }
+    if largest.0 > mesh.points.len() {
+        let what = format!("An element has the vertex {}, and there are {}", largest.0, mesh.points.len());
+        return Err(s.fault_at(largest.1, what));
+    }
+    for tags in [&mut mesh.line_tags, &mut mesh.triangle_tags, &mut mesh.quad_tags] {
+        if tags.iter().all(|&tag| tag == 0) {
+            *tags = Vec::new();
+        }
+    }
+    mesh.skipped = skipped.into_iter().collect();
+    Ok(mesh)
+}
+
+/// The version and the dimension, which is given back.
+fn header(s: &mut Scanner) -> Result<usize, Fault> {
+    if s.need("MeshVersionFormatted")? != b"MeshVersionFormatted" {
+        return Err(s.fault("The file does not begin with MeshVersionFormatted").remedy("Is it a text file of Medit?"));
+    }
+    s.whole("a version")?;
+    if s.need("Dimension")? != b"Dimension" {
+        return Err(s.fault("Dimension is expected behind the version"));
+    }
+    match s.whole("a dimension")? {
+        dimension @ (2 | 3) => Ok(dimension as usize),
+        other => Err(s.fault(format!("The dimension is {other} and not 2 or 3"))),
+    }
+}
+
+/// Goes to the next keyword: over all words that begin like a number.
+fn to_keyword(s: &mut Scanner) {
+    while s.peek().is_some_and(|word| !word[0].is_ascii_alphabetic()) {
+        s.word();
+    }
+}
+
+fn elements<const N: usize>(
+    s: &mut Scanner,
+    list: &mut Vec<[u32; N]>,
+    tags: &mut Vec<u32>,
+    largest: &mut (usize, usize),
+) -> Result<(), Fault> {
+    let count = s.count("a number of elements", 2 * N + 2)?;
+    list.reserve_exact(count);
+    tags.reserve_exact(count);
+    for _ in 0..count {
+        let mut corners = [0; N];
+        for corner in &mut corners {
+            let index = s.whole("a vertex")?;
+            *corner = match u32::try_from(index) {
+                Ok(index @ 1..) => index - 1,
+                _ => return Err(s.fault(format!("An element has the vertex {index}, which does not exist"))),
+            };
+            if index as usize > largest.0 {
+                *largest = (index as usize, s.mark());
+            }
+        }
+        list.push(corners);
+        let tag = s.integer("a reference")?;
+        // A reference that is negative or too large says nothing to us.
+        tags.push(u32::try_from(tag).unwrap_or(0));
+    }
+    Ok(())
+}
+
+/// Reads the metric at `count` vertices from the bytes of a `.sol` file: a size h, which becomes the tensor 1/h^2, or a
+/// tensor (in the plane m11 m12 m22, in space m11 m12 m22 m13 m23 m33).
+///
+/// # Errors
+/// A fault with the line for what is not such a file, for another number of vertices, and for a tensor that is not
+/// positive definite.
+pub fn read_metric(name: &str, bytes: &[u8], count: usize) -> Result<Vec<Metric3>, Fault> {
+    read_metric_watched(name, bytes, count, &Reading::watched(&mut Nobody))
+}
+
+/// As [`read_metric`], while somebody watches.
+///
+/// # Errors
+/// As [`read_metric`], and [`Fault::stopped`].
+pub fn read_metric_watched(name: &str, bytes: &[u8], count: usize, pace: &dyn Pace) -> Result<Vec<Metric3>, Fault> {
+    let mut s = Scanner::new(name, bytes).with_comments(b'#').watched(pace);
+    let dimension = header(&mut s)?;
+    while let Some(word) = s.word() {
+        if word != b"SolAtVertices" {
+            to_keyword(&mut s);
+            continue;
+        }
+        let values = s.count("a number of values", 2)?;
+        if values != count {
+            let what = format!("The metric has {values} values, and the mesh {count} vertices");
+            return Err(s.fault(what).remedy("The two files do not belong together"));
+        }
+        let fields = s.whole("a number of fields")?;
+        let kind = s.whole("a type of field")?;
+        if fields != 1 || !matches!(kind, 1 | 3) {
+            return Err(s
+                .fault(format!("{fields} field(s), the first of type {kind}, are no metric"))
+                .remedy("One field of type 1 (a size) or 3 (a tensor) is read"));
+        }
+        let components = if kind == 1 { 1 } else { dimension * (dimension + 1) / 2 };
+        s.fits(values as u64, 2 * components, "a number of values")?;
+        let read = (1..=count).map(|vertex| tensor(&mut s, components, vertex)).collect();
+        return pace.cancel().check().and(read);
+    }
+    pace.cancel().check()?;
+    Err(Fault::new("There is no section SolAtVertices").at(name).remedy("A metric is given at the vertices"))
+}
+
+fn tensor(s: &mut Scanner, components: usize, vertex: usize) -> Result<Metric3, Fault> {
+    let mut m = [0.0; 6];
+    for value in &mut m[..components] {
+        *value = s.finite("a value of the metric")?;
+    }
+    let metric = match components {
+        1 => {
+            if m[0] <= 0.0 {
+                return Err(s.fault(format!("The size of vertex {vertex} is {}, not positive", m[0])));
+            }
+            let inverse = 1.0 / (m[0] * m[0]);
+            Metric3 { xx: inverse, xy: 0.0, xz: 0.0, yy: inverse, yz: 0.0, zz: inverse }
+        }
+        3 => {
+            // Nothing is said about z: its size is the geometric mean of the others, so that no length in the plane
+            // and no volume is distorted.
+            let zz = (m[0] * m[2] - m[1] * m[1]).sqrt();
+            Metric3 { xx: m[0], xy: m[1], xz: 0.0, yy: m[2], yz: 0.0, zz }
+        }
+        _ => Metric3 { xx: m[0], xy: m[1], xz: m[3], yy: m[2], yz: m[4], zz: m[5] },
+    };
+    positive_definite(metric).ok_or_else(|| {
+        s.fault(format!("The metric of vertex {vertex} is not positive definite"))
+            .remedy("Its eigenvalues must be positive")
+    })
+}
+
+/// Writes a mesh as `.mesh`: in dimension 2 where all z are zero, else 3. Tags become references.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+    let dimension = dimension(mesh);
+    writeln!(out, "MeshVersionFormatted 2\nDimension {dimension}\n\nVertices\n{}", mesh.points.len())?;
+    for p in &mesh.points {
+        for axis in 0..dimension {
+            write!(out, "{} ", Shortest(p[axis]))?;
+        }
+        writeln!(out, "0")?;
+    }
+    write_elements(out, "Edges", &mesh.lines, &mesh.line_tags)?;
+    write_elements(out, "Triangles", &mesh.triangles, &mesh.triangle_tags)?;
+    write_elements(out, "Quadrilaterals", &mesh.quads, &mesh.quad_tags)?;
+    writeln!(out, "\nEnd")
+}
+
+fn write_elements<const N: usize>(out: &mut dyn Write, name: &str, list: &[[u32; N]], tags: &[u32]) -> io::Result<()> {
+    if list.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n{name}\n{}", list.len())?;
+    for (i, corners) in list.iter().enumerate() {
+        for &corner in corners {
+            write!(out, "{} ", u64::from(corner) + 1)?;
+        }
+        writeln!(out, "{}", tag_of(tags, i))?;
+    }
+    Ok(())
+}
+
+/// Writes the metric at the points of a mesh as `.sol`, in the dimension in which [`write`](fn@write) writes the mesh.
+///
+/// # Errors
+/// What `out` says.
+pub fn write_metric(out: &mut dyn Write, mesh: &MeshFile, metric: &[Metric3]) -> io::Result<()> {
+    let dimension = dimension(mesh);
+    writeln!(out, "MeshVersionFormatted 2\nDimension {dimension}\n\nSolAtVertices\n{}\n1 3", metric.len())?;
+    for m in metric {
+        write!(out, "{} {} {}", Shortest(m.xx), Shortest(m.xy), Shortest(m.yy))?;
+        if dimension == 3 {
+            write!(out, " {} {} {}", Shortest(m.xz), Shortest(m.yz), Shortest(m.zz))?;
+        }
+        writeln!(out)?;
+    }
+    writeln!(out, "\nEnd")
+}
+
+fn dimension(mesh: &MeshFile) -> usize {
+    if mesh.is_flat() { 2 } else { 3 }
+}

@@ -1,0 +1,447 @@
+//! Reading MSH: one path for text and binary, both versions.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use super::input::Input;
+use super::{Shape, shape};
+use crate::core::fault::Fault;
+use crate::core::formats::numbering::{Numbering, sort_by_number};
+use crate::core::formats::scan::{ByteOrder, Scanner, shown};
+use crate::core::progress::Pace;
+use crate::core::soup::counting::Count;
+use crate::core::soup::mesh_file::{Group, MeshFile};
+
+/// Reads a mesh from the bytes of an MSH file; `name` is how messages call it.
+///
+/// Points come in the order of their node tags, elements in the order of theirs. The tag of an element is that of its
+/// first physical group, 0 where it is in none. Node data called "metric" with nine components becomes the metric;
+/// data of one component is kept where it has a value for every node, or every triangle and quadrilateral.
+///
+/// # Errors
+/// A fault with the line for everything that is not MSH 2.x or 4.1, and for what MSH allows and we do not read
+/// (elements of higher order).
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut reader = Reader {
+        input: Input { scanner: Scanner::new(name, bytes).watched(pace), binary: None },
+        version: None,
+        file: MeshFile::default(),
+        nodes: None,
+        has_elements: false,
+        physical: FxHashMap::default(),
+        numbers: Default::default(),
+        elements: None,
+        skipped: BTreeMap::new(),
+    };
+    while let Some(line) = reader.input.scanner.line() {
+        if line.is_empty() {
+            continue;
+        }
+        let Some(section) = line.strip_prefix(b"$") else {
+            return Err(reader
+                .input
+                .scanner
+                .fault(format!("\"{}\" stands where a section (\"$Nodes\", ...) is expected", shown(line))));
+        };
+        reader.section(section)?;
+    }
+    let scanner = &reader.input.scanner;
+    if reader.nodes.is_none() || !reader.has_elements {
+        let missing = if reader.nodes.is_none() { "$Nodes" } else { "$Elements" };
+        return Err(Fault::new(format!("There is no section {missing}"))
+            .at(scanner.name())
+            .remedy("Save it with its nodes and elements"));
+    }
+    reader.file.skipped = reader.skipped.into_iter().map(|(name, count)| (name.to_string(), count)).collect();
+    Ok(reader.file)
+}
+
+/// The two versions that differ in their sections.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Version {
+    Two,
+    Four,
+}
+
+pub(super) struct Reader<'a> {
+    pub input: Input<'a>,
+    version: Option<Version>,
+    pub file: MeshFile,
+    /// From node tags to indices, as soon as the nodes have been read.
+    pub nodes: Option<Numbering>,
+    has_elements: bool,
+    /// Version 4: the first physical group of an entity, by dimension and tag.
+    physical: FxHashMap<(i64, i64), u32>,
+    /// Element tags of lines, triangles and quadrilaterals.
+    pub numbers: [Vec<u64>; 3],
+    /// From element tags to indices (triangles first), made when data asks for it; `None` inside: tags are not unique.
+    pub elements: Option<Option<Numbering>>,
+    skipped: BTreeMap<&'static str, usize>,
+}
+
+impl Reader<'_> {
+    fn section(&mut self, section: &[u8]) -> Result<(), Fault> {
+        if section == b"MeshFormat" {
+            self.format()?;
+            return self.end(section);
+        }
+        let Some(version) = self.version else {
+            if section == b"Comments" {
+                return self.skip(section);
+            }
+            return Err(self
+                .input
+                .scanner
+                .fault(format!("The section \"${}\" stands before $MeshFormat", shown(section)))
+                .remedy("Save it as MSH 2.2 or 4.1"));
+        };
+        match (section, version) {
+            (b"PhysicalNames", _) => self.physical_names()?,
+            (b"Entities", Version::Four) => self.entities()?,
+            (b"Nodes", _) => self.nodes(version)?,
+            (b"Elements", _) => self.elements(version)?,
+            (b"ParametricNodes", _) => {
+                let fault = self.input.scanner.fault("Nodes with parametric coordinates are not read in this version");
+                return Err(fault.remedy("Save it without them (in Gmsh: Mesh.SaveParametric = 0), or as MSH 4.1"));
+            }
+            (b"NodeData" | b"ElementData", _) if self.has_elements => return self.data(section),
+            _ => return self.skip(section),
+        }
+        self.end(section)
+    }
+
+    /// Goes behind a section that is not read.
+    pub fn skip(&mut self, section: &[u8]) -> Result<(), Fault> {
+        let start = self.input.scanner.mark();
+        let end = [b"$End", section].concat();
+        if !self.input.scanner.skip_past(&end) {
+            let what = format!("The section \"${}\" has no end", shown(section));
+            return Err(self.input.scanner.fault_at(start, what).remedy("It seems to be cut off: write it again"));
+        }
+        self.input.scanner.line();
+        Ok(())
+    }
+
+    /// The end of a section that has been read whole.
+    pub fn end(&mut self, section: &[u8]) -> Result<(), Fault> {
+        let end = format!("$End{}", shown(section));
+        let word = self.input.scanner.need(&end)?;
+        if word != end.as_bytes() {
+            return Err(self
+                .input
+                .scanner
+                .fault(format!("\"{}\" stands where {end} is expected", shown(word)))
+                .remedy("The counts of this section do not agree with what is in it"));
+        }
+        self.input.scanner.line();
+        Ok(())
+    }
+
+    fn format(&mut self) -> Result<(), Fault> {
+        let scanner = &mut self.input.scanner;
+        if self.version.is_some() {
+            return Err(scanner.fault("$MeshFormat comes twice"));
+        }
+        let version = scanner.need("a version")?;
+        self.version = Some(match version {
+            b"4.1" => Version::Four,
+            b"2" | b"2.0" | b"2.1" | b"2.2" => Version::Two,
+            _ => {
+                let what = format!("MSH version {} is not read", shown(version));
+                return Err(scanner.fault(what).remedy("Save it as MSH 4.1 or 2.2"));
+            }
+        });
+        let binary = scanner.whole("the file type (0 text, 1 binary)")?;
+        let size = scanner.whole("the size of a number")?;
+        scanner.line();
+        if binary > 1 || size != 8 {
+            return Err(scanner.fault(format!("File type {binary} with numbers of {size} bytes is not read")));
+        }
+        if binary == 1 {
+            scanner.set_binary();
+            self.input.binary = match scanner.binary_i32(ByteOrder::Little, "the byte order")? {
+                1 => Some(ByteOrder::Little),
+                0x0100_0000 => Some(ByteOrder::Big),
+                other => return Err(scanner.fault(format!("The byte order mark is {other} and not 1"))),
+            };
+        }
+        Ok(())
+    }
+
+    fn physical_names(&mut self) -> Result<(), Fault> {
+        let scanner = &mut self.input.scanner;
+        let count = scanner.count("a number of names", 6)?;
+        for _ in 0..count {
+            let dimension = scanner.whole("a dimension")?;
+            let tag = scanner.whole("a physical tag")?;
+            let name = scanner.line().unwrap_or_default();
+            let name = name.strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\"")).unwrap_or(name);
+            let Ok(tag) = u32::try_from(tag) else {
+                return Err(scanner.fault(format!("The physical tag {tag} is too large")));
+            };
+            if dimension < 3 {
+                let name = String::from_utf8_lossy(name).into_owned();
+                self.file.groups.push(Group { dimension: dimension as u8, tag, name });
+            }
+        }
+        Ok(())
+    }
+
+    /// Version 4: which physical groups the entities are in.
+    fn entities(&mut self) -> Result<(), Fault> {
+        let mut counts = [0; 4];
+        for count in &mut counts {
+            let read = self.input.size("a number of entities")?;
+            *count = self.input.fits(read, 10, 36, "a number of entities")?;
+        }
+        for (dimension, count) in (0..).zip(counts) {
+            for _ in 0..count {
+                let tag = self.input.int("the tag of an entity")?;
+                for _ in 0..if dimension == 0 { 3 } else { 6 } {
+                    self.input.real("the box of an entity")?;
+                }
+                let groups = self.input.size("a number of physical tags")?;
+                for place in 0..self.input.fits(groups, 2, 4, "a number of physical tags")? {
+                    // The sign says which way the group runs through the entity.
+                    let group = self.input.int("a physical tag")?.unsigned_abs();
+                    if let (0, Ok(group)) = (place, u32::try_from(group)) {
+                        self.physical.insert((dimension, tag), group);
+                    }
+                }
+                if dimension > 0 {
+                    let bounds = self.input.size("a number of bounding entities")?;
+                    for _ in 0..self.input.fits(bounds, 2, 4, "a number of bounding entities")? {
+                        self.input.int("the tag of a bounding entity")?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn nodes(&mut self, version: Version) -> Result<(), Fault> {
+        let start = self.input.scanner.mark();
+        if self.nodes.is_some() {
+            return Err(self.input.scanner.fault("$Nodes comes twice").remedy("Save it unpartitioned, as one mesh"));
+        }
+        let mut numbers = Vec::new();
+        match version {
+            Version::Two => {
+                let count = self.input.count_line(8, 28, "a number of nodes")?;
+                numbers.reserve_exact(count);
+                self.file.points.reserve_exact(count);
+                for _ in 0..count {
+                    numbers.push(self.input.tag("the number of a node")?);
+                    self.point()?;
+                }
+            }
+            Version::Four => {
+                let blocks = self.input.size("a number of blocks")?;
+                let total = self.input.size("a number of nodes")?;
+                let total = self.input.fits(total, 8, 32, "a number of nodes")?;
+                self.input.size("the smallest node tag")?;
+                self.input.size("the largest node tag")?;
+                numbers.reserve_exact(total);
+                self.file.points.reserve_exact(total);
+                for _ in 0..blocks {
+                    self.node_block(total, &mut numbers)?;
+                }
+                if numbers.len() != total {
+                    let what = format!("{total} nodes are announced and {} come", numbers.len());
+                    return Err(self.input.scanner.fault_at(start, what));
+                }
+            }
+        }
+        sort_by_number(&mut numbers, &mut self.file.points, &mut []);
+        self.file.counting.points = Count::of(&numbers);
+        let numbering = Numbering::new(&numbers);
+        self.nodes =
+            Some(numbering.map_err(|twice| self.input.scanner.fault_at(start, format!("Node {twice} comes twice")))?);
+        Ok(())
+    }
+
+    fn node_block(&mut self, total: usize, numbers: &mut Vec<u64>) -> Result<(), Fault> {
+        let dimension = self.input.int("the dimension of a block")?;
+        self.input.int("the entity of a block")?;
+        let parametric = self.input.int("0 or 1 (parametric)")? != 0;
+        let count = self.input.size("a number of nodes")?;
+        let count = self.input.fits(count, 8, 32, "a number of nodes")?;
+        if numbers.len() + count > total {
+            return Err(self.input.scanner.fault(format!("More than the {total} nodes that are announced come")));
+        }
+        for _ in 0..count {
+            numbers.push(self.input.size("the tag of a node")?);
+        }
+        for _ in 0..count {
+            self.point()?;
+            for _ in 0..if parametric { dimension.clamp(0, 3) } else { 0 } {
+                self.input.real("a parametric coordinate")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn point(&mut self) -> Result<(), Fault> {
+        let x = self.input.finite("a coordinate")?;
+        let y = self.input.finite("a coordinate")?;
+        let z = self.input.finite("a coordinate")?;
+        self.file.points.push(DVec3::new(x, y, z));
+        Ok(())
+    }
+
+    fn elements(&mut self, version: Version) -> Result<(), Fault> {
+        if self.has_elements || self.nodes.is_none() {
+            let what = if self.has_elements { "$Elements comes twice" } else { "$Elements stands before $Nodes" };
+            return Err(self.input.scanner.fault(what).remedy("Save it unpartitioned, as one mesh"));
+        }
+        let start = self.input.scanner.mark();
+        let mut come = 0u64;
+        let total = match (version, self.input.binary) {
+            (Version::Two, None) => {
+                let total = self.input.count_line(8, 8, "a number of elements")? as u64;
+                while come < total {
+                    let number = self.input.tag("the number of an element")?;
+                    let kind = self.input.int("an element type")?;
+                    let group = self.tags_of_version_2(None)?;
+                    self.element(kind, number, group)?;
+                    come += 1;
+                }
+                total
+            }
+            (Version::Two, Some(_)) => {
+                let total = self.input.count_line(8, 8, "a number of elements")? as u64;
+                while come < total {
+                    let kind = self.input.int("an element type")?;
+                    let count = self.input.tag("a number of elements")?;
+                    let tags = self.input.tag("a number of tags")?;
+                    for _ in 0..self.input.fits(count, 8, 8, "a number of elements")? {
+                        let number = self.input.tag("the number of an element")?;
+                        let group = self.tags_of_version_2(Some(tags))?;
+                        self.element(kind, number, group)?;
+                    }
+                    come += count;
+                }
+                total
+            }
+            (Version::Four, _) => {
+                let blocks = self.input.size("a number of blocks")?;
+                let total = self.input.size("a number of elements")?;
+                self.input.size("the smallest element tag")?;
+                self.input.size("the largest element tag")?;
+                for _ in 0..blocks {
+                    let dimension = self.input.int("the dimension of a block")?;
+                    let entity = self.input.int("the entity of a block")?;
+                    let group = self.physical.get(&(dimension, entity)).copied().unwrap_or(0);
+                    let kind = self.input.int("an element type")?;
+                    let count = self.input.size("a number of elements")?;
+                    for _ in 0..self.input.fits(count, 4, 16, "a number of elements")? {
+                        let number = self.input.size("the tag of an element")?;
+                        self.element(kind, number, group)?;
+                    }
+                    come += count;
+                }
+                total
+            }
+        };
+        if come != total {
+            let what = format!("{total} elements are announced and {come} come");
+            return Err(self.input.scanner.fault_at(start, what));
+        }
+        let [lines, triangles, quads] = &mut self.numbers;
+        let file = &mut self.file;
+        sort_by_number(lines, &mut file.lines, &mut file.line_tags);
+        sort_by_number(triangles, &mut file.triangles, &mut file.triangle_tags);
+        sort_by_number(quads, &mut file.quads, &mut file.quad_tags);
+        file.counting.in_one_row = true;
+        (file.counting.triangles, file.counting.quads) = (Count::of(triangles), Count::of(quads));
+        for tags in [&mut file.line_tags, &mut file.triangle_tags, &mut file.quad_tags] {
+            if tags.iter().all(|&tag| tag == 0) {
+                *tags = Vec::new();
+            }
+        }
+        self.has_elements = true;
+        Ok(())
+    }
+
+    /// The tags of an element of version 2, the first of which is its physical group. Their number stands before them
+    /// unless the block has told it.
+    fn tags_of_version_2(&mut self, told: Option<u64>) -> Result<u32, Fault> {
+        let count = match told {
+            Some(count) => count,
+            None => self.input.tag("a number of tags")?,
+        };
+        let mut group = 0;
+        for place in 0..self.input.fits(count, 2, 4, "a number of tags")? {
+            let tag = self.input.int("a tag")?.unsigned_abs();
+            if place == 0 {
+                group = u32::try_from(tag).unwrap_or(0);
+            }
+        }
+        Ok(group)
+    }
+
+    fn element(&mut self, kind: i64, number: u64, group: u32) -> Result<(), Fault> {
+        let Some(shape) = shape(kind) else {
+            return Err(self.input.scanner.fault(format!("Element type {kind} is not known")));
+        };
+        match shape {
+            Shape::Point => {
+                self.corners::<1>()?;
+            }
+            Shape::Line => {
+                let corners = self.corners()?;
+                self.file.lines.push(corners);
+                self.file.line_tags.push(group);
+                self.numbers[0].push(number);
+            }
+            Shape::Triangle => {
+                let corners = self.corners()?;
+                self.file.triangles.push(corners);
+                self.file.triangle_tags.push(group);
+                self.numbers[1].push(number);
+            }
+            Shape::Quad => {
+                let corners = self.corners()?;
+                self.file.quads.push(corners);
+                self.file.quad_tags.push(group);
+                self.numbers[2].push(number);
+            }
+            Shape::HigherOrder => {
+                return Err(self
+                    .input
+                    .scanner
+                    .fault(format!("Elements of higher order (type {kind}) are not read"))
+                    .remedy("Save the mesh with elements of order 1 (in Gmsh: Mesh.ElementOrder = 1)"));
+            }
+            Shape::Volume(name, nodes) => {
+                for _ in 0..nodes {
+                    self.node()?;
+                }
+                *self.skipped.entry(name).or_default() += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn corners<const N: usize>(&mut self) -> Result<[u32; N], Fault> {
+        let mut corners = [0; N];
+        for corner in &mut corners {
+            *corner = self.node()?;
+        }
+        Ok(corners)
+    }
+
+    /// The index of a node of an element.
+    fn node(&mut self) -> Result<u32, Fault> {
+        let tag = match self.version {
+            Some(Version::Four) => self.input.size("the tag of a node")?,
+            _ => self.input.tag("the number of a node")?,
+        };
+        match self.nodes.as_ref().and_then(|nodes| nodes.index(tag)) {
+            Some(index) => Ok(index),
+            None => Err(self.input.scanner.fault(format!("An element has the node {tag}, which does not exist"))),
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Writing MSH as text.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+
+use super::METRIC;
+use crate::core::kernel::decimal::Shortest;
+use crate::core::soup::mesh_file::{Group, MeshFile, tag_of};
+
+/// The version to write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Version {
+    /// 2.2: one list of nodes, one of elements.
+    V2,
+    /// 4.1: nodes and elements in blocks by entity.
+    V4,
+}
+
+/// Writes a mesh as MSH text. Nodes are numbered from 1 in the order of the points; elements from 1: lines, triangles,
+/// quadrilaterals. Tags become physical groups; in version 4.1 each tag makes one discrete entity of its dimension.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Result<()> {
+    let number = if version == Version::V2 { "2.2" } else { "4.1" };
+    writeln!(out, "$MeshFormat\n{number} 0 8\n$EndMeshFormat")?;
+    physical_names(out, &mesh.groups)?;
+    let entities = (version == Version::V4).then(|| Entities::of(mesh));
+    match &entities {
+        None => {
+            nodes_2(out, mesh)?;
+            elements_2(out, mesh)?;
+        }
+        Some(entities) => {
+            entities.write(out, mesh)?;
+            entities.write_nodes(out, mesh)?;
+            entities.write_elements(out, mesh)?;
+        }
+    }
+    point_data(out, mesh)?;
+    for data in &mesh.element_data {
+        data_header(out, "ElementData", &data.name, 1, mesh.lines.len() + data.values.len())?;
+        // Readers that go by the order of the elements instead of their tags (meshio) want a value for the lines too,
+        // in the order in which the elements stand. Gmsh passes over what is not a number.
+        let mut value = |kind: usize, i: usize| match kind {
+            0 => writeln!(out, "{} NaN", i + 1),
+            1 => writeln!(out, "{} {}", mesh.lines.len() + i + 1, Shortest(data.values[i])),
+            _ => {
+                let i = mesh.triangles.len() + i;
+                writeln!(out, "{} {}", mesh.lines.len() + i + 1, Shortest(data.values[i]))
+            }
+        };
+        match &entities {
+            None => {
+                for (kind, elements) in Kind::all(mesh).iter().enumerate() {
+                    (0..elements.count).try_for_each(|i| value(kind, i))?;
+                }
+            }
+            Some(entities) => {
+                for (entity, lists) in entities.list.iter().zip(&entities.elements) {
+                    for (place, list) in lists.iter().enumerate() {
+                        let kind = if entity.0 == 1 { 0 } else { 1 + place };
+                        list.iter().try_for_each(|&i| value(kind, i as usize))?;
+                    }
+                }
+            }
+        }
+        writeln!(out, "$EndElementData")?;
+    }
+    Ok(())
+}
+
+fn point_data(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+    if let Some(metric) = &mesh.metric {
+        data_header(out, "NodeData", METRIC, 9, metric.len())?;
+        for (m, node) in metric.iter().zip(1..) {
+            let rows = [m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz];
+            write!(out, "{node}")?;
+            for value in rows {
+                write!(out, " {}", Shortest(value))?;
+            }
+            writeln!(out)?;
+        }
+        writeln!(out, "$EndNodeData")?;
+    }
+    for data in &mesh.point_data {
+        data_header(out, "NodeData", &data.name, 1, data.values.len())?;
+        for (value, node) in data.values.iter().zip(1..) {
+            writeln!(out, "{node} {}", Shortest(*value))?;
+        }
+        writeln!(out, "$EndNodeData")?;
+    }
+    Ok(())
+}
+
+/// A name between quotes, on one line.
+fn quoted(name: &str) -> String {
+    let plain: String = name.chars().map(|c| if c == '"' || c.is_control() { '\'' } else { c }).collect();
+    format!("\"{plain}\"")
+}
+
+fn physical_names(out: &mut dyn Write, groups: &[Group]) -> io::Result<()> {
+    if groups.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "$PhysicalNames\n{}", groups.len())?;
+    for group in groups {
+        writeln!(out, "{} {} {}", group.dimension, group.tag, quoted(&group.name))?;
+    }
+    writeln!(out, "$EndPhysicalNames")
+}
+
+fn data_header(out: &mut dyn Write, section: &str, name: &str, components: usize, count: usize) -> io::Result<()> {
+    writeln!(out, "${section}\n1\n{}\n1\n0\n3\n0\n{components}\n{count}", quoted(name))
+}
+
+fn point(out: &mut dyn Write, p: DVec3) -> io::Result<()> {
+    writeln!(out, "{} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))
+}
+
+fn corners(out: &mut dyn Write, corners: &[u32]) -> io::Result<()> {
+    for &corner in corners {
+        write!(out, " {}", u64::from(corner) + 1)?;
+    }
+    writeln!(out)
+}
+
+fn nodes_2(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+    writeln!(out, "$Nodes\n{}", mesh.points.len())?;
+    for (&p, number) in mesh.points.iter().zip(1..) {
+        write!(out, "{number} ")?;
+        point(out, p)?;
+    }
+    writeln!(out, "$EndNodes")
+}
+
+fn elements_2(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+    let kinds = Kind::all(mesh);
+    writeln!(out, "$Elements\n{}", kinds.iter().map(|kind| kind.count).sum::<usize>())?;
+    for kind in kinds {
+        for i in 0..kind.count {
+            let tag = tag_of(kind.tags, i);
+            // The second tag is the entity: one for each group.
+            write!(out, "{} {} 2 {tag} {}", kind.before + i + 1, kind.number, tag.max(1))?;
+            corners(out, (kind.corners)(mesh, i))?;
+        }
+    }
+    writeln!(out, "$EndElements")
+}
+
+/// The elements of one shape.
+struct Kind<'a> {
+    /// Gmsh's number of it.
+    number: u8,
+    dimension: usize,
+    count: usize,
+    tags: &'a [u32],
+    /// How many elements are numbered before them.
+    before: usize,
+    corners: fn(&MeshFile, usize) -> &[u32],
+}
+
+impl Kind<'_> {
+    fn all(mesh: &MeshFile) -> [Kind<'_>; 3] {
+        let (lines, triangles) = (mesh.lines.len(), mesh.triangles.len());
+        [
+            Kind {
+                number: 1,
+                dimension: 1,
+                count: lines,
+                tags: &mesh.line_tags,
+                before: 0,
+                corners: |mesh, i| &mesh.lines[i],
+            },
+            Kind {
+                number: 2,
+                dimension: 2,
+                count: triangles,
+                tags: &mesh.triangle_tags,
+                before: lines,
+                corners: |mesh, i| &mesh.triangles[i],
+            },
+            Kind {
+                number: 3,
+                dimension: 2,
+                count: mesh.quads.len(),
+                tags: &mesh.quad_tags,
+                before: lines + triangles,
+                corners: |mesh, i| &mesh.quads[i],
+            },
+        ]
+    }
+}
+
+/// One discrete entity for each dimension and tag, with the nodes that are classified on it.
+struct Entities {
+    /// Dimension and tag, ascending: curves before surfaces, so that a node on both belongs to the curve.
+    list: Vec<(usize, u32)>,
+    /// The elements of each entity: the number of their shape in [`Kind::all`], their index in it.
+    elements: Vec<[Vec<u32>; 2]>,
+    /// Nodes of each entity.
+    nodes: Vec<Vec<u32>>,
+}
+
+impl Entities {
+    fn of(mesh: &MeshFile) -> Self {
+        let kinds = Kind::all(mesh);
+        let mut list: Vec<(usize, u32)> = Vec::new();
+        for kind in &kinds {
+            let mut tags: Vec<u32> = (0..kind.count).map(|i| tag_of(kind.tags, i)).collect();
+            tags.sort_unstable();
+            tags.dedup();
+            list.extend(tags.iter().map(|&tag| (kind.dimension, tag)));
+        }
+        if list.is_empty() && !mesh.points.is_empty() {
+            list.push((2, 0));
+        }
+        list.sort_unstable();
+        list.dedup();
+        let mut elements = vec![[Vec::new(), Vec::new()]; list.len()];
+        let mut owner = vec![u32::MAX; mesh.points.len()];
+        for (k, kind) in kinds.iter().enumerate() {
+            for i in 0..kind.count {
+                let entity = list.partition_point(|&known| known < (kind.dimension, tag_of(kind.tags, i)));
+                elements[entity][usize::from(k == 2)].push(i as u32);
+                for &corner in (kind.corners)(mesh, i) {
+                    let owner = &mut owner[corner as usize];
+                    *owner = (*owner).min(entity as u32);
+                }
+            }
+        }
+        let mut nodes = vec![Vec::new(); list.len()];
+        for (node, owner) in (0u32..).zip(owner) {
+            // A node without elements goes to the last entity.
+            let entity = if owner == u32::MAX { list.len() - 1 } else { owner as usize };
+            nodes[entity].push(node);
+        }
+        Entities { list, elements, nodes }
+    }
+
+    /// The tag of an entity: that of its group, or the first free one for what is in no group.
+    fn tag(&self, (dimension, tag): (usize, u32)) -> u64 {
+        if tag > 0 {
+            return u64::from(tag);
+        }
+        1 + self.list.iter().filter(|entity| entity.0 == dimension).map(|entity| u64::from(entity.1)).max().unwrap_or(0)
+    }
+
+    fn write(&self, out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+        let kinds = Kind::all(mesh);
+        let curves = self.list.iter().filter(|entity| entity.0 == 1).count();
+        writeln!(out, "$Entities\n0 {curves} {} 0", self.list.len() - curves)?;
+        for (&entity, elements) in self.list.iter().zip(&self.elements) {
+            let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+            for (place, list) in elements.iter().enumerate() {
+                let kind = &kinds[if entity.0 == 1 { 0 } else { 1 + place }];
+                for &i in list {
+                    for &corner in (kind.corners)(mesh, i as usize) {
+                        let p = mesh.points[corner as usize];
+                        (low, high) = (low.min(p), high.max(p));
+                    }
+                }
+            }
+            if low.x > high.x {
+                (low, high) = (DVec3::ZERO, DVec3::ZERO);
+            }
+            write!(out, "{}", self.tag(entity))?;
+            for value in [low.x, low.y, low.z, high.x, high.y, high.z] {
+                write!(out, " {}", Shortest(value))?;
+            }
+            // No bounding entities: they are discrete.
+            match entity.1 {
+                0 => writeln!(out, " 0 0")?,
+                tag => writeln!(out, " 1 {tag} 0")?,
+            }
+        }
+        writeln!(out, "$EndEntities")
+    }
+
+    fn write_nodes(&self, out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+        let count = mesh.points.len();
+        let blocks = self.nodes.iter().filter(|nodes| !nodes.is_empty()).count();
+        writeln!(out, "$Nodes\n{blocks} {count} {} {count}", count.min(1))?;
+        for (&entity, nodes) in self.list.iter().zip(&self.nodes).filter(|(_, nodes)| !nodes.is_empty()) {
+            writeln!(out, "{} {} 0 {}", entity.0, self.tag(entity), nodes.len())?;
+            for &node in nodes {
+                writeln!(out, "{}", u64::from(node) + 1)?;
+            }
+            for &node in nodes {
+                point(out, mesh.points[node as usize])?;
+            }
+        }
+        writeln!(out, "$EndNodes")
+    }
+
+    fn write_elements(&self, out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+        let kinds = Kind::all(mesh);
+        let count: usize = kinds.iter().map(|kind| kind.count).sum();
+        let blocks: usize = self.elements.iter().flatten().filter(|list| !list.is_empty()).count();
+        writeln!(out, "$Elements\n{blocks} {count} {} {count}", count.min(1))?;
+        for (&entity, elements) in self.list.iter().zip(&self.elements) {
+            for (place, list) in elements.iter().enumerate().filter(|(_, list)| !list.is_empty()) {
+                let kind = &kinds[if entity.0 == 1 { 0 } else { 1 + place }];
+                writeln!(out, "{} {} {} {}", entity.0, self.tag(entity), kind.number, list.len())?;
+                for &i in list {
+                    write!(out, "{}", kind.before + i as usize + 1)?;
+                    corners(out, (kind.corners)(mesh, i as usize))?;
+                }
+            }
+        }
+        writeln!(out, "$EndElements")
+    }
+}

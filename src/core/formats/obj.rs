@@ -1,0 +1,213 @@
+//! Wavefront OBJ: vertices, faces with their texture coordinates and lines, and their groups or objects. Deliberately absent:
+//! everything else (normals, materials) is passed over.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use glam::{DVec2, DVec3};
+
+use super::scan::{Scanner, parse_integer, parse_real, shown};
+use crate::core::fault::Fault;
+use crate::core::kernel::decimal::Shortest;
+use crate::core::progress::Pace;
+use crate::core::soup::mesh_file::{Group, MeshFile, Texture, tag_of};
+
+/// Reads vertices, triangles, quadrilaterals and polygons.
+///
+/// # Errors
+/// A fault with the line for a malformed vertex or face and for a face whose vertex does not exist.
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes).watched(pace);
+    let mut mesh = MeshFile::default();
+    let mut corners: Vec<u32> = Vec::new();
+    let mut faces = 0;
+    // A face may stand before its vertices: the largest vertex and where it stands are checked at the end.
+    let mut largest = (0, 0);
+    let (mut names, mut line_names) = (Names::of(2), Names::of(1));
+    let mut texture = Texture::default();
+    let mut places: Vec<u32> = Vec::new();
+    while let Some(line) = s.line() {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        match words.next() {
+            Some(b"v") => {
+                let mut p = DVec3::ZERO;
+                for axis in 0..3 {
+                    let word = words.next().unwrap_or_default();
+                    p[axis] = match parse_real(word) {
+                        Some(x) if x.is_finite() => x,
+                        _ => return Err(s.fault(format!("\"{}\" stands where a coordinate is expected", shown(word)))),
+                    };
+                }
+                mesh.points.push(p);
+            }
+            Some(b"vt") => {
+                // One that is no place on a texture is none: the faces there have no texture then.
+                let mut coordinate = || words.next().and_then(parse_real).unwrap_or(f64::NAN);
+                texture.places.push(DVec2::new(coordinate(), coordinate()));
+            }
+            Some(b"f") => {
+                places.clear();
+                places.extend(words.clone().map(|word| place(word, texture.places.len())));
+                take_corners(&s, words, mesh.points.len(), "face", &mut largest, &mut corners)?;
+                let tag = names.tag(&mut mesh);
+                faces += 1;
+                match corners[..] {
+                    [a, b, c] => {
+                        mesh.counting.triangles.push(mesh.triangles.len(), faces);
+                        mesh.triangles.push([a, b, c]);
+                        mesh.triangle_tags.push(tag);
+                        texture.place_triangle(mesh.triangles.len() - 1, [places[0], places[1], places[2]]);
+                    }
+                    [a, b, c, d] => {
+                        mesh.counting.quads.push(mesh.quads.len(), faces);
+                        mesh.quads.push([a, b, c, d]);
+                        mesh.quad_tags.push(tag);
+                        texture.place_quad(mesh.quads.len() - 1, [places[0], places[1], places[2], places[3]]);
+                    }
+                    [] | [_] | [_, _] => return Err(s.fault("A face has fewer than three vertices")),
+                    _ => {
+                        mesh.counting.polygons.push(mesh.polygons.len(), faces);
+                        mesh.polygons.push(corners.clone());
+                        mesh.polygon_tags.push(tag);
+                        texture.polygons.push(places.clone());
+                    }
+                }
+            }
+            // A group within an object is the finer of the two; a face in several groups is in the first.
+            Some(b"g" | b"o") => {
+                names.next = words.next().map(|name| String::from_utf8_lossy(name).into_owned());
+                line_names.next.clone_from(&names.next);
+            }
+            Some(b"l") => {
+                take_corners(&s, words, mesh.points.len(), "line", &mut largest, &mut corners)?;
+                let tag = line_names.tag(&mut mesh);
+                for ends in corners.windows(2) {
+                    mesh.lines.push([ends[0], ends[1]]);
+                    mesh.line_tags.push(tag);
+                }
+            }
+            _ => {}
+        }
+    }
+    if largest.0 > mesh.points.len() {
+        let what = format!("A face or line has the vertex {}, and there are {}", largest.0, mesh.points.len());
+        return Err(s.fault_at(largest.1, what));
+    }
+    mesh.counting.in_one_row = true;
+    mesh.texture = texture.of_all(&mesh);
+    let has = |dimension| mesh.groups.iter().any(|group| group.dimension == dimension);
+    let (faces, lines) = (has(2), has(1));
+    if !faces {
+        mesh.triangle_tags.clear();
+        mesh.quad_tags.clear();
+        mesh.polygon_tags.clear();
+    }
+    if !lines {
+        mesh.line_tags.clear();
+    }
+    mesh.groups.sort_by_key(|group| (group.dimension, group.tag));
+    Ok(mesh)
+}
+
+/// The groups that have faces, or lines, by the order of their first ones.
+struct Names {
+    dimension: u8,
+    tags: BTreeMap<String, u32>,
+    /// The group of those that follow, until the first of them is read.
+    next: Option<String>,
+    now: u32,
+}
+
+impl Names {
+    fn of(dimension: u8) -> Self {
+        Names { dimension, tags: BTreeMap::new(), next: None, now: 0 }
+    }
+
+    /// The tag of a face or line; a group that had none comes to the mesh's groups.
+    fn tag(&mut self, mesh: &mut MeshFile) -> u32 {
+        if let Some(name) = self.next.take() {
+            let new = self.tags.len() as u32 + 1;
+            self.now = *self.tags.entry(name.clone()).or_insert(new);
+            if self.now == new {
+                mesh.groups.push(Group { dimension: self.dimension, tag: new, name });
+            }
+        }
+        self.now
+    }
+}
+
+/// The vertices of a face or line; the largest so far, with the place of its line, grows with them.
+fn take_corners<'w>(
+    s: &Scanner,
+    words: impl Iterator<Item = &'w [u8]>,
+    so_far: usize,
+    of: &str,
+    largest: &mut (usize, usize),
+    corners: &mut Vec<u32>,
+) -> Result<(), Fault> {
+    corners.clear();
+    for word in words {
+        let vertex = corner(word, so_far)
+            .ok_or_else(|| s.fault(format!("\"{}\" stands where a vertex of the {of} is expected", shown(word))))?;
+        if vertex as usize >= largest.0 {
+            *largest = (vertex as usize + 1, s.mark());
+        }
+        corners.push(vertex);
+    }
+    Ok(())
+}
+
+/// The zero-based vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative ones count back from the last vertex so far.
+fn corner(word: &[u8], so_far: usize) -> Option<u32> {
+    let vertex = parse_integer(word.split(|&b| b == b'/').next()?)?;
+    let index = if vertex < 0 { vertex.checked_add(so_far as i64)? } else { vertex - 1 };
+    u32::try_from(index).ok().filter(|&index| index < u32::MAX)
+}
+
+/// The zero-based texture coordinate of `v/vt` or `v/vt/vn`; [`Texture::NOWHERE`] where there is none.
+fn place(word: &[u8], so_far: usize) -> u32 {
+    let place = word.split(|&b| b == b'/').nth(1).unwrap_or_default();
+    // Numbered as vertices are.
+    corner(place, so_far).unwrap_or(Texture::NOWHERE)
+}
+
+/// Writes points, triangles and quadrilaterals, and the lines that are in a group of their own, in groups where they have names.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+    for p in &mesh.points {
+        writeln!(out, "v {} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
+    }
+    let triangles = mesh.triangles.iter().enumerate().map(|(i, t)| (&t[..], tag_of(&mesh.triangle_tags, i)));
+    let quads = mesh.quads.iter().enumerate().map(|(i, q)| (&q[..], tag_of(&mesh.quad_tags, i)));
+    let mut group = None;
+    for (face, tag) in triangles.chain(quads) {
+        enter(out, &mut group, mesh.group_name(2, tag))?;
+        write_corners(out, "f", face)?;
+    }
+    group = None;
+    for i in mesh.own_lines() {
+        enter(out, &mut group, mesh.group_name(1, tag_of(&mesh.line_tags, i)))?;
+        write_corners(out, "l", &mesh.lines[i])?;
+    }
+    Ok(())
+}
+
+/// Begins a group, unless it is the one at hand.
+fn enter<'n>(out: &mut dyn Write, group: &mut Option<&'n str>, name: Option<&'n str>) -> io::Result<()> {
+    if let Some(name) = name.filter(|name| *group != Some(*name)) {
+        *group = Some(name);
+        // White space would part it into several groups.
+        writeln!(out, "g {}", name.split_whitespace().collect::<Vec<_>>().join("_"))?;
+    }
+    Ok(())
+}
+
+fn write_corners(out: &mut dyn Write, word: &str, corners: &[u32]) -> io::Result<()> {
+    write!(out, "{word}")?;
+    for &corner in corners {
+        write!(out, " {}", u64::from(corner) + 1)?;
+    }
+    writeln!(out)
+}

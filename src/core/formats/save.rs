@@ -1,0 +1,230 @@
+//! Files are written beside their place and renamed: whoever looks sees the old file or the whole new one.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use crate::core::fault::Fault;
+use crate::core::progress::{Nobody, Pace, Reading};
+
+/// So much of a file is read before that is told.
+const AT_A_TIME: u64 = 1 << 22;
+
+/// Files that are being written, and whether writing has been given up.
+struct Unfinished {
+    files: Vec<PathBuf>,
+    abandoned: bool,
+}
+
+static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished { files: Vec::new(), abandoned: false });
+
+fn unfinished() -> MutexGuard<'static, Unfinished> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files of every [`save`] that is under way and lets no other begin or end: for the handler of
+/// Ctrl-C, just before it ends the process.
+pub fn abandon() {
+    let mut unfinished = unfinished();
+    unfinished.abandoned = true;
+    for file in unfinished.files.drain(..) {
+        // The process is about to end and nobody could be told.
+        let _ = fs::remove_file(file);
+    }
+}
+
+/// Writes the file `path` by `write`: into a temporary file in the same folder, which takes the place of `path` only when
+/// all is written and on the disk. An existing file keeps its permissions, a symbolic link stays and its target is
+/// replaced. What is no regular file (a pipe, `/dev/stdout`) is written straight.
+///
+/// # Errors
+/// A fault that names the path: it is a folder, its folder is missing, no permission, no space, or what `write` says.
+/// Nothing is left behind and an existing file is as it was.
+pub fn save(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Fault> {
+    let explain = |error: io::Error| explain(path, "written", &error);
+    // The file behind a link is replaced, not the link.
+    let (target, old) = match fs::metadata(path) {
+        Ok(meta) if meta.is_dir() => return Err(explain(ErrorKind::IsADirectory.into())),
+        Ok(meta) if !meta.is_file() => {
+            let out = OpenOptions::new().write(true).open(path).map_err(explain)?;
+            return buffered(out, write).map(drop).map_err(explain);
+        }
+        Ok(meta) => {
+            // Renaming over a file that may not be written would succeed all the same.
+            OpenOptions::new().write(true).open(path).map_err(explain)?;
+            (fs::canonicalize(path).map_err(explain)?, Some(meta.permissions()))
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => (path.to_path_buf(), None),
+        Err(error) => return Err(explain(error)),
+    };
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let temporary = begin(folder).map_err(explain)?;
+    let beside = temporary.path().to_path_buf();
+    let done = (|| {
+        let file = buffered(temporary.as_file(), write)?;
+        if let Some(permissions) = old {
+            file.set_permissions(permissions)?;
+        }
+        file.sync_all()?;
+        let unfinished = unfinished();
+        if unfinished.abandoned {
+            return Err(io::Error::other("writing was given up"));
+        }
+        temporary.persist(&target).map_err(|refused| refused.error)?;
+        drop(unfinished);
+        Ok(())
+    })();
+    unfinished().files.retain(|file| *file != beside);
+    done.map_err(explain)
+}
+
+/// A new temporary file, registered for [`abandon`].
+fn begin(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut unfinished = unfinished();
+    if unfinished.abandoned {
+        return Err(io::Error::other("writing was given up"));
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".quadfront-").suffix(".part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file: the umask takes away what it takes away.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let temporary = builder.tempfile_in(folder)?;
+    unfinished.files.push(temporary.path().to_path_buf());
+    Ok(temporary)
+}
+
+fn buffered<W: Write>(out: W, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<W> {
+    let mut out = BufWriter::with_capacity(1 << 18, out);
+    write(&mut out)?;
+    out.into_inner().map_err(|unwritten| unwritten.into_error())
+}
+
+/// Whether there is such a file and it may be read.
+///
+/// # Errors
+/// As [`load`].
+pub fn find(path: &Path) -> Result<(), Fault> {
+    match File::open(path).and_then(|file| file.metadata()) {
+        Ok(meta) if meta.is_dir() => Err(explain(path, "read", &ErrorKind::IsADirectory.into())),
+        Ok(_) => Ok(()),
+        Err(error) => Err(explain(path, "read", &error)),
+    }
+}
+
+/// Reads a whole file.
+///
+/// # Errors
+/// A fault that names the path: it is missing, a folder, not permitted, or empty.
+pub fn load(path: &Path) -> Result<Vec<u8>, Fault> {
+    load_watched(path, &Reading::watched(&mut Nobody))
+}
+
+/// As [`load`], while somebody watches.
+///
+/// # Errors
+/// As [`load`], and [`Fault::stopped`].
+pub fn load_watched(path: &Path, pace: &dyn Pace) -> Result<Vec<u8>, Fault> {
+    let bytes = File::open(path)
+        .and_then(|mut file| {
+            let meta = file.metadata()?;
+            if meta.is_dir() {
+                return Err(ErrorKind::IsADirectory.into());
+            }
+            let mut bytes = Vec::new();
+            // A guess, which the system may have made up.
+            bytes.try_reserve_exact(meta.len() as usize)?;
+            while pace.goes_on(0, meta.len() as usize) && (&mut file).take(AT_A_TIME).read_to_end(&mut bytes)? > 0 {}
+            Ok(bytes)
+        })
+        .map_err(|error| explain(path, "read", &error))?;
+    pace.cancel().check()?;
+    Ok(bytes)
+}
+
+/// What an error of the system means for whoever named `path`.
+fn explain(path: &Path, done: &str, error: &io::Error) -> Fault {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (what, remedy) = match error.kind() {
+        ErrorKind::NotFound if done == "written" => (
+            format!("The folder \"{}\" does not exist", folder.display()),
+            "Make it first, or name another place".to_string(),
+        ),
+        ErrorKind::NotFound => ("There is no such file".to_string(), "Check its name and folder".to_string()),
+        ErrorKind::IsADirectory => ("This is a folder".to_string(), "Name a file in it".to_string()),
+        ErrorKind::NotADirectory => {
+            (format!("\"{}\" is not a folder", folder.display()), "Name a file in a folder".to_string())
+        }
+        ErrorKind::PermissionDenied => (
+            format!("There is no permission for this to be {done}"),
+            "Change its permissions, or name another place".to_string(),
+        ),
+        ErrorKind::ReadOnlyFilesystem => ("The disk can only be read".to_string(), "Name another place".to_string()),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+            ("The disk is full".to_string(), "Make room, or name another place".to_string())
+        }
+        ErrorKind::InvalidFilename => {
+            ("This is no name for a file".to_string(), "Name it shorter and plainer".to_string())
+        }
+        _ => (format!("It cannot be {done}: {error}"), String::new()),
+    };
+    Fault::new(what).at(path.display().to_string()).remedy(remedy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_fails_halfway_leaves_the_old_one_and_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.msh");
+        save(&path, |out| out.write_all(b"old")).unwrap();
+        let fault = save(&path, |out| {
+            out.write_all(&[b'x'; 1 << 20])?;
+            Err(ErrorKind::StorageFull.into())
+        })
+        .unwrap_err();
+        assert!(fault.what.contains("disk is full"), "{fault}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_a_missing_folder_and_a_missing_file_are_told_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = |path: &Path| save(path, |_| Ok(())).unwrap_err().to_string();
+        assert!(told(folder.path()).contains("This is a folder"));
+        assert!(told(&folder.path().join("no/a.msh")).contains("does not exist. Make it first"));
+        let file = folder.path().join("file");
+        save(&file, |_| Ok(())).unwrap();
+        assert!(told(&file.join("a.msh")).contains("is not a folder"));
+        assert!(load(&folder.path().join("b")).unwrap_err().to_string().contains("no such file"));
+        assert!(load(folder.path()).unwrap_err().to_string().contains("This is a folder"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_and_links_stay_and_what_is_no_file_is_written_straight() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (path, link) = (folder.path().join("a"), folder.path().join("link"));
+        save(&path, |out| out.write_all(b"1")).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        save(&link, |out| out.write_all(b"2")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"2");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        save(Path::new("/dev/null"), |out| out.write_all(b"3")).unwrap();
+        #[cfg(target_os = "linux")]
+        assert!(save(Path::new("/dev/full"), |out| out.write_all(b"3")).unwrap_err().what.contains("disk is full"));
+    }
+}

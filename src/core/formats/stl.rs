@@ -1,0 +1,128 @@
+//! STL: triangles one by one, in text or binary. Points at one place are welded, since STL has no other way to say that
+//! triangles share them. Several solids of a text become groups. Deliberately absent: writing (STL has no quadrilaterals),
+//! normals, and the attribute bytes, of which no two programs think alike.
+
+use glam::DVec3;
+
+use super::scan::{Scanner, shown};
+use crate::core::fault::Fault;
+use crate::core::progress::Pace;
+use crate::core::soup::counting::{Count, Counting};
+use crate::core::soup::mesh_file::{Group, MeshFile};
+use crate::core::soup::weld::{SINGLE, Welder, weld};
+
+/// What stands before the triangles of a binary file: 80 bytes of anything and their number.
+const HEADER: usize = 84;
+/// A triangle of a binary file: normal and three corners in single precision, two bytes of attributes.
+const TRIANGLE: usize = 50;
+/// So many triangles are welded before that is told.
+const AT_A_TIME: usize = 1 << 12;
+
+/// Reads a mesh from the bytes of an STL file.
+///
+/// # Errors
+/// With the line or the byte: words that are not STL's, numbers that are none or not finite, a file that is cut off.
+pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    // A binary file may begin with the word "solid" too: its length tells.
+    if bytes.len() >= HEADER && is_binary(bytes) {
+        return read_binary(name, bytes, pace);
+    }
+    if bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
+        return read_text(Scanner::new(name, bytes).watched(pace), pace);
+    }
+    Err(Fault::new("This is not STL: it does not begin with \"solid\", and its length is not that of binary STL")
+        .at(name)
+        .remedy("It may be cut off: write it again"))
+}
+
+/// Whether the length is that of the number of triangles which a binary file announces.
+fn is_binary(bytes: &[u8]) -> bool {
+    let count = u32::from_le_bytes([bytes[80], bytes[81], bytes[82], bytes[83]]) as usize;
+    bytes.len() - HEADER == count.saturating_mul(TRIANGLE)
+}
+
+fn read_binary(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let mut s = Scanner::new(name, bytes);
+    s.set_binary();
+    let triangles = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
+    let corner = |triangle: &[u8; TRIANGLE], corner: usize| {
+        let axis = |axis: usize| {
+            let at = 12 * (corner + 1) + 4 * axis;
+            f64::from(f32::from_le_bytes([0, 1, 2, 3].map(|k| triangle[at + k])))
+        };
+        DVec3::new(axis(0), axis(1), axis(2))
+    };
+    let mut largest: f64 = 0.0;
+    for (i, triangle) in triangles.iter().enumerate() {
+        for p in [0, 1, 2].map(|k| corner(triangle, k)) {
+            if !p.is_finite() {
+                let what = format!("Triangle {} has a corner at {}, {}, {}", i + 1, p.x, p.y, p.z);
+                return Err(s.fault_at(HEADER + i * TRIANGLE, what).remedy("Coordinates must be finite numbers"));
+            }
+            largest = largest.max(p.abs().max_element());
+        }
+    }
+    let (mut welder, mut points) = (Welder::new(SINGLE, largest), Vec::new());
+    let mut welded = Vec::with_capacity(triangles.len());
+    for part in triangles.chunks(AT_A_TIME) {
+        if !pace.goes_on(HEADER + welded.len() * TRIANGLE, bytes.len()) {
+            break;
+        }
+        welded.extend(part.iter().map(|t| [0, 1, 2].map(|k| welder.weld(&mut points, corner(t, k)))));
+    }
+    let counting = Counting { points: Count::Nothing, ..Counting::default() };
+    Ok(MeshFile { triangles: welded, points, counting, ..MeshFile::default() })
+}
+
+fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
+    let (mut mesh, mut corners) = (MeshFile::default(), Vec::new());
+    let mut solid: u32 = 0;
+    while let Some(word) = s.word() {
+        if !word.eq_ignore_ascii_case(b"solid") {
+            return Err(s.fault(format!("\"{}\" stands where \"solid\" is expected", shown(word))));
+        }
+        solid += 1;
+        let name = String::from_utf8_lossy(s.line().unwrap_or_default()).into_owned();
+        if !name.is_empty() {
+            mesh.groups.push(Group { dimension: 2, tag: solid, name });
+        }
+        loop {
+            let word = s.need("\"facet\" or \"endsolid\"")?;
+            if word.eq_ignore_ascii_case(b"endsolid") {
+                // Its name follows, or nothing.
+                s.line();
+                break;
+            }
+            if !word.eq_ignore_ascii_case(b"facet") {
+                return Err(s.fault(format!("\"{}\" stands where \"facet\" or \"endsolid\" is expected", shown(word))));
+            }
+            keyword(&mut s, "normal")?;
+            for _ in 0..3 {
+                // It is not used, and programs write what is no number there.
+                s.need("a normal")?;
+            }
+            keyword(&mut s, "outer")?;
+            keyword(&mut s, "loop")?;
+            for _ in 0..3 {
+                keyword(&mut s, "vertex")?;
+                let mut coordinate = || s.finite("a coordinate");
+                corners.push(DVec3::new(coordinate()?, coordinate()?, coordinate()?));
+            }
+            keyword(&mut s, "endloop")?;
+            keyword(&mut s, "endfacet")?;
+            mesh.triangle_tags.push(solid);
+        }
+    }
+    mesh.triangles = weld(&mut corners, SINGLE, pace.cancel()).as_chunks().0.to_vec();
+    mesh.points = corners;
+    mesh.counting.points = Count::Nothing;
+    Ok(mesh)
+}
+
+fn keyword(s: &mut Scanner, keyword: &str) -> Result<(), Fault> {
+    let word = s.need(&format!("\"{keyword}\""))?;
+    if word.eq_ignore_ascii_case(keyword.as_bytes()) {
+        return Ok(());
+    }
+    Err(s.fault(format!("\"{}\" stands where \"{keyword}\" is expected", shown(word))))
+}

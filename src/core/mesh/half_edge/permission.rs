@@ -1,0 +1,55 @@
+//! Whether the mesh permits an operation, where refusals are injected.
+
+use glam::DVec2;
+
+use super::Mesh;
+use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::refusals::{Operation, Refusal, Refusals};
+
+impl Mesh {
+    /// Lets operations fail from now on as `refusals` says; `None`, as in every new mesh, lets all succeed that can. For
+    /// tests of what depends on operations that may fail.
+    pub fn set_refusals(&mut self, refusals: Option<Refusals>) {
+        self.refusals = refusals;
+    }
+
+    /// Asks whether an operation at some nodes may be done.
+    ///
+    /// # Errors
+    /// [`Refusal::Injected`], where refusals are set.
+    #[inline]
+    pub(in crate::core) fn permit(&self, operation: Operation, nodes: &[NodeId]) -> Result<(), Refusal> {
+        match &self.refusals {
+            None => Ok(()),
+            Some(refusals) => self.permit_by(refusals, operation, nodes),
+        }
+    }
+
+    #[cold]
+    fn permit_by(&self, refusals: &Refusals, operation: Operation, nodes: &[NodeId]) -> Result<(), Refusal> {
+        let words = nodes.iter().flat_map(|&n| [u64::from(n.0), self.uv(n).x.to_bits(), self.uv(n).y.to_bits()]);
+        if refusals.refuses(operation, words) { Err(Refusal::Injected) } else { Ok(()) }
+    }
+
+    /// Asks whether a node may move to `uv`.
+    ///
+    /// # Errors
+    /// [`Refusal::Injected`], where refusals are set.
+    #[inline]
+    pub(in crate::core) fn permit_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
+        match &self.refusals {
+            Some(refusals)
+                if refusals.refuses(Operation::Move, [u64::from(node.0), uv.x.to_bits(), uv.y.to_bits()]) =>
+            {
+                Err(Refusal::Injected)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether an operation on two neighbouring triangles, in either order, may be done.
+    pub(in crate::core) fn permits_pair(&self, operation: Operation, [t, u]: [ElementId; 2]) -> bool {
+        let words = [t.min(u), t.max(u)].map(|e| u64::from(e.0));
+        !self.refusals.is_some_and(|refusals| refusals.refuses(operation, words))
+    }
+}

@@ -1,0 +1,155 @@
+//! From a case to its background mesh with its metric: which parts of `geometry`, `metric`, `discrete` and `background` make it,
+//! in which order.
+
+mod graded;
+pub(in crate::core) mod layers;
+mod of_domain;
+mod of_elements;
+mod of_mesh;
+
+use of_domain::{FileLines, from_domain};
+use of_elements::from_elements;
+use of_mesh::from_mesh;
+
+use crate::core::background::adapt::Adapted;
+use crate::core::case::{Case, DomainSource};
+use crate::core::fault::Fault;
+use crate::core::geometry::complex;
+use crate::core::geometry::domain::Domain;
+use crate::core::kernel::predicates::firm;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::names::Names;
+use crate::core::metric::field::Sizing;
+use crate::core::progress::Watch;
+
+/// The background triangle mesh of a case with its metric.
+#[derive(Clone, Debug)]
+pub struct Background {
+    /// Triangles; every node with its metric.
+    pub mesh: Mesh,
+    /// What gives the metric anywhere.
+    pub sizing: Sizing,
+    /// What its faces and lines are called.
+    pub names: Names,
+    /// What the adaptation did; nothing for a mesh that was given.
+    pub adapted: Adapted,
+    /// What was mended in a mesh that was given, for people.
+    pub repairs: Vec<String>,
+}
+
+/// Makes the background mesh of a case.
+///
+/// # Errors
+/// Whatever is wrong with the case's geometry, metric or mesh.
+pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
+    let has_curves = matches!(case.domain, DomainSource::Curves { .. } | DomainSource::Surfaces(_));
+    if !has_curves && !case.parameters.layered_loops.is_empty() {
+        return Err(Fault::new("layered_loops names curves, and the case has none")
+            .remedy("Leave it out: layers then holds for every loop"));
+    }
+    let made = match &case.domain {
+        DomainSource::Curves { curves, faces } => {
+            from_domain(case, Domain::build(curves.clone(), faces.clone())?, None, FileLines::default(), watch)?
+        }
+        DomainSource::Surfaces(spec) => from_domain(case, complex::build(spec)?, None, FileLines::default(), watch)?,
+        DomainSource::Elements { points, triangles, quads } => from_elements(case, points, triangles, quads)?,
+        DomainSource::Mesh { path, sol, taking } => from_mesh(case, path, sol.as_deref(), taking, watch)?,
+    };
+    refuse_needles(&made.mesh)?;
+    watch.cancel().check()?;
+    chosen_faces(made, &case.parameters.faces)
+}
+
+/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for all faces.
+fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault> {
+    if names.is_empty() {
+        return Ok(made);
+    }
+    let mut regions = Vec::new();
+    for name in names {
+        let faces = || made.names.faces.iter().map(|face| &face.name);
+        let known = || faces().map(|face| (strsim::damerau_levenshtein(name, face), face));
+        let own = faces().zip(0..).filter(|(face, _)| *face == name || is_part_of(face, name));
+        let before = regions.len();
+        regions.extend(own.map(|(_, number)| number));
+        if regions.len() == before {
+            let fault = Fault::new(format!("There is no face \"{}\"", name.escape_debug()));
+            return Err(match known().min() {
+                Some((_, near)) => fault.remedy(format!("The nearest known name is \"{near}\"")),
+                None => fault,
+            });
+        }
+    }
+    let mesh = made.mesh.of_faces(&regions);
+    Ok(Background { mesh, ..made })
+}
+
+/// Whether a face is one of those that a region was divided into: "lid, part 2" of "lid".
+fn is_part_of(face: &str, region: &str) -> bool {
+    face.strip_prefix(region).is_some_and(|rest| rest.starts_with(", part "))
+}
+
+/// Refuses a background with a triangle so flat that rounding could invert what the last resort makes of it.
+fn refuse_needles(mesh: &Mesh) -> Result<(), Fault> {
+    for e in mesh.elements().filter(|&e| mesh.is_triangle(e)) {
+        let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
+        if !firm(a, b, c) {
+            return Err(Fault::new(format!(
+                "A triangle of the background mesh is too flat to be converted: {a}, {b}, {c}"
+            ))
+            .remedy("Make the boundary there less thin, its segments shorter, or the sizes less stretched"));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use glam::DVec2;
+
+    use super::*;
+    use crate::core::metric::field::MetricSource;
+    use crate::core::progress::Nobody;
+
+    /// Two squares side by side; the left one asks for small elements far from the line between them.
+    const TWO_SQUARES: &str = r#"
+        version = 1
+        gradation = 1.2
+        [[metric]]
+        kind = "formula"
+        h1 = "0.01 + 0.5 * abs(x + 0.8)"
+        [[curve]]
+        name = "left"
+        kind = "polyline"
+        points = [[0, 1], [-1, 1], [-1, 0], [0, 0]]
+        [[curve]]
+        name = "between"
+        kind = "segment"
+        from = [0, 0]
+        to = [0, 1]
+        [[curve]]
+        name = "right"
+        kind = "polyline"
+        points = [[0, 0], [1, 0], [1, 1], [0, 1]]
+        [[face]]
+        name = "one"
+        outer = ["left", "between"]
+        [[face]]
+        name = "other"
+        outer = ["right", "between"]
+    "#;
+
+    #[test]
+    fn bounded_sizes_are_the_same_on_both_sides_of_a_curve_between_faces() {
+        let case = Case::parse(TWO_SQUARES, "two", "two.toml", Path::new("")).unwrap();
+        let made = background(&case, &mut Nobody).unwrap();
+        let size = |x: f64, y: f64| made.sizing.metric(DVec2::new(x, y)).unwrap().min_size();
+        for k in 1..40 {
+            let y = f64::from(k) / 40.0;
+            let (one, other) = (size(-1e-9, y), size(1e-9, y));
+            assert!((one / other - 1.0).abs() < 1e-6, "at y = {y}: {one} and {other}");
+        }
+    }
+}

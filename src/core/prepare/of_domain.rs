@@ -1,0 +1,107 @@
+//! The background mesh of a domain of curves, in the plane or on surfaces.
+
+use std::sync::Arc;
+
+use super::graded::bounded;
+use super::{Background, layers};
+use crate::core::background::adapt::{Adapted, adapt};
+use crate::core::background::discretise::DividedDomain;
+use crate::core::background::triangulate::divide_and_triangulate;
+use crate::core::case::Case;
+use crate::core::fault::Fault;
+use crate::core::geometry::domain::Domain;
+use crate::core::mesh::half_edge::{Ground, Mesh};
+use crate::core::mesh::ids::PointId;
+use crate::core::mesh::names::{Named, Names};
+use crate::core::mesh::triangle_set::TriangleSet;
+use crate::core::metric::field::{Field, MetricSource, Sizing};
+use crate::core::metric::measure::triangle_area;
+use crate::core::progress::{Stage, Watch};
+
+/// Points at which the metric is looked over before anything is made from it.
+const SURVEYED: usize = 20_000;
+
+/// The background mesh of a domain of curves, in the plane or on surfaces; where the case bounds the gradation, a first mesh
+/// carries the table of the bounded metric for the second. `own` are fields in place of the case's.
+pub(super) fn from_domain(
+    case: &Case,
+    domain: Domain,
+    own: Option<Vec<Field>>,
+    lines: FileLines,
+    watch: &mut dyn Watch,
+) -> Result<Background, Fault> {
+    watch.tell(Stage::Divide, 0, 0);
+    let atlas = domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
+    let compile = |spec| Field::compile(spec, &|name| domain.curve_polyline(name));
+    let fields = match own {
+        Some(own) => own,
+        None => case.fields.iter().map(compile).collect::<Result<_, _>>()?,
+    };
+    let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
+    sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
+    let layered = layers::layered_curves(&domain, &case.parameters)?;
+    let mut made = adapted_mesh(case, &domain, &sizing, watch)?;
+    if let Some(beta) = case.gradation {
+        sizing = Sizing::new(vec![bounded(&made.mesh, &sizing, beta)?], 1.0).on(atlas);
+        made = adapted_mesh(case, &domain, &sizing, watch)?;
+    }
+    if let Some(curves) = layered {
+        layers::offset_only(&mut made.mesh, &made.divided, &curves, case.parameters.layers);
+    }
+    let faces = domain.faces.iter().map(|face| Named::new(&face.name)).collect();
+    // Of curves only those that carry lines of a file give their names to what is written.
+    let on_line = |&(ends, curve): &([PointId; 2], u32)| Some((ends, lines.of_curve.get(curve as usize).copied()??));
+    let sides = made.lines.iter().filter_map(on_line).collect();
+    let names = Names::of_faces(faces).with_lines(lines.names, sides);
+    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs: Vec::new() })
+}
+
+/// The lines of a file that a domain was made from.
+#[derive(Default)]
+pub(super) struct FileLines {
+    /// Their names by number.
+    pub names: Vec<Named>,
+    /// The line on which each curve of the domain lies, if on one.
+    pub of_curve: Vec<Option<u32>>,
+}
+
+/// The background mesh of a domain.
+struct AdaptedMesh {
+    mesh: Mesh,
+    adapted: Adapted,
+    divided: DividedDomain,
+    /// The sides along curves, by points and curve.
+    lines: Vec<([PointId; 2], u32)>,
+}
+
+fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn Watch) -> Result<AdaptedMesh, Fault> {
+    watch.tell(Stage::Triangulate, 0, 0);
+    let (divided, set) = divide_and_triangulate(domain, sizing)?;
+    let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+    refuse_the_endless(&set, sizing, case.parameters.max_quads)?;
+    watch.tell(Stage::Adapt, 0, 0);
+    // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (spec 3).
+    let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
+    let mut mesh = Mesh::from_triangles(&set, metric);
+    if let Some(spatial) = &domain.spatial {
+        mesh.set_ground(Arc::new(Ground { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
+    }
+    let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
+    Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines })
+}
+
+/// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is the
+/// metric area (spec 3), one place a triangle of the boundary's triangulation: rough, so that only what is beyond doubt is
+/// refused here. The adaptation itself holds the bound.
+fn refuse_the_endless(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Result<(), Fault> {
+    let mut quads = 0.0;
+    for triangle in &set.triangles {
+        let [a, b, c] = triangle.map(|n| set.uv[n as usize]);
+        quads += triangle_area(&sizing.metric((a + b + c) / 3.0)?, a, b, c);
+    }
+    if quads <= 4.0 * max_quads as f64 {
+        return Ok(());
+    }
+    Err(Fault::new(format!("The metric asks for about {quads:.1e} quadrilaterals, and max_quads is {max_quads}"))
+        .remedy("Make the sizes larger, or allow more by max_quads"))
+}

@@ -1,0 +1,159 @@
+//! The background mesh of a mesh that was given: its triangles as they are, or its shape meshed anew.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::Background;
+use super::graded::bounded;
+use super::of_domain::{FileLines, from_domain};
+use crate::core::background::adapt::Adapted;
+use crate::core::background::import::{implied_metric, import};
+use crate::core::case::{Case, MeshUse, Taking};
+use crate::core::discrete::curvature::curvature_sizes;
+use crate::core::discrete::edges::Triangles;
+use crate::core::discrete::given::implied_metric_in_space;
+use crate::core::discrete::sound::{Sound, sound};
+use crate::core::discrete::surface::{Surface, implied_sizes, surface};
+use crate::core::fault::Fault;
+use crate::core::formats::format::read_mesh_watched;
+use crate::core::kernel::tensor::Metric2;
+use crate::core::mesh::half_edge::{Ground, Mesh};
+use crate::core::mesh::names::Names;
+use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
+use crate::core::progress::{Stage, Watch};
+use crate::core::soup::mesh_file::MeshFile;
+
+/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The metric is that
+/// of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
+pub(super) fn from_mesh(
+    case: &Case,
+    path: &Path,
+    sol: Option<&Path>,
+    taking: &Taking,
+    watch: &mut dyn Watch,
+) -> Result<Background, Fault> {
+    watch.tell(Stage::Read, 0, 0);
+    let mut file = read_mesh_watched(path, sol, watch)?;
+    taking.scale(&mut file);
+    let place = path.display().to_string();
+    if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
+        return from_surface(case, &file, &place, taking, watch);
+    }
+    let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
+    let set = &imported.set;
+    let mut fields = Vec::new();
+    for spec in &case.fields {
+        fields.push(Field::compile(spec, &|_| None)?);
+    }
+    // What the triangles themselves imply is sound, however thin they are.
+    let given = !fields.is_empty() || file.metric.is_some();
+    if fields.is_empty() {
+        let metrics = match &file.metric {
+            Some(given) => imported.at_nodes(given),
+            None => implied_metric(set).iter().map(Metric2::in_space).collect(),
+        };
+        fields.push(Field::table(&set.uv, &set.triangles, metrics).map_err(|fault| fault.at(place))?);
+    }
+    let mut sizing = Sizing::new(fields, case.parameters.size_scale);
+    if given {
+        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be asked for.
+        let middle = |t: &[u32; 3]| t.iter().map(|&n| set.uv[n as usize]).sum::<DVec2>() / 3.0;
+        let points: Vec<DVec2> = set.uv.iter().copied().chain(set.triangles.iter().map(middle)).collect();
+        sizing.survey(&points, &|_| false)?;
+    }
+    let meshed = |sizing: &Sizing| -> Result<Mesh, Fault> {
+        let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+        Ok(Mesh::from_triangles(set, metric).reordered())
+    };
+    let mut mesh = meshed(&sizing)?;
+    if let Some(beta) = case.gradation {
+        sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0);
+        mesh = meshed(&sizing)?;
+    }
+    let names = Names::of_faces(imported.regions).with_lines(imported.lines, imported.set.lines);
+    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
+}
+
+/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
+/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is the file's name.
+fn from_surface(
+    case: &Case,
+    file: &MeshFile,
+    place: &str,
+    taking: &Taking,
+    watch: &mut dyn Watch,
+) -> Result<Background, Fault> {
+    // What the case says of sizes has a place of its own.
+    let here = |fault: Fault| if fault.is_stop { fault } else { fault.at(place) };
+    let Sound { mesh, copied, regions, lines, mut repairs } = sound(file, watch).map_err(here)?;
+    let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
+    let converts = taking.used == Some(MeshUse::Triangles);
+    let mut fields = Vec::new();
+    for spec in &case.fields {
+        fields.push(match spec {
+            &FieldSpec::Curvature { chord, least, far, ref place } => {
+                let sizes = curvature_sizes(&mesh, taking.feature_angle, [chord, least, far]);
+                surface.table(&sizes.map_err(|fault| fault.at(place.clone()))?)?
+            }
+            spec => Field::compile(spec, &|_| None)?,
+        });
+    }
+    if fields.is_empty() {
+        fields.push(match &file.metric {
+            Some(given) => {
+                let copies = copied.iter().map(|&point| given[point as usize]);
+                surface.table(&given.iter().copied().chain(copies).collect::<Vec<_>>()).map_err(here)?
+            }
+            None if converts => surface.table(&implied_metric_in_space(&mesh)).map_err(here)?,
+            None => surface.table(&implied_sizes(&mesh)).map_err(here)?,
+        });
+    }
+    let faces = surface.regions.clone();
+    let lines = FileLines { names: lines, of_curve: surface.lines.clone() };
+    let made = if converts {
+        from_laid_out(case, &mesh, &surface, fields, lines, &mut repairs)
+    } else {
+        from_domain(case, surface.domain, Some(fields), lines, watch)
+    };
+    let mut made = made.map_err(here)?;
+    made.names.faces = faces;
+    Ok(Background { repairs, ..made })
+}
+
+/// The triangles of a surface as they are, laid flat chart by chart.
+fn from_laid_out(
+    case: &Case,
+    surface: &Triangles,
+    laid: &Surface,
+    fields: Vec<Field>,
+    lines: FileLines,
+    repairs: &mut Vec<String>,
+) -> Result<Background, Fault> {
+    let (set, divided) = laid.triangles(surface, case.split_odd)?;
+    match divided {
+        0 => {}
+        1 => repairs.push("1 side of a triangle was divided to make counts even".to_owned()),
+        n => repairs.push(format!("{n} sides of triangles were divided to make counts even")),
+    }
+    let atlas = laid.domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
+    let ground = atlas.clone().map(|atlas| Arc::new(Ground { atlas, points: set.xyz.clone() }));
+    let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
+    sizing.survey(&set.uv, &|_| false)?;
+    let meshed = |sizing: &Sizing| -> Result<Mesh, Fault> {
+        let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
+        let mut mesh = Mesh::from_triangles(&set, metric);
+        if let Some(ground) = &ground {
+            mesh.set_ground(Arc::clone(ground));
+        }
+        Ok(mesh.reordered())
+    };
+    let mut mesh = meshed(&sizing)?;
+    if let Some(beta) = case.gradation {
+        sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0).on(atlas);
+        mesh = meshed(&sizing)?;
+    }
+    let names = Names::default().with_lines(lines.names, set.lines);
+    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: Vec::new() })
+}

@@ -1,0 +1,383 @@
+//! The report of a conversion: as JSON for programs (keys in a fixed order), as a summary for people.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::io;
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use serde_json::ser::{Formatter, PrettyFormatter};
+
+use super::statistics::{Angles, Range, Statistics};
+use crate::core::case::Case;
+use crate::core::case::parameters::Parameters;
+use crate::core::progress::Stage;
+
+/// Everything that is told about a conversion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Who made it.
+    pub program: Program,
+    /// What it was made from.
+    pub case: CaseTold,
+    /// The parameters that were in force, angles in degrees.
+    #[serde(serialize_with = "parameters")]
+    pub parameters: Parameters,
+    /// Triangles of the background mesh that was converted.
+    pub background_triangles: usize,
+    /// Number of faces (regions).
+    pub regions: usize,
+    /// Whether the mesh holds all checks: all quadrilaterals, conforming, strictly convex by exact predicates.
+    pub valid: bool,
+    /// What the mesh is like.
+    pub mesh: Statistics,
+    /// Whether it lies on surfaces, so that what is seen is in space and not in the plane.
+    #[serde(skip)]
+    pub on_surfaces: bool,
+    /// What the last resort had to do.
+    pub last_resort: LastResort,
+    /// What was mended in a mesh that was given, each in words.
+    pub repairs: Vec<String>,
+    /// Number of events by kind.
+    pub events: BTreeMap<String, u64>,
+    /// Seconds by phase: the only key that differs between two runs of the same case.
+    #[serde(serialize_with = "timing")]
+    pub timing: Vec<(Stage, f64)>,
+}
+
+/// Name and version of the program.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Program {
+    /// Its name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+}
+
+/// A case as a report tells it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CaseTold {
+    /// Short name.
+    pub name: String,
+    /// One line.
+    pub title: String,
+    /// The text of the case file, so that the run can be repeated; empty for a mesh without one.
+    pub text: String,
+}
+
+/// What the last resort (spec 2.10) made.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LastResort {
+    /// Quadrilaterals made by it.
+    pub quads: usize,
+    /// Quadrilaterals made by all means, before clean-up takes some away and adds some.
+    pub of: usize,
+    /// The share of the one in the other, 0 to 1.
+    pub share: f64,
+}
+
+impl Program {
+    /// This program.
+    pub fn this() -> Program {
+        Program { name: env!("CARGO_PKG_NAME").to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() }
+    }
+}
+
+impl CaseTold {
+    /// A case as reports tell it.
+    pub fn of(case: &Case) -> CaseTold {
+        CaseTold { name: case.name.clone(), title: case.title.clone(), text: case.text.clone() }
+    }
+}
+
+impl LastResort {
+    /// That it made so many quadrilaterals of all that were made.
+    pub fn of(quads: usize, all: usize) -> LastResort {
+        LastResort { quads, of: all, share: if all == 0 { 0.0 } else { quads as f64 / all as f64 } }
+    }
+}
+
+impl Report {
+    /// The report as indented JSON, lists of numbers on one line, with a final line break.
+    pub fn json(&self) -> String {
+        let mut bytes = Vec::new();
+        let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, ListsOnOneLine::default());
+        self.serialize(&mut serializer).expect("a report has nothing that JSON has not");
+        bytes.push(b'\n');
+        String::from_utf8(bytes).expect("JSON is UTF-8")
+    }
+
+    /// The report in a few lines for people, with a final line break.
+    pub fn summary(&self) -> String {
+        let mesh = &self.mesh;
+        let mut text = format!("{}: {}\n", self.case.name, self.case.title);
+        let mut row = |head: &str, said: String| {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "  {head:<16} {said}");
+        };
+        row(
+            "mesh",
+            format!(
+                "{}, {}, {}; {}",
+                counted(mesh.quads, "quadrilateral"),
+                counted(mesh.nodes, "node"),
+                counted(self.regions, "face"),
+                if self.valid { "valid" } else { "NOT VALID" }
+            ),
+        );
+        row("background", counted(self.background_triangles, "triangle"));
+        row("angles, metric", angles(&mesh.metric_angles));
+        row(if self.on_surfaces { "angles, space" } else { "angles, plane" }, angles(&mesh.physical_angles));
+        row("edge length", lengths(mesh));
+        row(
+            "irregular nodes",
+            format!(
+                "{} of {} inside, {:.1} %",
+                grouped(mesh.irregular.irregular),
+                grouped(mesh.irregular.interior),
+                mesh.irregular.percent
+            ),
+        );
+        if let (Some(metric), Some(plane)) = (mesh.metric_scaled_jacobian, mesh.physical_scaled_jacobian) {
+            row(
+                "scaled Jacobian",
+                format!(
+                    "{} in the metric; {} in {}",
+                    range(metric),
+                    range(plane),
+                    if self.on_surfaces { "space" } else { "the plane" }
+                ),
+            );
+        }
+        row(
+            "last resort",
+            format!(
+                "made {} of {} before clean-up, {:.1} %",
+                grouped(self.last_resort.quads),
+                counted(self.last_resort.of, "quadrilateral"),
+                100.0 * self.last_resort.share
+            ),
+        );
+        for repair in &self.repairs {
+            row("mended", repair.clone());
+        }
+        if !self.timing.is_empty() {
+            row("time", times(&self.timing));
+        }
+        text
+    }
+}
+
+/// JSON with objects indented and arrays, which are histograms here, on one line.
+#[derive(Default)]
+struct ListsOnOneLine(PrettyFormatter<'static>);
+
+impl Formatter for ListsOnOneLine {
+    fn begin_object<W: ?Sized + io::Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.0.begin_object(out)
+    }
+
+    fn end_object<W: ?Sized + io::Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.0.end_object(out)
+    }
+
+    fn begin_object_key<W: ?Sized + io::Write>(&mut self, out: &mut W, first: bool) -> io::Result<()> {
+        self.0.begin_object_key(out, first)
+    }
+
+    fn begin_object_value<W: ?Sized + io::Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.0.begin_object_value(out)
+    }
+
+    fn end_object_value<W: ?Sized + io::Write>(&mut self, out: &mut W) -> io::Result<()> {
+        self.0.end_object_value(out)
+    }
+}
+
+/// The summary of a background mesh: its counts, edge lengths and shape.
+pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], timing: &[(Stage, f64)]) -> String {
+    let quality = mesh.quality.map_or_else(|| "\u{2013}".to_owned(), range);
+    let mut text = format!(
+        "{}: {}\n  {:<16} {}, {}\n  {:<16} {}\n  {:<16} {quality}\n",
+        case.name,
+        case.title,
+        "background",
+        counted(mesh.triangles, "triangle"),
+        counted(mesh.nodes, "node"),
+        "edge length",
+        lengths(mesh),
+        "quality, metric",
+    );
+    for repair in repairs {
+        let _ = writeln!(text, "  {:<16} {repair}", "mended");
+    }
+    if !timing.is_empty() {
+        let _ = writeln!(text, "  {:<16} {}", "time", times(timing));
+    }
+    text
+}
+
+/// The word of a stage in reports.
+fn word(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Read => "read",
+        Stage::Mend => "mend",
+        Stage::Chart => "chart",
+        Stage::Divide => "divide",
+        Stage::Triangulate => "triangulate",
+        Stage::Adapt => "adapt",
+        Stage::Convert => "convert",
+        Stage::Finish => "finish",
+        Stage::Check => "check",
+        Stage::Write => "write",
+    }
+}
+
+fn parameters<S: Serializer>(parameters: &Parameters, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(Parameters::KEYS.len()))?;
+    for key in Parameters::KEYS {
+        if key == "layered_loops" {
+            map.serialize_entry(key, &parameters.layered_loops)?;
+            continue;
+        }
+        if key == "faces" {
+            map.serialize_entry(key, &parameters.faces)?;
+            continue;
+        }
+        let text = parameters.text_of(key).unwrap_or_default();
+        match (text.parse::<u64>(), text.parse::<f64>(), text.parse::<bool>()) {
+            (Ok(count), ..) => map.serialize_entry(key, &count)?,
+            (_, Ok(number), _) => map.serialize_entry(key, &number)?,
+            (.., Ok(flag)) => map.serialize_entry(key, &flag)?,
+            _ => map.serialize_entry(key, &text)?,
+        }
+    }
+    map.end()
+}
+
+fn timing<S: Serializer>(timing: &[(Stage, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(timing.len() + 1))?;
+    for (stage, seconds) in timing {
+        map.serialize_entry(word(*stage), seconds)?;
+    }
+    map.serialize_entry("total", &total(timing))?;
+    map.end()
+}
+
+fn total(timing: &[(Stage, f64)]) -> f64 {
+    timing.iter().map(|t| t.1).sum()
+}
+
+fn times(timing: &[(Stage, f64)]) -> String {
+    let parts: Vec<_> = timing.iter().map(|(stage, seconds)| format!("{} {seconds:.2}", word(*stage))).collect();
+    format!("{:.2} s ({})", total(timing), parts.join(", "))
+}
+
+fn angles(angles: &Angles) -> String {
+    format!(
+        "{:.1}\u{2013}{:.1}\u{b0}, {} within 60\u{2013}120\u{b0}, {} within 30\u{2013}160\u{b0}",
+        angles.min,
+        angles.max,
+        percent(angles.share_60_120),
+        percent(angles.share_30_160)
+    )
+}
+
+fn lengths(mesh: &Statistics) -> String {
+    let lengths = &mesh.lengths;
+    format!(
+        "{:.2} \u{b1} {:.2} in the metric ({:.2}\u{2013}{:.2}), {} within 0.71\u{2013}1.41",
+        lengths.mean,
+        lengths.deviation,
+        lengths.min,
+        lengths.max,
+        percent(lengths.share_unit)
+    )
+}
+
+/// A share rounded down, so that 100 % means all.
+fn percent(share: f64) -> String {
+    format!("{:.1} %", (share * 1000.0 + 1e-9).floor() / 10.0)
+}
+
+fn range(range: Range) -> String {
+    format!("least {:.3}, mean {:.3}", range.min, range.mean)
+}
+
+fn counted(count: usize, thing: &str) -> String {
+    format!("{} {thing}{}", grouped(count), if count == 1 { "" } else { "s" })
+}
+
+/// An integer with a thin space before every three digits.
+pub fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push('\u{2009}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::kernel::tensor::Metric2;
+    use crate::core::mesh::ids::PointId;
+    use crate::core::metric::field::{BadMetric, MetricSource};
+    use crate::core::record::statistics::Measured;
+    use glam::DVec2;
+
+    /// Size 1, growing with x.
+    struct Growing;
+
+    impl MetricSource for Growing {
+        fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
+            Ok(Metric2::isotropic(1.0 + 0.25 * uv.x))
+        }
+    }
+
+    /// Three quadrilaterals around a node inside: the least irregular mesh there is.
+    fn three_quads() -> Report {
+        let uv: Vec<_> = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-0.75, 1.0), (-0.75, -0.5), (0.5, -1.0)]
+            .map(|(x, y)| DVec2::new(x, y))
+            .to_vec();
+        let points: Vec<_> = (0..7).map(PointId).collect();
+        let quads = [[0, 1, 2, 3], [0, 3, 4, 5], [0, 5, 6, 1]];
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
+        Report {
+            program: Program { name: "quadfront".to_owned(), version: "0.0.0".to_owned() },
+            case: CaseTold { name: "three".to_owned(), title: "Three quadrilaterals".to_owned(), text: String::new() },
+            parameters: Parameters::default(),
+            background_triangles: 1234,
+            regions: 1,
+            valid: true,
+            mesh: Statistics::measure(mesh, &Growing).unwrap(),
+            on_surfaces: false,
+            last_resort: LastResort::of(3, 3),
+            repairs: vec!["2 triangles were turned over".to_owned()],
+            events: BTreeMap::from([("swap".to_owned(), 2), ("merge".to_owned(), 1)]),
+            timing: vec![(Stage::Adapt, 0.25), (Stage::Convert, 1.5)],
+        }
+    }
+
+    #[test]
+    fn the_summary_says_what_matters_in_a_few_lines() {
+        insta::assert_snapshot!(three_quads().summary());
+    }
+
+    #[test]
+    fn the_json_has_its_keys_in_a_fixed_order() {
+        insta::assert_snapshot!(three_quads().json());
+    }
+
+    #[test]
+    fn integers_are_grouped_by_thin_spaces() {
+        assert_eq!(grouped(7), "7");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(1000), "1\u{2009}000");
+        assert_eq!(grouped(1_234_567), "1\u{2009}234\u{2009}567");
+    }
+}

@@ -1,0 +1,412 @@
+//! What a mesh is like in its metric and in the plane: distributions of angles (fig. 24) and edge lengths (fig. 23),
+//! irregular nodes, scaled Jacobian, quality. Computed from plain arrays, so that any mesh can be measured.
+
+use glam::DVec2;
+use serde::Serialize;
+
+use crate::core::geometry::atlas::Atlas;
+use crate::core::kernel::tensor::Metric2;
+use crate::core::mesh::ids::PointId;
+use crate::core::metric::field::{BadMetric, MetricSource};
+use crate::core::metric::measure::{angle, length_exact, quad_quality, triangle_quality};
+
+/// Classes of angles, 10 degrees wide: the last takes in everything from 170 degrees.
+pub const ANGLE_CLASSES: usize = 18;
+
+/// Classes of edge lengths, 0.1 wide: the last takes in everything from 3.
+pub const LENGTH_CLASSES: usize = 31;
+
+/// The plane's own metric: lengths and angles as they are seen.
+const PLANE: Metric2 = Metric2 { uu: 1.0, uv: 0.0, vv: 1.0 };
+
+/// A mesh to be measured.
+#[derive(Clone, Copy)]
+pub struct Measured<'a> {
+    /// Coordinates of each node.
+    pub uv: &'a [DVec2],
+    /// Output point of each node: copies of a node on both sides of a curve share one.
+    pub points: &'a [PointId],
+    /// Triangles, anticlockwise.
+    pub triangles: &'a [[u32; 3]],
+    /// Quadrilaterals, anticlockwise.
+    pub quads: &'a [[u32; 4]],
+    /// The surfaces on which it lies; none in the plane.
+    pub atlas: Option<&'a Atlas>,
+}
+
+/// Everything that is measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Output points in use.
+    pub nodes: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Quadrilaterals.
+    pub quads: usize,
+    /// Edges, those between copies of the same two points once.
+    pub edges: usize,
+    /// Angles with the metric at the corner.
+    pub metric_angles: Angles,
+    /// Angles as they are seen.
+    pub physical_angles: Angles,
+    /// Lengths of edges in the metric, by the integral along them.
+    pub lengths: Lengths,
+    /// Nodes inside faces that have not the valence of a regular mesh.
+    pub irregular: Irregular,
+    /// Scaled Jacobian of the quadrilaterals, least over the corners, in the metric; `None` without quadrilaterals.
+    pub metric_scaled_jacobian: Option<Range>,
+    /// Scaled Jacobian of the quadrilaterals, least over the corners, as they are seen; `None` without quadrilaterals.
+    pub physical_scaled_jacobian: Option<Range>,
+    /// Shape in the metric (spec 2.1.5, 3): 1 for the square and the equilateral triangle.
+    pub quality: Option<Range>,
+}
+
+/// Least and mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// The least.
+    pub min: f64,
+    /// The mean.
+    pub mean: f64,
+}
+
+/// A distribution of corner angles, in degrees.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Angles {
+    /// The least.
+    pub min: f64,
+    /// The greatest.
+    pub max: f64,
+    /// Share of corners within [60, 120].
+    pub share_60_120: f64,
+    /// Share of corners within [30, 160].
+    pub share_30_160: f64,
+    /// Number of corners in each class of 10 degrees.
+    pub corners: [u64; ANGLE_CLASSES],
+    /// Number of elements whose least angle is in each class (fig. 24).
+    pub least_of_element: [u64; ANGLE_CLASSES],
+    /// Number of elements whose greatest angle is in each class (fig. 24).
+    pub greatest_of_element: [u64; ANGLE_CLASSES],
+}
+
+/// A distribution of edge lengths in the metric.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Lengths {
+    /// The least.
+    pub min: f64,
+    /// The greatest.
+    pub max: f64,
+    /// The mean.
+    pub mean: f64,
+    /// The standard deviation.
+    pub deviation: f64,
+    /// Share within [1/sqrt 2, sqrt 2].
+    pub share_unit: f64,
+    /// Number of edges in each class of 0.1 (fig. 23).
+    pub edges: [u64; LENGTH_CLASSES],
+}
+
+/// Nodes inside faces, away from every curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Irregular {
+    /// How many there are.
+    pub interior: usize,
+    /// How many of them are irregular: not four quadrilaterals or six triangles, or a mixture of a full turn.
+    pub irregular: usize,
+    /// Their share in percent.
+    pub percent: f64,
+}
+
+impl Statistics {
+    /// Measures a mesh whose indices are in range; angles and lengths in the metric of `source`.
+    ///
+    /// # Errors
+    /// Where the source has no metric at a node or along an edge.
+    pub fn measure(mesh: Measured<'_>, source: &dyn MetricSource) -> Result<Statistics, Box<BadMetric>> {
+        let metrics = mesh.uv.iter().map(|&uv| source.metric(uv)).collect::<Result<Vec<_>, _>>()?;
+        // What is seen at a node: the plane, or the surface's own lengths and angles in its tangent plane.
+        let seen: Vec<Metric2> = match mesh.atlas {
+            None => Vec::new(),
+            Some(atlas) => mesh.uv.iter().map(|&uv| atlas.at(uv).first_form()).collect(),
+        };
+        let seen = |n: u32| seen.get(n as usize).copied().unwrap_or(PLANE);
+        let mut tally = Tally::default();
+        for triangle in mesh.triangles {
+            let p = triangle.map(|n| mesh.uv[n as usize]);
+            tally.angles(&p, &triangle.map(|n| metrics[n as usize]), &triangle.map(seen));
+            let at_centroid = source.metric((p[0] + p[1] + p[2]) / 3.0)?;
+            tally.quality.add(triangle_quality(&at_centroid, p[0], p[1], p[2]));
+        }
+        for quad in mesh.quads {
+            let p = quad.map(|n| mesh.uv[n as usize]);
+            let m = quad.map(|n| metrics[n as usize]);
+            tally.angles(&p, &m, &quad.map(seen));
+            tally.quality.add(quad_quality(m.each_ref(), p));
+            tally.metric_jacobian.add(scaled_jacobian(&p, &m));
+            tally.physical_jacobian.add(scaled_jacobian(&p, &quad.map(seen)));
+        }
+        let (edges, interior) = edges_and_interior(&mesh);
+        let lengths = edges.iter().map(|[a, b]| length_exact(source, mesh.uv[*a as usize], mesh.uv[*b as usize]));
+        let lengths = Lengths::of(&lengths.collect::<Result<Vec<_>, _>>()?);
+        let mut used = vec![false; mesh.points.len()];
+        let corners = mesh.triangles.as_flattened().iter().chain(mesh.quads.as_flattened());
+        corners.for_each(|n| used[mesh.points[*n as usize].index()] = true);
+        Ok(Statistics {
+            nodes: used.iter().filter(|used| **used).count(),
+            triangles: mesh.triangles.len(),
+            quads: mesh.quads.len(),
+            edges: edges.len(),
+            metric_angles: tally.metric_angles.angles(),
+            physical_angles: tally.physical_angles.angles(),
+            lengths,
+            irregular: irregular(&mesh, &interior),
+            metric_scaled_jacobian: tally.metric_jacobian.range(),
+            physical_scaled_jacobian: tally.physical_jacobian.range(),
+            quality: tally.quality.range(),
+        })
+    }
+}
+
+/// The least sine of the corners' angles, negative where a corner is not convex.
+fn scaled_jacobian(p: &[DVec2; 4], m: &[Metric2; 4]) -> f64 {
+    let sine = |k: usize| {
+        let (a, b) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
+        m[k].det().max(0.0).sqrt() * a.perp_dot(b) / (m[k].norm2(a) * m[k].norm2(b)).sqrt()
+    };
+    (0..4).map(sine).fold(f64::INFINITY, f64::min)
+}
+
+/// Every edge once (copies of the same two points are one edge), and which nodes are away from every curve.
+fn edges_and_interior(mesh: &Measured<'_>) -> (Vec<[u32; 2]>, Vec<bool>) {
+    let mut sides = Vec::with_capacity(mesh.triangles.len() * 3 + mesh.quads.len() * 4);
+    let mut walk = |nodes: &[u32]| {
+        for (k, &a) in nodes.iter().enumerate() {
+            let b = nodes[(k + 1) % nodes.len()];
+            sides.push([a.min(b), a.max(b)]);
+        }
+    };
+    mesh.triangles.iter().for_each(|t| walk(t));
+    mesh.quads.iter().for_each(|q| walk(q));
+    sides.sort_unstable();
+    let mut interior = vec![true; mesh.uv.len()];
+    let mut edges = Vec::with_capacity(sides.len() / 2 + 1);
+    let mut on_curves = Vec::new();
+    for same in sides.chunk_by(|a, b| a == b) {
+        let [a, b] = same[0];
+        if same.len() == 1 {
+            (interior[a as usize], interior[b as usize]) = (false, false);
+            let (p, q) = (mesh.points[a as usize], mesh.points[b as usize]);
+            on_curves.push(([p.min(q), p.max(q)], [a, b]));
+        } else {
+            edges.push([a, b]);
+        }
+    }
+    on_curves.sort_unstable();
+    on_curves.dedup_by_key(|edge| edge.0);
+    edges.extend(on_curves.iter().map(|edge| edge.1));
+    (edges, interior)
+}
+
+fn irregular(mesh: &Measured<'_>, interior: &[bool]) -> Irregular {
+    // A quadrilateral takes a quarter of a regular node's turn, a triangle a sixth: 3 and 2 twelfths.
+    let mut twelfths = vec![0_u32; mesh.uv.len()];
+    mesh.triangles.as_flattened().iter().for_each(|n| twelfths[*n as usize] += 2);
+    mesh.quads.as_flattened().iter().for_each(|n| twelfths[*n as usize] += 3);
+    let inside = || twelfths.iter().zip(interior).filter(|(turn, inside)| **turn > 0 && **inside);
+    let (interior, irregular) = (inside().count(), inside().filter(|(turn, _)| **turn != 12).count());
+    Irregular { interior, irregular, percent: 100.0 * share(irregular as u64, interior as u64) }
+}
+
+fn share(part: u64, whole: u64) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
+}
+
+/// What is summed up while elements go by.
+#[derive(Default)]
+struct Tally {
+    metric_angles: AngleTally,
+    physical_angles: AngleTally,
+    quality: RangeTally,
+    metric_jacobian: RangeTally,
+    physical_jacobian: RangeTally,
+}
+
+impl Tally {
+    fn angles<const N: usize>(&mut self, p: &[DVec2; N], m: &[Metric2; N], seen: &[Metric2; N]) {
+        self.metric_angles.add(p, m);
+        self.physical_angles.add(p, seen);
+    }
+}
+
+#[derive(Default)]
+struct RangeTally {
+    count: u64,
+    sum: f64,
+    min: f64,
+}
+
+impl RangeTally {
+    fn add(&mut self, value: f64) {
+        self.min = if self.count == 0 { value } else { self.min.min(value) };
+        self.count += 1;
+        self.sum += value;
+    }
+
+    fn range(&self) -> Option<Range> {
+        (self.count > 0).then(|| Range { min: self.min, mean: self.sum / self.count as f64 })
+    }
+}
+
+#[derive(Default)]
+struct AngleTally {
+    count: u64,
+    min: f64,
+    max: f64,
+    within_60_120: u64,
+    within_30_160: u64,
+    corners: [u64; ANGLE_CLASSES],
+    least: [u64; ANGLE_CLASSES],
+    greatest: [u64; ANGLE_CLASSES],
+}
+
+impl AngleTally {
+    fn add<const N: usize>(&mut self, p: &[DVec2; N], m: &[Metric2; N]) {
+        let class = |degrees: f64| ((degrees / 10.0) as usize).min(ANGLE_CLASSES - 1);
+        let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for k in 0..N {
+            let theta = angle(&m[k], p[(k + 1) % N] - p[k], p[(k + N - 1) % N] - p[k]).to_degrees();
+            // What is 60 degrees but for its last digits counts as 60.
+            let within = |low: f64, high: f64| u64::from(theta > low - 1e-9 && theta < high + 1e-9);
+            self.within_60_120 += within(60.0, 120.0);
+            self.within_30_160 += within(30.0, 160.0);
+            self.corners[class(theta)] += 1;
+            (least, greatest) = (least.min(theta), greatest.max(theta));
+        }
+        self.least[class(least)] += 1;
+        self.greatest[class(greatest)] += 1;
+        let first = self.count == 0;
+        self.min = if first { least } else { self.min.min(least) };
+        self.max = if first { greatest } else { self.max.max(greatest) };
+        self.count += N as u64;
+    }
+
+    fn angles(self) -> Angles {
+        Angles {
+            min: self.min,
+            max: self.max,
+            share_60_120: share(self.within_60_120, self.count),
+            share_30_160: share(self.within_30_160, self.count),
+            corners: self.corners,
+            least_of_element: self.least,
+            greatest_of_element: self.greatest,
+        }
+    }
+}
+
+impl Lengths {
+    fn of(lengths: &[f64]) -> Lengths {
+        let count = lengths.len() as f64;
+        let mean = if lengths.is_empty() { 0.0 } else { lengths.iter().sum::<f64>() / count };
+        let squares: f64 = lengths.iter().map(|l| (l - mean) * (l - mean)).sum();
+        let mut edges = [0; LENGTH_CLASSES];
+        lengths.iter().for_each(|l| edges[((l * 10.0) as usize).min(LENGTH_CLASSES - 1)] += 1);
+        let unit = std::f64::consts::FRAC_1_SQRT_2..=std::f64::consts::SQRT_2;
+        let (least, greatest) = (f64::min as fn(f64, f64) -> f64, f64::max as fn(f64, f64) -> f64);
+        Lengths {
+            min: lengths.iter().copied().reduce(least).unwrap_or(0.0),
+            max: lengths.iter().copied().reduce(greatest).unwrap_or(0.0),
+            mean,
+            deviation: if lengths.is_empty() { 0.0 } else { (squares / count).sqrt() },
+            share_unit: share(lengths.iter().filter(|l| unit.contains(l)).count() as u64, lengths.len() as u64),
+            edges,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::kernel::tensor::Metric2;
+
+    /// A metric that is the same everywhere.
+    struct Constant(Metric2);
+
+    impl MetricSource for Constant {
+        fn metric(&self, _: DVec2) -> Result<Metric2, Box<BadMetric>> {
+            Ok(self.0)
+        }
+    }
+
+    /// n by n squares of side 1 / n.
+    fn squares(n: u32) -> (Vec<DVec2>, Vec<PointId>, Vec<[u32; 4]>) {
+        let step = 1.0 / f64::from(n);
+        let node = |i: u32, j: u32| j * (n + 1) + i;
+        let uv: Vec<_> =
+            (0..=n).flat_map(|j| (0..=n).map(move |i| DVec2::new(f64::from(i), f64::from(j)) * step)).collect();
+        let quads =
+            (0..n).flat_map(|j| (0..n).map(move |i| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]));
+        let points = (0..uv.len() as u32).map(PointId).collect();
+        (uv, points, quads.collect())
+    }
+
+    #[test]
+    fn squares_of_unit_size_are_perfect() {
+        let (uv, points, quads) = squares(4);
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
+        let found = Statistics::measure(mesh, &Constant(Metric2::isotropic(0.25))).unwrap();
+        assert_eq!((found.nodes, found.quads, found.edges), (25, 16, 40));
+        assert_eq!((found.irregular.interior, found.irregular.irregular), (9, 0));
+        assert!((found.lengths.mean - 1.0).abs() < 1e-12 && found.lengths.deviation < 1e-12);
+        assert!((found.lengths.share_unit - 1.0).abs() < 1e-12);
+        assert_eq!(found.metric_angles.share_60_120, 1.0);
+        assert!((found.metric_angles.min - 90.0).abs() < 1e-9 && (found.metric_angles.max - 90.0).abs() < 1e-9);
+        assert!((found.metric_scaled_jacobian.unwrap().min - 1.0).abs() < 1e-12);
+        assert!((found.quality.unwrap().mean - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_stretched_metric_is_seen_in_its_angles_and_lengths_and_not_in_those_of_the_plane() {
+        let uv = [(0.0, 0.0), (2.0, 0.0), (2.5, 1.0), (0.5, 1.0)].map(|(x, y)| DVec2::new(x, y));
+        let points = [0, 1, 2, 3].map(PointId);
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &[[0, 1, 2, 3]], atlas: None };
+        let sheared = Metric2 { uu: 0.25, uv: -0.125, vv: 1.0625 };
+        let found = Statistics::measure(mesh, &Constant(sheared)).unwrap();
+        assert!((found.metric_scaled_jacobian.unwrap().min - 1.0).abs() < 1e-12, "a unit square of that metric");
+        assert!((found.lengths.mean - 1.0).abs() < 1e-12);
+        let physical = libm::atan2(1.0, 0.5).to_degrees();
+        assert!((found.physical_angles.min - physical).abs() < 1e-9);
+        assert!((found.physical_angles.max - (180.0 - physical)).abs() < 1e-9);
+        assert_eq!(found.physical_angles.greatest_of_element[11], 1);
+    }
+
+    #[test]
+    fn an_edge_on_a_shared_curve_counts_once_and_on_a_crack_twice() {
+        // Two squares side by side, whose nodes along the line between them are doubled.
+        let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0)];
+        let uv = uv.map(|(x, y)| DVec2::new(x, y));
+        let quads = [[0, 1, 2, 3], [4, 5, 6, 7]];
+        let measured = |points: [u32; 8]| {
+            let points = points.map(PointId);
+            let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
+            let found = Statistics::measure(mesh, &Constant(Metric2::isotropic(1.0))).unwrap();
+            (found.nodes, found.edges, found.irregular.interior)
+        };
+        assert_eq!(measured([0, 1, 2, 3, 1, 4, 5, 2]), (6, 7, 0));
+        assert_eq!(measured([0, 1, 2, 3, 6, 4, 5, 7]), (8, 8, 0));
+    }
+
+    #[test]
+    fn triangles_and_mixtures_are_measured_too() {
+        let (uv, points, quads) = squares(2);
+        let cut: Vec<_> = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+        let source = Constant(Metric2::isotropic(0.5));
+        let all = Measured { uv: &uv, points: &points, triangles: &cut, quads: &[], atlas: None };
+        let found = Statistics::measure(all, &source).unwrap();
+        assert_eq!((found.triangles, found.edges, found.irregular.irregular), (8, 16, 0), "six triangles meet inside");
+        assert!(found.metric_scaled_jacobian.is_none());
+        let mixed = Measured { uv: &uv, points: &points, triangles: &cut[..2], quads: &quads[1..], atlas: None };
+        let found = Statistics::measure(mixed, &source).unwrap();
+        assert_eq!((found.triangles, found.quads, found.edges), (2, 3, 13));
+        assert_eq!(found.irregular.irregular, 1, "three quadrilaterals and two triangles are more than a turn");
+    }
+}
