@@ -1,4 +1,5 @@
-//! Promise: every valid case becomes strictly convex quadrilaterals, its boundary untouched (spec 2.6, 2.10, 5).
+//! Promise: every valid case becomes strictly convex quadrilaterals, its boundary untouched (docs/algorithm.md, "What
+//! is guaranteed").
 //!
 //! Rounds of the random tests: 60 and 100, or what QUADFRONT_SOAK_ROUNDS says. QUADFRONT_SEED runs one case alone, and
 //! QUADFRONT_SHOW=1 prints its text, which the command line takes as it is.

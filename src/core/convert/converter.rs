@@ -56,7 +56,7 @@ pub struct Counts {
     pub formed: u64,
     /// Of those, how many with another right side (4.3.4).
     pub right_replaced: u64,
-    /// Of those, how many by the other rescues of spec 2.4 (b, c).
+    /// Of those, how many with another left side or a Lee-Lo pair (docs/algorithm.md, "Rescue").
     pub rescued: u64,
     /// Attempts taken back.
     pub rolled_back: u64,
@@ -517,7 +517,8 @@ impl<'a> Converter<'a> {
         ))
     }
 
-    /// Closes the next small loop that is left over (spec 2.7); what cannot be closed goes to the last resort together.
+    /// Closes the next small loop that is left over (docs/algorithm.md, "Small loops"); what cannot be closed goes to
+    /// the last resort together.
     fn step_close(&mut self, mut waiting: Vec<Component>, mut left: Vec<Component>) -> Result<(Phase, Event), Fault> {
         while let Some(component) = waiting.pop() {
             if let Some((quads, event)) = self.close(&component) {
@@ -549,7 +550,8 @@ impl<'a> Converter<'a> {
         (next, event)
     }
 
-    /// Matches the triangles of the next component that is left over (spec 2.10); past the last one all are converted.
+    /// Matches the triangles of the next component that is left over (docs/algorithm.md, "The last resort"); past the
+    /// last one all are converted.
     fn step_match(&mut self, left: Arc<[Component]>, at: usize) -> Result<(Phase, Event), Fault> {
         let Some(component) = left.get(at) else {
             let next = if self.parameters.post_processing {
