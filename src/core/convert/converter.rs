@@ -15,6 +15,7 @@ use taking_back::Record;
 use super::component::{Component, live_components};
 use super::event::Event;
 use super::finish::{Finished, Finishing};
+use super::helping::next_message;
 use super::last_resort::{Outcome, Plan};
 use super::phase::{Attempt, Base, Part, Phase};
 use crate::core::case::parameters::Parameters;
@@ -388,7 +389,7 @@ impl<'a> Converter<'a> {
             drop(sender);
             let mut formed = vec![0; done.len()];
             let mut all = 0;
-            for (k, told) in receiver {
+            while let Some((k, told)) = next_message(&receiver) {
                 let own = match &told {
                     OfFace::Formed(own) => *own,
                     OfFace::Done(face) => face.as_ref().as_ref().map_or(formed[k], |converter| converter.counts.formed),

@@ -3,6 +3,7 @@
 
 pub mod event;
 pub mod phase;
+mod helping;
 pub mod converter;
 mod loops;
 pub mod walk;
