@@ -209,7 +209,7 @@ impl<'a> Import<'a> {
 
     fn told(&self, triangles: impl IntoIterator<Item = usize>) -> String {
         let places: Vec<u32> = triangles.into_iter().map(|t| self.element[t]).collect();
-        capital(&self.given.elements_told(&places))
+        capital(&self.given.describe_elements(&places))
     }
 
     /// Each triangle once.
@@ -441,7 +441,7 @@ impl<'a> Import<'a> {
         let is_beside = |t: &[u32; 3]| (0..3).any(|k| ends.contains(&[t[k], t[(k + 1) % 3]]));
         let beside =
             members.into_iter().zip(&mesh.set.triangles).filter(|(_, t)| is_beside(t)).map(|(t, _)| self.element[t]);
-        let beside = self.given.elements_told(&beside.collect::<Vec<_>>());
+        let beside = self.given.describe_elements(&beside.collect::<Vec<_>>());
         Fault::new(format!(
             "The boundary loop of {segments} segments leaves a part{region} with {count} {triangles}; an all-quad mesh needs an even count"
         ))

@@ -59,7 +59,7 @@ pub(in crate::core) fn used_points(
             let Some(used) = used.get_mut(k as usize) else {
                 let what = format!(
                     "{} has the point {}, and there are {}",
-                    capital(&file.elements_told(&[*origin])),
+                    capital(&file.describe_elements(&[*origin])),
                     u64::from(k) + 1,
                     file.points.len()
                 );
@@ -74,8 +74,8 @@ pub(in crate::core) fn used_points(
     if let Some(&first) = beyond.first() {
         let p = place(file.points[first as usize]);
         let what = match beyond.len() {
-            1 => format!("{} is at {p}", capital(&file.points_told(&beyond))),
-            _ => format!("{} are not where points can be, the first at {p}", capital(&file.points_told(&beyond))),
+            1 => format!("{} is at {p}", capital(&file.describe_points(&beyond))),
+            _ => format!("{} are not where points can be, the first at {p}", capital(&file.describe_points(&beyond))),
         };
         let remedy = format!("Coordinates must be finite numbers no larger than {LARGEST:e}");
         let with = |t: &&[u32; 3]| t.iter().any(|k| beyond.binary_search(k).is_ok());
@@ -162,7 +162,7 @@ pub(in crate::core) fn crossed(file: &MeshFile, triangles: &[[u32; 3]], origins:
         corners.iter().map(|&k| file.points[k as usize]).collect::<Vec<_>>()
     };
     let verb = if bad.len() == 1 { "crosses itself" } else { "cross themselves" };
-    Err(Fault::new(format!("{} {verb}", capital(&file.elements_told(&bad))))
+    Err(Fault::new(format!("{} {verb}", capital(&file.describe_elements(&bad))))
         .at(format!("at {}", place(corners(&bad[0])[0])))
         .remedy("Give the corners in the order in which they lie around it, or cut it into triangles")
         .showing(bad.iter().map(corners)))
@@ -182,7 +182,7 @@ pub(super) fn one_sided(file: &MeshFile, mesh: &Triangles, edges: &Edges) -> Res
     let at = mesh.points[mesh.side(first[0])[0] as usize];
     Err(Fault::new(format!(
         "The surface has one side only, as a Moebius strip: however its triangles are turned, some disagree with their neighbours, here {}",
-        file.elements_told(&origins)
+        file.describe_elements(&origins)
     ))
     .at(format!("at {}", place(at)))
     .remedy("Cut a gap across it: a mesh has an outside")
@@ -210,7 +210,7 @@ pub(in crate::core) fn overlapping(
     if let Some(&first) = bad.first() {
         let named: Vec<u32> = bad.iter().map(|&t| origins[t as usize]).collect();
         let at = corners(&triangles[first as usize]).iter().sum::<DVec3>() / 3.0;
-        return Err(Fault::new(format!("{} overlap", capital(&file.elements_told(&named))))
+        return Err(Fault::new(format!("{} overlap", capital(&file.describe_elements(&named))))
             .at(format!("at {}", told(at.truncate())))
             .remedy("Take out what is too much: in the plane a place belongs to one triangle")
             .showing(bad.iter().map(|&t| corners(&triangles[t as usize]).to_vec())));
@@ -224,7 +224,7 @@ pub(in crate::core) fn overlapping(
     let more = hanging.count.saturating_sub(own.len() as u64);
     let and = if more > 0 { format!(" and {more} more") } else { String::new() };
     let first = points[nodes[0] as usize];
-    Err(Fault::new(format!("{}{and} {verb}", capital(&file.points_told(&own))))
+    Err(Fault::new(format!("{}{and} {verb}", capital(&file.describe_points(&own))))
         .at(format!("at {}", told(first.truncate())))
         .remedy("Divide that side there, or mesh the shape anew (--use shape)")
         .showing(nodes.iter().map(|&k| vec![points[k as usize]])))
