@@ -2,6 +2,7 @@
 
 use super::{CONSTANTS, DEEPEST, FUNCTIONS, Graph, Op};
 use crate::core::fault::Fault;
+use crate::core::kernel::spelling::suggestion;
 
 /// Recursive descent over one expression.
 pub(super) struct Parser<'a> {
@@ -181,15 +182,9 @@ impl<'a> Parser<'a> {
         }
         let known = self.names.iter().map(|n| n.0);
         let known = known.chain(FUNCTIONS.iter().map(|f| f.0)).chain(CONSTANTS.iter().map(|c| c.0));
-        let nearest = known
-            .map(|k| (strsim::damerau_levenshtein(&name.to_lowercase(), &k.to_lowercase()), k))
-            .min_by_key(|&(distance, _)| distance);
-        match nearest {
-            Some((distance, k)) if distance <= 2 && distance < name.chars().count() => {
-                fault.remedy(format!("Is \"{k}\" meant?"))
-            }
-            _ => fault.remedy("Known are x, y, z, u, v, pi, e, the functions and the helpers defined before"),
-        }
+        fault.remedy(suggestion(name, known).unwrap_or_else(|| {
+            "Known names are x, y, z, u, v, pi, e, the functions and the helpers defined before".to_owned()
+        }))
     }
 
     fn call(&mut self, name: &str, op: Op, arity: usize) -> Result<u32, Fault> {
