@@ -1,69 +1,47 @@
 //! Promise: everything that a person does in the window works by its label, and the window shows it.
 //!
-//! Needs a graphics adapter (Mesa's lavapipe is one). Without any, the tests are skipped with the reason; where
-//! `QUADFRONT_NEEDS_ADAPTER` is set, its absence is a failure.
+//! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
 
-use std::time::{Duration, Instant};
+#[path = "window_harness/pictures.rs"]
+mod pictures;
+mod window_harness;
+
+use std::time::Duration;
 
 use eframe::egui::{Key, Modifiers, Vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use quadfront::app::window::{App, Command, Goal, Lost, Place, Source};
+use pictures::{difference, picture};
+use quadfront::app::window::{App, Command, Direction, Goal, Lost, Place, Source, ViewLayer};
 use quadfront::render::scene::Outlined;
+use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, until};
 
-fn has_adapter() -> bool {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
-        Ok(_) => true,
-        Err(error) => {
-            assert!(std::env::var_os("QUADFRONT_NEEDS_ADAPTER").is_none(), "no graphics adapter: {error}");
-            println!("skipped: there is no graphics adapter ({error})");
-            false
-        }
-    }
+/// The window on example 1, at step 0.
+fn window() -> Option<Window> {
+    has_adapter().then(|| on(LAPTOP, "example1"))
 }
 
-/// The window on example 1, at step 0; the size is that of a small laptop.
-fn window() -> Option<Harness<'static, App>> {
-    has_adapter().then(|| {
-        let source = Source::BuiltIn("example1".to_owned());
-        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-        let mut harness = builder.build_eframe(|cc| App::new(cc, Some(source)));
-        settle(&mut harness);
-        harness
-    })
+/// The window on a case with surfaces.
+fn window_on(name: &str) -> Option<Window> {
+    has_adapter().then(|| on(Vec2::new(1600.0, 900.0), name))
 }
 
-/// Runs frames until the session has answered everything and the run is recorded.
-fn settle(harness: &mut Harness<'static, App>) {
-    let begin = Instant::now();
-    loop {
-        harness.run_steps(2);
-        let state = &harness.state().state;
-        if state.moment.is_some() && !state.is_busy() && state.recorded {
-            break;
-        }
-        assert!(begin.elapsed() < Duration::from_secs(60), "the session does not answer: {:?}", state.faults);
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    harness.run_steps(2);
+fn on(size: Vec2, name: &str) -> Window {
+    let source = Source::BuiltIn(name.to_owned());
+    let mut harness = start(size, |cc| App::new(cc, Some(source)));
+    settle(&mut harness);
+    harness
 }
 
-fn step(harness: &Harness<'static, App>) -> u64 {
+fn step(harness: &Window) -> u64 {
     harness.state().state.moment.as_ref().unwrap().step
 }
 
-fn quads(harness: &Harness<'static, App>) -> u64 {
+fn quads(harness: &Window) -> u64 {
     harness.state().state.moment.as_ref().unwrap().standing
 }
 
-fn apply(harness: &mut Harness<'static, App>, command: Command) {
-    harness.state_mut().apply(command);
-    settle(harness);
-}
-
-fn press(harness: &mut Harness<'static, App>, modifiers: Modifiers, key: Key) {
+fn press(harness: &mut Window, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     settle(harness);
 }
@@ -96,9 +74,7 @@ fn buttons_and_keys_step_forward_and_back() {
 #[test]
 fn a_parameter_changes_what_follows_and_nothing_before_and_undo_takes_it_back() {
     let Some(mut harness) = window() else { return };
-    let kinds = |harness: &Harness<'static, App>| {
-        harness.state().state.track.iter().map(|t| (t.kind, t.standing)).collect::<Vec<_>>()
-    };
+    let kinds = |harness: &Window| harness.state().state.track.iter().map(|t| (t.kind, t.standing)).collect::<Vec<_>>();
     let before = kinds(&harness);
     apply(&mut harness, Command::Go(Goal::Step(100)));
     harness.get_by_label("theta_rect").focus();
@@ -158,8 +134,7 @@ fn a_run_that_is_saved_opens_with_its_changes() {
     apply(&mut harness, Command::Go(Goal::Step(60)));
     apply(&mut harness, Command::Set("c", "1.5".to_owned()));
     apply(&mut harness, Command::Bookmark);
-    let kinds =
-        |harness: &Harness<'static, App>| harness.state().state.track.iter().map(|t| t.kind).collect::<Vec<_>>();
+    let kinds = |harness: &Window| harness.state().state.track.iter().map(|t| t.kind).collect::<Vec<_>>();
     let before = kinds(&harness);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.toml");
@@ -174,18 +149,15 @@ fn a_run_that_is_saved_opens_with_its_changes() {
 fn the_mesh_at_hand_is_saved_in_the_format_of_its_name_and_nothing_is_written_over() {
     let Some(mut harness) = window() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let save = |harness: &mut Harness<'static, App>, name: &str| {
+    let save = |harness: &mut Window, name: &str| {
         press(harness, Modifiers::COMMAND, Key::M);
         let path = folder.path().join(name);
         harness.state_mut().state.field = path.display().to_string();
         harness.run_steps(2);
         harness.key_press(Key::Enter);
-        let begin = Instant::now();
-        while harness.state().state.notice.is_none() && harness.state().state.faults.is_empty() {
-            assert!(begin.elapsed() < Duration::from_secs(20), "nothing is told");
-            std::thread::sleep(Duration::from_millis(5));
-            harness.run_steps(1);
-        }
+        until(harness, "something is told", |harness| {
+            harness.state().state.notice.is_some() || !harness.state().state.faults.is_empty()
+        });
         let state = &mut harness.state_mut().state;
         state.notice = None;
         let faults = std::mem::take(&mut state.faults);
@@ -223,28 +195,20 @@ fn the_palette_finds_a_command_by_its_name() {
     assert_eq!(quads(&harness), 10);
 }
 
-/// The share of pixels in which two pictures (four bytes a pixel) differ by more than a little.
-fn difference(a: &[u8], b: &[u8]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let apart = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 24);
-    let count = a.chunks(4).zip(b.chunks(4)).filter(|pair| apart(*pair)).count();
-    count as f64 / (a.len() / 4) as f64
-}
-
 #[test]
 fn the_window_looks_the_same_however_one_came_to_a_step_and_other_at_another() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::Go(Goal::Step(400)));
-    let there = harness.render().unwrap().into_raw();
+    let there = picture(&mut harness, "there");
     apply(&mut harness, Command::Go(Goal::End));
-    let end = harness.render().unwrap().into_raw();
+    let end = picture(&mut harness, "end");
     apply(&mut harness, Command::Go(Goal::Step(0)));
     apply(&mut harness, Command::Go(Goal::Step(400)));
-    let again = harness.render().unwrap().into_raw();
+    let again = picture(&mut harness, "again");
     assert!(difference(&there, &again) < 0.002, "{}", difference(&there, &again));
     assert!(difference(&there, &end) > 0.05, "{}", difference(&there, &end));
     apply(&mut harness, Command::ToggleTheme);
-    let light = harness.render().unwrap().into_raw();
+    let light = picture(&mut harness, "light");
     assert!(difference(&light, &again) > 0.5);
 }
 
@@ -252,12 +216,7 @@ fn the_window_looks_the_same_however_one_came_to_a_step_and_other_at_another() {
 fn a_file_that_is_not_there_is_a_message_and_the_window_goes_on() {
     let Some(mut harness) = window() else { return };
     harness.state_mut().apply(Command::Open(Source::named("no-such-case.toml")));
-    let begin = Instant::now();
-    while harness.state().state.faults.is_empty() {
-        assert!(begin.elapsed() < Duration::from_secs(20));
-        harness.run_steps(1);
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.faults.is_empty());
     assert!(harness.state().state.faults[0].contains("no-such-case.toml"));
     harness.run_steps(2);
     harness.get_by_label("Close").click();
@@ -268,13 +227,8 @@ fn a_file_that_is_not_there_is_a_message_and_the_window_goes_on() {
 }
 
 /// Runs frames until something is shown by its label.
-fn wait_for(harness: &mut Harness<'static, App>, label: &str) {
-    let begin = Instant::now();
-    while harness.query_by_label(label).is_none() {
-        assert!(begin.elapsed() < Duration::from_secs(20), "{label} is not shown");
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
+fn wait_for(harness: &mut Window, label: &str) {
+    until(harness, label, |harness| harness.query_by_label(label).is_some());
 }
 
 #[test]
@@ -352,12 +306,12 @@ fn fields_of_conditions_are_offered_and_an_error_stays_where_it_can_be_mended() 
 #[test]
 fn the_inspector_says_why_with_the_numbers_of_the_paper() {
     let Some(mut harness) = window() else { return };
-    apply(&mut harness, Command::Go(Goal::Kind("base_selected", true)));
+    apply(&mut harness, Command::Go(Goal::Kind("base_selected", Direction::Forward)));
     for label in ["H-value", "Frontal angles", "Why this segment", "Length", "Ends"] {
         harness.get_by_label(label);
     }
     assert!(harness.query_by_label_contains("Same choice for").is_some());
-    apply(&mut harness, Command::Go(Goal::Kind("side_chosen", true)));
+    apply(&mut harness, Command::Go(Goal::Kind("side_chosen", Direction::Forward)));
     assert!(harness.query_by_label_contains("tried").is_some(), "what the side was chosen from");
     assert!(harness.query_all_by_label_contains("taken").next().is_some());
 }
@@ -393,31 +347,25 @@ fn the_window_is_found_again_as_it_was_left_and_nonsense_is_told() {
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("window.json");
-    let start = |path: std::path::PathBuf| {
+    let on = |path: std::path::PathBuf| {
         let source = Source::BuiltIn("two-faces".to_owned());
-        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-        let mut harness = builder.build_eframe(|cc| App::kept(cc, Some(source), Some(path), Lost::default()));
+        let mut harness = start(LAPTOP, |cc| App::kept(cc, Some(source), Some(path), Lost::default()));
         settle(&mut harness);
         harness
     };
-    let mut harness = start(path.clone());
+    let mut harness = on(path.clone());
     harness.get_by_label("Layers").click();
-    apply(&mut harness, Command::Layer(7));
+    apply(&mut harness, Command::Layer(ViewLayer::MetricEllipses));
     apply(&mut harness, Command::ToggleTheme);
-    let begin = Instant::now();
-    while !path.exists() {
-        assert!(begin.elapsed() < Duration::from_secs(20), "nothing is kept");
-        std::thread::sleep(Duration::from_millis(50));
-        harness.run_steps(1);
-    }
+    until(&mut harness, "something is kept", |_| path.exists());
     let text = std::fs::read_to_string(&path).unwrap();
-    let again = start(path.clone());
+    let again = on(path.clone());
     assert!(again.state().state.kept.layers.ellipses);
     assert!(text.contains("\"dark\": false"), "{text}");
     again.get_by_label("Colour by");
     drop(again);
     std::fs::write(&path, &text[..text.len() / 2]).unwrap();
-    let bad = start(path);
+    let bad = on(path);
     assert!(bad.state().state.faults[0].contains("window.json"), "{:?}", bad.state().state.faults);
     assert!(!bad.state().state.kept.layers.ellipses);
 }
@@ -425,18 +373,14 @@ fn the_window_is_found_again_as_it_was_left_and_nonsense_is_told() {
 #[test]
 fn a_window_of_hardly_any_size_and_back_is_no_trouble() {
     let Some(mut harness) = window() else { return };
-    let before = harness.render().unwrap().into_raw();
+    let before = picture(&mut harness, "before");
     for size in [Vec2::new(1.0, 1.0), Vec2::new(3000.0, 2.0), Vec2::new(300.0, 900.0), Vec2::new(1280.0, 800.0)] {
         harness.set_size(size);
         harness.run_steps(4);
         harness.render().unwrap();
     }
     settle(&mut harness);
-    let picture = harness.render().unwrap();
-    if let Some(folder) = std::env::var_os("QUADFRONT_PICTURES") {
-        picture.save(std::path::Path::new(&folder).join("resized.png")).unwrap();
-    }
-    let after = picture.into_raw();
+    let after = picture(&mut harness, "resized");
     assert!(difference(&before, &after) < 0.02, "{}", difference(&before, &after));
 }
 
@@ -448,21 +392,17 @@ fn a_lost_device_saves_the_run_and_says_where() {
     let lost = Lost::default();
     let (device, heard) = (std::sync::Arc::new(std::sync::Mutex::new(None)), lost.clone());
     let kept = device.clone();
-    let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-    let mut harness = builder.build_eframe(|cc| {
+    let mut harness = start(LAPTOP, |cc| {
         *kept.lock().unwrap() = cc.wgpu_render_state.as_ref().map(|render| render.device.clone());
         App::kept(cc, Some(Source::BuiltIn("two-faces".to_owned())), None, heard)
     });
     settle(&mut harness);
     let device = device.lock().unwrap().take().unwrap();
     device.destroy();
-    let begin = Instant::now();
-    while !harness.state().state.is_lost {
-        assert!(begin.elapsed() < Duration::from_secs(20), "nobody has heard of it");
+    until(&mut harness, "the window has heard of it", |harness| {
         let _ = device.poll(wgpu::PollType::Poll);
-        std::thread::sleep(Duration::from_millis(10));
-        harness.run_steps(1);
-    }
+        harness.state().state.is_lost
+    });
     let told = lost.fault().unwrap().to_string();
     let path = std::path::PathBuf::from(told.split_whitespace().last().unwrap().trim_end_matches('.'));
     assert!(told.contains("was lost") && path.exists(), "{told}");
@@ -477,39 +417,24 @@ fn times_are_shown_and_measured_where_they_are_asked_for() {
     harness.run_steps(2);
     assert!(harness.query_by_label_contains("state ").is_some());
     harness.state_mut().apply(Command::Measure);
-    let begin = Instant::now();
-    while harness.state().state.measuring.is_some() {
-        assert!(begin.elapsed() < Duration::from_secs(60));
-        harness.run_steps(1);
-    }
+    until(&mut harness, "it is measured", |harness| harness.state().state.measuring.is_none());
     assert!(harness.query_by_label_contains("60 quads on and back").is_some());
-}
-
-/// The window on a case with surfaces.
-fn window_on(name: &str) -> Option<Harness<'static, App>> {
-    has_adapter().then(|| {
-        let source = Source::BuiltIn(name.to_owned());
-        let builder = Harness::builder().with_size(Vec2::new(1600.0, 900.0)).wgpu();
-        let mut harness = builder.build_eframe(|cc| App::new(cc, Some(source)));
-        settle(&mut harness);
-        harness
-    })
 }
 
 #[test]
 fn surfaces_open_in_space_and_a_key_a_button_and_the_palette_lead_to_the_plane_and_back() {
     let Some(mut harness) = window_on("example2") else { return };
-    let place = |harness: &Harness<'static, App>| harness.state().state.space.place;
+    let place = |harness: &Window| harness.state().state.space.place;
     assert_eq!(place(&harness), Place::Space);
-    let space = harness.render().unwrap().into_raw();
+    let space = picture(&mut harness, "space");
     press(&mut harness, Modifiers::NONE, Key::V);
     assert_eq!(place(&harness), Place::Plane);
-    let plane = harness.render().unwrap().into_raw();
+    let plane = picture(&mut harness, "plane");
     assert!(difference(&space, &plane) > 0.02, "{}", difference(&space, &plane));
     harness.get_by_label("Show in space").click();
     settle(&mut harness);
     assert_eq!(place(&harness), Place::Space);
-    let again = harness.render().unwrap().into_raw();
+    let again = picture(&mut harness, "again");
     assert!(difference(&space, &again) < 0.004, "{}", difference(&space, &again));
     press(&mut harness, Modifiers::COMMAND, Key::P);
     harness.get_by_label("Name of a command").type_text("side by side");
@@ -517,7 +442,7 @@ fn surfaces_open_in_space_and_a_key_a_button_and_the_palette_lead_to_the_plane_a
     harness.key_press(Key::Enter);
     settle(&mut harness);
     assert_eq!(place(&harness), Place::Both);
-    let both = harness.render().unwrap().into_raw();
+    let both = picture(&mut harness, "both");
     assert!(difference(&both, &space) > 0.02 && difference(&both, &plane) > 0.02);
 }
 
@@ -530,11 +455,11 @@ fn a_step_in_space_looks_the_same_however_one_came_to_it() {
             press(&mut harness, Modifiers::NONE, Key::C);
         }
         apply(&mut harness, Command::Go(Goal::Step(40)));
-        let there = harness.render().unwrap().into_raw();
+        let there = picture(&mut harness, "there");
         apply(&mut harness, Command::Go(Goal::End));
-        let end = harness.render().unwrap().into_raw();
+        let end = picture(&mut harness, "end");
         apply(&mut harness, Command::Go(Goal::Step(40)));
-        let again = harness.render().unwrap().into_raw();
+        let again = picture(&mut harness, "again");
         assert!(difference(&there, &again) < 0.002, "{}", difference(&there, &again));
         assert!(difference(&there, &end) > 0.02, "{}", difference(&there, &end));
     }
@@ -582,10 +507,10 @@ fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_wha
 #[test]
 fn hidden_lines_go_round_and_show_more() {
     let Some(mut harness) = window_on("sphere") else { return };
-    let mut pictures = vec![harness.render().unwrap().into_raw()];
+    let mut pictures = vec![picture(&mut harness, "hidden")];
     for _ in 0..3 {
         press(&mut harness, Modifiers::NONE, Key::H);
-        pictures.push(harness.render().unwrap().into_raw());
+        pictures.push(picture(&mut harness, "hidden"));
     }
     let apart: Vec<f64> = pictures[1..].iter().map(|p| difference(&pictures[0], p)).collect();
     assert!(apart[1] > 0.005 && apart[1] > apart[0] && apart[2] < 0.002, "{apart:?}");

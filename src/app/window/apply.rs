@@ -7,7 +7,7 @@ use super::command::Command;
 use super::figures::Formats;
 use super::files;
 use super::measure::Measuring;
-use super::session::{Goal, Source};
+use super::session::{Direction, Goal, Source};
 use super::state::{Kept, Look, Over, Place, State};
 use super::words;
 use crate::core::convert::event::Event;
@@ -18,7 +18,7 @@ use crate::core::mesh::ids::NodeId;
 use crate::core::run::breakpoint::Condition;
 use crate::core::run::run::{Edit, EditKind};
 use crate::core::run::watch::Watched;
-use crate::render::scene::{Layers, Outlined};
+use crate::render::scene::Outlined;
 
 /// How many changes can be taken back.
 const UNDO: usize = 200;
@@ -31,7 +31,7 @@ impl State {
         }
         match command {
             Command::Go(goal) => self.go(goal),
-            Command::ToBreakpoint(forward) => self.seek_breakpoint(forward),
+            Command::ToBreakpoint(direction) => self.seek_breakpoint(direction),
             Command::Play => self.playing = if self.playing.is_some() { None } else { Some(Instant::now()) },
             Command::Speed(speed) => self.speed = speed,
             Command::Stop => {
@@ -82,7 +82,10 @@ impl State {
             Command::ResetParameters => {
                 self.keep(|kept| kept.edits.retain(|edit| !matches!(edit.kind, EditKind::Parameter { .. })));
             }
-            Command::Layer(k) => self.keep(|kept| *layer(&mut kept.layers, k) = !*layer(&mut kept.layers, k)),
+            Command::Layer(layer) => self.keep(|kept| {
+                let on = layer.switch(&mut kept.layers);
+                *on = !*on;
+            }),
             Command::ColourBy(by) => self.keep(|kept| kept.colour_by = by),
             Command::AddBreakpoint(text) => self.add_breakpoint(text),
             Command::SwitchBreakpoint(k) => self.keep(|kept| {
@@ -101,9 +104,9 @@ impl State {
                 Some(Source::Mesh(path, options)) => self.import(path.clone(), options.clone()),
                 _ => self.notice("What is open is no mesh that was opened here.".to_owned()),
             },
-            Command::SetImport(options, dragging) => {
+            Command::SetImport(options, gesture) => {
                 if let Some(import) = &mut self.import {
-                    import.set(*options, dragging);
+                    import.set(*options, gesture);
                 }
             }
             Command::Convert => {
@@ -139,8 +142,8 @@ impl State {
             }
             Command::SaveRun => drop(self.save_run()),
             Command::SaveMesh => self.ask_for_mesh(),
-            Command::Undo => self.take_back(true),
-            Command::Redo => self.take_back(false),
+            Command::Undo => self.take_back(Direction::Back),
+            Command::Redo => self.take_back(Direction::Forward),
             Command::ResetLayout => self.reset_layout = true,
             Command::ToggleTheme => self.toggle_theme = true,
             Command::Escape => self.escape(),
@@ -197,11 +200,15 @@ impl State {
         self.over_epoch += 1;
     }
 
-    fn take_back(&mut self, back: bool) {
+    /// Undoes or redoes a change.
+    fn take_back(&mut self, direction: Direction) {
         if let Some(import) = &mut self.import {
-            return import.take_back(back);
+            return import.take_back(direction);
         }
-        let (from, to) = if back { (&mut self.undo, &mut self.redo) } else { (&mut self.redo, &mut self.undo) };
+        let (from, to) = match direction {
+            Direction::Back => (&mut self.undo, &mut self.redo),
+            Direction::Forward => (&mut self.redo, &mut self.undo),
+        };
         let Some(kept) = from.pop() else { return };
         let before = std::mem::replace(&mut self.kept, kept);
         to.push(before.clone());
@@ -248,13 +255,13 @@ impl State {
         }
     }
 
-    fn seek_breakpoint(&mut self, forward: bool) {
+    fn seek_breakpoint(&mut self, direction: Direction) {
         let stops = self.stops();
         if stops.conditions.is_empty() && stops.watched.is_empty() {
             return self.notice("No breakpoint is on: write a condition in the panel Breakpoints.".to_owned());
         }
         let Some(session) = &self.session else { return };
-        session.go_to_break(stops, forward);
+        session.go_to_break(stops, direction);
         self.wait();
     }
 
@@ -358,20 +365,5 @@ pub fn watched(what: Outlined) -> Watched {
         Outlined::Node(node) => Watched::Node(node),
         Outlined::Edge([a, b]) => Watched::Edge(a.min(b), a.max(b)),
         Outlined::Element(element) => Watched::Element(element),
-    }
-}
-
-/// A layer by its number, counted from 0.
-pub fn layer(layers: &mut Layers, k: usize) -> &mut bool {
-    match k {
-        0 => &mut layers.live,
-        1 => &mut layers.dead,
-        2 => &mut layers.front,
-        3 => &mut layers.boundary,
-        4 => &mut layers.nodes,
-        5 => &mut layers.labels,
-        6 => &mut layers.arcs,
-        7 => &mut layers.ellipses,
-        _ => &mut layers.background,
     }
 }

@@ -3,8 +3,10 @@
 use eframe::egui::{Key, Modifiers};
 
 use super::figures::Formats;
-use super::session::{Goal, Source};
+use super::import::Gesture;
+use super::session::{Direction, Goal, Source};
 use super::state::Place;
+use super::view_layer::ViewLayer;
 use crate::app::command_line::MeshOptions;
 use crate::core::io::built_in;
 use crate::core::mesh::ids::{ElementId, NodeId};
@@ -16,8 +18,8 @@ use crate::render::scene::{ColourBy, Outlined};
 pub enum Command {
     /// Go to another step.
     Go(Goal),
-    /// Go to a breakpoint, forward or backward.
-    ToBreakpoint(bool),
+    /// Go to the next breakpoint, or to the one before.
+    ToBreakpoint(Direction),
     /// Play, or stop playing.
     Play,
     /// Quadrilaterals a second while playing.
@@ -58,8 +60,8 @@ pub enum Command {
     ChooseBase([NodeId; 2]),
     /// Put all parameters back to those of the case.
     ResetParameters,
-    /// Switch a layer, counted from 0.
-    Layer(usize),
+    /// Switch a layer.
+    Layer(ViewLayer),
     /// Colour elements by something.
     ColourBy(ColourBy),
     /// Dark or light.
@@ -76,8 +78,8 @@ pub enum Command {
     Open(Source),
     /// Show again how the mesh that is open was taken, to take it otherwise.
     Import,
-    /// Take the mesh that is about to be converted otherwise; whether a person is still dragging.
-    SetImport(Box<MeshOptions>, bool),
+    /// Change how the mesh that is about to be converted is imported.
+    SetImport(Box<MeshOptions>, Gesture),
     /// Convert it.
     Convert,
     /// Give up what is under way with it, or else the mesh.
@@ -126,19 +128,6 @@ pub enum Command {
     Escape,
 }
 
-/// Names of the layers, in the order of their digits.
-pub const LAYERS: [&str; 9] = [
-    "live triangles",
-    "dead quads",
-    "front",
-    "boundary",
-    "nodes",
-    "labels",
-    "angle arcs",
-    "metric ellipses",
-    "background mesh",
-];
-
 /// Kinds of events that one can go to.
 pub const KINDS: [&str; 13] = [
     "base_selected",
@@ -173,7 +162,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
         (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
         (SHIFT, Key::ArrowLeft, Command::Go(Goal::Quads(-10))),
-        (Modifiers::ALT, Key::F5, Command::ToBreakpoint(false)),
+        (Modifiers::ALT, Key::F5, Command::ToBreakpoint(Direction::Back)),
         (CTRL, Key::G, Command::GoTo),
         (CTRL, Key::P, Command::Palette),
         (CTRL, Key::Z, Command::Undo),
@@ -186,7 +175,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::R, Command::Reopen),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
         (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
-        (NONE, Key::F5, Command::ToBreakpoint(true)),
+        (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
         (NONE, Key::Home, Command::Go(Goal::Step(0))),
         (NONE, Key::End, Command::Go(Goal::End)),
         (NONE, Key::Space, Command::Play),
@@ -202,7 +191,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (NONE, Key::Escape, Command::Escape),
     ];
     let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
-    keys.extend(digits.into_iter().enumerate().map(|(k, key)| (NONE, key, Command::Layer(k))));
+    keys.extend(digits.into_iter().zip(ViewLayer::ALL).map(|(key, layer)| (NONE, key, Command::Layer(layer))));
     keys
 }
 
@@ -211,8 +200,8 @@ impl Command {
     pub fn name(&self) -> String {
         match self {
             Command::Go(goal) => go_name(*goal),
-            Command::ToBreakpoint(true) => "To the next breakpoint".into(),
-            Command::ToBreakpoint(false) => "Back to a breakpoint".into(),
+            Command::ToBreakpoint(Direction::Forward) => "To the next breakpoint".into(),
+            Command::ToBreakpoint(Direction::Back) => "Back to a breakpoint".into(),
             Command::Play => "Play or pause".into(),
             Command::Speed(speed) => format!("Play {speed} quads a second"),
             Command::Stop => "Stop".into(),
@@ -239,7 +228,7 @@ impl Command {
             Command::Set(key, value) => format!("Set {key} = {value}"),
             Command::ChooseBase([a, b]) => format!("Choose {} as base", super::words::segment(*a, *b)),
             Command::ResetParameters => "All parameters as the case has them".into(),
-            Command::Layer(k) => format!("Layer: {}", LAYERS[*k]),
+            Command::Layer(layer) => format!("Layer: {}", layer.name()),
             Command::ColourBy(by) => format!("Colour by {}", by.name()),
             Command::ToggleTheme => "Dark or light".into(),
             Command::AddBreakpoint(text) => format!("Break where {text}"),
@@ -338,7 +327,7 @@ impl Command {
         ]);
         all.extend(Place::ALL.map(Command::Place));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
-        all.extend(KINDS.iter().flat_map(|k| [true, false].map(|f| Command::Go(Goal::Kind(k, f)))));
+        all.extend(KINDS.iter().flat_map(|kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));
         all.extend(built_in::all().map(|case| Command::Open(Source::BuiltIn(case.0.to_owned()))));
         let mut seen: Vec<String> = Vec::new();
         all.retain(|command| {
@@ -364,8 +353,8 @@ fn go_name(goal: Goal) -> String {
         Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals on"),
         Goal::Quads(by) => format!("{} quadrilaterals back", -by),
         Goal::ToQuads(quads) => format!("To NQ = {quads}"),
-        Goal::Kind(name, true) => format!("Next event: {}", kind(name)),
-        Goal::Kind(name, false) => format!("Event before: {}", kind(name)),
+        Goal::Kind(name, Direction::Forward) => format!("Next event: {}", kind(name)),
+        Goal::Kind(name, Direction::Back) => format!("Event before: {}", kind(name)),
         Goal::End => "To the end".into(),
     }
 }
@@ -398,7 +387,7 @@ mod tests {
         let all = Command::all();
         assert!(all.len() > 60);
         assert_eq!(Command::Go(Goal::Steps(1)).tip(), "One operation on  (Ctrl+Right)");
-        assert_eq!(Command::ToBreakpoint(false).tip(), "Back to a breakpoint  (Alt+F5)");
-        assert_eq!(Command::Layer(2).tip(), "Layer: front  (3)");
+        assert_eq!(Command::ToBreakpoint(Direction::Back).tip(), "Back to a breakpoint  (Alt+F5)");
+        assert_eq!(Command::Layer(ViewLayer::Front).tip(), "Layer: front  (3)");
     }
 }

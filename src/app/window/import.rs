@@ -11,7 +11,7 @@ use glam::DVec2;
 pub use preview::{KINDS, Loaded, Shown};
 use preview::{Preview, Told, Wanted};
 
-use super::session::Wake;
+use super::session::{Direction, Wake};
 use super::state::Progress;
 use crate::app::command_line::MeshOptions;
 use crate::app::input;
@@ -24,6 +24,15 @@ const UNDO: usize = 100;
 
 /// Units of length that files have, in metres.
 pub const UNITS: [(&str, f64); 4] = [("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("inch", 0.0254)];
+
+/// Whether a change is one of a drag that goes on: all changes of a drag are undone as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gesture {
+    /// The drag goes on.
+    Dragging,
+    /// There is no drag, or it has ended.
+    Done,
+}
 
 /// A mesh that is about to be converted.
 pub struct Import {
@@ -45,8 +54,8 @@ pub struct Import {
     generation: u64,
     undo: Vec<MeshOptions>,
     redo: Vec<MeshOptions>,
-    /// Whether the last change was one of a drag, which is taken back as one.
-    is_dragging: bool,
+    /// What the last change was part of.
+    gesture: Gesture,
     /// From where it is looked at; none until it is fitted to the view.
     pub camera: Option<Camera>,
     /// Whether the view shows all of it, and the size of the view in points.
@@ -77,16 +86,16 @@ impl Import {
             generation,
             undo: Vec::new(),
             redo: Vec::new(),
-            is_dragging: false,
+            gesture: Gesture::Done,
             camera: None,
             fitted: true,
             size: DVec2::ZERO,
         }
     }
 
-    /// Whether the last change was one of a drag that goes on.
-    pub fn is_dragging(&self) -> bool {
-        self.is_dragging
+    /// What the last change was part of.
+    pub fn gesture(&self) -> Gesture {
+        self.gesture
     }
 
     /// The number after which pictures of another import are numbered.
@@ -146,32 +155,37 @@ impl Import {
         self.refused = self.loaded.as_ref().and_then(|loaded| loaded.fault.clone());
     }
 
-    /// Changes how the mesh is taken, so that it can be taken back.
-    pub fn set(&mut self, options: MeshOptions, dragging: bool) {
+    /// Changes how the mesh is imported; undo takes it back.
+    pub fn set(&mut self, options: MeshOptions, gesture: Gesture) {
+        let goes_on = [gesture, self.gesture] == [Gesture::Dragging; 2];
         if options == self.options {
-            self.is_dragging &= dragging;
+            // A drag begins with its first change.
+            self.gesture = if goes_on { Gesture::Dragging } else { Gesture::Done };
             return;
         }
         let before = std::mem::replace(&mut self.options, options);
-        if !(dragging && self.is_dragging) {
+        self.gesture = gesture;
+        if !goes_on {
             self.undo.push(before);
             if self.undo.len() > UNDO {
                 self.undo.remove(0);
             }
         }
-        self.is_dragging = dragging;
         self.redo.clear();
         self.reconsider();
     }
 
-    /// Takes back the last change, or does it again.
-    pub fn take_back(&mut self, back: bool) {
-        let (from, to) = if back { (&mut self.undo, &mut self.redo) } else { (&mut self.redo, &mut self.undo) };
+    /// Undoes or redoes a change.
+    pub fn take_back(&mut self, direction: Direction) {
+        let (from, to) = match direction {
+            Direction::Back => (&mut self.undo, &mut self.redo),
+            Direction::Forward => (&mut self.redo, &mut self.undo),
+        };
         if let Some(options) = from.pop() {
             to.push(std::mem::replace(&mut self.options, options));
             self.reconsider();
         }
-        self.is_dragging = false;
+        self.gesture = Gesture::Done;
     }
 
     /// Hears what the preview tells, and asks for a picture where another one is wanted now.
@@ -220,18 +234,18 @@ mod tests {
         let mut import = Import::begin(PathBuf::from("no such.stl"), MeshOptions::default(), 0, Arc::new(|| {}));
         let angle = |degrees: f64| MeshOptions { feature_angle: Some(degrees), ..MeshOptions::default() };
         for degrees in [30.0, 31.0, 32.0] {
-            import.set(angle(degrees), true);
+            import.set(angle(degrees), Gesture::Dragging);
         }
         // Let go.
-        import.set(angle(32.0), false);
-        import.set(angle(50.0), true);
+        import.set(angle(32.0), Gesture::Done);
+        import.set(angle(50.0), Gesture::Dragging);
         assert_eq!(import.taking().feature_angle, 50.0_f64.to_radians());
         let mut back = || {
-            import.take_back(true);
+            import.take_back(Direction::Back);
             import.options.feature_angle
         };
         assert_eq!([back(), back(), back()], [Some(32.0), None, None]);
-        import.take_back(false);
+        import.take_back(Direction::Forward);
         assert_eq!(import.options.feature_angle, Some(32.0));
     }
 

@@ -8,6 +8,7 @@ mod icons;
 mod theme;
 mod session;
 mod measure;
+mod view_layer;
 mod command;
 mod files;
 mod import;
@@ -34,8 +35,10 @@ use crate::core::fault::Fault;
 pub use app::App;
 pub use command::Command;
 pub use graphics::Lost;
-pub use session::{Goal, Source};
+pub use import::Gesture;
+pub use session::{Direction, Goal, Source};
 pub use state::Place;
+pub use view_layer::ViewLayer;
 
 /// The largest window in points: egui's textures end there.
 const LARGEST: f32 = 8192.0;

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-pub use goal::Goal;
+pub use goal::{Direction, Goal};
 pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
@@ -40,7 +40,7 @@ enum Ask {
     /// To a goal; asked then.
     Go(Goal, Instant),
     /// To the next step at which a condition holds or something that is watched is touched, or the last one before.
-    Break(Stops, bool),
+    Break(Stops, Direction),
     /// To the step that touched something last.
     Touch(Watched),
     /// To the step that made the quadrilateral of an element.
@@ -160,9 +160,9 @@ impl Session {
         self.ask(Ask::Go(goal, Instant::now()));
     }
 
-    /// Asks to go to where a breakpoint is met, forward or backward.
-    pub fn go_to_break(&self, stops: Stops, forward: bool) {
-        self.ask(Ask::Break(stops, forward));
+    /// Asks to go to where a breakpoint is met.
+    pub fn go_to_break(&self, stops: Stops, direction: Direction) {
+        self.ask(Ask::Break(stops, direction));
     }
 
     /// Asks to go to the step that touched something last.

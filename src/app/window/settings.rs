@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::apply::layer;
 use super::state::{Place, State};
+use super::view_layer::ViewLayer;
 use crate::core::fault::Fault;
 use crate::core::io::save;
 use crate::render::look::HiddenLines;
@@ -48,11 +48,10 @@ pub struct Settings {
 impl Settings {
     /// Those of a window.
     pub fn of(state: &State, dark: bool, window: Option<[f32; 2]>, docks: Value) -> Settings {
-        let mut layers = state.kept.layers;
         Settings {
             version: VERSION,
             dark,
-            layers: std::array::from_fn(|k| *layer(&mut layers, k)),
+            layers: ViewLayer::ALL.map(|layer| layer.is_on(state.kept.layers)),
             colour_by: state.kept.colour_by.name().to_owned(),
             speed: state.speed,
             bottom: state.bottom.round(),
@@ -67,8 +66,8 @@ impl Settings {
     /// Gives them to a window.
     pub fn give(&self, state: &mut State) {
         let mut layers = Layers::default();
-        for (k, on) in self.layers.into_iter().enumerate() {
-            *layer(&mut layers, k) = on;
+        for (layer, on) in ViewLayer::ALL.into_iter().zip(self.layers) {
+            *layer.switch(&mut layers) = on;
         }
         state.kept.layers = layers;
         (state.space.place, state.space.hidden, state.space.curved) = (self.place, self.hidden, self.curved);

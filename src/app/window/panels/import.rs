@@ -9,7 +9,7 @@ use super::{heading, inset, note};
 use crate::app::command_line::MeshOptions;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
-use crate::app::window::import::{Import, KINDS, UNITS};
+use crate::app::window::import::{Gesture, Import, KINDS, UNITS};
 use crate::app::window::state::{Progress, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -151,8 +151,9 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
         ui.label(note("Triangles in the plane are converted as they lie: without features and charts.", palette));
     }
     // It is told too when a drag has ended.
-    if options != import.options || import.is_dragging() != dragging {
-        commands.push(Command::SetImport(Box::new(options), dragging));
+    let gesture = if dragging { Gesture::Dragging } else { Gesture::Done };
+    if options != import.options || import.gesture() != gesture {
+        commands.push(Command::SetImport(Box::new(options), gesture));
     }
 }
 

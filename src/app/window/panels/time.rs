@@ -5,7 +5,7 @@ use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
 use super::{icon_button, timeline};
 use crate::app::window::command::{Command, KINDS};
 use crate::app::window::icons;
-use crate::app::window::session::{Goal, Verdict};
+use crate::app::window::session::{Direction, Goal, Verdict};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -49,9 +49,11 @@ fn transport(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &
         }
     }
     rule(ui, palette);
-    for (icon, forward) in [(icons::ARROW_LINE_LEFT, false), (icons::ARROW_LINE_RIGHT, true)] {
-        let command = Command::ToBreakpoint(forward);
-        if icon_button(ui, icon, theme::TRANSPORT_ICON, &command, if forward { on } else { back }).clicked() {
+    for (icon, direction, enabled) in
+        [(icons::ARROW_LINE_LEFT, Direction::Back, back), (icons::ARROW_LINE_RIGHT, Direction::Forward, on)]
+    {
+        let command = Command::ToBreakpoint(direction);
+        if icon_button(ui, icon, theme::TRANSPORT_ICON, &command, enabled).clicked() {
             commands.push(command);
         }
     }
@@ -111,8 +113,10 @@ fn kinds(ui: &mut Ui, commands: &mut Vec<Command>, open: bool) {
             ui.separator();
             for kind in KINDS {
                 ui.horizontal(|ui| {
-                    for (icon, forward) in [(icons::CARET_LEFT, false), (icons::CARET_RIGHT, true)] {
-                        let command = Command::Go(Goal::Kind(kind, forward));
+                    for (icon, direction) in
+                        [(icons::CARET_LEFT, Direction::Back), (icons::CARET_RIGHT, Direction::Forward)]
+                    {
+                        let command = Command::Go(Goal::Kind(kind, direction));
                         if icon_button(ui, icon, theme::ICON, &command, true).clicked() {
                             commands.push(command);
                         }

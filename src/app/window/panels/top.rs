@@ -4,11 +4,12 @@ use eframe::egui::{
     self, Align, Align2, Button, Layout, MenuBar, RichText, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo,
 };
 
-use crate::app::window::command::{Command, LAYERS};
+use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::{Goal, Source};
 use crate::app::window::state::{Place, State};
 use crate::app::window::theme::{self, ink};
+use crate::app::window::view_layer::ViewLayer;
 use crate::core::io::built_in;
 use crate::render::camera::Bearing;
 use crate::render::palette::Palette;
@@ -117,8 +118,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             item(ui, Command::ToggleCurved, commands);
         });
         ui.separator();
-        for k in 0..LAYERS.len() {
-            item(ui, Command::Layer(k), commands);
+        for layer in ViewLayer::ALL {
+            item(ui, Command::Layer(layer), commands);
         }
         ui.separator();
         for by in ColourBy::ALL {

@@ -2,6 +2,20 @@
 
 use crate::core::run::log::Log;
 
+/// A way along the steps of a run, or along what a person has done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// To what comes later.
+    Forward,
+    /// To what came before.
+    Back,
+}
+
+impl Direction {
+    /// Both of them.
+    pub const BOTH: [Direction; 2] = [Direction::Forward, Direction::Back];
+}
+
 /// Where to go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
@@ -14,7 +28,7 @@ pub enum Goal {
     /// To where so many quadrilaterals stand.
     ToQuads(u64),
     /// To the next event of a kind, or the one before.
-    Kind(&'static str, bool),
+    Kind(&'static str, Direction),
     /// To the end.
     End,
 }
@@ -33,8 +47,10 @@ impl Goal {
                 Err(_) => Some(back(log, step, by.unsigned_abs())),
             },
             Goal::ToQuads(quads) => with(quads, 0),
-            Goal::Kind(wanted, true) => log.next_of(step, |kind| kind == wanted).or(end),
-            Goal::Kind(wanted, false) => Some(log.last_of(step.saturating_sub(1), |kind| kind == wanted).unwrap_or(0)),
+            Goal::Kind(wanted, Direction::Forward) => log.next_of(step, |kind| kind == wanted).or(end),
+            Goal::Kind(wanted, Direction::Back) => {
+                Some(log.last_of(step.saturating_sub(1), |kind| kind == wanted).unwrap_or(0))
+            }
             Goal::End => end,
         }
     }
@@ -87,11 +103,11 @@ mod tests {
     fn events_of_a_kind_are_met_forward_and_backward() {
         let history = history();
         let (log, end) = (history.log(), history.end());
-        let first = Goal::Kind("formed", true).resolve(log, 0, end).unwrap();
-        let second = Goal::Kind("formed", true).resolve(log, first, end).unwrap();
+        let first = Goal::Kind("formed", Direction::Forward).resolve(log, 0, end).unwrap();
+        let second = Goal::Kind("formed", Direction::Forward).resolve(log, first, end).unwrap();
         assert!(log.kind(first) == Some("formed") && log.kind(second) == Some("formed"));
-        assert_eq!(Goal::Kind("formed", false).resolve(log, second, end), Some(first));
-        assert_eq!(Goal::Kind("formed", false).resolve(log, first, end), Some(0));
+        assert_eq!(Goal::Kind("formed", Direction::Back).resolve(log, second, end), Some(first));
+        assert_eq!(Goal::Kind("formed", Direction::Back).resolve(log, first, end), Some(0));
     }
 
     #[test]

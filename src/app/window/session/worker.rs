@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
-use super::{Ask, Explained, Goal, Opened, Past, Told, Tracked, Voice};
+use super::{Ask, Direction, Explained, Goal, Opened, Past, Told, Tracked, Voice};
 use crate::core::convert::event::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::{ElementId, NodeId};
@@ -40,7 +40,7 @@ pub struct Stops {
 #[derive(Clone)]
 enum Aim {
     Goal(Goal),
-    Break(Stops, bool),
+    Break(Stops, Direction),
 }
 
 /// An aim that is not reached yet.
@@ -140,7 +140,7 @@ impl Worker {
             match ask {
                 Ask::Gone => break,
                 Ask::Go(goal, since) => self.go(Aim::Goal(goal), since),
-                Ask::Break(stops, forward) => self.go(Aim::Break(stops, forward), Instant::now()),
+                Ask::Break(stops, direction) => self.go(Aim::Break(stops, direction), Instant::now()),
                 Ask::Touch(watched) => {
                     let found = self.history.last_touch(watched, false);
                     self.go_back(found, "Nothing has touched it before this step.");
@@ -318,8 +318,8 @@ impl Worker {
         let end = self.history.end();
         let found = match &aim {
             Aim::Goal(goal) => goal.resolve(self.history.log(), self.history.step(), end),
-            Aim::Break(stops, forward) => match self.stop_at(stops, *forward) {
-                Ok(None) if end.is_some() || !forward => {
+            Aim::Break(stops, direction) => match self.stop_at(stops, *direction) {
+                Ok(None) if end.is_some() || *direction == Direction::Back => {
                     self.pending = None;
                     return self.voice.say(Told::Nothing("No breakpoint is met there.", asks));
                 }
@@ -341,22 +341,25 @@ impl Worker {
         }
     }
 
-    /// The nearest step, forward or backward, at which a breakpoint is met or something that is watched is touched.
-    fn stop_at(&mut self, stops: &Stops, forward: bool) -> Result<Option<u64>, Fault> {
+    /// The nearest step at which a breakpoint is met or something that is watched is touched.
+    fn stop_at(&mut self, stops: &Stops, direction: Direction) -> Result<Option<u64>, Fault> {
         let mut found = Vec::new();
         if !stops.conditions.is_empty() {
-            let met = match forward {
-                true => self.history.next_break(&stops.conditions)?,
-                false => self.history.previous_break(&stops.conditions)?,
+            let met = match direction {
+                Direction::Forward => self.history.next_break(&stops.conditions)?,
+                Direction::Back => self.history.previous_break(&stops.conditions)?,
             };
             found.extend(met.map(|met| met.0));
         }
         for &watched in &stops.watched {
-            found.extend(match forward {
-                true => self.history.next_touch(watched)?,
-                false => self.history.last_touch(watched, false)?,
+            found.extend(match direction {
+                Direction::Forward => self.history.next_touch(watched)?,
+                Direction::Back => self.history.last_touch(watched, false)?,
             });
         }
-        Ok(if forward { found.into_iter().min() } else { found.into_iter().max() })
+        Ok(match direction {
+            Direction::Forward => found.into_iter().min(),
+            Direction::Back => found.into_iter().max(),
+        })
     }
 }
