@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
 use quadfront::app::window::{App, Command, Goal, Source};
-use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, until};
+use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
 /// Set for the child that works until it is killed: where runs are kept.
 const CHILD: &str = "QUADFRONT_TEST_KEEPS_IN";
@@ -86,9 +86,9 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
     until(&mut harness, "the run is offered", |harness| harness.query_by_label("Open it").is_some());
     harness.get_by_label("A run of example1 with 2 edits from a moment ago was not closed.");
     harness.get_by_label("Open it").click();
-    until(&mut harness, "the run is opened", |harness| harness.state().state.kept.edits.len() == 2);
+    until(&mut harness, "the run is opened", |harness| harness.state().state.document().edits.len() == 2);
     settle(&mut harness);
-    let kept = &harness.state().state.kept;
+    let kept = &harness.state().state.document();
     assert_eq!(kept.bookmarks, [90]);
     assert!(harness.query_by_label("Open it").is_none());
     // It goes on being kept, and is still there when the window is closed without saving.
@@ -142,14 +142,14 @@ fn a_figure_opens_at_the_state_that_it_shows_and_another_state_is_said() {
     let mut harness = window(example(), &kept);
     apply(&mut harness, Command::Open(Source::File(figure.clone())));
     let state = &harness.state().state;
-    assert_eq!(state.moment.as_ref().unwrap().standing, 40);
-    assert_eq!((state.parameter("c").as_deref(), state.faults.len()), (Some("1.9"), 0));
+    assert_eq!(state.run().moment.as_ref().unwrap().standing, 40);
+    assert_eq!((state.parameter("c").as_deref(), state.view().faults.len()), (Some("1.9"), 0));
     let text = std::fs::read_to_string(&figure).unwrap();
     let at = text.find("fingerprint = \"").unwrap() + 15;
     let old = folder.path().join("old.svg");
     std::fs::write(&old, format!("{}{}{}", &text[..at], "0".repeat(32), &text[at + 32..])).unwrap();
     apply(&mut harness, Command::Open(Source::File(old)));
-    let faults = &harness.state().state.faults;
+    let faults = &harness.state().state.view().faults;
     assert!(faults.len() == 1 && faults[0].contains("another state at step"), "{faults:?}");
 }
 
@@ -165,21 +165,29 @@ fn a_file_that_goes_bad_while_it_is_open_is_told_and_the_window_keeps_what_it_ha
     let mut harness = window(Source::File(path.clone()), &folder.path().join("runs"));
     apply(&mut harness, Command::Go(Goal::Step(30)));
     std::fs::write(&path, "version = 1\ntitel = 3\n").unwrap();
-    until(&mut harness, "a fault is shown", |harness| !harness.state().state.faults.is_empty());
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
     let state = &harness.state().state;
-    assert!(state.faults[0].contains("line 2") && state.faults[0].contains("keeps what it has"), "{:?}", state.faults);
-    assert_eq!(state.moment.as_ref().unwrap().step, 30);
+    assert!(
+        state.view().faults[0].contains("line 2") && state.view().faults[0].contains("keeps what it has"),
+        "{:?}",
+        state.view().faults
+    );
+    assert_eq!(state.run().moment.as_ref().unwrap().step, 30);
     // Opened again it is refused, and what is open stays.
-    harness.state_mut().state.faults.clear();
+    harness.state_mut().apply(Command::CloseFault(0));
     harness.state_mut().apply(Command::Reopen);
-    until(&mut harness, "a fault is shown", |harness| !harness.state().state.faults.is_empty());
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
     settle(&mut harness);
     apply(&mut harness, Command::Go(Goal::Steps(1)));
-    assert_eq!(harness.state().state.moment.as_ref().unwrap().step, 31);
-    harness.state_mut().state.faults.clear();
+    assert_eq!(harness.state().state.run().moment.as_ref().unwrap().step, 31);
+    harness.state_mut().apply(Command::CloseFault(0));
     std::fs::remove_file(&path).unwrap();
-    until(&mut harness, "a fault is shown", |harness| !harness.state().state.faults.is_empty());
-    assert!(harness.state().state.faults[0].contains("no such file"), "{:?}", harness.state().state.faults);
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
+    assert!(
+        harness.state().state.view().faults[0].contains("no such file"),
+        "{:?}",
+        harness.state().state.view().faults
+    );
 }
 
 #[test]
@@ -207,8 +215,8 @@ fn the_panel_for_figures_saves_what_it_says_and_a_bad_place_is_told() {
     harness.get_by_label("nodes in the figure").click();
     harness.run_steps(2);
     let stem = folder.path().join("mine");
-    harness.state_mut().state.figures.name = stem.display().to_string();
-    harness.state_mut().state.figures.size = "60mm".to_owned();
+    type_over(&mut harness, "Name of the figure", &stem.display().to_string());
+    type_over(&mut harness, "Size of the figure", "60mm");
     harness.get_by_label("Save SVG and PNG").click();
     until(&mut harness, "the figure is there", |_| stem.with_extension("png").is_file());
     let render = |from: &Path, to: &Path, options: &[&str]| {
@@ -222,8 +230,12 @@ fn the_panel_for_figures_saves_what_it_says_and_a_bad_place_is_told() {
     let options = ["--at", "step=100", "--ink", "grey", "--size", "60mm"];
     let plain = render(Path::new("example1"), &again, &options);
     assert_ne!(plain.len(), svg.len(), "the nodes are missing there");
-    harness.state_mut().state.figures.name = folder.path().join("no/where").display().to_string();
+    type_over(&mut harness, "Name of the figure", &folder.path().join("no/where").display().to_string());
     harness.get_by_label("Save SVG").click();
-    until(&mut harness, "a fault is shown", |harness| !harness.state().state.faults.is_empty());
-    assert!(harness.state().state.faults[0].contains("does not exist"), "{:?}", harness.state().state.faults);
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
+    assert!(
+        harness.state().state.view().faults[0].contains("does not exist"),
+        "{:?}",
+        harness.state().state.view().faults
+    );
 }

@@ -12,9 +12,9 @@ use std::time::Duration;
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
-use quadfront::app::window::{App, Command, Direction, Goal, Lost, Place, Source, ViewLayer};
+use quadfront::app::window::{App, Command, Direction, Goal, Lost, Source, SurfaceView, ViewLayer};
 use quadfront::render::scene::Outlined;
-use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, until};
+use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
 /// The window on example 1, at step 0.
 fn window() -> Option<Window> {
@@ -34,11 +34,11 @@ fn on(size: Vec2, name: &str) -> Window {
 }
 
 fn step(harness: &Window) -> u64 {
-    harness.state().state.moment.as_ref().unwrap().step
+    harness.state().state.run().moment.as_ref().unwrap().step
 }
 
 fn quads(harness: &Window) -> u64 {
-    harness.state().state.moment.as_ref().unwrap().standing
+    harness.state().state.run().moment.as_ref().unwrap().standing
 }
 
 fn press(harness: &mut Window, modifiers: Modifiers, key: Key) {
@@ -50,10 +50,10 @@ fn press(harness: &mut Window, modifiers: Modifiers, key: Key) {
 fn buttons_and_keys_step_forward_and_back() {
     let Some(mut harness) = window() else { return };
     assert_eq!(step(&harness), 0);
-    harness.get_by_label("One operation on").click();
+    harness.get_by_label("One operation forward").click();
     settle(&mut harness);
     assert_eq!(step(&harness), 1);
-    harness.get_by_label("One quadrilateral on").click();
+    harness.get_by_label("One quadrilateral forward").click();
     settle(&mut harness);
     assert_eq!(quads(&harness), 1);
     let after_one = step(&harness);
@@ -65,8 +65,8 @@ fn buttons_and_keys_step_forward_and_back() {
     assert_eq!(step(&harness), after_one + 1);
     press(&mut harness, Modifiers::NONE, Key::End);
     let state = &harness.state().state;
-    assert_eq!(step(&harness), state.track.len() as u64);
-    assert!(state.moment.as_ref().unwrap().front.is_empty());
+    assert_eq!(step(&harness), state.run().track.len() as u64);
+    assert!(state.run().moment.as_ref().unwrap().front.is_empty());
     press(&mut harness, Modifiers::NONE, Key::Home);
     assert_eq!(step(&harness), 0);
 }
@@ -74,16 +74,11 @@ fn buttons_and_keys_step_forward_and_back() {
 #[test]
 fn a_parameter_changes_what_follows_and_nothing_before_and_undo_takes_it_back() {
     let Some(mut harness) = window() else { return };
-    let kinds = |harness: &Window| harness.state().state.track.iter().map(|t| (t.kind, t.standing)).collect::<Vec<_>>();
+    let kinds =
+        |harness: &Window| harness.state().state.run().track.iter().map(|t| (t.kind, t.standing)).collect::<Vec<_>>();
     let before = kinds(&harness);
     apply(&mut harness, Command::Go(Goal::Step(100)));
-    harness.get_by_label("theta_rect").focus();
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.run_steps(1);
-    harness.get_by_label("theta_rect").type_text("115");
-    harness.run_steps(1);
-    harness.key_press(Key::Enter);
+    type_over(&mut harness, "theta_rect", "115");
     settle(&mut harness);
     assert_eq!(harness.state().state.parameter("theta_rect").as_deref(), Some("115"));
     let changed = kinds(&harness);
@@ -98,7 +93,7 @@ fn a_parameter_changes_what_follows_and_nothing_before_and_undo_takes_it_back() 
 fn breakpoints_stop_forward_and_backward() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::AddBreakpoint("kind == rolled_back".to_owned()));
-    let first = harness.state().state.track.iter().position(|t| t.kind == "rolled_back").unwrap() as u64 + 1;
+    let first = harness.state().state.run().track.iter().position(|t| t.kind == "rolled_back").unwrap() as u64 + 1;
     press(&mut harness, Modifiers::NONE, Key::F5);
     assert_eq!(step(&harness), first);
     press(&mut harness, Modifiers::NONE, Key::F5);
@@ -106,14 +101,18 @@ fn breakpoints_stop_forward_and_backward() {
     press(&mut harness, Modifiers::ALT, Key::F5);
     assert_eq!(step(&harness), first);
     apply(&mut harness, Command::AddBreakpoint("kind == rolled_bakc".to_owned()));
-    assert!(harness.state().state.faults[0].contains("rolled_back"), "{:?}", harness.state().state.faults);
+    assert!(
+        harness.state().state.view().faults[0].contains("rolled_back"),
+        "{:?}",
+        harness.state().state.view().faults
+    );
 }
 
 #[test]
 fn a_segment_that_is_picked_in_the_table_is_explained_in_the_inspector() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::Go(Goal::ToQuads(50)));
-    let segment = harness.state().state.moment.as_ref().unwrap().front[3];
+    let segment = harness.state().state.run().moment.as_ref().unwrap().front[3];
     let name = format!("{} → {}", segment.a.0, segment.b.0);
     harness.get_by_label(&format!("Segment {name}")).click();
     settle(&mut harness);
@@ -124,7 +123,7 @@ fn a_segment_that_is_picked_in_the_table_is_explained_in_the_inspector() {
     harness.get_by_label("Choose as base").click();
     settle(&mut harness);
     let state = &harness.state().state;
-    let base = state.moment.as_ref().unwrap().phase.base().copied().unwrap();
+    let base = state.run().moment.as_ref().unwrap().phase.base().copied().unwrap();
     assert_eq!((base.a, base.b), (segment.a, segment.b), "the person's choice holds");
 }
 
@@ -134,14 +133,14 @@ fn a_run_that_is_saved_opens_with_its_changes() {
     apply(&mut harness, Command::Go(Goal::Step(60)));
     apply(&mut harness, Command::Set("c", "1.5".to_owned()));
     apply(&mut harness, Command::Bookmark);
-    let kinds = |harness: &Window| harness.state().state.track.iter().map(|t| t.kind).collect::<Vec<_>>();
+    let kinds = |harness: &Window| harness.state().state.run().track.iter().map(|t| t.kind).collect::<Vec<_>>();
     let before = kinds(&harness);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.toml");
-    quadfront::core::io::run_file::write(&path, &harness.state().state.run().unwrap()).unwrap();
+    quadfront::core::io::run_file::write(&path, &harness.state().state.current_run().unwrap()).unwrap();
     apply(&mut harness, Command::Open(Source::File(path)));
     assert_eq!(kinds(&harness), before);
-    let kept = &harness.state().state.kept;
+    let kept = &harness.state().state.document();
     assert_eq!((kept.edits.len(), kept.bookmarks.as_slice()), (1, &[60][..]));
 }
 
@@ -152,15 +151,13 @@ fn the_mesh_at_hand_is_saved_in_the_format_of_its_name_and_nothing_is_written_ov
     let save = |harness: &mut Window, name: &str| {
         press(harness, Modifiers::COMMAND, Key::M);
         let path = folder.path().join(name);
-        harness.state_mut().state.field = path.display().to_string();
-        harness.run_steps(2);
-        harness.key_press(Key::Enter);
+        type_over(harness, "Path of the mesh", &path.display().to_string());
         until(harness, "something is told", |harness| {
-            harness.state().state.notice.is_some() || !harness.state().state.faults.is_empty()
+            let view = harness.state().state.view();
+            view.notice().is_some_and(|notice| notice.0.contains(name)) || !view.faults.is_empty()
         });
-        let state = &mut harness.state_mut().state;
-        state.notice = None;
-        let faults = std::mem::take(&mut state.faults);
+        let faults = harness.state().state.view().faults.clone();
+        faults.iter().for_each(|_| harness.state_mut().apply(Command::CloseFault(0)));
         assert!(faults.is_empty() || faults[0].contains(name), "{faults:?}");
         faults.is_empty().then(|| quadfront::core::io::format::read_mesh(&path, None).unwrap())
     };
@@ -184,11 +181,11 @@ fn the_palette_finds_a_command_by_its_name() {
     press(&mut harness, Modifiers::COMMAND, Key::P);
     harness.get_by_label("Name of a command").type_text("ten nonsense");
     harness.run_steps(2);
-    harness.get_by_label("No command has these words.");
+    harness.get_by_label("No command matches.");
     press(&mut harness, Modifiers::NONE, Key::Escape);
     assert!(harness.query_by_label("Name of a command").is_none());
     press(&mut harness, Modifiers::COMMAND, Key::P);
-    harness.get_by_label("Name of a command").type_text("10 quadrilaterals on");
+    harness.get_by_label("Name of a command").type_text("10 quadrilaterals forward");
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     settle(&mut harness);
@@ -216,12 +213,12 @@ fn the_window_looks_the_same_however_one_came_to_a_step_and_other_at_another() {
 fn a_file_that_is_not_there_is_a_message_and_the_window_goes_on() {
     let Some(mut harness) = window() else { return };
     harness.state_mut().apply(Command::Open(Source::named("no-such-case.toml")));
-    until(&mut harness, "a fault is shown", |harness| !harness.state().state.faults.is_empty());
-    assert!(harness.state().state.faults[0].contains("no-such-case.toml"));
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
+    assert!(harness.state().state.view().faults[0].contains("no-such-case.toml"));
     harness.run_steps(2);
     harness.get_by_label("Close").click();
     harness.run_steps(2);
-    assert!(harness.state().state.faults.is_empty());
+    assert!(harness.state().state.view().faults.is_empty());
     apply(&mut harness, Command::Open(Source::named("example1")));
     assert_eq!(step(&harness), 0);
 }
@@ -235,7 +232,7 @@ fn wait_for(harness: &mut Window, label: &str) {
 fn a_node_that_is_watched_stops_the_run_forward_and_backward_and_tells_who_touched_it() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::Go(Goal::ToQuads(40)));
-    let node = harness.state().state.moment.as_ref().unwrap().front[0].a;
+    let node = harness.state().state.run().moment.as_ref().unwrap().front[0].a;
     apply(&mut harness, Command::Pick(Some(Outlined::Node(node))));
     harness.get_by_label("Watch").click();
     settle(&mut harness);
@@ -249,29 +246,29 @@ fn a_node_that_is_watched_stops_the_run_forward_and_backward_and_tells_who_touch
     press(&mut harness, Modifiers::ALT, Key::F5);
     assert_eq!(step(&harness), first);
     apply(&mut harness, Command::Go(Goal::Step(second)));
-    wait_for(&mut harness, "What became of it");
+    wait_for(&mut harness, "Past steps");
     apply(&mut harness, Command::Go(Goal::Step(second + 1)));
-    harness.get_by_label("Who touched this last").click();
+    harness.get_by_label("What touched this last").click();
     settle(&mut harness);
     assert!(step(&harness) <= second);
     harness.get_by_label("Stop watching").click();
     settle(&mut harness);
-    assert!(harness.state().state.kept.watches.is_empty());
+    assert!(harness.state().state.document().watches.is_empty());
 }
 
 #[test]
 fn a_quadrilateral_tells_when_it_was_made_and_what_it_ate() {
     let Some(mut harness) = window() else { return };
     let (at, element) = {
-        let track = &harness.state().state.track;
+        let track = &harness.state().state.run().track;
         let found = track.iter().enumerate().filter_map(|(k, t)| Some((k as u64 + 1, t.formed?.0))).nth(30);
         found.unwrap()
     };
     apply(&mut harness, Command::Go(Goal::Step(at + 3)));
     apply(&mut harness, Command::Pick(Some(Outlined::Element(element))));
     harness.get_by_label(&format!("Quadrilateral {}", element.0));
-    wait_for(&mut harness, "What became of it");
-    assert!(harness.query_by_label_contains("It ate the triangles").is_some());
+    wait_for(&mut harness, "Past steps");
+    assert!(harness.query_by_label_contains("made of the triangles").is_some());
     harness.get_by_label("When was this made").click();
     settle(&mut harness);
     assert_eq!(step(&harness), at);
@@ -287,12 +284,12 @@ fn fields_of_conditions_are_offered_and_an_error_stays_where_it_can_be_mended() 
     harness.run_steps(3);
     harness.get_by_label("Use quad.min_angle").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().state.breakpoint_field, "quad.min_angle ");
+    assert_eq!(harness.get_by_label(field).value().as_deref(), Some("quad.min_angle "));
     harness.get_by_label(field).type_text("<");
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(3);
-    assert!(harness.state().state.kept.breakpoints.is_empty());
+    assert!(harness.state().state.document().breakpoints.is_empty());
     assert!(harness.query_by_label_contains("position").is_some(), "the error says where");
     harness.get_by_label(field).focus();
     harness.run_steps(2);
@@ -300,7 +297,9 @@ fn fields_of_conditions_are_offered_and_an_error_stays_where_it_can_be_mended() 
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     settle(&mut harness);
-    assert_eq!(harness.state().state.kept.breakpoints, [("quad.min_angle < 30".to_owned(), true)]);
+    let breakpoints = &harness.state().state.document().breakpoints;
+    assert!(breakpoints.len() == 1 && breakpoints[0].is_on, "{breakpoints:?}");
+    assert_eq!(breakpoints[0].condition, "quad.min_angle < 30");
 }
 
 #[test]
@@ -360,14 +359,14 @@ fn the_window_is_found_again_as_it_was_left_and_nonsense_is_told() {
     until(&mut harness, "something is kept", |_| path.exists());
     let text = std::fs::read_to_string(&path).unwrap();
     let again = on(path.clone());
-    assert!(again.state().state.kept.layers.ellipses);
+    assert!(again.state().state.document().layers.ellipses);
     assert!(text.contains("\"dark\": false"), "{text}");
     again.get_by_label("Colour by");
     drop(again);
     std::fs::write(&path, &text[..text.len() / 2]).unwrap();
     let bad = on(path);
-    assert!(bad.state().state.faults[0].contains("window.json"), "{:?}", bad.state().state.faults);
-    assert!(!bad.state().state.kept.layers.ellipses);
+    assert!(bad.state().state.view().faults[0].contains("window.json"), "{:?}", bad.state().state.view().faults);
+    assert!(!bad.state().state.document().layers.ellipses);
 }
 
 #[test]
@@ -401,7 +400,7 @@ fn a_lost_device_saves_the_run_and_says_where() {
     device.destroy();
     until(&mut harness, "the window has heard of it", |harness| {
         let _ = device.poll(wgpu::PollType::Poll);
-        harness.state().state.is_lost
+        harness.state().is_lost()
     });
     let told = lost.fault().unwrap().to_string();
     let path = std::path::PathBuf::from(told.split_whitespace().last().unwrap().trim_end_matches('.'));
@@ -417,23 +416,23 @@ fn times_are_shown_and_measured_where_they_are_asked_for() {
     harness.run_steps(2);
     assert!(harness.query_by_label_contains("state ").is_some());
     harness.state_mut().apply(Command::Measure);
-    until(&mut harness, "it is measured", |harness| harness.state().state.measuring.is_none());
+    until(&mut harness, "it is measured", |harness| harness.state().state.run().measuring.is_none());
     assert!(harness.query_by_label_contains("60 quads on and back").is_some());
 }
 
 #[test]
 fn surfaces_open_in_space_and_a_key_a_button_and_the_palette_lead_to_the_plane_and_back() {
     let Some(mut harness) = window_on("example2") else { return };
-    let place = |harness: &Window| harness.state().state.space.place;
-    assert_eq!(place(&harness), Place::Space);
+    let place = |harness: &Window| harness.state().state.workspace().surfaces.view;
+    assert_eq!(place(&harness), SurfaceView::Space);
     let space = picture(&mut harness, "space");
     press(&mut harness, Modifiers::NONE, Key::V);
-    assert_eq!(place(&harness), Place::Plane);
+    assert_eq!(place(&harness), SurfaceView::Plane);
     let plane = picture(&mut harness, "plane");
     assert!(difference(&space, &plane) > 0.02, "{}", difference(&space, &plane));
     harness.get_by_label("Show in space").click();
     settle(&mut harness);
-    assert_eq!(place(&harness), Place::Space);
+    assert_eq!(place(&harness), SurfaceView::Space);
     let again = picture(&mut harness, "again");
     assert!(difference(&space, &again) < 0.004, "{}", difference(&space, &again));
     press(&mut harness, Modifiers::COMMAND, Key::P);
@@ -441,7 +440,7 @@ fn surfaces_open_in_space_and_a_key_a_button_and_the_palette_lead_to_the_plane_a
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     settle(&mut harness);
-    assert_eq!(place(&harness), Place::Both);
+    assert_eq!(place(&harness), SurfaceView::Both);
     let both = picture(&mut harness, "both");
     assert!(difference(&both, &space) > 0.02 && difference(&both, &plane) > 0.02);
 }
@@ -473,14 +472,14 @@ fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_wha
     let at = rect.center();
     harness.hover_at(at);
     harness.run_steps(2);
-    let what = harness.state().state.hovered.expect("something is under the pointer");
+    let what = harness.state().state.frame().hovered.expect("something is under the pointer");
     harness.drag_at(at);
     harness.run_steps(1);
     harness.drop_at(at);
     harness.run_steps(3);
     let state = &harness.state().state;
-    assert_eq!(state.kept.picked, Some(what));
-    let (mesh, camera) = (state.moment.as_ref().unwrap().mesh.clone(), state.space.camera.unwrap());
+    assert_eq!(state.document().picked, Some(what));
+    let (mesh, camera) = (state.run().moment.as_ref().unwrap().mesh.clone(), state.view().space.camera.unwrap());
     let towards = camera.towards();
     let nodes = match what {
         Outlined::Node(n) => vec![n],
@@ -496,11 +495,11 @@ fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_wha
     }
     harness.drop_at(at + Vec2::new(80.0, 32.0));
     harness.run_steps(3);
-    let turned = harness.state().state.space.camera.unwrap();
+    let turned = harness.state().state.view().space.camera.unwrap();
     assert!(turned.towards().angle_between(towards) > 0.2, "{}", turned.towards().angle_between(towards));
     assert_eq!(turned.scale, camera.scale);
     press(&mut harness, Modifiers::NONE, Key::X);
-    let camera = harness.state().state.space.camera.unwrap();
+    let camera = harness.state().state.view().space.camera.unwrap();
     assert!(camera.towards().distance(glam::DVec3::X) < 1e-9);
 }
 

@@ -6,8 +6,9 @@
 use std::time::{Duration, Instant};
 
 use eframe::CreationContext;
-use eframe::egui::Vec2;
+use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use quadfront::app::window::{App, Command};
 
 /// The size of a small laptop's screen, in points.
@@ -42,7 +43,7 @@ pub fn until(window: &mut Window, what: &str, holds: impl Fn(&Window) -> bool) {
     let begin = Instant::now();
     while !holds(window) {
         window.run_steps(1);
-        let faults = &window.state().state.faults;
+        let faults = &window.state().state.view().faults;
         assert!(begin.elapsed() < PATIENCE, "waited in vain until {what}: {faults:?}");
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -54,7 +55,7 @@ pub fn settle(window: &mut Window) {
     window.run_steps(2);
     until(window, "the run is recorded", |window| {
         let state = &window.state().state;
-        state.import.is_none() && state.moment.is_some() && !state.is_busy() && state.recorded
+        state.run().import.is_none() && state.run().moment.is_some() && !state.run().is_busy() && state.run().recorded
     });
 }
 
@@ -62,4 +63,16 @@ pub fn settle(window: &mut Window) {
 pub fn apply(window: &mut Window, command: Command) {
     window.state_mut().apply(command);
     settle(window);
+}
+
+/// Types a text into a field in place of what is there, and Enter.
+pub fn type_over(window: &mut Window, field: &str, text: &str) {
+    window.get_by_label(field).focus();
+    window.run_steps(2);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.run_steps(1);
+    window.get_by_label(field).type_text(text);
+    window.run_steps(1);
+    window.key_press(Key::Enter);
+    window.run_steps(2);
 }

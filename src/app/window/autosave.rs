@@ -15,8 +15,8 @@ use std::time::{Duration, Instant};
 pub use place::{Offer, folder};
 use place::{Place, left_behind};
 
+use super::import::ImportOptions;
 use super::session::{Opened, Source, Wake};
-use crate::app::command_line::MeshOptions;
 use crate::core::fault::Fault;
 use crate::core::io::run_file::Keeper;
 use crate::core::run::run::{Bookmark, Camera, Edit, Run};
@@ -255,7 +255,7 @@ impl Autosave {
         let adopted = self.opening.take_if(|offer| is_it(offer));
         let was_unsaved = self.kept.take().is_some();
         // How a mesh was taken is nowhere but in the run.
-        let was_taken = matches!(source, Some(Source::Mesh(_, options)) if *options != MeshOptions::default());
+        let was_taken = matches!(source, Some(Source::Mesh(_, options)) if *options != ImportOptions::default());
         let is_unsaved = adopted.is_some() || was_taken;
         self.saved = (!is_unsaved).then(|| Changes::of(&opened.run));
         let place = adopted.map(|offer| offer.place);

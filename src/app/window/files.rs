@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::ColorImage;
 
+use super::import::ImportOptions;
 use super::session::{Source, Wake};
-use crate::app::command_line::MeshOptions;
 use crate::app::input;
 use crate::core::fault::Fault;
 use crate::core::io::figure::KEYWORD;
@@ -40,6 +40,9 @@ impl Source {
         }
     }
 }
+
+/// A file that a thread writes: what to tell the user when it is done, or what went wrong.
+pub type Writing = Receiver<Result<String, Fault>>;
 
 /// What was answered of what is waited for; that and what will never be answered is waited for no more.
 pub fn answers<T>(waiting: &mut Vec<Receiver<T>>) -> Vec<T> {
@@ -140,7 +143,7 @@ impl Watcher {
                 }
                 before = now;
                 // What cannot be read is told, and that nothing is lost by it.
-                let read = input::run_of(&path, &MeshOptions::default()).map(|_| path.display().to_string()).map_err(
+                let read = input::run_of(&path, &ImportOptions::default()).map(|_| path.display().to_string()).map_err(
                     |fault| {
                         let remedy =
                             if fault.remedy.is_empty() { String::new() } else { format!("{}. ", fault.remedy) };

@@ -6,18 +6,16 @@ mod preview;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::DVec2;
-
 pub use preview::{KINDS, Loaded, Shown};
 use preview::{Preview, Told, Wanted};
 
 use super::session::{Direction, Wake};
-use super::state::Progress;
-use crate::app::command_line::MeshOptions;
+use super::state::{Progress, ViewCamera};
+/// How a mesh is imported, in the words of the command line.
+pub use crate::app::command_line::MeshOptions as ImportOptions;
 use crate::app::input;
 use crate::core::fault::Fault;
 use crate::core::io::case::{MeshUse, Taking};
-use crate::render::camera::Camera;
 
 /// How many changes can be taken back.
 const UNDO: usize = 100;
@@ -39,7 +37,7 @@ pub struct Import {
     /// Its file.
     pub path: PathBuf,
     /// How it is taken.
-    pub options: MeshOptions,
+    pub options: ImportOptions,
     preview: Preview,
     /// The mesh, mended, once it is there.
     pub loaded: Option<Arc<Loaded>>,
@@ -52,15 +50,12 @@ pub struct Import {
     wanted: Option<Wanted>,
     /// The last number that a picture was asked for under.
     generation: u64,
-    undo: Vec<MeshOptions>,
-    redo: Vec<MeshOptions>,
+    undo: Vec<ImportOptions>,
+    redo: Vec<ImportOptions>,
     /// What the last change was part of.
     gesture: Gesture,
-    /// From where it is looked at; none until it is fitted to the view.
-    pub camera: Option<Camera>,
-    /// Whether the view shows all of it, and the size of the view in points.
-    pub fitted: bool,
-    pub size: DVec2,
+    /// Where the view of it looks.
+    pub view: ViewCamera,
 }
 
 /// What becomes of an import.
@@ -73,7 +68,7 @@ pub enum News {
 
 impl Import {
     /// Begins to read a mesh; `generation` is greater than that of any picture before.
-    pub fn begin(path: PathBuf, options: MeshOptions, generation: u64, wake: Wake) -> Import {
+    pub fn begin(path: PathBuf, options: ImportOptions, generation: u64, wake: Wake) -> Import {
         Import {
             preview: Preview::of(path.clone(), wake),
             path,
@@ -87,9 +82,7 @@ impl Import {
             undo: Vec::new(),
             redo: Vec::new(),
             gesture: Gesture::Done,
-            camera: None,
-            fitted: true,
-            size: DVec2::ZERO,
+            view: ViewCamera::default(),
         }
     }
 
@@ -139,7 +132,7 @@ impl Import {
 
     /// Shows what the mesh was refused for, and looks there.
     pub fn refuse(&mut self, fault: Fault) {
-        self.camera = None;
+        self.view.camera = None;
         self.refused = Some(fault);
     }
 
@@ -156,7 +149,7 @@ impl Import {
     }
 
     /// Changes how the mesh is imported; undo takes it back.
-    pub fn set(&mut self, options: MeshOptions, gesture: Gesture) {
+    pub fn set(&mut self, options: ImportOptions, gesture: Gesture) {
         let goes_on = [gesture, self.gesture] == [Gesture::Dragging; 2];
         if options == self.options {
             // A drag begins with its first change.
@@ -231,8 +224,8 @@ mod tests {
 
     #[test]
     fn a_drag_is_taken_back_as_one_and_what_follows_for_itself() {
-        let mut import = Import::begin(PathBuf::from("no such.stl"), MeshOptions::default(), 0, Arc::new(|| {}));
-        let angle = |degrees: f64| MeshOptions { feature_angle: Some(degrees), ..MeshOptions::default() };
+        let mut import = Import::begin(PathBuf::from("no such.stl"), ImportOptions::default(), 0, Arc::new(|| {}));
+        let angle = |degrees: f64| ImportOptions { feature_angle: Some(degrees), ..ImportOptions::default() };
         for degrees in [30.0, 31.0, 32.0] {
             import.set(angle(degrees), Gesture::Dragging);
         }
@@ -251,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_mesh_that_is_not_there_is_refused_with_its_name() {
-        let mut import = Import::begin(PathBuf::from("no such.stl"), MeshOptions::default(), 0, Arc::new(|| {}));
+        let mut import = Import::begin(PathBuf::from("no such.stl"), ImportOptions::default(), 0, Arc::new(|| {}));
         let begin = std::time::Instant::now();
         let fault = loop {
             if let News::Refused(fault) = import.look(true) {

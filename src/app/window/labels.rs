@@ -100,19 +100,19 @@ pub fn show(
     if cover.is_some() {
         over.lens_in_space(state);
     }
-    if state.kept.layers.ellipses && which == Which::Main {
+    if state.document().layers.ellipses && which == Which::Main {
         over.ellipses();
     }
     if !small {
         over.letters(&decision);
     }
-    if state.kept.layers.labels && which != Which::Whole {
+    if state.document().layers.labels && which != Which::Whole {
         over.base(&decision, which);
     }
-    if state.kept.layers.arcs && !small {
+    if state.document().layers.arcs && !small {
         over.wedges_and_arcs(&decision, which);
     }
-    if state.kept.layers.labels && which == Which::Main {
+    if state.document().layers.labels && which == Which::Main {
         over.pointed(state);
         over.front_labels(&decision);
         over.node_ids(&decision);
@@ -242,7 +242,7 @@ impl Over<'_> {
 
     /// What is picked and hovered, named.
     fn pointed(&mut self, state: &State) {
-        for (what, strong) in [(state.kept.picked, true), (state.hovered, false)] {
+        for (what, strong) in [(state.document().picked, true), (state.frame().hovered, false)] {
             let Some(what) = what else { continue };
             let Some(p) = super::viewport::middle(self.moment, what) else { continue };
             let text = match what {

@@ -10,6 +10,7 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde_json::Value;
 
 use super::command::Command;
+use super::panels::PanelStates;
 use super::state::State;
 use super::viewport::Views;
 use crate::render::palette::Palette;
@@ -100,17 +101,37 @@ impl Room {
     }
 }
 
-/// The docks.
-#[derive(Default)]
+/// Heights that the timeline may have with its buttons, in points, and its first one.
+pub const TIMELINE_HEIGHTS: [f32; 2] = [120.0, 420.0];
+const TIMELINE_HEIGHT: f32 = 216.0;
+
+/// The docks, and the height of the timeline below them.
 pub struct Layout {
+    pub timeline_height: f32,
     tree: Option<(Tree<Pane>, Room)>,
     /// The column that takes what the others leave, and the size at the last frame.
     middle: Option<TileId>,
     size: Vec2,
     /// How a person has arranged the docks, by the room that there was.
     arranged: BTreeMap<String, Value>,
-    /// Whether a person is moving something.
+    /// Whether the user is moving something.
     edited: bool,
+    /// The last request to arrange the docks that was followed.
+    relayouts: u64,
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Layout {
+            timeline_height: TIMELINE_HEIGHT,
+            tree: None,
+            middle: None,
+            size: Vec2::ZERO,
+            arranged: BTreeMap::new(),
+            edited: false,
+            relayouts: 0,
+        }
+    }
 }
 
 impl Layout {
@@ -118,20 +139,16 @@ impl Layout {
     pub fn show(
         &mut self,
         ui: &mut Ui,
-        state: &mut State,
+        state: &State,
+        local: &mut PanelStates,
         views: &mut Views,
         commands: &mut Vec<Command>,
         palette: &'static Palette,
     ) {
         let size = ui.available_size();
         let room = Room::of(size.x);
-        if std::mem::take(&mut state.reset_layout) {
-            self.arranged.clear();
-            self.tree = None;
-            state.arrange(None);
-        }
-        if std::mem::take(&mut state.relayout) {
-            let kept = state.kept.layout.as_ref().and_then(|text| serde_json::from_str::<Value>(text).ok());
+        if state.view().relayout.take(&mut self.relayouts).is_some() {
+            let kept = state.document().layout.as_ref().and_then(|text| serde_json::from_str::<Value>(text).ok());
             self.arrange(kept.as_ref());
             self.tree = None;
         }
@@ -148,13 +165,13 @@ impl Layout {
         }
         self.size = size;
         let Some((tree, _)) = &mut self.tree else { return };
-        let mut docks = Docks { state, views, commands, palette, edited: false };
+        let mut docks = Docks { state, local, views, commands, palette, edited: false };
         tree.ui(&mut docks, ui);
         self.edited |= docks.edited;
         if self.edited && !ui.input(|input| input.pointer.any_down()) {
             self.edited = false;
             self.arranged.insert(room.name().to_owned(), written::write(tree));
-            state.arrange(Some(self.arranged().to_string()));
+            commands.push(Command::Arrange(self.arranged().to_string()));
         }
     }
 

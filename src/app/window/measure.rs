@@ -11,10 +11,9 @@ const LEAPS: usize = 20;
 /// A pause between two frames that is longer is no frame's own.
 const PAUSE: Duration = Duration::from_secs(2);
 
-/// The times of the last states and frames.
+/// The times of the last frames.
 #[derive(Clone, Debug, Default)]
 pub struct Times {
-    state: Option<Duration>,
     frame: Option<Duration>,
     begun: Option<Instant>,
     /// When the program was started, and how long it took from there to the first picture.
@@ -30,11 +29,6 @@ impl Times {
         }
     }
 
-    /// A state took so long, from asking to telling.
-    pub fn state(&mut self, took: Duration) {
-        self.state = Some(took);
-    }
-
     /// A frame begins. `follows`: it was asked for in the one before, so that the time between them is that of a frame, with all
     /// that the card does.
     pub fn frame(&mut self, follows: bool) {
@@ -45,14 +39,14 @@ impl Times {
         self.begun = Some(now);
     }
 
-    /// Both in words.
-    pub fn told(&self) -> String {
+    /// The times in words, with how long the current state took.
+    pub fn told(&self, state: Duration) -> String {
         let told = |time: Option<Duration>, decimals: usize| match time {
             Some(time) => super::words::fixed(1e3 * time.as_secs_f64(), decimals),
             None => super::words::UNDEFINED.to_owned(),
         };
         let first = told(self.first, 0);
-        format!("first {first} ms  \u{b7}  state {} ms  \u{b7}  frame {} ms", told(self.state, 2), told(self.frame, 0))
+        format!("first {first} ms  \u{b7}  state {} ms  \u{b7}  frame {} ms", told(Some(state), 2), told(self.frame, 0))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The window: a stepping debugger for the merging front.
 //!
-//! What a person does becomes a [`command::Command`]; `State::apply` is the only place where one changes anything.
-//! The run itself works on threads of its own (`session`), so that the window never waits.
+//! What the user does becomes a [`Command`]. The panels read the `state` and return commands; only `state::apply` and
+//! `state::hearing` change it. The run works on threads of its own (`session`), so that the window never waits.
 
 mod words;
 mod icons;
@@ -18,7 +18,6 @@ mod autosave;
 mod figures;
 mod mesh_out;
 mod state;
-mod apply;
 mod viewport;
 mod labels;
 mod layout;
@@ -37,7 +36,7 @@ pub use command::Command;
 pub use graphics::Lost;
 pub use import::Gesture;
 pub use session::{Direction, Goal, Source};
-pub use state::Place;
+pub use state::SurfaceView;
 pub use view_layer::ViewLayer;
 
 /// The largest window in points: egui's textures end there.

@@ -1,4 +1,4 @@
-//! The panels. Each shows a part of the state and pushes commands; none changes the run itself.
+//! The panels. Each reads the state, keeps what is its own (a text that is being typed, a span, a drag), and returns commands.
 
 pub mod top;
 pub mod legend;
@@ -23,6 +23,16 @@ use eframe::egui::{self, Align, Button, Frame, Margin, Response, RichText, Role,
 use super::command::Command;
 use super::theme::{self, ink};
 use crate::render::palette::Palette;
+
+/// What the panels keep for themselves.
+#[derive(Default)]
+pub struct PanelStates {
+    pub time: time::TimeState,
+    pub front: front::FrontState,
+    pub breakpoints: breakpoints::BreakpointsState,
+    pub parameters: parameters::ParametersState,
+    pub over: over::OverState,
+}
 
 /// A button with an icon, its name for screen readers, and a tooltip with its key.
 pub fn icon_button(ui: &mut Ui, icon: &str, size: f32, command: &Command, enabled: bool) -> Response {

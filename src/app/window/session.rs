@@ -17,7 +17,7 @@ pub use goal::{Direction, Goal};
 pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
-use crate::app::command_line::MeshOptions;
+use super::import::ImportOptions;
 use crate::core::convert::conversion::Background;
 use crate::core::convert::event::{Event, Why};
 use crate::core::fault::Fault;
@@ -277,5 +277,5 @@ pub enum Source {
     /// A case, a run or a figure in a file; or a mesh, of which the window shows first what it is like.
     File(PathBuf),
     /// A mesh, taken as the options say.
-    Mesh(PathBuf, MeshOptions),
+    Mesh(PathBuf, ImportOptions),
 }

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::state::{Place, State};
+use super::layout::{Layout, TIMELINE_HEIGHTS};
+use super::state::{Document, SurfaceStyle, SurfaceView, Workspace};
 use super::view_layer::ViewLayer;
 use crate::core::fault::Fault;
 use crate::core::io::save;
@@ -15,8 +16,6 @@ use crate::render::scene::{ColourBy, Layers};
 
 /// The version of the file.
 const VERSION: u32 = 1;
-/// Heights that the timeline can have.
-pub const BOTTOM: [f32; 2] = [120.0, 420.0];
 
 /// What is kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,7 +32,7 @@ pub struct Settings {
     bottom: f32,
     /// Where meshes on surfaces are shown, how covered lines are drawn, whether elements are curved.
     #[serde(default)]
-    place: Place,
+    place: SurfaceView,
     #[serde(default)]
     hidden: HiddenLines,
     #[serde(default)]
@@ -46,39 +45,48 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Those of a window.
-    pub fn of(state: &State, dark: bool, window: Option<[f32; 2]>, docks: Value) -> Settings {
+    /// Those of a window of this size.
+    pub fn of(workspace: &Workspace, layout: &Layout, dark: bool, window: Option<[f32; 2]>) -> Settings {
+        let SurfaceStyle { view, hidden, curved } = workspace.surfaces;
         Settings {
             version: VERSION,
             dark,
-            layers: ViewLayer::ALL.map(|layer| layer.is_on(state.kept.layers)),
-            colour_by: state.kept.colour_by.name().to_owned(),
-            speed: state.speed,
-            bottom: state.bottom.round(),
-            place: state.space.place,
-            hidden: state.space.hidden,
-            curved: state.space.curved,
+            layers: ViewLayer::ALL.map(|layer| layer.is_on(workspace.document.layers)),
+            colour_by: workspace.document.colour_by.name().to_owned(),
+            speed: workspace.speed,
+            bottom: layout.timeline_height.round(),
+            place: view,
+            hidden,
+            curved,
             window,
-            docks,
+            docks: layout.arranged(),
         }
     }
 
-    /// Gives them to a window.
-    pub fn give(&self, state: &mut State) {
-        let mut layers = Layers::default();
+    /// A workspace as it was left.
+    pub fn workspace(&self) -> Workspace {
+        let mut workspace = Workspace::default();
+        let Document { layers, colour_by, .. } = &mut workspace.document;
+        *layers = Layers::default();
         for (layer, on) in ViewLayer::ALL.into_iter().zip(self.layers) {
-            *layer.switch(&mut layers) = on;
+            *layer.switch(layers) = on;
         }
-        state.kept.layers = layers;
-        (state.space.place, state.space.hidden, state.space.curved) = (self.place, self.hidden, self.curved);
-        state.kept.colour_by =
-            ColourBy::ALL.into_iter().find(|by| by.name() == self.colour_by).unwrap_or(state.kept.colour_by);
+        *colour_by = ColourBy::ALL.into_iter().find(|by| by.name() == self.colour_by).unwrap_or(*colour_by);
+        workspace.surfaces = SurfaceStyle { view: self.place, hidden: self.hidden, curved: self.curved };
         if self.speed.is_finite() && (0.1..=1000.0).contains(&self.speed) {
-            state.speed = self.speed;
+            workspace.speed = self.speed;
         }
+        workspace
+    }
+
+    /// The docks as they were left.
+    pub fn layout(&self) -> Layout {
+        let mut layout = Layout::default();
+        layout.arrange(Some(&self.docks));
         if self.bottom.is_finite() {
-            state.bottom = self.bottom.clamp(BOTTOM[0], BOTTOM[1]);
+            layout.timeline_height = self.bottom.clamp(TIMELINE_HEIGHTS[0], TIMELINE_HEIGHTS[1]);
         }
+        layout
     }
 
     /// Reads them; none where there are none yet.
@@ -134,8 +142,6 @@ pub fn path() -> Option<PathBuf> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
 
     #[test]
@@ -143,21 +149,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("deep").join("window.json");
         assert_eq!(Settings::read(&path).unwrap(), None);
-        let mut state = State::new(Arc::new(|| {}));
-        state.kept.layers.ellipses = true;
-        state.kept.colour_by = ColourBy::Level;
-        (state.speed, state.bottom) = (30.0, 300.0);
-        (state.space.place, state.space.hidden, state.space.curved) = (Place::Both, HiddenLines::Faint, true);
-        let settings = Settings::of(&state, false, Some([1280.0, 800.0]), serde_json::json!({}));
+        let (mut workspace, mut layout) = (Workspace::default(), Layout::default());
+        workspace.document.layers.ellipses = true;
+        workspace.document.colour_by = ColourBy::Level;
+        (workspace.speed, layout.timeline_height) = (30.0, 300.0);
+        workspace.surfaces = SurfaceStyle { view: SurfaceView::Both, hidden: HiddenLines::Faint, curved: true };
+        let settings = Settings::of(&workspace, &layout, false, Some([1280.0, 800.0]));
         settings.write(&path).unwrap();
         let read = Settings::read(&path).unwrap().unwrap();
         assert_eq!(read, settings);
-        let mut other = State::new(Arc::new(|| {}));
-        read.give(&mut other);
-        assert_eq!((other.kept.layers, other.kept.colour_by), (state.kept.layers, ColourBy::Level));
-        assert_eq!((other.speed, other.bottom), (30.0, 300.0));
-        let space = other.space;
-        assert_eq!((space.place, space.hidden, space.curved), (Place::Both, HiddenLines::Faint, true));
+        let other = read.workspace();
+        assert_eq!(other.document, workspace.document);
+        assert_eq!((other.speed, other.surfaces), (30.0, workspace.surfaces));
+        assert_eq!(read.layout().timeline_height, 300.0);
         // Files of before know nothing of space.
         let text = std::fs::read_to_string(&path).unwrap();
         let old: String =

@@ -21,9 +21,10 @@ use super::command::Command;
 use super::labels;
 use super::panels::{self, inspector};
 use super::session::Moment;
-use super::state::{Look, Place, State};
+use super::state::{Look, State, SurfaceView, ViewCamera, ViewKind};
 use super::theme::ink;
 use crate::core::mesh::ids::ElementId;
+use crate::core::run::history::Changes;
 use crate::render::camera::Camera;
 use crate::render::gpu::{Light, Painter, View};
 use crate::render::palette::{Palette, Rgba};
@@ -60,6 +61,8 @@ pub struct Views {
     pivot: Option<glam::DVec3>,
     /// What of the scene in space hides labels.
     cover: space::Covering,
+    /// The last request to look somewhere that was followed.
+    looked: u64,
 }
 
 /// A view's camera with its place on the screen.
@@ -98,20 +101,20 @@ impl Views {
     }
 
     /// The main view.
-    pub fn space(&mut self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &'static Palette) {
+    pub fn space(&mut self, ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());
-        let Some(moment) = state.moment.clone() else {
+        let Some(moment) = state.run().moment.clone() else {
             self.canvas(ui, rect, "space", state);
             ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
             return empty(ui, state, commands, palette);
         };
-        let look = state.look.take();
+        let look = state.view().look.take(&mut self.looked);
         let on_surfaces = moment.mesh.ground().is_some();
-        match state.space.place {
-            Place::Plane => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
+        match state.workspace().surfaces.view {
+            SurfaceView::Plane => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
             _ if !on_surfaces => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
-            Place::Space => self.in_space(ui, rect, look, state, &moment, commands, palette),
-            Place::Both => {
+            SurfaceView::Space => self.in_space(ui, rect, look, state, &moment, commands, palette),
+            SurfaceView::Both => {
                 let middle = whole_pixels(rect, 1.0).center().x;
                 let (left, right) = rect.split_left_right_at_x(middle);
                 let right = right.with_min_x(middle + 2.0);
@@ -139,16 +142,16 @@ impl Views {
         rect: Rect,
         index: usize,
         look: Option<Look>,
-        state: &mut State,
+        state: &State,
         moment: &Moment,
         commands: &mut Vec<Command>,
         palette: &'static Palette,
     ) {
         let response = self.canvas(ui, rect, "plane", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        let mut camera = aim(state, moment, size, look);
+        let (mut camera, is_fitted) = aim(state, moment, size, look);
         steer(ui, &response, &mut camera, rect);
-        state.camera = Some(camera);
+        moved(state.view().plane, ViewKind::Plane, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
         let frame = Frame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         let hovered = pointer.and_then(|at| {
@@ -156,7 +159,7 @@ impl Views {
             let project = |p: DVec2| frame.camera.project(p.extend(0.0), frame.size());
             pick::pick(&moment.mesh, p, frame.inside(at), &project, self.hint)
         });
-        self.hover(ui, &response, state, hovered, commands);
+        self.point(ui, &response, state, hovered, commands);
         self.update(state, moment, palette, &frame, Form::Plane, true);
         self.paint(ui, index, &frame, palette, 0.0, Form::Plane);
         faces::show(ui, &frame, state, moment, palette);
@@ -168,10 +171,10 @@ impl Views {
     }
 
     /// Another view of the same scene.
-    pub fn other(&mut self, ui: &mut Ui, state: &mut State, lens: Lens, palette: &'static Palette) {
+    pub fn other(&mut self, ui: &mut Ui, state: &State, lens: Lens, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());
         let ground = |ui: &Ui| ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
-        let Some(moment) = state.moment.clone() else {
+        let Some(moment) = state.run().moment.clone() else {
             ground(ui);
             return;
         };
@@ -197,28 +200,19 @@ impl Views {
         labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
     }
 
-    fn hover(
+    /// What is under the pointer, and what is done with it.
+    fn point(
         &mut self,
         ui: &Ui,
         response: &egui::Response,
-        state: &mut State,
+        state: &State,
         hovered: Option<Outlined>,
         commands: &mut Vec<Command>,
     ) {
         if let Some(Outlined::Element(e)) = hovered {
             self.hint = Some(e);
         }
-        // With two views only the one that the pointer is over says what is hovered.
-        let over = response.hovered() || response.dragged();
-        let elsewhere = state.is_in_space() && state.space.place == Place::Both && !over;
-        let told = over || state.hover_from_view && !elsewhere;
-        if told && state.hovered != hovered {
-            state.hovered = hovered;
-            state.hover_from_view = hovered.is_some();
-            state.over_epoch += 1;
-            // A view that was drawn before this one shows it too.
-            ui.ctx().request_repaint();
-        }
+        commands.extend(hovered.map(Command::Hover));
         if response.clicked() {
             commands.push(Command::Pick(hovered));
         }
@@ -249,20 +243,14 @@ impl Views {
         }
     }
 
-    /// Brings a scene up to date with the state: by what changed, where it is only that. `leads`: it is laid out for this view.
-    fn update(
-        &mut self,
-        state: &mut State,
-        moment: &Moment,
-        palette: &Palette,
-        frame: &Frame,
-        form: Form,
-        leads: bool,
-    ) {
-        let changes = state.changes.take();
-        let slots = moment.mesh.element_slots();
-        self.plane.note(&changes, slots);
-        self.space.note(&changes, slots);
+    /// Takes note of what differs from the state before.
+    pub fn note(&mut self, changes: &Changes, slots: usize) {
+        self.plane.note(changes, slots);
+        self.space.note(changes, slots);
+    }
+
+    /// Brings a scene up to date with the state: by the differences, if those are known. `leads`: it is laid out for this view.
+    fn update(&mut self, state: &State, moment: &Moment, palette: &Palette, frame: &Frame, form: Form, leads: bool) {
         let stage = if form.is_in_space() { &mut self.space } else { &mut self.plane };
         stage.update(state, moment, palette, frame, form, leads, &mut self.shading);
     }
@@ -286,22 +274,29 @@ impl Views {
     }
 }
 
+/// Reports where a view looks, if that has changed.
+fn moved(before: ViewCamera, view: ViewKind, camera: ViewCamera, commands: &mut Vec<Command>) {
+    if camera != before {
+        commands.push(Command::MoveCamera(view, camera));
+    }
+}
+
 /// What screen readers hear of the view.
 fn spoken(state: &State) -> String {
-    match &state.moment {
+    match &state.run().moment {
         Some(moment) => format!("Mesh at step {}, {} quadrilaterals", moment.step, moment.standing),
         None => "No mesh".to_owned(),
     }
 }
 
 fn empty(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    if state.is_busy() {
+    if state.run().is_busy() {
         return;
     }
     let rect = Rect::from_center_size(ui.max_rect().center(), Vec2::new(420.0, 80.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
         ui.vertical_centered(|ui| {
-            ui.colored_label(ink(palette.weak), "No case is open. Drop a case or a mesh here, or");
+            ui.colored_label(ink(palette.weak), "No case is open. Drop a case or a mesh file here, or");
             for command in [Command::Open(super::Source::BuiltIn("example1".into())), Command::OpenPath] {
                 if ui.button(command.name()).clicked() {
                     commands.push(command);

@@ -5,7 +5,7 @@ use eframe::egui::{Align2, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::DVec2;
 
 use super::{ELLIPSE, MOST_ELLIPSES, Over};
-use crate::app::window::state::{Place, State};
+use crate::app::window::state::{State, SurfaceView, ViewCamera};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::viewport::{self, Frame};
 use crate::app::window::words;
@@ -96,9 +96,9 @@ impl Over<'_> {
 
     /// What the main view shows, as a frame; only where it is smaller than this view.
     pub(super) fn main_frame(&self, state: &State) {
-        let in_plane = !(state.is_in_space() && state.space.place == Place::Space);
-        let Some(camera) = state.camera.filter(|_| in_plane && !state.fitted) else { return };
-        let size = state.view_size;
+        let in_plane = !(state.is_in_space() && state.workspace().surfaces.view == SurfaceView::Space);
+        let ViewCamera { camera, is_fitted, size } = state.view().plane;
+        let Some(camera) = camera.filter(|_| in_plane && !is_fitted) else { return };
         let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), size, DVec2::new(0.0, size.y)];
         let corners = corners.map(|at| camera.unproject(at, size).map(|p| self.frame.place(p)));
         if let [Some(a), Some(b), Some(c), Some(d)] = corners {

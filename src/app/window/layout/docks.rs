@@ -5,7 +5,7 @@ use egui_tiles::{Behavior, EditAction, SimplificationOptions, TabState, Tabs, Ti
 
 use super::Pane;
 use crate::app::window::command::Command;
-use crate::app::window::panels;
+use crate::app::window::panels::{self, PanelStates};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::viewport::{Lens, Views};
@@ -13,7 +13,8 @@ use crate::render::palette::Palette;
 
 /// All panels with what they show.
 pub struct Docks<'a> {
-    pub state: &'a mut State,
+    pub state: &'a State,
+    pub local: &'a mut PanelStates,
     pub views: &'a mut Views,
     pub commands: &'a mut Vec<Command>,
     pub palette: &'static Palette,
@@ -23,18 +24,18 @@ pub struct Docks<'a> {
 
 impl Behavior<Pane> for Docks<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
-        let Docks { state, views, commands, palette, .. } = self;
+        let Docks { state, local, views, commands, palette, .. } = self;
         match pane {
             Pane::Space => views.space(ui, state, commands, palette),
             Pane::MetricLens => views.other(ui, state, Lens::Metric, palette),
             Pane::Parametric => views.other(ui, state, Lens::Whole, palette),
-            Pane::Front => panels::front::show(ui, state, commands, palette),
-            Pane::Breakpoints => panels::breakpoints::show(ui, state, commands, palette),
+            Pane::Front => panels::front::show(ui, state, &mut local.front, commands, palette),
+            Pane::Breakpoints => panels::breakpoints::show(ui, state, &mut local.breakpoints, commands, palette),
             Pane::Bookmarks => panels::breakpoints::bookmarks(ui, state, commands, palette),
             Pane::Quality => panels::plots::show(ui, state, commands, palette),
             Pane::Inspector => panels::inspector::show(ui, state, commands, palette),
             Pane::History => panels::history::show(ui, state, commands, palette),
-            Pane::Parameters => panels::parameters::show(ui, state, commands, palette),
+            Pane::Parameters => panels::parameters::show(ui, state, &mut local.parameters, commands, palette),
             Pane::Layers => panels::layers::show(ui, state, commands, palette),
         }
         UiResponse::None

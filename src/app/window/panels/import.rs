@@ -6,10 +6,9 @@ use eframe::egui::{
 };
 
 use super::{heading, inset, note};
-use crate::app::command_line::MeshOptions;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
-use crate::app::window::import::{Gesture, Import, KINDS, UNITS};
+use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, UNITS};
 use crate::app::window::state::{Progress, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -31,9 +30,9 @@ const CHORD: f64 = 0.01;
 
 /// Shows it at the left of the view.
 pub fn show(ui: &mut Ui, state: &State, plain: Frame, commands: &mut Vec<Command>, palette: &Palette) {
-    let is_opening = state.is_opening();
-    let opening = state.progress.clone().filter(|_| is_opening);
-    let Some(import) = &state.import else { return };
+    let is_opening = state.run().is_opening();
+    let opening = state.run().progress.clone().filter(|_| is_opening);
+    let Some(import) = &state.run().import else { return };
     let progress = if is_opening { opening } else { import.progress.clone() };
     Panel::left("import").exact_size(WIDTH).resizable(false).frame(plain).show(ui, |ui| {
         Panel::bottom("import buttons").resizable(false).frame(inset()).show(ui, |ui| {
@@ -176,7 +175,7 @@ fn unless_default(value: f64, default: f64) -> Option<f64> {
     (value != default).then_some(value)
 }
 
-fn unit(ui: &mut Ui, options: &mut MeshOptions, taking: &Taking, dragging: &mut bool, palette: &Palette) {
+fn unit(ui: &mut Ui, options: &mut ImportOptions, taking: &Taking, dragging: &mut bool, palette: &Palette) {
     let mut scale = taking.scale;
     row(ui, "unit", "What the file's lengths become (--scale)", palette, |ui| {
         // As many as differ in their scale; all by which a person thinks.
@@ -208,7 +207,7 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-fn used(ui: &mut Ui, options: &mut MeshOptions, import: &Import, palette: &Palette) {
+fn used(ui: &mut Ui, options: &mut ImportOptions, import: &Import, palette: &Palette) {
     let now = import.used();
     let words = [(MeshUse::Shape, "shape", REMESH), (MeshUse::Triangles, "triangles", TRIANGLES)];
     for (k, (use_, word, text)) in words.into_iter().enumerate() {
@@ -229,7 +228,7 @@ fn used(ui: &mut Ui, options: &mut MeshOptions, import: &Import, palette: &Palet
 
 fn sizes(
     ui: &mut Ui,
-    options: &mut MeshOptions,
+    options: &mut ImportOptions,
     import: &Import,
     taking: &Taking,
     dragging: &mut bool,

@@ -21,31 +21,31 @@ use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Decision, Outlined};
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = state.moment.clone() else { return };
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = state.run().moment.as_deref() else { return };
     let decision = Decision::of(&moment.phase).base.map(Outlined::Edge);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         inset().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 3.0;
-            let shown = state.kept.picked.or(decision).or(state.hovered);
+            let shown = state.document().picked.or(decision).or(state.frame().hovered);
             match shown {
                 None => {
-                    ui.label(note("Point at anything to see it; click to keep it.", palette));
+                    ui.label(note("Point at anything to inspect it; click to select it.", palette));
                     if moment.step == 0 {
-                        let text = "Right goes on by one quadrilateral, Ctrl+Right by one operation; Left and Ctrl+Left go back. \
-                                    While one is made, this panel says why its base was chosen.";
+                        let text = "Right goes forward by one quadrilateral, Ctrl+Right by one operation; Left and Ctrl+Left go back. \
+                                    While a quadrilateral is made, this panel says why its base was selected.";
                         ui.add_space(6.0);
                         ui.add(Label::new(note(text, palette)).wrap());
                     }
                 }
                 Some(Outlined::Edge(ends)) => {
                     match moment.front.iter().position(|s| [s.a, s.b] == ends || [s.b, s.a] == ends) {
-                        Some(place) => segment::show(ui, state, &moment, place, commands, palette),
-                        None => edge::show(ui, state, &moment, ends, commands, palette),
+                        Some(place) => segment::show(ui, state, moment, place, commands, palette),
+                        None => edge::show(ui, state, moment, ends, commands, palette),
                     }
                 }
-                Some(Outlined::Node(n)) => node::show(ui, state, &moment, n, commands, palette),
-                Some(Outlined::Element(e)) => element::show(ui, state, &moment, e, commands, palette),
+                Some(Outlined::Node(n)) => node::show(ui, state, moment, n, commands, palette),
+                Some(Outlined::Element(e)) => element::show(ui, state, moment, e, commands, palette),
             }
             if let Some(what) = shown {
                 past::show(ui, state, what, commands, palette);
@@ -113,12 +113,12 @@ fn table_head(ui: &mut Ui, widths: &[f32], texts: &[&str], palette: &Palette) {
 }
 
 /// A thing that can be picked, as a link.
-fn link(ui: &mut Ui, text: String, what: Outlined, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+fn link(ui: &mut Ui, text: String, what: Outlined, commands: &mut Vec<Command>, palette: &Palette) {
     let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text));
     let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false));
     let response = response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand);
     if response.hovered() {
-        state.hover(Some(what));
+        commands.push(Command::Hover(what));
     }
     if response.clicked() {
         commands.push(Command::Pick(Some(what)));
@@ -126,32 +126,18 @@ fn link(ui: &mut Ui, text: String, what: Outlined, state: &mut State, commands: 
 }
 
 /// Elements as links.
-fn elements(
-    ui: &mut Ui,
-    name: &str,
-    ids: &[ElementId],
-    state: &mut State,
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+fn elements(ui: &mut Ui, name: &str, ids: &[ElementId], commands: &mut Vec<Command>, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(note(format!("{name} ({})", ids.len()), palette));
         for &e in ids {
-            link(ui, e.0.to_string(), Outlined::Element(e), state, commands, palette);
+            link(ui, e.0.to_string(), Outlined::Element(e), commands, palette);
         }
     });
 }
 
 /// Nodes with their places and what their metrics ask for.
-fn ends(
-    ui: &mut Ui,
-    state: &mut State,
-    moment: &Moment,
-    nodes: &[(&str, NodeId)],
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut Vec<Command>, palette: &Palette) {
     let widths = [38.0, 44.0, 44.0, 48.0, 44.0];
     let axes = if moment.mesh.ground().is_some() { ["u", "v"] } else { ["x", "y"] };
     table_head(ui, &widths, &["", axes[0], axes[1], "h\u{2081}", "h\u{2082}", "axis °"], palette);
@@ -169,7 +155,7 @@ fn ends(
         let ground = (k % 2 == 0).then_some(palette.stripe);
         let response = table_row(ui, &widths, &texts, palette.text, ground);
         if response.hovered() {
-            state.hover(Some(Outlined::Node(*node)));
+            commands.push(Command::Hover(Outlined::Node(*node)));
         }
         let tip = format!(
             "node {}: h\u{2081} runs along the axis; M = ({}, {}, {}), \u{3bb} = {} and {}; click to select it",

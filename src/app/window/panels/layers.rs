@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
 /// Check boxes for layers, buttons for colours.
 pub fn list(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     for (digit, layer) in (1..).zip(ViewLayer::ALL) {
-        let mut on = layer.is_on(state.kept.layers);
+        let mut on = layer.is_on(state.document().layers);
         ui.horizontal(|ui| {
             if ui.checkbox(&mut on, layer.name()).changed() {
                 commands.push(Command::Layer(layer));
@@ -30,7 +30,7 @@ pub fn list(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     }
     heading(ui, "Colour by", "", palette);
     for by in ColourBy::ALL {
-        if ui.radio(state.kept.colour_by == by, by.name()).clicked() {
+        if ui.radio(state.document().colour_by == by, by.name()).clicked() {
             commands.push(Command::ColourBy(by));
         }
     }

@@ -2,13 +2,15 @@
 
 use eframe::egui::{Align2, Context, RichText, ScrollArea, Vec2, Window};
 
+use crate::app::window::command::Command;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::render::palette::Palette;
 
-/// Shows the notes, where they are wanted.
-pub fn show(context: &Context, state: &mut State, palette: &Palette) {
-    let Some(case) = state.opened.as_ref().map(|opened| &opened.case).filter(|_| state.notes) else { return };
+/// Shows the notes, if they are open.
+pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let opened = state.run().opened.as_ref().filter(|_| state.view().notes);
+    let Some(case) = opened.map(|opened| &opened.case) else { return };
     let mut open = true;
     Window::new("Notes")
         .open(&mut open)
@@ -31,5 +33,7 @@ pub fn show(context: &Context, state: &mut State, palette: &Palette) {
                 }
             });
         });
-    state.notes = open;
+    if !open {
+        commands.push(Command::Notes);
+    }
 }

@@ -10,7 +10,7 @@ use crate::render::palette::Palette;
 
 /// Shows it under the menus.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some((offer, more)) = state.autosave.as_ref().and_then(|autosave| autosave.offer()) else { return };
+    let Some((offer, more)) = state.run().autosave.as_ref().and_then(|autosave| autosave.offer()) else { return };
     let frame = Frame::NONE.fill(ink(palette.button)).inner_margin(Margin::symmetric(14, 5));
     Panel::top("offer").frame(frame).resizable(false).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {

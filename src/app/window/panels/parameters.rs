@@ -103,14 +103,21 @@ const SELECTION: [(&str, &str); 4] = [
     ("level", "rows, as Q-Morph"),
 ];
 
+/// What the panel keeps for itself.
+#[derive(Default)]
+pub struct ParametersState {
+    /// The parameter that is being dragged: it takes effect when the user lets go.
+    dragged: Option<(&'static str, f64)>,
+}
+
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = state.moment.clone() else { return };
+pub fn show(ui: &mut Ui, state: &State, local: &mut ParametersState, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = &state.run().moment else { return };
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         inset().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 5.0;
             for number in &NUMBERS {
-                row(ui, state, &moment.parameters, number, commands, palette);
+                row(ui, state, local, &moment.parameters, number, commands, palette);
             }
             selection(ui, &moment.parameters, commands, palette);
             for (key, name, tip) in SWITCHES {
@@ -126,7 +133,7 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
 /// The button in the panel's bar.
 pub fn reset(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let command = Command::ResetParameters;
-    let changed = !state.kept.edits.is_empty();
+    let changed = !state.document().edits.is_empty();
     if icon_button(ui, icons::RESET, theme::ICON, &command, changed).clicked() {
         commands.push(command);
     }
@@ -134,15 +141,15 @@ pub fn reset(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 
 fn row(
     ui: &mut Ui,
-    state: &mut State,
+    state: &State,
+    local: &mut ParametersState,
     parameters: &Parameters,
     number: &Number,
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
     let in_force: f64 = parameters.text_of(number.key).and_then(|text| text.parse().ok()).unwrap_or(f64::NAN);
-    // What is being dragged is not in force until it is let go.
-    let mut value = state.tentative.filter(|t| t.0 == number.key).map_or(in_force, |t| t.1);
+    let mut value = local.dragged.filter(|t| t.0 == number.key).map_or(in_force, |t| t.1);
     let before = value;
     ui.horizontal(|ui| {
         ui.set_height(24.0);
@@ -168,12 +175,12 @@ fn row(
         let changed_here = state.parameters_of_case().and_then(|case| case.text_of(number.key));
         let changed = changed_here.is_some_and(|case| parameters.text_of(number.key).as_ref() != Some(&case));
         let busy = dragged.dragged() || typed.dragged();
-        if value != before || (state.tentative.is_some_and(|t| t.0 == number.key) && !busy) {
+        if value != before || (local.dragged.is_some_and(|t| t.0 == number.key) && !busy) {
             let value = rounded(value, number.decimals);
             if busy {
-                state.tentative = Some((number.key, value));
+                local.dragged = Some((number.key, value));
             } else {
-                state.tentative = None;
+                local.dragged = None;
                 commands.push(Command::Set(number.key, value.to_string()));
             }
         }

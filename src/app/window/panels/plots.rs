@@ -1,4 +1,4 @@
-//! Figs. 23 and 24 of the state at hand: edge lengths in the metric, least and greatest angles of the elements.
+//! Figs. 23 and 24 of the current state: edge lengths in the metric, least and greatest angles of the elements.
 
 use eframe::egui::{RichText, Ui, Vec2b};
 use egui_plot::{Bar, BarChart, Legend, Plot};
@@ -17,10 +17,10 @@ const LONGEST: f64 = 3.0;
 const BARS: usize = 36;
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = state.moment.clone() else { return };
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = state.run().moment.as_deref() else { return };
     let half = 0.5 * (ui.available_height() - 60.0);
-    let (edges, mean) = lengths(&moment);
+    let (edges, mean) = lengths(moment);
     head(ui, "Edge lengths in the metric (fig. 23)", format!("mean {}, unit is 1", words::fixed(mean, 3)), palette);
     let [dead, live] = edges;
     let series = [("quads", dead, palette.front[1]), ("triangles", live, palette.hint)];
@@ -29,9 +29,9 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         let fits = |length: f64| length >= low && (length < high || high >= LONGEST);
         let edges = mesh.edges().filter(|h| fits(mesh.length(*h)));
         let lit = edges.map(|h| Outlined::Edge([mesh.origin(h), mesh.target(h)])).collect();
-        light(state, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
+        light(commands, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
     }
-    let (least, greatest, worst) = corner_angles(&moment);
+    let (least, greatest, worst) = corner_angles(moment);
     let note = match worst {
         Some((e, angle)) => format!("smallest {}°, of element {}", words::degrees(angle), e.0),
         None => String::new(),
@@ -48,7 +48,7 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && angles(mesh, *e).into_iter().any(fits));
         let lit = quads.map(Outlined::Element).collect();
         light(
-            state,
+            commands,
             lit,
             &format!("quads with such an angle of {}° to {}°", words::fixed(low, 0), words::fixed(high, 0)),
         );
@@ -56,10 +56,9 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
 }
 
 /// Lights up what a bar stands for.
-fn light(state: &mut State, lit: Vec<Outlined>, what: &str) {
-    state.notice(format!("{} {what} are lit up in the views.", words::grouped(lit.len() as u64)));
-    state.lit = lit;
-    state.over_epoch += 1;
+fn light(commands: &mut Vec<Command>, lit: Vec<Outlined>, what: &str) {
+    let notice = format!("{} {what} are highlighted in the views.", words::grouped(lit.len() as u64));
+    commands.push(Command::LightUp(lit, notice));
 }
 
 /// The head of a plot; true where its note was clicked.

@@ -7,7 +7,7 @@ use eframe::egui::{
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::{Goal, Source};
-use crate::app::window::state::{Place, State};
+use crate::app::window::state::{State, SurfaceView};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::view_layer::ViewLayer;
 use crate::core::io::built_in;
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         field(ui, bar.width(), commands, palette);
     });
     // What is about to be converted has its name in its panel.
-    if let Some(opened) = state.opened.as_ref().filter(|_| state.import.is_none()) {
+    if let Some(opened) = state.run().opened.as_ref().filter(|_| state.run().import.is_none()) {
         let painter = ui.painter_at(bar);
         let name = painter.layout_no_wrap(opened.case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
         let room = (bar.width() - 720.0).max(0.0);
@@ -108,7 +108,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         item(ui, Command::ResetLayout, commands);
         ui.separator();
         ui.menu_button("Surfaces", |ui| {
-            Place::ALL.into_iter().for_each(|place| item(ui, Command::Place(place), commands));
+            SurfaceView::ALL.into_iter().for_each(|place| item(ui, Command::SurfaceView(place), commands));
             ui.separator();
             for bearing in [Bearing::Iso, Bearing::X, Bearing::Y, Bearing::Z] {
                 item(ui, Command::LookFrom(bearing), commands);
@@ -127,7 +127,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         }
     });
     ui.menu_button("Figure", |ui| {
-        ui.add_enabled_ui(state.moment.is_some(), |ui| {
+        ui.add_enabled_ui(state.run().moment.is_some(), |ui| {
             item(ui, Command::Figures, commands);
             item(ui, Command::Export, commands);
             item(ui, Command::Screenshot, commands);

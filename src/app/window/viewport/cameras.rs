@@ -5,7 +5,7 @@ use glam::{DMat2, DVec2};
 
 use super::Frame;
 use crate::app::window::session::Moment;
-use crate::app::window::state::{Look, State};
+use crate::app::window::state::{Look, State, ViewCamera};
 use crate::core::mesh::ids::NodeId;
 use crate::render::camera::Camera;
 use crate::render::scene::{self, Decision, Outlined};
@@ -17,44 +17,38 @@ const LENS: f64 = 92.0;
 /// Points for the base segment when the decision is looked at.
 pub(super) const DECISION: f64 = 180.0;
 
-/// The camera of the main view, after what was asked of it.
-pub(super) fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<Look>) -> Camera {
+/// The camera of the view of the plane after a request, and whether it shows the whole mesh.
+pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Camera, bool) {
     let bounds = scene::bounds(&moment.mesh).unwrap_or([DVec2::ZERO, DVec2::ONE]);
     let fitted = Camera::fit(bounds, size, MARGIN);
-    let mut camera = state.camera.unwrap_or(fitted);
+    let ViewCamera { camera, mut is_fitted, size: before } = state.view().plane;
     // A view that still shows the whole mesh goes on doing so when its size changes.
-    if state.fitted && state.view_size != size {
-        camera = fitted;
-    }
-    state.view_size = size;
+    let mut camera = camera.filter(|_| !is_fitted || before == size).unwrap_or(fitted);
     match look {
         // A side is one of space.
         None | Some(Look::From(_)) => {}
-        Some(Look::Fit) => (camera, state.fitted) = (fitted, true),
+        Some(Look::Fit) => (camera, is_fitted) = (fitted, true),
         Some(Look::Decision) => {
             if let Some([a, b]) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
                 near(&mut camera, moment, [a, b]);
-                state.fitted = false;
+                is_fitted = false;
             }
         }
         // One that was kept of space is not one of the plane.
         Some(Look::Kept(_)) if moment.mesh.ground().is_some() && state.is_in_space() => {}
         Some(Look::Kept(kept)) => {
             camera.take_up(&kept, size);
-            state.fitted = false;
+            is_fitted = false;
         }
         Some(Look::At(what)) => {
             if let Some(p) = middle(moment, what) {
                 let scale = camera.scale;
                 camera.look_at(p, scale);
-                state.fitted = false;
+                is_fitted = false;
             }
         }
     }
-    if state.camera.is_some_and(|before| before != camera) && state.fitted && camera != fitted {
-        state.fitted = false;
-    }
-    camera
+    (camera, is_fitted)
 }
 
 fn near(camera: &mut Camera, moment: &Moment, [a, b]: [NodeId; 2]) {
@@ -98,7 +92,7 @@ pub(super) fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera, rec
 
 /// The node whose metric the lens shows, and the node that lies to its right: A and B of what is picked or of the decision.
 pub fn lens_node(state: &State, moment: &Moment) -> Option<(NodeId, Option<NodeId>)> {
-    let found = match (state.kept.picked, state.picked_segment().or(Decision::of(&moment.phase).base)) {
+    let found = match (state.document().picked, state.picked_segment().or(Decision::of(&moment.phase).base)) {
         (Some(Outlined::Node(node)), _) => (node, None),
         (_, Some([a, b])) => (a, Some(b)),
         _ => return None,
@@ -128,7 +122,7 @@ pub(super) fn other_end(state: &State, moment: &Moment, size: DVec2) -> Option<C
     let whole = Camera::fit(scene::bounds(&moment.mesh)?, size, 14.0);
     let decision = Decision::of(&moment.phase).base.or(state.picked_segment());
     let mut camera = whole;
-    if let (true, Some(ends)) = (state.fitted, decision) {
+    if let (true, Some(ends)) = (state.view().plane.is_fitted, decision) {
         near(&mut camera, moment, ends);
         camera.scale *= 0.7;
     }

@@ -27,7 +27,7 @@ fn bounds(mesh: &Mesh) -> Vec<Option<[DVec2; 2]>> {
 /// The face of what is picked, or else of the decision.
 fn active(state: &State, moment: &Moment) -> Option<usize> {
     let base = Decision::of(&moment.phase).base.map(Outlined::Edge);
-    let place = state.kept.picked.or(base).and_then(|what| middle(moment, what))?;
+    let place = state.document().picked.or(base).and_then(|what| middle(moment, what))?;
     Some(moment.mesh.ground()?.atlas.chart_of(place))
 }
 

@@ -5,10 +5,10 @@ use eframe::egui_wgpu::Callback;
 use glam::{DQuat, DVec2, DVec3};
 
 use super::space::{MARGIN, orbit};
-use super::{Frame, Picture, Views, tools, whole_pixels};
+use super::{Frame, Picture, Views, moved, tools, whole_pixels};
 use crate::app::window::command::Command;
 use crate::app::window::import::Loaded;
-use crate::app::window::state::{Look, State};
+use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
 use crate::app::window::theme::ink;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::gpu::{Light, View};
@@ -20,12 +20,12 @@ const INDEX: usize = 0;
 
 impl Views {
     /// The main view while a mesh is about to be converted.
-    pub fn given(&mut self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &'static Palette) {
+    pub fn given(&mut self, ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());
         let response = ui.interact(rect, ui.scope_id().with("given"), Sense::click_and_drag());
-        let look = state.look.take();
-        let hidden = state.space.hidden.share();
-        let Some(import) = &mut state.import else { return };
+        let look = state.view().look.take(&mut self.looked);
+        let hidden = state.workspace().surfaces.hidden.share();
+        let Some(import) = &state.run().import else { return };
         let marks = import.shown.as_ref().map_or_else(Default::default, |shown| shown.wanted.marks.clone());
         let spoken = match (&import.shown, marks.len()) {
             (Some(shown), marks) => {
@@ -47,22 +47,22 @@ impl Views {
             return words(ui, rect, "Its features and charts are being sought.", palette);
         };
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        let mut camera = match import.camera {
+        let mut is_fitted = import.view.is_fitted;
+        let mut camera = match import.view.camera {
             None => {
                 // What it is refused for is looked at from near until somebody looks elsewhere.
                 let marks = import.refused.as_ref().map_or(&[][..], |fault| &fault.shapes);
-                import.fitted = marks.is_empty();
+                is_fitted = marks.is_empty();
                 let side = if loaded.is_plane { Bearing::Z } else { side_of(marks, &loaded) };
                 let all = fit(&loaded, side.turn(), size);
                 if marks.is_empty() { all } else { look_at(marks, loaded.mean_edge, all, size) }
             }
-            Some(camera) if import.fitted && import.size != size => fit(&loaded, camera.turn, size),
+            Some(camera) if is_fitted && import.view.size != size => fit(&loaded, camera.turn, size),
             Some(camera) => camera,
         };
-        import.size = size;
         match look {
-            Some(Look::Fit) => (camera, import.fitted) = (fit(&loaded, camera.turn, size), true),
-            Some(Look::From(side)) => (camera, import.fitted) = (fit(&loaded, side.turn(), size), true),
+            Some(Look::Fit) => (camera, is_fitted) = (fit(&loaded, camera.turn, size), true),
+            Some(Look::From(side)) => (camera, is_fitted) = (fit(&loaded, side.turn(), size), true),
             _ => {}
         }
         let frame = Frame { camera, rect };
@@ -72,9 +72,9 @@ impl Views {
             self.pivot = Some(hit.map_or(shown.scene.anchor, |hit| hit.place));
         }
         if orbit(ui, &response, &mut camera, frame, self.pivot) {
-            import.fitted = false;
+            is_fitted = false;
         }
-        import.camera = Some(camera);
+        moved(import.view, ViewKind::Import, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
         let view = View {
             camera,
             size,

@@ -3,11 +3,11 @@
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::{Frame, Views};
+use super::{Frame, Views, moved};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
 use crate::app::window::session::Moment;
-use crate::app::window::state::{Look, State};
+use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
 use crate::core::mesh::ids::NodeId;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::palette::Palette;
@@ -31,28 +31,25 @@ impl Views {
         ui: &mut Ui,
         rect: Rect,
         look: Option<Look>,
-        state: &mut State,
+        state: &State,
         moment: &Moment,
         commands: &mut Vec<Command>,
         palette: &'static Palette,
     ) {
         let response = self.canvas(ui, rect, "space", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        let mut camera = aim(state, moment, size, look);
-        if self.steer(ui, &response, &mut camera, rect, moment) {
-            state.space.fitted = false;
-        }
-        state.space.camera = Some(camera);
+        let (mut camera, mut is_fitted) = aim(state, moment, size, look);
+        is_fitted &= !self.steer(ui, &response, &mut camera, rect, moment);
+        moved(state.view().space, ViewKind::Space, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
         let frame = Frame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         // Before the scene follows the state there may be other elements in it.
-        let form = state.space.form();
+        let form = state.workspace().surfaces.form();
         self.update(state, moment, palette, &frame, form, true);
         let hovered = pointer
             .and_then(|at| pick::pick_in_space(&self.space.scene, &moment.mesh, &camera, size, frame.inside(at)));
-        self.hover(ui, &response, state, hovered, commands);
-        self.update(state, moment, palette, &frame, form, true);
-        self.paint(ui, 0, &frame, palette, state.space.hidden.share(), form);
+        self.point(ui, &response, state, hovered, commands);
+        self.paint(ui, 0, &frame, palette, state.workspace().surfaces.hidden.share(), form);
         let of = Some((self.space.scene.shape(), camera, size));
         if self.cover.of != of {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
@@ -112,43 +109,39 @@ fn middle_of(moment: &Moment) -> Option<DVec3> {
     ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).map(|[low, high]| 0.5 * (low + high))
 }
 
-/// The camera, after what was asked of it.
-fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<Look>) -> Camera {
-    let space = &mut state.space;
-    let mut camera = match space.camera {
-        None => {
-            space.fitted = true;
-            fit(moment, Bearing::Iso.turn(), size)
-        }
+/// The camera of the view of space after a request, and whether it shows the whole mesh.
+fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Camera, bool) {
+    let before = state.view().space;
+    let (mut camera, mut is_fitted) = match before.camera {
+        None => (fit(moment, Bearing::Iso.turn(), size), true),
         // A view that still shows the whole mesh goes on doing so when its size changes.
-        Some(camera) if space.fitted && space.size != size => fit(moment, camera.turn, size),
-        Some(camera) => camera,
+        Some(camera) if before.is_fitted && before.size != size => (fit(moment, camera.turn, size), true),
+        Some(camera) => (camera, before.is_fitted),
     };
-    space.size = size;
     match look {
         None => {}
-        Some(Look::Fit) => (camera, space.fitted) = (fit(moment, camera.turn, size), true),
-        Some(Look::From(side)) => (camera, space.fitted) = (fit(moment, side.turn(), size), true),
+        Some(Look::Fit) => (camera, is_fitted) = (fit(moment, camera.turn, size), true),
+        Some(Look::From(side)) => (camera, is_fitted) = (fit(moment, side.turn(), size), true),
         // A camera of the plane looks straight down at it.
         Some(Look::Kept(kept)) if kept.target[2] == 0.0 && kept.turn == [0.0, 0.0, 0.0, 1.0] => {}
         Some(Look::Kept(kept)) => {
             camera.take_up(&kept, size);
-            space.fitted = false;
+            is_fitted = false;
         }
         Some(Look::Decision) => {
             if let Some(ends) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
                 near(&mut camera, moment, ends);
-                state.space.fitted = false;
+                is_fitted = false;
             }
         }
         Some(Look::At(what)) => {
             if let Some((place, _)) = place_of(moment, what) {
                 camera.centre_on(place);
-                state.space.fitted = false;
+                is_fitted = false;
             }
         }
     }
-    camera
+    (camera, is_fitted)
 }
 
 /// Where something stands in space, and the normal there.

@@ -54,10 +54,10 @@ impl Stage {
         shading: &mut Shading,
     ) {
         let served = frame.camera.is_served_by(self.scene.anchor, frame.size());
-        let style = Some((state.style_epoch, palette.dark, form));
+        let style = Some((state.view().style_epoch, palette.dark, form));
         let again = self.style != style || (leads && !served);
         if again || !self.changes.is_nothing() {
-            let by = state.kept.colour_by;
+            let by = state.document().colour_by;
             if by != ColourBy::State || shading.by != by {
                 *shading = Shading::of(&moment.mesh, by, &state.births(by, moment));
             }
@@ -65,7 +65,7 @@ impl Stage {
                 mesh: &moment.mesh,
                 changed: &moment.changed,
                 shading,
-                layers: state.kept.layers,
+                layers: state.document().layers,
                 palette,
                 form,
             };
@@ -83,21 +83,21 @@ impl Stage {
             }
             self.over = None;
         }
-        if self.over != Some(state.over_epoch) {
-            let background = state.opened.as_ref().filter(|_| state.kept.layers.background);
+        if self.over != Some(state.view().over_epoch) {
+            let background = state.run().opened.as_ref().filter(|_| state.document().layers.background);
             let overlay = Overlay {
                 mesh: &moment.mesh,
                 front: &moment.front,
                 changed: &moment.changed,
                 decision: Decision::of(&moment.phase),
                 refused: &refused(moment),
-                picked: state.kept.picked,
-                hovered: state.hovered,
-                lit: &state.lit,
+                picked: state.document().picked,
+                hovered: state.frame().hovered,
+                lit: &state.view().lit,
                 background: background.map(|opened| &opened.background.mesh),
             };
-            Arc::make_mut(&mut self.scene).set_overlay(&overlay, state.kept.layers, palette);
-            self.over = Some(state.over_epoch);
+            Arc::make_mut(&mut self.scene).set_overlay(&overlay, state.document().layers, palette);
+            self.over = Some(state.view().over_epoch);
         }
     }
 }

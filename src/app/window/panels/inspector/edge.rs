@@ -14,7 +14,7 @@ use crate::render::scene::Outlined;
 
 pub fn show(
     ui: &mut Ui,
-    state: &mut State,
+    state: &State,
     moment: &Moment,
     between: [NodeId; 2],
     commands: &mut Vec<Command>,
@@ -41,8 +41,8 @@ pub fn show(
     let sides = [mesh.half_edge_between(a, b), mesh.half_edge_between(b, a)];
     let beside: Vec<ElementId> = sides.into_iter().flatten().map(|h| h.element()).collect();
     let (live, dead): (Vec<ElementId>, Vec<ElementId>) = beside.into_iter().partition(|e| mesh.is_triangle(*e));
-    elements(ui, "live triangles", &live, state, commands, palette);
-    elements(ui, "dead quads", &dead, state, commands, palette);
+    elements(ui, "live triangles", &live, commands, palette);
+    elements(ui, "dead quads", &dead, commands, palette);
     heading(ui, "Ends", "what their metrics ask for", palette);
-    ends(ui, state, moment, &[("", a), ("", b)], commands, palette);
+    ends(ui, moment, &[("", a), ("", b)], commands, palette);
 }

@@ -12,14 +12,7 @@ use crate::core::run::explain::ElementTold;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
-pub fn show(
-    ui: &mut Ui,
-    state: &mut State,
-    moment: &Moment,
-    e: ElementId,
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+pub fn show(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(told) = ElementTold::of(&moment.mesh, e) else {
         title(ui, format!("Element {}", e.0), palette);
         return gone(ui, "The element", palette);
@@ -39,5 +32,5 @@ pub fn show(
     formula(ui, &areas, palette);
     heading(ui, "Nodes", "what their metrics ask for", palette);
     let nodes: Vec<(&str, NodeId)> = told.nodes.iter().map(|n| ("", *n)).collect();
-    ends(ui, state, moment, &nodes, commands, palette);
+    ends(ui, moment, &nodes, commands, palette);
 }

@@ -12,14 +12,7 @@ use crate::core::run::explain::NodeTold;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
-pub fn show(
-    ui: &mut Ui,
-    state: &mut State,
-    moment: &Moment,
-    node: NodeId,
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+pub fn show(ui: &mut Ui, state: &State, moment: &Moment, node: NodeId, commands: &mut Vec<Command>, palette: &Palette) {
     title(ui, format!("Node {}", node.0), palette);
     let mesh = &moment.mesh;
     let Some(told) = NodeTold::of(mesh, node) else { return gone(ui, "The node", palette) };
@@ -50,10 +43,10 @@ pub fn show(
         ui.horizontal(|ui| {
             formula(ui, &format!("\u{3b8} = **{}°**  left of", words::fixed(*angle, 1)), palette);
             let name = words::segment(ends[0], ends[1]);
-            super::link(ui, name, Outlined::Edge(ends), state, commands, palette);
+            super::link(ui, name, Outlined::Edge(ends), commands, palette);
         });
     }
     heading(ui, "Elements around it", "", palette);
-    elements(ui, "live triangles", &told.live, state, commands, palette);
-    elements(ui, "dead quads", &told.dead, state, commands, palette);
+    elements(ui, "live triangles", &told.live, commands, palette);
+    elements(ui, "dead quads", &told.dead, commands, palette);
 }

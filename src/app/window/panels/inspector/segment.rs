@@ -15,14 +15,7 @@ use crate::core::run::explain::Corner;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
-pub fn show(
-    ui: &mut Ui,
-    state: &mut State,
-    moment: &Moment,
-    place: usize,
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {
     let s = &moment.front[place];
     let is_base = Decision::of(&moment.phase).base == Some([s.a, s.b]);
     title(ui, format!("Front segment {}", words::segment(s.a, s.b)), palette);
@@ -57,9 +50,9 @@ pub fn show(
     for (side, name) in Side::BOTH.into_iter().zip(["A", "B"]) {
         angle(ui, moment, s, side, name, palette);
     }
-    why::show(ui, state, moment, place, palette);
+    why::show(ui, state, moment, place, commands, palette);
     match moment.candidates.as_ref().filter(|_| is_base) {
-        Some(tried) => candidates(ui, state, moment, tried, s, commands, palette),
+        Some(tried) => candidates(ui, moment, tried, s, commands, palette),
         None if is_base => {
             heading(ui, "Side edges", "4.3.4", palette);
             let text = "Step on by one operation (Ctrl+Right) to see what a side is chosen from.";
@@ -72,7 +65,7 @@ pub fn show(
         format!("**{}** metric,  {} in space", words::fixed(s.length_metric, 2), words::size(s.length_physical));
     formula(ui, &length, palette).on_hover_text("In a plane case the parametric length is that in space.");
     heading(ui, "Ends", "what their metrics ask for", palette);
-    ends(ui, state, moment, &[("A", s.a), ("B", s.b)], commands, palette);
+    ends(ui, moment, &[("A", s.a), ("B", s.b)], commands, palette);
 }
 
 fn h_value(ui: &mut Ui, moment: &Moment, s: &Segment, palette: &Palette) {
@@ -124,7 +117,6 @@ fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, pale
 /// What the step that led here chose a side from.
 fn candidates(
     ui: &mut Ui,
-    state: &mut State,
     moment: &Moment,
     tried: &Candidates,
     s: &Segment,
@@ -176,7 +168,7 @@ fn candidates(
         let there = moment.mesh.has_node(candidate.node) && moment.mesh.are_joined(from, candidate.node);
         let what = if there { Outlined::Edge(ends) } else { Outlined::Node(candidate.node) };
         if response.hovered() {
-            state.hover(Some(what));
+            commands.push(Command::Hover(what));
         }
         if response.on_hover_text(&texts[4]).clicked() {
             commands.push(Command::Pick(Some(what)));

@@ -3,26 +3,28 @@
 use eframe::egui::Ui;
 
 use super::{heading, sentence};
+use crate::app::window::command::Command;
 use crate::app::window::session::{Explained, Moment};
-use crate::app::window::state::State;
+use crate::app::window::state::{Lookup, State};
 use crate::app::window::words;
 use crate::core::convert::parameters::{Selection, SelectionWindow};
 use crate::core::run::explain::{SegmentTold, Verdict};
 use crate::core::run::front_table::Row;
 use crate::render::palette::Palette;
 
-pub fn show(ui: &mut Ui, state: &mut State, moment: &Moment, place: usize, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {
     let row = &moment.rows[place];
     let ends = [row.a, row.b];
     let base = moment.base.as_ref().filter(|told| [told.row.a, told.row.b] == ends);
     let (told, put_off) = match base {
         Some(told) => (told.clone(), None),
-        None => match state.explanation(ends) {
-            Some(explained) => {
+        None => match state.run().explanation(ends) {
+            Lookup::Known(explained) => {
                 let Explained { told, put_off } = &*explained;
                 (told.clone(), *put_off)
             }
-            None => return,
+            Lookup::Pending => return,
+            Lookup::Unasked => return commands.push(Command::Explain(ends)),
         },
     };
     heading(ui, if told.is_base { "Why this segment" } else { "Why not this segment" }, "table 1, 4.3.3", palette);

@@ -1,4 +1,4 @@
-//! What the timeline shows, by its columns: counted anew only when the run, the span or the width is another.
+//! What the timeline shows, by its columns: counted again only when the run, the span or the width changes.
 
 use crate::app::window::session::Tracked;
 use crate::app::window::state::State;
@@ -88,21 +88,21 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Counts anew where something is other than before.
-    pub fn update(&mut self, state: &State, span: [f64; 2], width: f32) {
+    /// Counts again if anything has changed.
+    pub fn update(&mut self, state: &State, open_row: Option<usize>, span: [f64; 2], width: f32) {
         let columns = width.max(1.0) as usize;
-        let seen = Some((state.track_epoch, span, columns, state.open_lanes));
+        let seen = Some((state.run().track_epoch, span, columns, open_row));
         if self.seen == seen {
             return;
         }
-        if self.seen.is_none_or(|before| before.0 != state.track_epoch) {
+        if self.seen.is_none_or(|before| before.0 != state.run().track_epoch) {
             self.follow(state);
         }
         self.seen = seen;
         let place = |step: usize| ((step as f64 - span[0]) / (span[1] - span[0]) * columns as f64) as f32;
-        let first = (span[0].max(0.0) as usize).min(state.track.len());
-        let last = (span[1].ceil() as usize).clamp(first, state.track.len());
-        self.count_lanes(state, first..last, columns, &place);
+        let first = (span[0].max(0.0) as usize).min(state.run().track.len());
+        let last = (span[1].ceil() as usize).clamp(first, state.run().track.len());
+        self.count_lanes(state, open_row, first..last, columns, &place);
         self.curves.clear();
         for of in Figure::ALL {
             self.curves.push(self.curve_of(of, state, first..last, columns, &place));
@@ -112,16 +112,16 @@ impl Columns {
     /// What is known along the run.
     fn follow(&mut self, state: &State) {
         let mut worst = f32::INFINITY;
-        let qualities = state.track.iter().map(|tracked| {
+        let qualities = state.run().track.iter().map(|tracked| {
             worst = tracked.formed.map_or(worst, |formed| worst.min(formed.1));
             worst
         });
         self.worst = qualities.collect();
-        self.figures = state.track.iter().map(|t| [t.front, t.live, t.loops[0].into()]).collect();
-        self.first = state.samples.first().copied();
+        self.figures = state.run().track.iter().map(|t| [t.front, t.live, t.loops[0].into()]).collect();
+        self.first = state.run().samples.first().copied();
         self.broken.clear();
         let mut before = 0;
-        for sample in &state.samples {
+        for sample in &state.run().samples {
             if self.broken(sample).is_some() {
                 self.broken.push([before, sample.step]);
             }
@@ -129,7 +129,7 @@ impl Columns {
         }
         // Parity is known after every step.
         if self.first.is_some_and(|first| first.front.odd == 0) {
-            for (k, _) in state.track.iter().enumerate().filter(|(_, tracked)| tracked.loops[1] > 0) {
+            for (k, _) in state.run().track.iter().enumerate().filter(|(_, tracked)| tracked.loops[1] > 0) {
                 let step = k as u64 + 1;
                 match self.broken.last_mut() {
                     Some(last) if last[1] + 1 == step => last[1] = step,
@@ -157,13 +157,14 @@ impl Columns {
     fn count_lanes(
         &mut self,
         state: &State,
+        open_row: Option<usize>,
         seen: std::ops::Range<usize>,
         columns: usize,
         place: &dyn Fn(usize) -> f32,
     ) {
         self.lanes.clear();
         for (k, (name, kinds)) in ROWS.iter().enumerate() {
-            let is_open = state.open_lanes == Some(k);
+            let is_open = open_row == Some(k);
             let group = (kinds.len() > 1).then_some(k);
             let lane = |name: String| Lane {
                 name,
@@ -184,7 +185,7 @@ impl Columns {
             let mut first = 0;
             for (k, (_, kinds)) in ROWS.iter().enumerate() {
                 let at = kinds.iter().position(|known| *known == kind);
-                let is_open = state.open_lanes == Some(k);
+                let is_open = open_row == Some(k);
                 if let Some(at) = at {
                     return Some(first + if is_open { at } else { 0 });
                 }
@@ -193,7 +194,7 @@ impl Columns {
             None
         };
         let mut known: Vec<(&'static str, Option<usize>)> = Vec::new();
-        for (k, tracked) in state.track.iter().enumerate() {
+        for (k, tracked) in state.run().track.iter().enumerate() {
             let found = known.iter().find(|known| std::ptr::eq(known.0, tracked.kind)).map(|known| known.1);
             let lane = found.unwrap_or_else(|| {
                 let lane = lane_of(tracked.kind);
@@ -221,12 +222,12 @@ impl Columns {
         let mut curve = Curve { of, line: Vec::new(), dots: Vec::new(), top: 1.0 };
         let every = (seen.len() / (2 * columns).max(1)).max(1);
         for k in seen.clone().step_by(every) {
-            let value = if of == Figure::Quality { self.worst[k].min(1.0) } else { of.of(&state.track[k]) };
+            let value = if of == Figure::Quality { self.worst[k].min(1.0) } else { of.of(&state.run().track[k]) };
             curve.line.push((place(k + 1), value));
         }
         match of {
             Figure::Quality => {
-                let formed = seen.filter_map(|k| Some((k, state.track[k].formed?.1)));
+                let formed = seen.filter_map(|k| Some((k, state.run().track[k].formed?.1)));
                 let dots: Vec<_> = formed.map(|(k, quality)| (place(k + 1), quality)).collect();
                 let every = (dots.len() / columns.max(1)).max(1);
                 curve.dots = dots.into_iter().step_by(every).collect();
