@@ -15,11 +15,12 @@ use crate::core::run::front_table::{Loop, Row};
 use crate::core::run::history::Changes;
 
 /// Whether the invariants hold.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Verdict {
     /// They do.
     Holds,
     /// After a leap the whole mesh is looked at when there is time.
+    #[default]
     Looking,
     /// What does not hold.
     Broken(String),

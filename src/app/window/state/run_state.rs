@@ -34,6 +34,7 @@ pub enum Lookup<T> {
 }
 
 /// The run and the work on it.
+#[derive(Default)]
 pub struct RunState {
     /// What was opened.
     pub source: Option<Source>,
@@ -89,43 +90,6 @@ pub struct RunState {
     /// Figures and meshes that are being written.
     pub(super) figures: Vec<Writing>,
     pub(super) meshes: Vec<Writing>,
-}
-
-impl Default for RunState {
-    fn default() -> Self {
-        RunState {
-            source: None,
-            opened: None,
-            number: 0,
-            moment: None,
-            verdict: Verdict::Looking,
-            track: Vec::new(),
-            samples: Vec::new(),
-            track_epoch: 0,
-            recorded: false,
-            hits: Vec::new(),
-            since: None,
-            progress: None,
-            playing: None,
-            measuring: None,
-            import: None,
-            autosave: None,
-            session: None,
-            opening: None,
-            pictures: 0,
-            watcher: None,
-            awaited: None,
-            changes: Since::everything(),
-            waiting: 0,
-            explained: None,
-            asked: None,
-            past: None,
-            asked_past: None,
-            dialog: None,
-            figures: Vec::new(),
-            meshes: Vec::new(),
-        }
-    }
 }
 
 impl RunState {
