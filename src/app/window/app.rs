@@ -1,4 +1,4 @@
-//! The window as eframe runs it: hears the session, turns keys into commands, shows the panels.
+//! The window as eframe runs it: takes in what the session reports, turns keys into commands, shows the panels.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
@@ -20,15 +20,15 @@ use super::theme;
 use super::viewport::Views;
 use crate::render::palette::Palette;
 
-/// How long after a change it is kept how the window is.
+/// How long after a change the settings are written.
 const SETTLED: Duration = Duration::from_millis(1500);
 
-/// How often a file dialog is asked for its answer.
+/// How often the window asks a file dialog for its answer.
 const DIALOG: Duration = Duration::from_secs(1);
 
 /// The window.
 pub struct App {
-    /// What it knows.
+    /// What the window knows.
     pub state: State,
     views: Views,
     layout: Layout,
@@ -41,22 +41,22 @@ pub struct App {
     is_lost: bool,
     /// The title that the window has.
     title: String,
-    /// Whether somebody clears the window in the colour of panels.
+    /// Whether eframe clears the window in the colour of the panels.
     is_cleared: bool,
-    /// Where it is kept how the window was left, and what stands there.
+    /// The file of the settings, and the settings that it has.
     path: Option<PathBuf>,
     written: Option<Settings>,
-    /// Since when it is other than what stands there.
+    /// Since when the settings differ from those in the file.
     changed: Option<Instant>,
 }
 
 impl App {
-    /// A window on `source`; on nothing where that is none.
+    /// A window on `source`, if there is one.
     pub fn new(cc: &CreationContext<'_>, source: Option<Source>) -> App {
         App::kept(cc, source, None, Lost::default())
     }
 
-    /// The same, as the last one was left: what is kept of it is at `path`. `lost` hears whether the graphics device is lost.
+    /// The same with the settings in the file at `path`. `lost` notices when the graphics device is lost.
     pub fn kept(cc: &CreationContext<'_>, source: Option<Source>, path: Option<PathBuf>, lost: Lost) -> App {
         theme::install(&cc.egui_ctx);
         let context = cc.egui_ctx.clone();
@@ -98,7 +98,7 @@ impl App {
         }
     }
 
-    /// The same in a program that was started then.
+    /// The same in a program that was started at this time.
     pub fn started(mut self, at: Instant) -> App {
         self.panels.time.times.started = Some(at);
         self
@@ -110,7 +110,7 @@ impl App {
         self
     }
 
-    /// The same, which autosaves its run in a folder and offers what was left there.
+    /// The same, which autosaves its run in a folder and offers abandoned runs from it.
     #[must_use]
     pub fn keeping(mut self, folder: Option<PathBuf>) -> App {
         if let Some(folder) = folder {
@@ -155,7 +155,7 @@ impl App {
         commands
     }
 
-    /// How the window is to be found again.
+    /// The current settings.
     fn settings(&self, context: &Context) -> Settings {
         let size = context
             .input(|input| input.viewport().inner_rect)
@@ -163,7 +163,7 @@ impl App {
         Settings::of(self.state.workspace(), &self.layout, context.theme() == egui::Theme::Dark, size)
     }
 
-    /// Keeps how the window is, a moment after it was changed.
+    /// Writes the settings a moment after they have changed.
     fn keep(&mut self, context: &Context, at_once: bool) {
         let Some(path) = self.path.clone() else { return };
         let now = self.settings(context);
@@ -178,13 +178,13 @@ impl App {
                 if let Err(fault) = now.write(&path) {
                     self.state.complain(&fault);
                 }
-                // What cannot be written is not tried again until it changes.
+                // After a failure there is no other attempt until they change again.
                 (self.written, self.changed) = (Some(now), None);
             }
         }
     }
 
-    /// Where the graphics device is lost, saves the run and closes the window.
+    /// If the graphics device is lost, saves the run and closes the window.
     fn graphics(&mut self, context: &Context) {
         if let Some(fault) = self.lost.refused() {
             self.state.complain(&fault);
@@ -202,7 +202,7 @@ impl App {
         }
         context.request_repaint();
         if let Some(render) = frame.wgpu_render_state() {
-            // A frame is done when the card is.
+            // A frame is done when the graphics card is.
             let _ = render.device.poll(wgpu::PollType::wait_indefinitely());
         }
         self.state.measure_on();
@@ -246,7 +246,7 @@ impl App {
     fn show(&mut self, ui: &mut Ui) -> bool {
         let context = ui.ctx().clone();
         let palette = theme::palette(context.theme() == egui::Theme::Dark);
-        // The window is cleared in the colour of panels: every layer over all of it costs where the processor paints.
+        // eframe clears the window in the colour of the panels: with software rendering every full layer costs time.
         let plain = if self.is_cleared { Frame::NONE } else { Frame::NONE.fill(theme::ink(palette.panel)) };
         let mut commands = Vec::new();
         let (state, local, asked) = (&self.state, &mut self.panels, &mut commands);
@@ -266,7 +266,7 @@ impl App {
     }
 }
 
-/// Transport, timeline, docks and what floats over them: the window on a run.
+/// The window on a run: transport, timeline, docks and what floats over them.
 fn docks(
     ui: &mut Ui,
     state: &State,
@@ -277,7 +277,7 @@ fn docks(
     palette: &'static Palette,
     plain: Frame,
 ) {
-    // A window that has no room for the timeline does not make it forget its height.
+    // A window without room for the timeline must not change the height that the user has chosen.
     let squashed = ui.available_height() < layout.timeline_height + TIMELINE_HEIGHTS[0];
     let time = Panel::bottom(if squashed { "time squashed" } else { "time" })
         .frame(plain)
@@ -345,7 +345,7 @@ impl eframe::App for App {
             && self.changed.is_some()
         {
             let now = Settings::of(self.state.workspace(), &self.layout, written.dark, written.window);
-            // The window is gone: there is nobody to tell.
+            // The window is gone: the fault cannot be shown.
             let _ = now.write(path);
         }
     }

@@ -1,4 +1,4 @@
-//! Figures from the window: the state at hand, or several steps as a strip, made beside the window by what `render` is made by.
+//! Figures from the window: the current state, or several steps as a strip, made in the background by the code of `render`.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use crate::render::look::{HiddenLines, Ink, Layer, Layers, Part};
 use crate::render::orthographic::View;
 use crate::render::picture::{Picture, Seen};
 
-/// What a figure is saved as.
+/// The formats of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Formats {
     /// Vectors.
@@ -35,7 +35,7 @@ pub enum Formats {
 }
 
 impl Formats {
-    /// How they are called.
+    /// Their name.
     pub fn name(self) -> &'static str {
         match self {
             Formats::Svg => "SVG",
@@ -48,16 +48,16 @@ impl Formats {
 /// What a figure shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Content {
-    /// The state at hand.
+    /// The current state.
     #[default]
     State,
     /// The steps with a bookmark, side by side.
     Bookmarks,
-    /// Stops that a person has written, side by side.
+    /// Stops that the user has typed, side by side.
     Stops,
-    /// Edge lengths of the state at hand.
+    /// Edge lengths of the current state.
     Lengths,
-    /// Angles of the state at hand.
+    /// Angles of the current state.
     Angles,
 }
 
@@ -66,7 +66,7 @@ impl Content {
     pub const ALL: [Content; 5] =
         [Content::State, Content::Bookmarks, Content::Stops, Content::Lengths, Content::Angles];
 
-    /// How it is called.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Content::State => "this state",
@@ -137,13 +137,13 @@ impl FigureForm {
         }
     }
 
-    /// The options of the command line that say the same.
+    /// The same as options of the command line.
     fn options(&self, part: Option<(Part, f64)>, view: Option<(Bearing, HiddenLines)>) -> Result<FigureOptions, Fault> {
         let wrong = |what: String| Fault::new(format!("The size of the figure is not understood: {what}"));
         let text = self.size.trim();
         let mut size: Option<Size> = if text.is_empty() { None } else { Some(text.parse().map_err(wrong)?) };
         if let Some((_, shape)) = part {
-            // The page has the shape of the view, where it has none of its own.
+            // Unless the page has a shape of its own, it has that of the view.
             let usual = if self.is_strip() { 174.0 } else { 84.0 };
             size = Some(match size.unwrap_or(Size::Millimetres(usual, None)) {
                 Size::Millimetres(w, None) => Size::Millimetres(w, Some((10.0 * w * shape).round() / 10.0)),
@@ -186,11 +186,11 @@ impl FigureForm {
     }
 }
 
-/// Starts to make the figure that the panel describes, on a thread of its own, in the working folder; nothing where nothing is
+/// Starts to make the figure that the panel describes, on a thread of its own, in the working folder; does nothing if nothing is
 /// open. The thread calls `wake` when it is done.
 ///
 /// # Errors
-/// Where the form has no meaning.
+/// If the form has no meaning.
 pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writing>, Fault> {
     let (run, form) = (state.run(), &state.workspace().figure);
     let (Some(moment), Some(opened), Some(current)) = (run.moment.clone(), run.opened.clone(), state.current_run())
@@ -236,20 +236,20 @@ pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writi
     Ok(Some(told))
 }
 
-/// The text of the run at the current state, as figures carry it; none where the mesh that it starts from is gone.
+/// The text of the run at the current state, as figures carry it; none if the mesh that it starts from is gone.
 pub fn carried(state: &State) -> Option<String> {
     let (moment, mut run) = (state.run().moment.as_ref()?, state.current_run()?);
     run.shown = Some(Shown { states: vec![shown(moment)], drawn: Vec::new() });
     run_file::embedded(&run).ok()
 }
 
-/// The state at hand, as a figure says which it is.
+/// How a figure names the current state.
 fn shown(moment: &Moment) -> ShownState {
     let state = fingerprint(&moment.mesh, &moment.phase);
     ShownState { step: moment.step, at: Some(Stop::Step(moment.step)), state }
 }
 
-/// The figure of the state at hand.
+/// The figure of the current state.
 fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &FigureOptions) -> Result<Figure, Fault> {
     let Moment { mesh, parameters, phase, just_changed, .. } = moment.as_ref();
     let seen = Seen { mesh, parameters, phase, changed: just_changed };

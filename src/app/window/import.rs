@@ -1,5 +1,5 @@
-//! A mesh file that is about to be converted: how it is taken, in the words of the command line, and what it is like. Whatever a person
-//! changes is previewed by a thread (`preview`), the newest wish alone.
+//! The import of a mesh file before it is converted: its options and what the mesh is like. A thread shows the effect of every
+//! change (`preview`); only the latest one counts.
 
 mod preview;
 
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 pub use preview::{KINDS, Loaded, Shown};
-use preview::{Preview, Told, Wanted};
+use preview::{Preview, PreviewNews, Wanted};
 
 use super::session::{Direction, Wake};
 use super::state::{Progress, ViewCamera};
@@ -17,10 +17,10 @@ use crate::app::input;
 use crate::core::fault::Fault;
 use crate::core::io::case::{MeshUse, Taking};
 
-/// How many changes can be taken back.
+/// How many changes can be undone.
 const UNDO: usize = 100;
 
-/// Units of length that files have, in metres.
+/// Units of length of files, in metres.
 pub const UNITS: [(&str, f64); 4] = [("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("inch", 0.0254)];
 
 /// Whether a change is one of a drag that goes on: all changes of a drag are undone as one.
@@ -36,19 +36,19 @@ pub enum Gesture {
 pub struct Import {
     /// Its file.
     pub path: PathBuf,
-    /// How it is taken.
+    /// How it is imported.
     pub options: ImportOptions,
     preview: Preview,
-    /// The mesh, mended, once it is there.
+    /// The mesh with its repairs, once it has been read.
     pub loaded: Option<Arc<Loaded>>,
-    /// Why it was refused, with elements in the file's own unit.
+    /// Why it was refused; shapes are in the unit of the file.
     pub refused: Option<Fault>,
     /// The picture of it.
     pub shown: Option<Arc<Shown>>,
-    /// How far the preview is, while it is under way.
+    /// The progress of the preview, while it is under way.
     pub progress: Option<Progress>,
     wanted: Option<Wanted>,
-    /// The last number that a picture was asked for under.
+    /// The number of the last picture that was asked for.
     generation: u64,
     undo: Vec<ImportOptions>,
     redo: Vec<ImportOptions>,
@@ -58,16 +58,16 @@ pub struct Import {
     pub view: ViewCamera,
 }
 
-/// What becomes of an import.
+/// What the preview means for the window.
 pub enum News {
-    /// Nothing that anybody else needs to know.
+    /// Nothing.
     Nothing,
     /// The mesh cannot be read.
     Refused(Fault),
 }
 
 impl Import {
-    /// Begins to read a mesh; `generation` is greater than that of any picture before.
+    /// Starts to read a mesh; `generation` is at least the number of any picture before.
     pub fn begin(path: PathBuf, options: ImportOptions, generation: u64, wake: Wake) -> Import {
         Import {
             preview: Preview::of(path.clone(), wake),
@@ -96,9 +96,9 @@ impl Import {
         self.generation
     }
 
-    /// How the mesh is taken, in the core's words.
+    /// The options in the terms of `core`.
     pub fn taking(&self) -> Taking {
-        // What the panel lets through is valid; options from elsewhere have been read before.
+        // The panel lets only valid options through; those from elsewhere have been read before.
         input::taking_of(&self.path, &self.options).unwrap_or_default()
     }
 
@@ -107,7 +107,7 @@ impl Import {
         self.taking().used.unwrap_or_else(|| self.use_by_default())
     }
 
-    /// The same where nobody says it.
+    /// The use by default.
     pub fn use_by_default(&self) -> MeshUse {
         match &self.loaded {
             Some(loaded) if loaded.is_plane => MeshUse::Triangles,
@@ -120,7 +120,7 @@ impl Import {
         self.loaded.as_ref().is_some_and(|loaded| !loaded.is_plane) || self.used() == MeshUse::Shape
     }
 
-    /// Whether the picture is not that of the options yet.
+    /// Whether the picture does not show the options yet.
     pub fn is_behind(&self) -> bool {
         self.loaded.is_none() || self.shown.as_ref().is_none_or(|shown| Some(&shown.wanted) != self.wanted.as_ref())
     }
@@ -130,20 +130,20 @@ impl Import {
         self.loaded.as_ref().is_some_and(|loaded| loaded.fault.is_none())
     }
 
-    /// Shows what the mesh was refused for, and looks there.
+    /// Shows why the mesh was refused, and looks there.
     pub fn refuse(&mut self, fault: Fault) {
         self.view.camera = None;
         self.refused = Some(fault);
     }
 
-    /// Shows what a conversion of the mesh as it is taken was refused for.
+    /// Shows why the conversion was refused.
     pub fn refuse_conversion(&mut self, mut fault: Fault) {
         let scale = self.taking().scale;
         fault.shapes.iter_mut().flatten().for_each(|p| *p /= scale);
         self.refuse(fault);
     }
 
-    /// What was refused may not be, taken otherwise.
+    /// With other options the mesh may not be refused.
     fn reconsider(&mut self) {
         self.refused = self.loaded.as_ref().and_then(|loaded| loaded.fault.clone());
     }
@@ -181,31 +181,31 @@ impl Import {
         self.gesture = Gesture::Done;
     }
 
-    /// Hears what the preview tells, and asks for a picture where another one is wanted now.
+    /// Takes in what the preview reports, and asks for another picture if the options have changed.
     pub fn look(&mut self, dark: bool) -> News {
         let mut news = News::Nothing;
         for told in self.preview.hear() {
             match told {
-                Told::Progress(progress) => self.progress = Some(progress),
-                Told::Loaded(Ok(loaded)) => {
+                PreviewNews::Progress(progress) => self.progress = Some(progress),
+                PreviewNews::Loaded(Ok(loaded)) => {
                     if let Some(fault) = &loaded.fault {
                         self.refuse(fault.clone());
                     }
                     self.loaded = Some(loaded);
                 }
-                Told::Loaded(Err(fault)) => news = News::Refused(fault),
-                Told::Shown(shown) => self.shown = Some(shown),
-                Told::Refused(fault) => self.refuse(fault),
+                PreviewNews::Loaded(Err(fault)) => news = News::Refused(fault),
+                PreviewNews::Shown(shown) => self.shown = Some(shown),
+                PreviewNews::Refused(fault) => self.refuse(fault),
             }
         }
         if self.loaded.is_some() {
             let taking = self.taking();
             let marks = self.refused.as_ref().map_or_else(Arc::default, |fault| fault.shapes.clone().into());
-            // What is refused has no charts, or their colours would hide what it is refused for.
+            // The colours of charts would hide the elements for which a mesh is refused.
             let bound = (self.has_charts() && self.refused.is_none()).then(|| taking.bound());
             let wanted = Wanted { feature_angle: taking.feature_angle, bound, marks, dark };
             if self.wanted.as_ref() != Some(&wanted) {
-                // Two pictures may come of it.
+                // Up to two pictures will be made.
                 self.generation += 2;
                 self.wanted = Some(wanted.clone());
                 self.preview.ask(wanted, self.generation);

@@ -13,7 +13,7 @@ pub use measures::shading;
 use super::session::Moment;
 use super::state::State;
 use super::theme::{self, ink};
-use super::viewport::{Frame, class_colour};
+use super::viewport::{ViewFrame, class_colour};
 use super::words;
 use crate::core::front::segment::Segment;
 use crate::core::mesh::ids::NodeId;
@@ -41,9 +41,9 @@ pub struct Memory {
     labels: BTreeMap<String, f64>,
 }
 
-/// Which view it is.
+/// What a view is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum ViewRole {
     Main,
     Lens,
     Whole,
@@ -51,8 +51,8 @@ pub enum Which {
 
 /// What labels are laid over: a view of a scene, and where it is one in space what of it hides labels.
 #[derive(Clone, Copy)]
-pub struct Seen<'a> {
-    pub frame: &'a Frame,
+pub struct LabelledScene<'a> {
+    pub frame: &'a ViewFrame,
     pub scene: &'a Scene,
     pub cover: Option<&'a Cover>,
 }
@@ -60,14 +60,14 @@ pub struct Seen<'a> {
 /// Shows everything that is laid over a view.
 pub fn show(
     ui: &Ui,
-    seen: &Seen<'_>,
+    seen: &LabelledScene<'_>,
     state: &State,
     moment: &Moment,
     palette: &Palette,
-    which: Which,
+    which: ViewRole,
     memory: &mut Memory,
 ) {
-    let Seen { frame, scene, cover } = *seen;
+    let LabelledScene { frame, scene, cover } = *seen;
     let painter = ui.painter_at(frame.rect);
     let now = ui.input(|input| input.time);
     let scale = frame.camera.points_per_unit();
@@ -76,7 +76,7 @@ pub fn show(
     }
     let before = std::mem::take(&mut memory.labels);
     let is_new = (now - memory.zoomed < COMING && !before.is_empty()).then_some(now);
-    let mut over = Over {
+    let mut over = Labels {
         painter,
         frame,
         scene,
@@ -90,34 +90,34 @@ pub fn show(
         labels: BTreeMap::new(),
     };
     let decision = Decision::of(&moment.phase);
-    if which == Which::Lens {
+    if which == ViewRole::Lens {
         over.unit_grid(state);
     }
-    if which == Which::Whole {
+    if which == ViewRole::Whole {
         over.main_frame(state);
     }
     let small = over.small_view(which, &decision);
     if cover.is_some() {
         over.lens_in_space(state);
     }
-    if state.document().layers.ellipses && which == Which::Main {
+    if state.document().layers.ellipses && which == ViewRole::Main {
         over.ellipses();
     }
     if !small {
         over.letters(&decision);
     }
-    if state.document().layers.labels && which != Which::Whole {
+    if state.document().layers.labels && which != ViewRole::Whole {
         over.base(&decision, which);
     }
     if state.document().layers.arcs && !small {
         over.wedges_and_arcs(&decision, which);
     }
-    if state.document().layers.labels && which == Which::Main {
+    if state.document().layers.labels && which == ViewRole::Main {
         over.pointed(state);
         over.front_labels(&decision);
         over.node_ids(&decision);
     }
-    if which == Which::Main {
+    if which == ViewRole::Main {
         over.scale_bar();
         over.axes();
     }
@@ -127,9 +127,9 @@ pub fn show(
     }
 }
 
-struct Over<'a> {
+struct Labels<'a> {
     painter: Painter,
-    frame: &'a Frame,
+    frame: &'a ViewFrame,
     scene: &'a Scene,
     cover: Option<&'a Cover>,
     moment: &'a Moment,
@@ -143,7 +143,7 @@ struct Over<'a> {
     now: f64,
 }
 
-impl Over<'_> {
+impl Labels<'_> {
     /// Where a node lies on the screen; none where it is not there, or hidden.
     fn place(&self, node: NodeId) -> Option<Pos2> {
         let spot = self.scene.spot(node).filter(|_| self.moment.mesh.has_node(node))?;
@@ -171,10 +171,10 @@ impl Over<'_> {
     }
 
     /// Whether the decision is too small on the screen to be lettered.
-    fn small_view(&self, which: Which, decision: &Decision) -> bool {
+    fn small_view(&self, which: ViewRole, decision: &Decision) -> bool {
         let Some([a, b]) = decision.base else { return false };
         let length = self.place(a).zip(self.place(b)).map_or(0.0, |(a, b)| a.distance(b));
-        which == Which::Whole && length < 24.0
+        which == ViewRole::Whole && length < 24.0
     }
 
     /// Puts a label down, unless it would cover one that is there; its plate is drawn first.
@@ -222,7 +222,7 @@ impl Over<'_> {
         }
     }
 
-    fn base(&mut self, decision: &Decision, which: Which) {
+    fn base(&mut self, decision: &Decision, which: ViewRole) {
         let Some([a, b]) = decision.base else { return };
         let Some(segment) = self.moment.front.iter().find(|s| s.a == a && s.b == b) else { return };
         let Some((p, q)) = self.place(a).zip(self.place(b)) else { return };
@@ -231,7 +231,7 @@ impl Over<'_> {
         let across = if self.is_behind(a) { -across } else { across };
         let at = p + 0.5 * (q - p) + 18.0 * Vec2::new(-across.x, -across.y);
         let text = match which {
-            Which::Lens => words::fixed(segment.length_metric, 3),
+            ViewRole::Lens => words::fixed(segment.length_metric, 3),
             _ => format!("H {}", words::size(segment.h_value)),
         };
         if p.distance(q) > 44.0 {

@@ -1,4 +1,4 @@
-//! The panels in their docks: sides keep their widths in points, the view takes the rest.
+//! The docks of the panels: side columns keep their widths in points, the view takes the rest.
 
 mod docks;
 mod written;
@@ -16,7 +16,7 @@ use super::viewport::Views;
 use crate::render::palette::Palette;
 use docks::Docks;
 
-/// Widths in points: front, lens, inspector; and the least that the view keeps.
+/// Widths in points: front, lens, inspector; and the least width of the view.
 const LEFT: f32 = 344.0;
 const LENS: f32 = 263.0;
 const RIGHT: f32 = 332.0;
@@ -101,7 +101,7 @@ impl Room {
     }
 }
 
-/// Heights that the timeline may have with its buttons, in points, and its first one.
+/// Least and greatest height of the timeline with its buttons in points, and its first height.
 pub const TIMELINE_HEIGHTS: [f32; 2] = [120.0, 420.0];
 const TIMELINE_HEIGHT: f32 = 216.0;
 
@@ -109,10 +109,10 @@ const TIMELINE_HEIGHT: f32 = 216.0;
 pub struct Layout {
     pub timeline_height: f32,
     tree: Option<(Tree<Pane>, Room)>,
-    /// The column that takes what the others leave, and the size at the last frame.
+    /// The column that takes the rest of the width, and the size in the frame before.
     middle: Option<TileId>,
     size: Vec2,
-    /// How a person has arranged the docks, by the room that there was.
+    /// How the user has arranged the docks, by the room for columns.
     arranged: BTreeMap<String, Value>,
     /// Whether the user is moving something.
     edited: bool,
@@ -175,12 +175,12 @@ impl Layout {
         }
     }
 
-    /// How a person has arranged the docks: by the room that there was.
+    /// How the user has arranged the docks, by the room for columns.
     pub fn arranged(&self) -> Value {
         Value::Object(self.arranged.iter().map(|(room, docks)| (room.clone(), docks.clone())).collect())
     }
 
-    /// Arranges the docks as they were; those that cannot be read stand as at first.
+    /// Arranges the docks as they were; those that cannot be read go back to their first places.
     pub fn arrange(&mut self, arranged: Option<&Value>) {
         self.arranged.clear();
         for (room, docks) in arranged.and_then(Value::as_object).into_iter().flatten() {
@@ -245,7 +245,7 @@ impl Layout {
         self.tree = Some((Tree::new(egui::Id::unique("docks"), root, tiles), room));
     }
 
-    /// After a change of the window's size the sides are as wide as before.
+    /// Keeps the widths of the side columns when the window's size changes.
     fn keep_sides(&mut self, size: Vec2) {
         let (Some((tree, _)), Some(middle)) = (&mut self.tree, self.middle) else { return };
         let Some(root) = tree.root() else { return };

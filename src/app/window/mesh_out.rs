@@ -19,11 +19,11 @@ pub fn suggested_path(state: &State) -> String {
     free_path(&format!("{}{step}", opened.case.name), "vtu").display().to_string()
 }
 
-/// Starts to write the current mesh, in the format of the path's extension; nothing where nothing is open. The thread calls
+/// Starts to write the current mesh, in the format of the path's extension; does nothing if nothing is open. The thread calls
 /// `wake` when it is done.
 ///
 /// # Errors
-/// Where there is such a file, or no such format.
+/// If there is such a file, or no such format.
 pub fn begin(state: &State, path: &str, wake: Wake) -> Result<Option<Writing>, Fault> {
     let (Some(moment), Some(opened)) = (state.run().moment.clone(), state.run().opened.clone()) else {
         return Ok(None);

@@ -1,5 +1,5 @@
-//! What is kept of the window from one start to the next: where its panels are, what it draws, and how large it is. A small file in
-//! the user's own folder for such things; one that cannot be read is told and left out.
+//! Settings that outlast the window: where its panels are, what it draws, and how large it is, in a small file in the user's state
+//! folder. A file that cannot be read is reported and ignored.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::render::scene::{ColourBy, Layers};
 /// The version of the file.
 const VERSION: u32 = 1;
 
-/// What is kept.
+/// The settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     version: u32,
@@ -30,7 +30,7 @@ pub struct Settings {
     speed: f32,
     /// Height of the timeline with its buttons, in points.
     bottom: f32,
-    /// Where meshes on surfaces are shown, how covered lines are drawn, whether elements are curved.
+    /// Where meshes on surfaces are shown, how hidden lines are drawn, whether elements are curved.
     #[serde(default)]
     place: SurfaceView,
     #[serde(default)]
@@ -40,12 +40,12 @@ pub struct Settings {
     /// Size of the window in points.
     #[serde(default)]
     pub window: Option<[f32; 2]>,
-    /// The docks that a person has arranged, by the room that there was.
+    /// How the user has arranged the docks, by the room for columns.
     pub docks: Value,
 }
 
 impl Settings {
-    /// Those of a window of this size.
+    /// The settings of a window of this size in points.
     pub fn of(workspace: &Workspace, layout: &Layout, dark: bool, window: Option<[f32; 2]>) -> Settings {
         let SurfaceStyle { view, hidden, curved } = workspace.surfaces;
         Settings {
@@ -89,10 +89,10 @@ impl Settings {
         layout
     }
 
-    /// Reads them; none where there are none yet.
+    /// Reads the settings; none if there is no file yet.
     ///
     /// # Errors
-    /// A file that is there and cannot be read.
+    /// If there is a file and it cannot be read.
     pub fn read(path: &Path) -> Result<Option<Settings>, Fault> {
         let fault = |what: String| {
             Fault::new(format!("What was kept of the window cannot be read: {what}"))
@@ -111,7 +111,7 @@ impl Settings {
         Ok(Some(settings))
     }
 
-    /// Writes them.
+    /// Writes the settings.
     ///
     /// # Errors
     /// What the system says.
@@ -126,7 +126,7 @@ impl Settings {
     }
 }
 
-/// Where they are kept: `XDG_STATE_HOME`, or what stands for it on this system; none where the user has no home.
+/// The path of the file: in `XDG_STATE_HOME` or this system's equivalent; none if the user has no home.
 pub fn path() -> Option<PathBuf> {
     let folder = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = |rest: &str| folder("HOME").map(|home| home.join(rest));
@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(other.document, workspace.document);
         assert_eq!((other.speed, other.surfaces), (30.0, workspace.surfaces));
         assert_eq!(read.layout().timeline_height, 300.0);
-        // Files of before know nothing of space.
+        // Older files have no settings for space.
         let text = std::fs::read_to_string(&path).unwrap();
         let old: String =
             text.lines().filter(|line| !line.contains("\"hidden\"")).map(|line| format!("{line}\n")).collect();

@@ -67,12 +67,12 @@ pub struct Views {
 
 /// A view's camera with its place on the screen.
 #[derive(Clone, Copy)]
-pub struct Frame {
+pub struct ViewFrame {
     pub camera: Camera,
     pub rect: Rect,
 }
 
-impl Frame {
+impl ViewFrame {
     pub fn size(&self) -> DVec2 {
         DVec2::new(f64::from(self.rect.width()), f64::from(self.rect.height()))
     }
@@ -152,7 +152,7 @@ impl Views {
         let (mut camera, is_fitted) = aim(state, moment, size, look);
         steer(ui, &response, &mut camera, rect);
         moved(state.view().plane, ViewKind::Plane, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
-        let frame = Frame { camera, rect };
+        let frame = ViewFrame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         let hovered = pointer.and_then(|at| {
             let p = frame.plane(at)?;
@@ -163,8 +163,8 @@ impl Views {
         self.update(state, moment, palette, &frame, Form::Plane, true);
         self.paint(ui, index, &frame, palette, 0.0, Form::Plane);
         faces::show(ui, &frame, state, moment, palette);
-        let over = labels::Seen { frame: &frame, scene: &self.plane.scene, cover: None };
-        labels::show(ui, &over, state, moment, palette, labels::Which::Main, &mut self.labels[index]);
+        let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
+        labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[index]);
         if index == 0 {
             labels::shading(ui, &frame, &self.shading, palette);
         }
@@ -192,11 +192,12 @@ impl Views {
             });
             return;
         };
-        let frame = Frame { camera, rect };
-        let (which, k) = if lens == Lens::Metric { (labels::Which::Lens, LENS) } else { (labels::Which::Whole, WHOLE) };
+        let frame = ViewFrame { camera, rect };
+        let (which, k) =
+            if lens == Lens::Metric { (labels::ViewRole::Lens, LENS) } else { (labels::ViewRole::Whole, WHOLE) };
         self.update(state, &moment, palette, &frame, Form::Plane, false);
         self.paint(ui, k, &frame, palette, 0.0, Form::Plane);
-        let over = labels::Seen { frame: &frame, scene: &self.plane.scene, cover: None };
+        let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
         labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
     }
 
@@ -250,13 +251,21 @@ impl Views {
     }
 
     /// Brings a scene up to date with the state: by the differences, if those are known. `leads`: it is laid out for this view.
-    fn update(&mut self, state: &State, moment: &Moment, palette: &Palette, frame: &Frame, form: Form, leads: bool) {
+    fn update(
+        &mut self,
+        state: &State,
+        moment: &Moment,
+        palette: &Palette,
+        frame: &ViewFrame,
+        form: Form,
+        leads: bool,
+    ) {
         let stage = if form.is_in_space() { &mut self.space } else { &mut self.plane };
         stage.update(state, moment, palette, frame, form, leads, &mut self.shading);
     }
 
     /// Draws a view; `hidden`: how much is seen of covered lines.
-    fn paint(&self, ui: &Ui, index: usize, frame: &Frame, palette: &Palette, hidden: f32, form: Form) {
+    fn paint(&self, ui: &Ui, index: usize, frame: &ViewFrame, palette: &Palette, hidden: f32, form: Form) {
         let (stage, light) = match form {
             Form::Plane => (&self.plane, Light::NONE),
             _ => (&self.space, Light::on_surfaces(palette.dark)),

@@ -12,10 +12,10 @@ use crate::render::scene::Outlined;
 
 pub use crate::render::number::{UNDEFINED, decimals, degrees, fixed, grouped, size};
 
-/// How far work is.
+/// The progress of some work.
 pub fn progress(progress: &Progress) -> String {
     let Progress { words, done, total } = *progress;
-    // Bytes, and steps of unequal length.
+    // These stages count bytes, or steps of unequal length.
     if total > 0 && [Stage::Read, Stage::Mend].map(words_of).contains(&words) {
         format!("{words}: {} %", 100 * done.min(total) / total)
     } else if total > 0 {
@@ -35,7 +35,7 @@ pub fn edge([a, b]: [NodeId; 2]) -> String {
     format!("{}–{}", a.0, b.0)
 }
 
-/// Something that can be picked, named.
+/// The name of something that can be selected.
 pub fn thing(what: Outlined) -> String {
     match what {
         Outlined::Node(node) => format!("node {}", node.0),
@@ -52,7 +52,7 @@ pub fn side(side: Side) -> &'static str {
     }
 }
 
-/// How a kind of event is called.
+/// The name of a kind of event.
 pub fn kind(kind: &str) -> String {
     kind.replace('_', " ")
 }

@@ -4,16 +4,16 @@
 use eframe::egui::{Align2, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::DVec2;
 
-use super::{ELLIPSE, MOST_ELLIPSES, Over};
+use super::{ELLIPSE, Labels, MOST_ELLIPSES};
 use crate::app::window::state::{State, SurfaceView, ViewCamera};
 use crate::app::window::theme::{self, ink};
-use crate::app::window::viewport::{self, Frame};
+use crate::app::window::viewport::{self, ViewFrame};
 use crate::app::window::words;
 use crate::core::mesh::ids::NodeId;
 use crate::render::palette::Palette;
 use crate::render::scene::{ColourBy, Shading};
 
-impl Over<'_> {
+impl Labels<'_> {
     pub(super) fn ellipses(&self) {
         let mesh = &self.moment.mesh;
         let mut shown = 0;
@@ -144,7 +144,7 @@ impl Over<'_> {
 }
 
 /// The legend of what elements are coloured by.
-pub fn shading(ui: &Ui, frame: &Frame, shading: &Shading, palette: &Palette) {
+pub fn shading(ui: &Ui, frame: &ViewFrame, shading: &Shading, palette: &Palette) {
     let Some(map) = shading.by.map() else { return };
     let painter = ui.painter_at(frame.rect);
     let (width, height) = (160.0, 8.0);

@@ -1,4 +1,4 @@
-//! Shows each panel where egui_tiles wants it, with tabs and bars in the manner of the window.
+//! Shows each panel where egui_tiles puts it, with tabs and bars in the style of the window.
 
 use eframe::egui::{self, Color32, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo};
 use egui_tiles::{Behavior, EditAction, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, UiResponse};
@@ -11,14 +11,14 @@ use crate::app::window::theme::{self, ink};
 use crate::app::window::viewport::{Lens, Views};
 use crate::render::palette::Palette;
 
-/// All panels with what they show.
+/// All panels and what they need.
 pub struct Docks<'a> {
     pub state: &'a State,
     pub local: &'a mut PanelStates,
     pub views: &'a mut Views,
     pub commands: &'a mut Vec<Command>,
     pub palette: &'static Palette,
-    /// Whether a person has moved something.
+    /// Whether the user has moved something.
     pub edited: bool,
 }
 
@@ -82,7 +82,7 @@ impl Behavior<Pane> for Docks<'_> {
         let active = tabs.active.and_then(|id| tiles.get_pane(&id));
         match active {
             Some(Pane::Space) => {
-                // The tabs come first: what the legend has no room for is in the help.
+                // The tabs come first; the legend shows as much as there is room for.
                 let font = theme::medium(theme::BODY);
                 let width = |id: &TileId| {
                     let name = tiles.get_pane(id).map_or("", |pane| pane.name());

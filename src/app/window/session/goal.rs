@@ -1,8 +1,8 @@
-//! Where to go, and which step that is.
+//! Goals of a walk through the run, and the steps that they stand for.
 
 use crate::core::run::log::Log;
 
-/// A way along the steps of a run, or along what a person has done.
+/// A direction along the steps of a run, or along the changes of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// To what comes later.
@@ -21,11 +21,11 @@ impl Direction {
 pub enum Goal {
     /// To a step.
     Step(u64),
-    /// So many steps on, or back.
+    /// A number of steps forward, or back if it is negative.
     Steps(i64),
-    /// So many quadrilaterals on, or back: to where they stand and their local post-processing is done.
+    /// A number of quadrilaterals forward, or back if it is negative: to where their local post-processing is done.
     Quads(i64),
-    /// To where so many quadrilaterals stand.
+    /// To where there are so many quadrilaterals.
     ToQuads(u64),
     /// To the next event of a kind, or the one before.
     Kind(&'static str, Direction),
@@ -34,8 +34,8 @@ pub enum Goal {
 }
 
 impl Goal {
-    /// The step of the goal, seen from `step`; `None` where it is not known yet. `end` is the last step of the run, once it
-    /// is known.
+    /// The step of the goal, seen from `step`; `None` if it is not known yet. `end` is the last step of the run, once it is
+    /// known.
     pub fn resolve(self, log: &Log, step: u64, end: Option<u64>) -> Option<u64> {
         let known = |target: u64| if target <= log.known() { Some(target) } else { end };
         let with = |quads: u64, after: u64| if quads == 0 { Some(0) } else { log.first_with(quads, after).or(end) };
@@ -56,7 +56,7 @@ impl Goal {
     }
 }
 
-/// The step so many quadrilaterals back: the first step back goes to where the last one stood, if that was before.
+/// The step so many quadrilaterals back. From within a quadrilateral, the first of them leads to where it began.
 fn back(log: &Log, step: u64, by: u64) -> u64 {
     let first = |quads: u64| if quads == 0 { Some(0) } else { log.first_with(quads, 0) };
     let here = log.nq(step);

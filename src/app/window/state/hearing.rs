@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::{Progress, State};
 use crate::app::figure::another_state;
-use crate::app::window::session::{Moment, Source, Told};
+use crate::app::window::session::{Moment, SessionNews, Source};
 use crate::core::convert::phase::Phase;
 use crate::core::run::history::Changes;
 use crate::core::run::shown::{ShownState, fingerprint};
@@ -21,7 +21,7 @@ impl State {
     pub(in crate::app::window) fn hear(&mut self) {
         self.hear_opening();
         let Some(session) = &self.run.session else { return };
-        let told: Vec<Told> = session.hear().collect();
+        let told: Vec<SessionNews> = session.hear().collect();
         told.into_iter().for_each(|told| self.take(told));
     }
 
@@ -43,13 +43,13 @@ impl State {
         Some((self.run.changes.take(), slots))
     }
 
-    fn take(&mut self, told: Told) {
+    fn take(&mut self, told: SessionNews) {
         let run = &mut self.run;
         match told {
-            Told::Progress { words, done, total } => run.progress = Some(Progress { words, done, total }),
-            Told::Opened(opened) => run.opened = Some(opened),
-            Told::Moment(moment, asks) => self.arrive(moment, asks),
-            Told::Track { from, steps, samples, end } => {
+            SessionNews::Progress { words, done, total } => run.progress = Some(Progress { words, done, total }),
+            SessionNews::Opened(opened) => run.opened = Some(opened),
+            SessionNews::Moment(moment, asks) => self.arrive(moment, asks),
+            SessionNews::Track { from, steps, samples, end } => {
                 run.track.truncate(from as usize);
                 run.track.extend(steps);
                 run.samples.retain(|sample| sample.step <= from && from > 0);
@@ -57,19 +57,19 @@ impl State {
                 run.track_epoch += 1;
                 run.recorded = end;
             }
-            Told::Checked(step, verdict) => {
+            SessionNews::Checked(step, verdict) => {
                 if run.moment.as_ref().is_some_and(|moment| moment.step == step) {
                     run.verdict = verdict;
                 }
             }
-            Told::Past(past) => run.past = Some(past),
-            Told::Hits(hits) => run.hits = hits,
-            Told::Explained(step, told) => run.explained = Some((step, told)),
-            Told::Nothing(words, asks) => {
+            SessionNews::Past(past) => run.past = Some(past),
+            SessionNews::Hits(hits) => run.hits = hits,
+            SessionNews::Explained(step, told) => run.explained = Some((step, told)),
+            SessionNews::Nothing(words, asks) => {
                 self.notice(words.to_owned());
                 self.answered(asks);
             }
-            Told::Fault(fault, asks) => {
+            SessionNews::Fault(fault, asks) => {
                 run.playing = None;
                 self.complain(&fault);
                 self.answered(asks);

@@ -3,7 +3,7 @@
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DMat2, DVec2};
 
-use super::Frame;
+use super::ViewFrame;
 use crate::app::window::session::Moment;
 use crate::app::window::state::{Look, State, ViewCamera};
 use crate::core::mesh::ids::NodeId;
@@ -85,7 +85,7 @@ pub(super) fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera, rec
     let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
     let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
     if factor != 1.0 {
-        let frame = Frame { camera: *camera, rect };
+        let frame = ViewFrame { camera: *camera, rect };
         camera.zoom(factor, frame.inside(at), frame.size());
     }
 }

@@ -3,7 +3,7 @@
 use eframe::egui::{Pos2, Shape, Stroke, Ui};
 use glam::DVec2;
 
-use super::{Frame, middle};
+use super::{ViewFrame, middle};
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::ink;
@@ -32,7 +32,7 @@ fn active(state: &State, moment: &Moment) -> Option<usize> {
 }
 
 /// Frames the active face and dims the others, where there are several.
-pub(super) fn show(ui: &Ui, frame: &Frame, state: &State, moment: &Moment, palette: &Palette) {
+pub(super) fn show(ui: &Ui, frame: &ViewFrame, state: &State, moment: &Moment, palette: &Palette) {
     let is_alone = moment.mesh.ground().is_none_or(|ground| ground.atlas.charts().len() < 2);
     let Some(active) = active(state, moment).filter(|_| !is_alone) else { return };
     let painter = ui.painter_at(frame.rect);

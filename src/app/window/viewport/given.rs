@@ -5,7 +5,7 @@ use eframe::egui_wgpu::Callback;
 use glam::{DQuat, DVec2, DVec3};
 
 use super::space::{MARGIN, orbit};
-use super::{Frame, Picture, Views, moved, tools, whole_pixels};
+use super::{Picture, ViewFrame, Views, moved, tools, whole_pixels};
 use crate::app::window::command::Command;
 use crate::app::window::import::Loaded;
 use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
@@ -65,7 +65,7 @@ impl Views {
             Some(Look::From(side)) => (camera, is_fitted) = (fit(&loaded, side.turn(), size), true),
             _ => {}
         }
-        let frame = Frame { camera, rect };
+        let frame = ViewFrame { camera, rect };
         if response.drag_started() {
             let press = ui.input(|input| input.pointer.press_origin());
             let hit = press.and_then(|at| pick::hit(&shown.scene, &camera, size, frame.inside(at)));

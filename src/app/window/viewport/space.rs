@@ -3,7 +3,7 @@
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::{Frame, Views, moved};
+use super::{ViewFrame, Views, moved};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
 use crate::app::window::session::Moment;
@@ -41,7 +41,7 @@ impl Views {
         let (mut camera, mut is_fitted) = aim(state, moment, size, look);
         is_fitted &= !self.steer(ui, &response, &mut camera, rect, moment);
         moved(state.view().space, ViewKind::Space, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
-        let frame = Frame { camera, rect };
+        let frame = ViewFrame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         // Before the scene follows the state there may be other elements in it.
         let form = state.workspace().surfaces.form();
@@ -54,15 +54,15 @@ impl Views {
         if self.cover.of != of {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
         }
-        let over = labels::Seen { frame: &frame, scene: &self.space.scene, cover: Some(&self.cover.cover) };
-        labels::show(ui, &over, state, moment, palette, labels::Which::Main, &mut self.labels[0]);
+        let over = labels::LabelledScene { frame: &frame, scene: &self.space.scene, cover: Some(&self.cover.cover) };
+        labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[0]);
         labels::shading(ui, &frame, &self.shading, palette);
     }
 
     /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two fingers. Tells
     /// whether the camera has moved.
     fn steer(&mut self, ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect, moment: &Moment) -> bool {
-        let frame = Frame { camera: *camera, rect };
+        let frame = ViewFrame { camera: *camera, rect };
         if response.drag_started() {
             // What is grabbed stays under the pointer; beside the mesh it turns about its middle.
             let press = ui.input(|input| input.pointer.press_origin());
@@ -78,7 +78,7 @@ pub(super) fn orbit(
     ui: &Ui,
     response: &egui::Response,
     camera: &mut Camera,
-    frame: Frame,
+    frame: ViewFrame,
     pivot: Option<DVec3>,
 ) -> bool {
     let before = *camera;

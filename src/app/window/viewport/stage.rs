@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Frame;
+use super::ViewFrame;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::core::convert::candidates::Passed;
@@ -48,7 +48,7 @@ impl Stage {
         state: &State,
         moment: &Moment,
         palette: &Palette,
-        frame: &Frame,
+        frame: &ViewFrame,
         form: Form,
         leads: bool,
         shading: &mut Shading,

@@ -34,39 +34,39 @@ pub struct Lane {
 
 /// What a curve shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Figure {
+pub enum CurveKind {
     Front,
     Quality,
     Live,
     Loops,
 }
 
-impl Figure {
+impl CurveKind {
     /// In the order in which they stand where there is room.
-    const ALL: [Figure; 4] = [Figure::Front, Figure::Quality, Figure::Live, Figure::Loops];
+    const ALL: [CurveKind; 4] = [CurveKind::Front, CurveKind::Quality, CurveKind::Live, CurveKind::Loops];
 
     pub fn name(self) -> &'static str {
         match self {
-            Figure::Front => "front length",
-            Figure::Quality => "quality, worst",
-            Figure::Live => "live triangles",
-            Figure::Loops => "loops",
+            CurveKind::Front => "front length",
+            CurveKind::Quality => "quality, worst",
+            CurveKind::Live => "live triangles",
+            CurveKind::Loops => "loops",
         }
     }
 
     fn of(self, tracked: &Tracked) -> f32 {
         match self {
-            Figure::Front => tracked.front as f32,
-            Figure::Quality => tracked.formed.map_or(1.0, |formed| formed.1),
-            Figure::Live => tracked.live as f32,
-            Figure::Loops => f32::from(tracked.loops[0]),
+            CurveKind::Front => tracked.front as f32,
+            CurveKind::Quality => tracked.formed.map_or(1.0, |formed| formed.1),
+            CurveKind::Live => tracked.live as f32,
+            CurveKind::Loops => f32::from(tracked.loops[0]),
         }
     }
 }
 
 /// One curve: places in points from the left, with values.
 pub struct Curve {
-    pub of: Figure,
+    pub of: CurveKind,
     pub line: Vec<(f32, f32)>,
     pub dots: Vec<(f32, f32)>,
     /// The value at the top.
@@ -104,7 +104,7 @@ impl Columns {
         let last = (span[1].ceil() as usize).clamp(first, state.run().track.len());
         self.count_lanes(state, open_row, first..last, columns, &place);
         self.curves.clear();
-        for of in Figure::ALL {
+        for of in CurveKind::ALL {
             self.curves.push(self.curve_of(of, state, first..last, columns, &place));
         }
     }
@@ -213,7 +213,7 @@ impl Columns {
 
     fn curve_of(
         &self,
-        of: Figure,
+        of: CurveKind,
         state: &State,
         seen: std::ops::Range<usize>,
         columns: usize,
@@ -222,11 +222,11 @@ impl Columns {
         let mut curve = Curve { of, line: Vec::new(), dots: Vec::new(), top: 1.0 };
         let every = (seen.len() / (2 * columns).max(1)).max(1);
         for k in seen.clone().step_by(every) {
-            let value = if of == Figure::Quality { self.worst[k].min(1.0) } else { of.of(&state.run().track[k]) };
+            let value = if of == CurveKind::Quality { self.worst[k].min(1.0) } else { of.of(&state.run().track[k]) };
             curve.line.push((place(k + 1), value));
         }
         match of {
-            Figure::Quality => {
+            CurveKind::Quality => {
                 let formed = seen.filter_map(|k| Some((k, state.run().track[k].formed?.1)));
                 let dots: Vec<_> = formed.map(|(k, quality)| (place(k + 1), quality)).collect();
                 let every = (dots.len() / columns.max(1)).max(1);
@@ -251,23 +251,23 @@ impl Columns {
     }
 
     /// The value of a curve at a step.
-    pub fn value(&self, of: Figure, step: u64) -> String {
+    pub fn value(&self, of: CurveKind, step: u64) -> String {
         let Some(k) = step.checked_sub(1).map(|k| k as usize) else {
             let Some(first) = self.first else { return words::UNDEFINED.to_owned() };
             return match of {
-                Figure::Front => words::grouped(first.front.segments.into()),
-                Figure::Live => words::grouped(first.front.live.into()),
-                Figure::Loops => words::grouped(first.front.loops.into()),
-                Figure::Quality => words::UNDEFINED.to_owned(),
+                CurveKind::Front => words::grouped(first.front.segments.into()),
+                CurveKind::Live => words::grouped(first.front.live.into()),
+                CurveKind::Loops => words::grouped(first.front.loops.into()),
+                CurveKind::Quality => words::UNDEFINED.to_owned(),
             };
         };
         let figure =
             |at: usize| self.figures.get(k).map_or(words::UNDEFINED.to_owned(), |f| words::grouped(f[at].into()));
         match of {
-            Figure::Front => figure(0),
-            Figure::Live => figure(1),
-            Figure::Loops => figure(2),
-            Figure::Quality => words::fixed(f64::from(self.worst.get(k).copied().unwrap_or(f32::NAN)), 2),
+            CurveKind::Front => figure(0),
+            CurveKind::Live => figure(1),
+            CurveKind::Loops => figure(2),
+            CurveKind::Quality => words::fixed(f64::from(self.worst.get(k).copied().unwrap_or(f32::NAN)), 2),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::app::window::files::Watcher;
 use crate::app::window::import::News;
-use crate::app::window::session::{Goal, Opened, Session, Source, Told};
+use crate::app::window::session::{Goal, Opened, Session, SessionNews, Source};
 use crate::app::window::state::{Look, Progress, RunState, State, ViewCamera};
 use crate::core::io::built_in;
 
@@ -30,13 +30,15 @@ impl State {
     pub(super) fn hear_opening(&mut self) {
         while let Some(told) = self.run.opening.as_ref().and_then(|(_, session)| session.hear().next()) {
             match told {
-                Told::Progress { words, done, total } => self.run.progress = Some(Progress { words, done, total }),
-                Told::Opened(opened) => {
+                SessionNews::Progress { words, done, total } => {
+                    self.run.progress = Some(Progress { words, done, total })
+                }
+                SessionNews::Opened(opened) => {
                     if let Some((source, session)) = self.run.opening.take() {
                         self.begin(source, session, opened);
                     }
                 }
-                Told::Fault(fault, asks) => {
+                SessionNews::Fault(fault, asks) => {
                     let opening = self.run.opening.take();
                     match opening {
                         _ if fault.is_stop => {}
