@@ -208,7 +208,7 @@ fn reading_and_converting_are_cancelled_and_the_window_goes_on() {
     harness.run_steps(2);
     let import = harness.state().state.run().import.as_ref().unwrap();
     assert!(import.loaded.is_none(), "it is still being read");
-    harness.get_by_label("How far it is");
+    harness.get_by_label("Progress");
     harness.get_by_label("Cancel").click();
     harness.run_steps(2);
     assert!(harness.state().state.run().import.is_none() && harness.state().state.view().faults.is_empty());
@@ -301,13 +301,13 @@ fn a_mesh_with_an_odd_border_is_converted_once_a_side_of_it_may_be_divided() {
             window.state().state.run().import.as_ref().is_some_and(|import| import.refused.is_some())
         });
         shown(&mut harness);
-        // What to do is said in the words of the panel.
+        // The remedy is in the words of the panel.
         harness.get_by_label_contains(&format!("or allow that (below: {SWITCH})."));
         picture(&mut harness, &format!("odd-{name}"));
         harness.get_by_label(SWITCH).click();
         shown(&mut harness);
         assert!(harness.query_by_label("Refused").is_none());
-        // The leave is taken back, and given again.
+        // The permission is undone and redone.
         let is_given = |harness: &Window| harness.state().state.run().import.as_ref().unwrap().options.split_odd;
         let mut after = vec![is_given(&harness)];
         for command in [Command::Undo, Command::Redo] {
@@ -365,7 +365,7 @@ fn a_mesh_that_is_refused_is_shown_with_its_elements_marked_and_looked_at_from_n
     harness.get_by_label("Refused");
     harness.get_by_label("Triangles 861 and 3201 overlap.");
     harness.get_by_label("Take out what is too much: in the plane a place belongs to one triangle.");
-    harness.get_by_label("Mesh of 3201 triangles, as it was given, 2 elements marked");
+    harness.get_by_label("Mesh of 3201 triangles, as imported, 2 elements marked");
     let near = picture(&mut harness, "refused");
     assert!(share_of(&near, BROKEN) > 0.0005, "{}", share_of(&near, BROKEN));
     let camera = |harness: &Window| harness.state().state.run().import.as_ref().unwrap().view.camera.unwrap();
@@ -402,7 +402,7 @@ fn what_a_conversion_is_refused_for_is_marked_until_the_mesh_is_taken_otherwise(
     });
     shown(&mut harness);
     assert!(harness.state().state.view().faults.is_empty(), "it is told in the panel");
-    harness.get_by_label("Mesh of 49 triangles, as it was given, 3 elements marked");
+    harness.get_by_label("Mesh of 49 triangles, as imported, 3 elements marked");
     assert!(share_of(&picture(&mut harness, "odd"), BROKEN) > 0.001);
     let import = harness.state().state.run().import.as_ref().unwrap();
     // In the unit of the file, whatever it is scaled to.
@@ -415,7 +415,7 @@ fn what_a_conversion_is_refused_for_is_marked_until_the_mesh_is_taken_otherwise(
     harness.get_by_label("remesh its shape").click();
     shown(&mut harness);
     assert!(harness.query_by_label("Refused").is_none());
-    harness.get_by_label("Mesh of 49 triangles, as it was given");
+    harness.get_by_label("Mesh of 49 triangles, as imported");
     // Where nothing was asked before, the panel comes to tell it.
     harness.key_press(Key::Escape);
     harness.run_steps(2);

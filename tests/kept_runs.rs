@@ -168,7 +168,7 @@ fn a_file_that_goes_bad_while_it_is_open_is_told_and_the_window_keeps_what_it_ha
     until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
     let state = &harness.state().state;
     assert!(
-        state.view().faults[0].contains("line 2") && state.view().faults[0].contains("keeps what it has"),
+        state.view().faults[0].contains("line 2") && state.view().faults[0].contains("keeps the run that is open"),
         "{:?}",
         state.view().faults
     );

@@ -312,7 +312,7 @@ fn the_inspector_says_why_with_the_numbers_of_the_paper() {
     assert!(harness.query_by_label_contains("Same choice for").is_some());
     apply(&mut harness, Command::Go(Goal::Kind("side_chosen", Direction::Forward)));
     assert!(harness.query_by_label_contains("tried").is_some(), "what the side was chosen from");
-    assert!(harness.query_all_by_label_contains("taken").next().is_some());
+    assert!(harness.query_all_by_label_contains("chosen").next().is_some());
 }
 
 #[test]
@@ -417,7 +417,7 @@ fn times_are_shown_and_measured_where_they_are_asked_for() {
     assert!(harness.query_by_label_contains("state ").is_some());
     harness.state_mut().apply(Command::Measure);
     until(&mut harness, "it is measured", |harness| harness.state().state.run().measuring.is_none());
-    assert!(harness.query_by_label_contains("60 quads on and back").is_some());
+    assert!(harness.query_by_label_contains("60 quads forward and back").is_some());
 }
 
 #[test]

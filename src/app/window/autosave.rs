@@ -128,8 +128,8 @@ impl Work {
         let kept = self.keeper.insert(keeper).keep(run);
         kept.map(drop).map_err(|fault| {
             let remedy = fault.remedy.clone();
-            let told = Fault { what: format!("The run cannot be kept while you work on it: {}", fault.what), ..fault };
-            told.remedy(format!("{remedy}; it is tried again, and Ctrl+S saves the run elsewhere"))
+            let told = Fault { what: format!("The run cannot be autosaved: {}", fault.what), ..fault };
+            told.remedy(format!("{remedy}; autosave tries again, and Ctrl+S saves the run elsewhere"))
         })
     }
 }
@@ -341,7 +341,7 @@ mod tests {
             std::thread::sleep(Duration::from_millis(30));
         }
         let told = saver.told.recv_timeout(Duration::from_secs(20)).unwrap();
-        assert!(told.what.contains("cannot be kept") && told.remedy.contains("Ctrl+S"), "{told}");
+        assert!(told.what.contains("cannot be autosaved") && told.remedy.contains("Ctrl+S"), "{told}");
         assert!(saver.told.recv_timeout(Duration::from_millis(100)).is_err());
     }
 }

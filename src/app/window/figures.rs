@@ -176,12 +176,12 @@ impl FigureForm {
     fn wanted(&self, bookmarks: &[u64]) -> Result<Vec<Wanted>, Fault> {
         if self.content == Content::Bookmarks {
             if bookmarks.is_empty() {
-                return Err(Fault::new("There is no bookmark yet").remedy("Ctrl+B sets one at the step at hand"));
+                return Err(Fault::new("There are no bookmarks").remedy("Ctrl+B bookmarks the current step"));
             }
             return Ok(bookmarks.iter().map(|step| Wanted::at(Some(Stop::Step(*step)))).collect());
         }
         let stops = crate::app::input::stops(&format!("nq={}", self.stops.replace(' ', "")));
-        let stops = stops.map_err(|what| Fault::new(format!("\"{}\" are no stops: {what}", self.stops)))?;
+        let stops = stops.map_err(|what| Fault::new(format!("\"{}\" are not valid stops: {what}", self.stops)))?;
         Ok(stops.0.into_iter().map(Wanted::at).collect())
     }
 }

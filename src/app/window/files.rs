@@ -147,7 +147,7 @@ impl Watcher {
                     |fault| {
                         let remedy =
                             if fault.remedy.is_empty() { String::new() } else { format!("{}. ", fault.remedy) };
-                        fault.remedy(format!("{remedy}The window keeps what it has"))
+                        fault.remedy(format!("{remedy}The window keeps the run that is open"))
                     },
                 );
                 if tell.send(read).is_err() {

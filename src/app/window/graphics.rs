@@ -68,8 +68,8 @@ impl Lost {
         let what = self.0.lock().ok()?.refused.take()?;
         let what = what.lines().next().unwrap_or_default().to_owned();
         Some(
-            Fault::new(format!("The graphics driver refuses to draw: {what}"))
-                .remedy("The run itself goes on; save it and start quadfront again"),
+            Fault::new(format!("The graphics driver reports an error: {what}"))
+                .remedy("The run itself is not affected; save it and start quadfront again"),
         )
     }
 
@@ -85,14 +85,14 @@ impl Lost {
         let told = self.0.lock().ok()?;
         let reason = told.lost.as_ref()?.trim_end_matches('.');
         let remedy = match &told.saved {
-            Some(path) => format!("The run was saved; go on with it by: quadfront open {}", path.display()),
+            Some(path) => format!("The run was saved; continue with: quadfront open {}", path.display()),
             None => "Start quadfront again".to_owned(),
         };
         Some(Fault::new(format!("The graphics device was lost ({reason})")).remedy(remedy))
     }
 }
 
-/// Makes the painter known to egui's renderer.
+/// Installs the painter in egui's renderer.
 pub fn install_painter(render: &RenderState) {
     let painter = Painter::new(&render.device, render.target_format, samples(&render.adapter.get_info()));
     render.renderer.write().callback_resources.insert(painter);

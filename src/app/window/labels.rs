@@ -1,5 +1,5 @@
-//! What is laid over a view as text and curves: letters, H-values, frontal angles, node ids, ellipses, scale bar and axes. All of it
-//! thins out by its size on the screen; a label that would cover an earlier one is dropped.
+//! Text and curves over a view: letters, H-values, frontal angles, node ids, ellipses, scale bar and axes. Small details are left
+//! out; a label that would cover an earlier one is dropped.
 
 mod corners;
 mod measures;
@@ -22,18 +22,18 @@ use crate::render::pick::Cover;
 use crate::render::scene::{Decision, Outlined, Scene};
 use glam::{DVec2, DVec3};
 
-/// Labels in a view, and ellipses.
+/// The greatest number of labels in a view, and of ellipses.
 const MOST_LABELS: usize = 150;
-/// Ids stand where the nearest neighbour is so many points away.
+/// A node shows its id if its nearest neighbour is at least so many points away.
 const LEAST_FOR_IDS: f64 = 34.0;
 const MOST_ELLIPSES: usize = 60;
-/// Ellipses are drawn at this share of the unit length.
+/// Ellipses are drawn at this fraction of the unit length.
 const ELLIPSE: f64 = 0.25;
 
-/// How long labels take to come when the zoom has changed, in seconds.
+/// How long new labels fade in after a zoom, in seconds.
 const COMING: f64 = 0.12;
 
-/// Which labels were there in the frame before, so that those that a zoom brings come softly.
+/// The labels of the frame before, so that labels which a zoom adds fade in.
 #[derive(Default)]
 pub struct Memory {
     scale: f64,
@@ -49,7 +49,7 @@ pub enum ViewRole {
     Whole,
 }
 
-/// What labels are laid over: a view of a scene, and where it is one in space what of it hides labels.
+/// The view of a scene that is labelled, and in space the part of it that hides labels.
 #[derive(Clone, Copy)]
 pub struct LabelledScene<'a> {
     pub frame: &'a ViewFrame,
@@ -57,7 +57,7 @@ pub struct LabelledScene<'a> {
     pub cover: Option<&'a Cover>,
 }
 
-/// Shows everything that is laid over a view.
+/// Shows all labels of a view.
 pub fn show(
     ui: &Ui,
     seen: &LabelledScene<'_>,
@@ -138,26 +138,26 @@ struct Labels<'a> {
     /// Labels of the frame before, with the times at which they came, and those of this one.
     before: BTreeMap<String, f64>,
     labels: BTreeMap<String, f64>,
-    /// The time at which labels come that were not there before; none where they are there at once.
+    /// The time at which new labels start to fade in; none if they do not.
     is_new: Option<f64>,
     now: f64,
 }
 
 impl Labels<'_> {
-    /// Where a node lies on the screen; none where it is not there, or hidden.
+    /// Where a node lies on the screen; none if it does not exist or is hidden.
     fn place(&self, node: NodeId) -> Option<Pos2> {
         let spot = self.scene.spot(node).filter(|_| self.moment.mesh.has_node(node))?;
         self.on_screen(spot.at)
     }
 
-    /// Where a place of the scene lies on the screen; none where it is hidden.
+    /// Where a place of the scene lies on the screen; none if it is hidden.
     fn on_screen(&self, place: DVec3) -> Option<Pos2> {
         let seen = self.frame.camera.seen(place, self.frame.size());
         let hidden = self.cover.is_some_and(|cover| cover.hides(seen));
         (!hidden).then(|| self.frame.rect.min + Vec2::new(seen.x as f32, seen.y as f32))
     }
 
-    /// The place of the scene at a place of the plane.
+    /// The place in the scene of a point of the plane.
     fn lifted(&self, p: DVec2) -> DVec3 {
         match self.moment.mesh.ground() {
             Some(ground) if self.scene.form().is_in_space() => ground.atlas.xyz(p),
@@ -165,19 +165,19 @@ impl Labels<'_> {
         }
     }
 
-    /// Whether the surface is seen from behind at a node, so that what runs anticlockwise in the mesh runs clockwise here.
+    /// Whether the surface is seen from behind at a node, so that anticlockwise in the mesh is clockwise on the screen.
     fn is_behind(&self, node: NodeId) -> bool {
         self.scene.spot(node).is_some_and(|spot| spot.normal.dot(self.frame.camera.towards()) < 0.0)
     }
 
-    /// Whether the decision is too small on the screen to be lettered.
+    /// Whether the decision is too small on the screen for letters.
     fn small_view(&self, which: ViewRole, decision: &Decision) -> bool {
         let Some([a, b]) = decision.base else { return false };
         let length = self.place(a).zip(self.place(b)).map_or(0.0, |(a, b)| a.distance(b));
         which == ViewRole::Whole && length < 24.0
     }
 
-    /// Puts a label down, unless it would cover one that is there; its plate is drawn first.
+    /// Adds a label, unless it would cover another one; its plate is drawn first.
     fn label(&mut self, at: Pos2, anchor: Align2, text: &str, font: FontId, colour: Color32, plate: bool) -> bool {
         if self.taken.len() >= MOST_LABELS {
             return false;
@@ -199,7 +199,7 @@ impl Labels<'_> {
         true
     }
 
-    /// A, B, C and D, away from the middle of what they stand at.
+    /// The letters A, B, C and D, on the outer side of their nodes.
     fn letters(&mut self, decision: &Decision) {
         let letters: Vec<(Pos2, char)> = decision.letters().filter_map(|(n, c)| Some((self.place(n)?, c))).collect();
         if letters.is_empty() {
@@ -240,7 +240,7 @@ impl Labels<'_> {
         }
     }
 
-    /// What is picked and hovered, named.
+    /// The names of what is selected and of what is under the pointer.
     fn pointed(&mut self, state: &State) {
         for (what, strong) in [(state.document().picked, true), (state.frame().hovered, false)] {
             let Some(what) = what else { continue };

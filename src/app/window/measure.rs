@@ -119,8 +119,8 @@ impl Measuring {
         };
         let [on, back, leap] = [0, 1, 2].map(|k| (spread(&self.states[k], 2), spread(&self.frames[k], 0)));
         Some(format!(
-            "{QUADS} quads on and back, {LEAPS} leaps; milliseconds, median (largest): state {} on, {} back, {} leaping; until the \
-             picture stands {}, {}, {}.",
+            "{QUADS} quads forward and back, {LEAPS} leaps; milliseconds, median (largest): state {} forward, {} back, {} leaping; until the \
+             picture is drawn {}, {}, {}.",
             on.0, back.0, leap.0, on.1, back.1, leap.1
         ))
     }

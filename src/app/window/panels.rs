@@ -42,12 +42,12 @@ pub fn icon_button(ui: &mut Ui, icon: &str, size: f32, command: &Command, enable
     response.on_hover_text(command.tip())
 }
 
-/// The head of a section, with its source at the right.
+/// The heading of a section, with its source at the right.
 pub fn heading(ui: &mut Ui, title: &str, source: &str, palette: &Palette) {
     ui.add_space(8.0);
     let width = ui.max_rect().width();
     ui.horizontal(|ui| {
-        // What stands below may be wider than the panel: heads keep to it.
+        // What follows may be wider than the panel; headings are not.
         ui.set_max_width(width);
         ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {

@@ -260,8 +260,8 @@ impl Watch for Voice {
 pub(super) fn words_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "Reading",
-        Stage::Mend => "Mending the mesh",
-        Stage::Chart => "Laying the surface flat",
+        Stage::Mend => "Repairing the mesh",
+        Stage::Chart => "Flattening the surface",
         Stage::Divide => "Dividing the curves",
         Stage::Triangulate => "Triangulating",
         Stage::Adapt => "Adapting the triangles",

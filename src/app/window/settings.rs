@@ -95,9 +95,9 @@ impl Settings {
     /// If there is a file and it cannot be read.
     pub fn read(path: &Path) -> Result<Option<Settings>, Fault> {
         let fault = |what: String| {
-            Fault::new(format!("What was kept of the window cannot be read: {what}"))
+            Fault::new(format!("The settings of the window cannot be read: {what}"))
                 .at(path.display().to_string())
-                .remedy("It is left out, and written anew when the window changes")
+                .remedy("They are ignored, and written again when the window changes")
         };
         let text = match std::fs::read_to_string(path) {
             Ok(text) => text,
@@ -106,7 +106,7 @@ impl Settings {
         };
         let settings: Settings = serde_json::from_str(&text).map_err(|error| fault(error.to_string()))?;
         if settings.version != VERSION {
-            return Err(fault(format!("it is of version {}, and this quadfront knows {VERSION}", settings.version)));
+            return Err(fault(format!("they have version {}, and this quadfront reads {VERSION}", settings.version)));
         }
         Ok(Some(settings))
     }
@@ -119,7 +119,7 @@ impl Settings {
         let text = serde_json::to_string_pretty(self).map_err(|error| Fault::new(error.to_string()))?;
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|error| {
-                Fault::new(format!("The folder cannot be made: {error}")).at(folder.display().to_string())
+                Fault::new(format!("The folder cannot be created: {error}")).at(folder.display().to_string())
             })?;
         }
         save::save(path, |out| out.write_all(text.as_bytes()))
@@ -174,7 +174,7 @@ mod tests {
         {
             std::fs::write(&path, bad).unwrap();
             let told = Settings::read(&path).unwrap_err().to_string();
-            assert!(told.contains("window.json") && told.contains("left out"), "{told}");
+            assert!(told.contains("window.json") && told.contains("ignored"), "{told}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The views: the mesh in space or in its plane, the same from the other end of the zoom, and through the metric of a node.
+//! The views of the mesh: in space or in its plane, as a whole or near the decision, and through the metric of a node.
 
 mod cameras;
 mod faces;
@@ -37,16 +37,16 @@ use stage::Stage;
 pub enum Lens {
     /// The normalised space of a node, where unit edges have length 1 and right angles look right.
     Metric,
-    /// The whole mesh, or where the main view shows that, the decision.
+    /// The whole mesh, or the decision if the main view shows the whole mesh.
     Whole,
 }
 
-/// The pictures of the views on the card: the main one, the lens, the whole, and the plane beside space.
+/// The pictures on the graphics card: 0 is the main view, then come the lens, the whole, and the plane beside space.
 const LENS: usize = 1;
 const WHOLE: usize = 2;
 const BESIDE: usize = 3;
 
-/// All views, with the scenes that they share: that of the plane and that in space.
+/// All views, and the two scenes that they share: one of the plane and one in space.
 #[derive(Default)]
 pub struct Views {
     plane: Stage,
@@ -55,17 +55,17 @@ pub struct Views {
     hint: Option<ElementId>,
     /// Labels of the views in the frame before.
     labels: [labels::Memory; 4],
-    /// What the open menu is about.
+    /// What the open context menu is about.
     menu_of: Option<Outlined>,
-    /// The place that a drag in space turns about.
+    /// The point about which a drag in space turns the mesh.
     pivot: Option<glam::DVec3>,
-    /// What of the scene in space hides labels.
+    /// The part of the scene in space that hides labels.
     cover: space::Covering,
-    /// The last request to look somewhere that was followed.
+    /// The last request to look somewhere that the views have followed.
     looked: u64,
 }
 
-/// A view's camera with its place on the screen.
+/// The camera of a view and its rectangle on the screen.
 #[derive(Clone, Copy)]
 pub struct ViewFrame {
     pub camera: Camera,
@@ -128,7 +128,7 @@ impl Views {
         }
     }
 
-    /// What is pointed at and dragged in a view.
+    /// The pointer in a view.
     fn canvas(&self, ui: &Ui, rect: Rect, name: &str, state: &State) -> egui::Response {
         let response = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, spoken(state)));
@@ -201,7 +201,7 @@ impl Views {
         labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
     }
 
-    /// What is under the pointer, and what is done with it.
+    /// Reports what is under the pointer, and selects, shows and offers actions.
     fn point(
         &mut self,
         ui: &Ui,
@@ -244,13 +244,13 @@ impl Views {
         }
     }
 
-    /// Takes note of what differs from the state before.
+    /// Notes the differences from the state before.
     pub fn note(&mut self, changes: &Changes, slots: usize) {
         self.plane.note(changes, slots);
         self.space.note(changes, slots);
     }
 
-    /// Brings a scene up to date with the state: by the differences, if those are known. `leads`: it is laid out for this view.
+    /// Brings a scene up to date with the state, by the differences if possible. `leads`: the scene is laid out for this view.
     fn update(
         &mut self,
         state: &State,
@@ -264,7 +264,7 @@ impl Views {
         stage.update(state, moment, palette, frame, form, leads, &mut self.shading);
     }
 
-    /// Draws a view; `hidden`: how much is seen of covered lines.
+    /// Draws a view; `hidden`: the opacity of hidden lines.
     fn paint(&self, ui: &Ui, index: usize, frame: &ViewFrame, palette: &Palette, hidden: f32, form: Form) {
         let (stage, light) = match form {
             Form::Plane => (&self.plane, Light::NONE),
@@ -290,7 +290,7 @@ fn moved(before: ViewCamera, view: ViewKind, camera: ViewCamera, commands: &mut 
     }
 }
 
-/// What screen readers hear of the view.
+/// The description of the view for screen readers.
 fn spoken(state: &State) -> String {
     match &state.run().moment {
         Some(moment) => format!("Mesh at step {}, {} quadrilaterals", moment.step, moment.standing),
@@ -315,7 +315,7 @@ fn empty(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pale
     });
 }
 
-/// A rectangle on whole pixels, so that the picture is laid down as it was drawn.
+/// Rounds a rectangle to whole pixels, so that the picture is not resampled.
 fn whole_pixels(rect: Rect, pixels: f32) -> Rect {
     let whole = |x: f32| (x * pixels).round() / pixels;
     Rect::from_min_max(
@@ -324,7 +324,7 @@ fn whole_pixels(rect: Rect, pixels: f32) -> Rect {
     )
 }
 
-/// What egui's renderer is handed: the scene as it was when the frame was made.
+/// A picture for egui's renderer: the scene as it was when the frame was made.
 struct Picture {
     scene: Arc<Scene>,
     view: View,

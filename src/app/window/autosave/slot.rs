@@ -34,7 +34,7 @@ impl RunSlot {
     /// A new file.
     pub fn new(folder: &Path) -> Result<RunSlot, Fault> {
         let refuse = |what: std::io::Error| {
-            Fault::new(format!("The run cannot be kept while you work on it: {what}"))
+            Fault::new(format!("The run cannot be autosaved: {what}"))
                 .at(folder.display().to_string())
                 .remedy("Make the folder writable, or save the run with Ctrl+S")
         };

@@ -1,4 +1,4 @@
-//! Frontal angles: wedges at corners that are sides already, arcs with their values at the base.
+//! Frontal angles: wedges at corners where the front is the side, arcs with their values at the base.
 
 use eframe::egui::{Align2, Pos2, Shape, Stroke, Vec2};
 
@@ -10,7 +10,7 @@ use crate::core::front::segment::Segment;
 use crate::render::scene::Decision;
 
 impl Labels<'_> {
-    /// Wedges at corners that are sides already, arcs with their values where there is room.
+    /// Wedges at corners where the front is the side, arcs with their values if there is room.
     pub(super) fn wedges_and_arcs(&mut self, decision: &Decision, which: ViewRole) {
         let moment = self.moment;
         let rect = self.frame.rect.expand(40.0);
@@ -42,7 +42,7 @@ impl Labels<'_> {
         };
         let centre = self.place(at)?;
         let legs = [self.place(from)? - centre, self.place(to)? - centre];
-        // Seen from behind, the mesh runs the other way round.
+        // Seen from behind, the mesh turns the other way.
         Some((centre, if self.is_behind(at) { [legs[1], legs[0]] } else { legs }))
     }
 

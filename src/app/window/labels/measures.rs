@@ -1,5 +1,5 @@
-//! What is measured against: metric ellipses, the unit grid of the lens, the frame of the main view, scale bar and axes, and the
-//! legend of colours.
+//! Measures: metric ellipses, the unit grid of the lens, the frame of the main view, scale bar and axes, and the legend of
+//! colours.
 
 use eframe::egui::{Align2, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::DVec2;
@@ -33,7 +33,7 @@ impl Labels<'_> {
         }
     }
 
-    /// The metric ellipse of a node on the screen, at a share of the unit length; in space it lies in the tangent plane.
+    /// The metric ellipse of a node on the screen, at a fraction of the unit length; in space it lies in the tangent plane.
     fn ellipse(&self, node: NodeId, share: f64) -> Vec<Pos2> {
         let mesh = &self.moment.mesh;
         let p = mesh.uv(node);
@@ -57,7 +57,7 @@ impl Labels<'_> {
         (0..48).map(point).collect()
     }
 
-    /// What the metric lens shows as a unit circle, at its place on the surface.
+    /// The unit circle of the metric lens, at its place on the surface.
     pub(super) fn lens_in_space(&self, state: &State) {
         let Some((node, _)) = viewport::lens_node(state, self.moment).filter(|lens| self.place(lens.0).is_some())
         else {
@@ -94,7 +94,7 @@ impl Labels<'_> {
         self.painter.extend(Shape::dashed_line(&circle, stroke, 4.0, 4.0));
     }
 
-    /// What the main view shows, as a frame; only where it is smaller than this view.
+    /// A frame around the part in the main view, if that is not the whole mesh.
     pub(super) fn main_frame(&self, state: &State) {
         let in_plane = !(state.is_in_space() && state.workspace().surfaces.view == SurfaceView::Space);
         let ViewCamera { camera, is_fitted, size } = state.view().plane;
@@ -143,7 +143,7 @@ impl Labels<'_> {
     }
 }
 
-/// The legend of what elements are coloured by.
+/// The legend of the colours of elements.
 pub fn shading(ui: &Ui, frame: &ViewFrame, shading: &Shading, palette: &Palette) {
     let Some(map) = shading.by.map() else { return };
     let painter = ui.painter_at(frame.rect);

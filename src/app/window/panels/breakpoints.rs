@@ -15,7 +15,7 @@ use crate::core::run::watch::Watched;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
-/// Fields and words that are offered at once.
+/// The greatest number of completions.
 const OFFERED: usize = 6;
 
 /// What the panel keeps for itself.
@@ -65,7 +65,7 @@ fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: 
     }
 }
 
-/// What is watched, as the view knows it.
+/// Something that is watched, as the views know it.
 pub fn outlined(watched: Watched) -> Outlined {
     match watched {
         Watched::Node(node) => Outlined::Node(node),
@@ -107,7 +107,7 @@ fn watches(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pa
     }
 }
 
-/// What could stand in place of the word that is being typed, with what it means.
+/// Completions of the word that is being typed, with their meaning.
 fn offers(text: &str) -> Vec<(String, String)> {
     if text.trim().is_empty() {
         return Vec::new();
@@ -140,7 +140,7 @@ fn word_start(text: &str) -> usize {
 
 fn field(ui: &mut Ui, text: &mut String, offers: &[(String, String)], commands: &mut Vec<Command>, palette: &Palette) {
     let id = Id::unique("condition");
-    // Tab takes the first offer; it must not leave the field.
+    // Tab takes the first completion; it must not leave the field.
     let has_focus = ui.memory(|memory| memory.has_focus(id));
     let taken = has_focus && !offers.is_empty() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab));
     let field = TextEdit::singleline(text)

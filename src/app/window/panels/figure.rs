@@ -1,4 +1,4 @@
-//! The panel for figures: what is shown, how, how large.
+//! The panel for figures: what they show, their look and their size.
 
 use eframe::egui::{
     self, Align2, ComboBox, Context, DragValue, Grid, RichText, TextEdit, Ui, Vec2, WidgetInfo, Window,
@@ -90,7 +90,7 @@ fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palet
         Grid::new("figure layers").num_columns(4).spacing(Vec2::new(10.0, 3.0)).show(ui, |ui| {
             for (k, layer) in Layer::ALL.into_iter().enumerate() {
                 let mut on = figure.has(layer);
-                // Layers of the view have the same names elsewhere.
+                // The layers of the views have the same names.
                 let name = if layer == Layer::H { "H-values" } else { layer.name() };
                 let response = ui.checkbox(&mut on, name);
                 response.widget_info(|| {

@@ -118,7 +118,7 @@ fn chips(ui: &mut Ui, local: &mut FrontState, moment: &Moment, palette: &Palette
     ui.add_space(5.0);
 }
 
-/// Places in the front of the segments that are shown, in their order; each with its rank, from 1.
+/// The segments that are shown, in their order: their places in the front, with their ranks from 1.
 fn rows(local: &FrontState, moment: &Moment) -> Vec<(usize, usize)> {
     let mut rows: Vec<(usize, usize)> = (0..moment.front.len()).map(|i| (i, i + 1)).collect();
     rows.retain(|row| local.classes[usize::from(moment.front[row.0].class) - 1]);
@@ -169,7 +169,7 @@ fn table(
         .auto_shrink(false)
         .animate_scrolling(false)
         .cell_layout(Layout::right_to_left(Align::Center));
-    // Node numbers of large meshes need more room; the loop is told elsewhere where there is only one.
+    // Node numbers of large meshes need more room; a single loop needs no column.
     let most = moment.front.iter().map(|s| s.a.max(s.b).0).max().unwrap_or(0);
     let digits = most.max(1).ilog10() as f32 + 1.0;
     let one_loop = moment.loops.len() < 2;

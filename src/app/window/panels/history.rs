@@ -1,4 +1,4 @@
-//! The last steps before the state at hand, and what a person has changed.
+//! The steps around the current one, and the changes of the user.
 
 use eframe::egui::{RichText, ScrollArea, Ui};
 
@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         inset().show(ui, |ui| {
             heading(ui, "Changes of this run", "", palette);
             if state.document().edits.is_empty() {
-                ui.label(note("None: it is the case's own.", palette));
+                ui.label(note("None: the run has the parameters of the case.", palette));
             }
             for edit in &state.document().edits {
                 let what = match &edit.kind {

@@ -1,4 +1,4 @@
-//! What is picked or pointed at, or else the decision at hand, with the numbers put into the paper's formulas.
+//! The selection, or else the current decision or what is under the pointer, with numbers in the paper's formulas.
 
 mod segment;
 mod why;
@@ -58,18 +58,18 @@ fn title(ui: &mut Ui, text: String, palette: &Palette) {
     ui.label(RichText::new(text).font(theme::semibold(theme::TITLE)).color(ink(palette.strong)));
 }
 
-/// What can be done with what is shown.
+/// Actions on what is shown.
 fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Command>) {
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| past::actions(ui, state, what, commands));
 }
 
-/// A line of formulas: `_{x}` is set low, `**x**` stands out.
+/// A line of formulas: `_{x}` is a subscript, `**x**` is emphasised.
 fn formula(ui: &mut Ui, text: &str, palette: &Palette) -> Response {
     ui.label(theme::formula(text, theme::FORMULA, ink(palette.text), ink(palette.strong)))
 }
 
-/// The same as a note in a sentence.
+/// The same for a sentence.
 fn sentence(ui: &mut Ui, text: &str, colour: Rgba, palette: &Palette) -> Response {
     ui.add(Label::new(theme::formula(text, theme::TABLE, ink(colour), ink(palette.strong))).wrap())
 }
@@ -78,12 +78,12 @@ fn gone(ui: &mut Ui, what: &str, palette: &Palette) {
     ui.label(note(format!("{what} does not exist at this step."), palette));
 }
 
-/// Points between columns.
+/// The gap between columns in points.
 const GAP: f32 = 7.0;
 
-/// One row of a table in columns of fixed widths, the last one taking the rest; what does not fit is cut and told on hover.
+/// One row of a table in columns of fixed widths; the last one takes the rest. Long texts are cut and shown on hover.
 fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground: Option<Rgba>) -> Response {
-    // Numbers stand to the right, words to the left.
+    // Numbers are aligned to the right, words to the left.
     let left_last = texts.last().is_some_and(|text| text.contains(char::is_alphabetic) && !text.ends_with('°'));
     let full = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(Vec2::new(full, 20.0), Sense::click());
@@ -106,13 +106,13 @@ fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground
     response
 }
 
-/// The head of such a table.
+/// The headings of such a table.
 fn table_head(ui: &mut Ui, widths: &[f32], texts: &[&str], palette: &Palette) {
     let texts: Vec<String> = texts.iter().map(|text| (*text).to_owned()).collect();
     table_row(ui, widths, &texts, palette.weak, None);
 }
 
-/// A thing that can be picked, as a link.
+/// A link that selects something.
 fn link(ui: &mut Ui, text: String, what: Outlined, commands: &mut Vec<Command>, palette: &Palette) {
     let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text));
     let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false));
@@ -136,7 +136,7 @@ fn elements(ui: &mut Ui, name: &str, ids: &[ElementId], commands: &mut Vec<Comma
     });
 }
 
-/// Nodes with their places and what their metrics ask for.
+/// Nodes with their places and the sizes of their metrics.
 fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut Vec<Command>, palette: &Palette) {
     let widths = [38.0, 44.0, 44.0, 48.0, 44.0];
     let axes = if moment.mesh.ground().is_some() { ["u", "v"] } else { ["x", "y"] };
@@ -174,7 +174,7 @@ fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut V
         ui.label(note("Plane case: u = x, v = y, z = 0.", palette));
         return;
     }
-    // On surfaces the columns are places in the chart; where that is in space stands below.
+    // On surfaces the columns are coordinates in the chart; those in space follow.
     for (name, node) in nodes {
         let [x, y, z] = moment.mesh.xyz(*node).to_array().map(words::size);
         ui.label(note(format!("{name} {} in space: {x}, {y}, {z}.", node.0), palette));

@@ -78,7 +78,7 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
     }
 }
 
-/// A field with the focus; true where it was ended by Enter.
+/// A field with the focus. Returns whether the user has pressed Enter.
 fn field(ui: &mut Ui, text: &mut String, hint: &str, name: &str) -> bool {
     let field = TextEdit::singleline(text).hint_text(hint).desired_width(WIDTH);
     let response = ui.add(field);

@@ -1,4 +1,4 @@
-//! The parameters at the step at hand, live: a change holds from this step on.
+//! The parameters at the current step: a change takes effect from this step on.
 
 use eframe::egui::{self, Align, ComboBox, Layout, RichText, Role, ScrollArea, Slider, Ui, Vec2, WidgetInfo};
 
@@ -10,7 +10,7 @@ use crate::app::window::theme::{self, ink};
 use crate::core::convert::parameters::Parameters;
 use crate::render::palette::Palette;
 
-/// A number: key, name, range, decimals, unit, what the paper says, and what it does.
+/// A number: key, name, range, decimals, unit, the paper's value, and its effect.
 struct Number {
     key: &'static str,
     name: &'static str,
@@ -51,12 +51,12 @@ const NUMBERS: [Number; 7] = [
     },
     Number {
         key: "side_deviation",
-        name: "side off",
+        name: "side dev.",
         range: [0.0, 90.0],
         decimals: 1,
         unit: "°",
         paper: "paper 30",
-        tip: "A side edge may be off the direction aimed at by this (eq. 8).",
+        tip: "The greatest deviation of a side edge from its target direction (eq. 8).",
     },
     Number {
         key: "side_split",
@@ -74,7 +74,7 @@ const NUMBERS: [Number; 7] = [
         decimals: 0,
         unit: "",
         paper: "none",
-        tip: "Rows that are offset from the boundary before anything else.",
+        tip: "Rows that are offset from the boundary before the front starts.",
     },
     Number {
         key: "theta_revr",
@@ -193,12 +193,12 @@ fn row(
     });
 }
 
-/// A button that gives a parameter the value of the case again.
+/// A button that resets a parameter to the value of the case.
 fn back(ui: &mut Ui, state: &State, key: &'static str, commands: &mut Vec<Command>) {
     let Some(value) = state.parameters_of_case().and_then(|case| case.text_of(key)) else { return };
     let response = ui.add(egui::Button::new(format!("{} {value}", icons::RESET)).small());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {key}")));
-    if response.on_hover_text("Back to the value of the case, from this step on").clicked() {
+    if response.on_hover_text("Reset to the value of the case, from this step on").clicked() {
         commands.push(Command::Set(key, value));
     }
 }

@@ -12,7 +12,7 @@ use crate::core::mesh::ids::ElementId;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Outlined, angles};
 
-/// Bars of edge lengths up to this, and of angles over 180 degrees.
+/// The greatest edge length of the bars, and how many bars there are.
 const LONGEST: f64 = 3.0;
 const BARS: usize = 36;
 
@@ -55,13 +55,13 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     }
 }
 
-/// Lights up what a bar stands for.
+/// Highlights what a bar stands for.
 fn light(commands: &mut Vec<Command>, lit: Vec<Outlined>, what: &str) {
     let notice = format!("{} {what} are highlighted in the views.", words::grouped(lit.len() as u64));
     commands.push(Command::LightUp(lit, notice));
 }
 
-/// The head of a plot; true where its note was clicked.
+/// The heading of a plot. Returns whether its note was clicked.
 fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
     let mut clicked = false;
     ui.horizontal(|ui| {
@@ -76,7 +76,7 @@ fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
     clicked
 }
 
-/// Shows bars; tells the ends of one that was clicked.
+/// Shows bars. Returns the ends of one that was clicked.
 fn chart(
     ui: &mut Ui,
     id: &str,

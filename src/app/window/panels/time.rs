@@ -1,4 +1,4 @@
-//! Going through time: the row of buttons with the status line, and the timeline below it.
+//! The transport: a row of buttons with the status line, and the timeline below it.
 
 use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
 
@@ -12,7 +12,7 @@ use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::render::palette::Palette;
 
-/// Quadrilaterals a second that can be chosen.
+/// The speeds to choose from, in quadrilaterals a second.
 const SPEEDS: [f32; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 30.0, 60.0];
 
 /// What the panel keeps for itself.

@@ -19,11 +19,11 @@ const LABELS: f32 = 118.0;
 const COUNTS: f32 = 92.0;
 const LANE: f32 = 12.0;
 const GAP: f32 = 2.0;
-/// Heights of a curve: of those that always stand, and of those that stand where there is room.
+/// Height of a curve.
 const CURVE: f32 = 24.0;
-/// Opacity of what is past and what is to come.
+/// Opacity before and after the current step.
 const TIMES: [f32; 2] = [0.8, 0.38];
-/// How near to a bookmark a click must be.
+/// How near to a bookmark a click must be, in points.
 const NEAR: f32 = 6.0;
 
 /// What the timeline keeps for itself.
@@ -35,7 +35,7 @@ pub struct TimelineState {
     /// The steps that are shown, unless those are all, and the number of the run that they belong to.
     span: Option<[f64; 2]>,
     run: u64,
-    /// Where a drag has asked to go.
+    /// The step that a drag has asked for.
     seeking: Option<u64>,
 }
 
@@ -89,7 +89,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut TimelineState, commands: &mu
     }
 }
 
-/// The steps that are shown, after what was asked by the wheel.
+/// The steps that are shown, after zooming and scrolling.
 fn turn(ui: &Ui, response: &Response, plot: Rect, state: &State, local: &mut TimelineState) -> [f64; 2] {
     let all = state.run().track.len().max(1) as f64;
     let mut span = local.span.filter(|span| span[1] <= all).unwrap_or([0.0, all]);
@@ -112,7 +112,7 @@ fn turn(ui: &Ui, response: &Response, plot: Rect, state: &State, local: &mut Tim
     span
 }
 
-/// Click and drag go to the step under the pointer; a click beside a bookmark to that.
+/// A click or a drag goes to the step under the pointer; a click near a bookmark goes to the bookmark.
 fn seek(
     response: &Response,
     axis: &Axis,
@@ -138,7 +138,7 @@ fn seek(
     }
 }
 
-/// What stands under the pointer.
+/// The text for the step under the pointer.
 fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
     let step = axis.step(at.x).round().clamp(0.0, state.run().track.len() as f64) as u64;
     let Some(tracked) = step.checked_sub(1).and_then(|k| state.run().track.get(k as usize)) else {
@@ -162,7 +162,7 @@ fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
     text
 }
 
-/// The name of a row with several kinds is a button that gives each its own row, and back.
+/// The name of a row with several kinds is a button that gives each kind its own row, and back.
 fn label_button(ui: &Ui, axis: &Axis, lane: &Lane, y: f32) -> Option<usize> {
     let group = lane.group?;
     let rect =
@@ -244,7 +244,7 @@ impl Drawing<'_> {
         self.text(Pos2::new(plot.right() + COUNTS - 32.0, y), Align2::RIGHT_CENTER, count, colour);
     }
 
-    /// One tick for each event; a density strip where there are more than one a column.
+    /// One tick for each event, or a density strip if there are several in many columns.
     fn lane(&self, lane: &Lane, y: f32) {
         let plot = self.axis.plot;
         let ground = Rect::from_min_size(Pos2::new(plot.left(), y), Vec2::new(plot.width(), LANE));

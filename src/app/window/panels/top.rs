@@ -1,4 +1,4 @@
-//! The bar of menus, what is open, and the field for commands.
+//! The bar with the menus, the name of the case, and the field for commands.
 
 use eframe::egui::{
     self, Align, Align2, Button, Layout, MenuBar, RichText, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo,
@@ -15,9 +15,9 @@ use crate::render::camera::Bearing;
 use crate::render::palette::Palette;
 use crate::render::scene::ColourBy;
 
-/// What a list in a menu leaves of the height of the window.
+/// How much of the window's height a list in a menu leaves free.
 const ROOM: f32 = 120.0;
-/// How wide the longest name of a built-in case is.
+/// The width of the longest name of a built-in case.
 const NAMES: f32 = 176.0;
 
 /// Shows the bar.
@@ -35,7 +35,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         ui.add_space(8.0);
         field(ui, bar.width(), commands, palette);
     });
-    // What is about to be converted has its name in its panel.
+    // The panel of an import shows its name.
     if let Some(opened) = state.run().opened.as_ref().filter(|_| state.run().import.is_none()) {
         let painter = ui.painter_at(bar);
         let name = painter.layout_no_wrap(opened.case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
@@ -81,7 +81,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         ui.separator();
         let open = |name: &str| Command::Open(Source::BuiltIn(name.to_owned()));
         ui.menu_button("Built-in cases", |ui| {
-            // More than a small window has room for.
+            // A small window has no room for all of them.
             let height = ui.ctx().content_rect().height() - ROOM;
             ui.set_min_width(NAMES);
             ScrollArea::vertical().max_height(height).show(ui, |ui| {
@@ -140,7 +140,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     });
 }
 
-/// Looks like a field and opens the palette.
+/// A button that looks like a field and opens the palette.
 fn field(ui: &mut Ui, room: f32, commands: &mut Vec<Command>, palette: &Palette) {
     let width = if room > 800.0 { 250.0 } else { 60.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, 22.0), Sense::click());

@@ -147,7 +147,7 @@ impl Worker {
                 }
                 Ask::Made(element) => {
                     let found = self.history.made(element);
-                    self.go_back(found, "It was there from the beginning.");
+                    self.go_back(found, "It exists from the beginning.");
                 }
                 Ask::Past(watched) => self.past(watched),
                 Ask::Count(conditions) => {
@@ -321,7 +321,7 @@ impl Worker {
             Aim::Break(stops, direction) => match self.stop_at(stops, *direction) {
                 Ok(None) if end.is_some() || *direction == Direction::Back => {
                     self.pending = None;
-                    return self.voice.say(SessionNews::Nothing("No breakpoint is met there.", asks));
+                    return self.voice.say(SessionNews::Nothing("No breakpoint is hit in that direction.", asks));
                 }
                 Ok(found) => found,
                 Err(fault) => {

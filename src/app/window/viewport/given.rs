@@ -1,4 +1,4 @@
-//! The mesh that is about to be converted: its features and charts, before there is a mesh of the program's own.
+//! The view of a mesh that is about to be converted: its features and charts.
 
 use eframe::egui::{self, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use eframe::egui_wgpu::Callback;
@@ -15,7 +15,7 @@ use crate::render::gpu::{Light, View};
 use crate::render::palette::Palette;
 use crate::render::pick;
 
-/// The number of the view's picture on the card: that of the main view.
+/// The picture on the graphics card: that of the main view.
 const INDEX: usize = 0;
 
 impl Views {
@@ -29,7 +29,7 @@ impl Views {
         let marks = import.shown.as_ref().map_or_else(Default::default, |shown| shown.wanted.marks.clone());
         let spoken = match (&import.shown, marks.len()) {
             (Some(shown), marks) => {
-                let mesh = format!("Mesh of {} triangles, as it was given", shown.scene.faces.items().len());
+                let mesh = format!("Mesh of {} triangles, as imported", shown.scene.faces.items().len());
                 match marks {
                     0 => mesh,
                     1 => mesh + ", one element marked",
@@ -44,13 +44,13 @@ impl Views {
             return words(ui, rect, "The mesh is being read.", palette);
         };
         let Some(shown) = import.shown.clone() else {
-            return words(ui, rect, "Its features and charts are being sought.", palette);
+            return words(ui, rect, "Its features and charts are being computed.", palette);
         };
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         let mut is_fitted = import.view.is_fitted;
         let mut camera = match import.view.camera {
             None => {
-                // What it is refused for is looked at from near until somebody looks elsewhere.
+                // The view stays near the elements for which the mesh is refused until the user looks elsewhere.
                 let marks = import.refused.as_ref().map_or(&[][..], |fault| &fault.shapes);
                 is_fitted = marks.is_empty();
                 let side = if loaded.is_plane { Bearing::Z } else { side_of(marks, &loaded) };
@@ -93,7 +93,7 @@ fn fit(loaded: &Loaded, turn: DQuat, size: DVec2) -> Camera {
     Camera::fit_in_space(loaded.mesh.points.iter().copied(), turn, size, MARGIN)
 }
 
-/// The side from which elements are rather seen than from behind: the usual one, unless they are at the back.
+/// The side from which marked elements are seen: the usual one, unless they are at the back.
 fn side_of(marks: &[Vec<DVec3>], loaded: &Loaded) -> Bearing {
     let middle = |points: &mut dyn Iterator<Item = DVec3>| {
         let ends = points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
@@ -117,14 +117,14 @@ fn side_of(marks: &[Vec<DVec3>], loaded: &Loaded) -> Bearing {
     sides.max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap_or_default()
 }
 
-/// A camera on some elements, with so much around them that one sees where they are; `all` sees the whole mesh.
+/// A camera on some elements, with enough around them to see where they are; `all` sees the whole mesh.
 fn look_at(marks: &[Vec<DVec3>], mean_edge: f64, all: Camera, size: DVec2) -> Camera {
     let ends = || marks.iter().flatten().copied();
     let (low, high) = ends().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let room = 0.5 * (high - low).max_element() + 2.0 * mean_edge;
     let around = ends().flat_map(|p| [p - room, p + room]);
     let near = Camera::fit_in_space(around, all.turn, size, MARGIN);
-    // Nothing is gained by looking from farther than the whole mesh needs.
+    // It never looks from farther away than for the whole mesh.
     if near.scale > all.scale { near.come_from(&all) } else { all }
 }
 

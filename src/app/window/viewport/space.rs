@@ -1,4 +1,4 @@
-//! The mesh in space: orbit, pan, zoom, and what is under the pointer, front to back.
+//! The mesh in space: orbit, pan, zoom, and picking from front to back.
 
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
@@ -14,10 +14,10 @@ use crate::render::palette::Palette;
 use crate::render::pick::{self, Cover};
 use crate::render::scene::{Decision, Outlined};
 
-/// Points left free around a fitted mesh.
+/// Margin around a fitted mesh, in points.
 pub(super) const MARGIN: f64 = 44.0;
 
-/// The last cover, and what it is of.
+/// The last cover, and the scene and camera that it is of.
 #[derive(Default)]
 pub(super) struct Covering {
     of: Option<(u64, Camera, DVec2)>,
@@ -43,7 +43,7 @@ impl Views {
         moved(state.view().space, ViewKind::Space, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
         let frame = ViewFrame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());
-        // Before the scene follows the state there may be other elements in it.
+        // Picking needs the elements of the current state.
         let form = state.workspace().surfaces.form();
         self.update(state, moment, palette, &frame, form, true);
         let hovered = pointer
@@ -59,12 +59,12 @@ impl Views {
         labels::shading(ui, &frame, &self.shading, palette);
     }
 
-    /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two fingers. Tells
+    /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two fingers. Returns
     /// whether the camera has moved.
     fn steer(&mut self, ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect, moment: &Moment) -> bool {
         let frame = ViewFrame { camera: *camera, rect };
         if response.drag_started() {
-            // What is grabbed stays under the pointer; beside the mesh it turns about its middle.
+            // The point that is grabbed stays under the pointer; beside the mesh, the drag turns about its middle.
             let press = ui.input(|input| input.pointer.press_origin());
             let hit = press.and_then(|at| pick::hit(&self.space.scene, camera, frame.size(), frame.inside(at)));
             self.pivot = hit.map(|hit| hit.place).or_else(|| middle_of(moment));
@@ -73,7 +73,7 @@ impl Views {
     }
 }
 
-/// Turns, moves and zooms by what is done in a view in space; a drag turns about `pivot`. Tells whether the camera has moved.
+/// Turns, moves and zooms a view in space; a drag turns about `pivot`. Returns whether the camera has moved.
 pub(super) fn orbit(
     ui: &Ui,
     response: &egui::Response,
@@ -144,7 +144,7 @@ fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Came
     (camera, is_fitted)
 }
 
-/// Where something stands in space, and the normal there.
+/// Where something lies in space, and the normal there.
 fn place_of(moment: &Moment, what: Outlined) -> Option<(DVec3, DVec3)> {
     let mesh = &moment.mesh;
     let nodes: Vec<NodeId> = match what {
@@ -161,7 +161,7 @@ fn place_of(moment: &Moment, what: Outlined) -> Option<(DVec3, DVec3)> {
     Some((sum / nodes.len() as f64, normal.normalize_or(DVec3::Z)))
 }
 
-/// Shows an edge from near; from before it where it lies on the other side.
+/// Shows an edge from near, and from the front if it lies on the far side.
 fn near(camera: &mut Camera, moment: &Moment, ends: [NodeId; 2]) {
     let Some((place, normal)) = place_of(moment, Outlined::Edge(ends)) else { return };
     let [a, b] = ends.map(|n| moment.mesh.xyz(n));

@@ -1,4 +1,4 @@
-//! A scene with what of the state it has seen.
+//! A scene and the changes of the state that it has not drawn yet.
 
 use std::sync::Arc;
 
@@ -16,9 +16,9 @@ use crate::render::scene::{ColourBy, Decision, Drawn, Form, Overlay, Scene, Shad
 /// A scene that follows the state.
 pub(super) struct Stage {
     pub scene: Arc<Scene>,
-    /// What is other in the state than in the one that it shows.
+    /// The differences of the state from the one that it shows.
     changes: Since,
-    /// The style, the theme and the form in which it shows it.
+    /// The style, theme and form of the picture.
     style: Option<(u64, bool, Form)>,
     /// The range of what elements are coloured by.
     range: [f64; 2],
@@ -37,7 +37,7 @@ impl Stage {
         self.style.is_some()
     }
 
-    /// Takes note of what has changed.
+    /// Notes changes of the state.
     pub fn note(&mut self, changes: &Changes, slots: usize) {
         self.changes.note(changes, slots);
     }
@@ -102,7 +102,7 @@ impl Stage {
     }
 }
 
-/// Edges that were there and are not the side, while one is chosen.
+/// Candidates that were not chosen as the side, while a side is chosen.
 fn refused(moment: &Moment) -> Vec<[NodeId; 2]> {
     let (Some(tried), Some([a, b])) = (&moment.candidates, Decision::of(&moment.phase).base) else { return Vec::new() };
     let from = if tried.side == Side::Left { a } else { b };

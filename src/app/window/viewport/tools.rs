@@ -29,7 +29,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Co
     });
 }
 
-/// Those of a mesh that is no mesh of the program's own yet.
+/// The buttons for a mesh that is about to be converted.
 pub(super) fn show_sides(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     corner(ui, rect, palette, |ui, _| {
         hidden(ui, state, commands);

@@ -30,7 +30,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands:
     heading(ui, "Area", "1 is a unit square of the metric", palette);
     let areas = format!("**{}** metric,  {} in space", words::fixed(told.area_metric, 2), words::size(told.area));
     formula(ui, &areas, palette);
-    heading(ui, "Nodes", "what their metrics ask for", palette);
+    heading(ui, "Nodes", "sizes of their metrics", palette);
     let nodes: Vec<(&str, NodeId)> = told.nodes.iter().map(|n| ("", *n)).collect();
     ends(ui, moment, &nodes, commands, palette);
 }

@@ -1,4 +1,4 @@
-//! A node: its place and metric, what lies around it, its frontal angles.
+//! A node: its place and metric, the elements around it, its frontal angles.
 
 use eframe::egui::Ui;
 
@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, node: NodeId, commands:
     title(ui, format!("Node {}", node.0), palette);
     let mesh = &moment.mesh;
     let Some(told) = NodeTold::of(mesh, node) else { return gone(ui, "The node", palette) };
-    let place = if told.is_fixed { "on the boundary: it stays" } else { "free: it may be moved" };
+    let place = if told.is_fixed { "on the boundary: fixed" } else { "free: may be moved" };
     ui.label(note(format!("{place}  ·  {} edges", told.valence), palette));
     actions(ui, state, Outlined::Node(node), commands);
     heading(ui, "Place", "plane case: u = x, v = y", palette);

@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Comma
     }
 }
 
-/// What can be done with something; the same in the inspector and in the menu of the view.
+/// Actions on something, for the inspector and for context menus.
 pub fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Command>) {
     let mut offered = vec![(Command::LastTouch(what), "Go back to that step")];
     if let Outlined::Element(e) = what

@@ -1,4 +1,4 @@
-//! Why a segment was, or was not, chosen (paper 4.3.3, table 1), and within which bounds the choice would have been the same.
+//! Why a segment was or was not selected (paper 4.3.3, table 1), and for which parameters the selection would be the same.
 
 use eframe::egui::Ui;
 
@@ -52,12 +52,12 @@ fn count_of_class(moment: &Moment, class: u8) -> usize {
     waiting(moment).filter(|row| row.class == class).count()
 }
 
-/// The segment with the smallest H of those that wait.
+/// The segment with the smallest H among those that are not put off.
 fn smallest(moment: &Moment) -> Option<&Row> {
     waiting(moment).min_by(|a, b| a.h_value.total_cmp(&b.h_value))
 }
 
-/// What is held against c Hmin, with its number.
+/// The quantity that is compared with c Hmin.
 fn window(moment: &Moment, row: &Row) -> String {
     let name = match moment.parameters.selection_window {
         SelectionWindow::HValue => "H",
@@ -162,7 +162,7 @@ fn same_choice(told: &SegmentTold) -> String {
     if bounds.is_empty() { String::new() } else { format!("Same choice for {}.", bounds.join(" and ")) }
 }
 
-/// Bounds are rounded inwards, so that what is said stays true.
+/// Bounds are rounded inwards, so that they stay true.
 fn up(x: f64, decimals: i32) -> String {
     let scale = libm::pow(10.0, f64::from(decimals));
     words::fixed((x * scale - 1e-9).ceil() / scale, decimals as usize)

@@ -1,4 +1,4 @@
-//! What the timeline shows, by its columns: counted again only when the run, the span or the width changes.
+//! The contents of the timeline by columns of pixels, computed again only when the run, the span or the width changes.
 
 use crate::app::window::session::Tracked;
 use crate::app::window::state::State;
@@ -16,23 +16,23 @@ const ROWS: [(&str, &[&str]); 5] = [
     ),
     ("rolled back", &["rolled_back", "deferred", "second_pass", "seam_refused"]),
 ];
-/// The row of what did not come about.
+/// The row of failures.
 const FAILURES: usize = 4;
 
 /// One row of ticks.
 pub struct Lane {
     pub name: String,
-    /// How many in the whole run.
+    /// How many events there are in the whole run.
     pub total: u64,
-    /// How many by column.
+    /// How many there are in each column.
     pub bins: Vec<u32>,
     pub is_failure: bool,
-    /// The row of kinds that it belongs to, where there are several.
+    /// The row of kinds that it belongs to, if there are several.
     pub group: Option<usize>,
     pub is_open: bool,
 }
 
-/// What a curve shows.
+/// The quantity of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveKind {
     Front,
@@ -42,7 +42,7 @@ pub enum CurveKind {
 }
 
 impl CurveKind {
-    /// In the order in which they stand where there is room.
+    /// All of them, in the order in which they are shown as far as there is room.
     const ALL: [CurveKind; 4] = [CurveKind::Front, CurveKind::Quality, CurveKind::Live, CurveKind::Loops];
 
     pub fn name(self) -> &'static str {
@@ -109,7 +109,7 @@ impl Columns {
         }
     }
 
-    /// What is known along the run.
+    /// Follows the record of the run.
     fn follow(&mut self, state: &State) {
         let mut worst = f32::INFINITY;
         let qualities = state.run().track.iter().map(|tracked| {
@@ -139,7 +139,7 @@ impl Columns {
         }
     }
 
-    /// What does not hold in a sample: orientation, area, Euler's number, parity of the loops.
+    /// The invariant that does not hold in a sample: orientation, area, Euler's number, parity of the loops.
     pub fn broken(&self, sample: &Sample) -> Option<String> {
         let first = self.first?;
         if sample.inverted > 0 {
@@ -180,7 +180,7 @@ impl Columns {
                 self.lanes.push(lane((*name).to_owned()));
             }
         }
-        // Kinds are static words: most steps are decided by their addresses.
+        // Kinds are static words: comparing addresses is enough for most steps.
         let lane_of = |kind: &str| {
             let mut first = 0;
             for (k, (_, kinds)) in ROWS.iter().enumerate() {
@@ -245,7 +245,7 @@ impl Columns {
         &self.curves
     }
 
-    /// Stretches of steps in which something does not hold.
+    /// Ranges of steps in which an invariant does not hold.
     pub fn broken_spans(&self) -> &[[u64; 2]] {
         &self.broken
     }
