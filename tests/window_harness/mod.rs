@@ -1,7 +1,7 @@
 //! What all tests of the window share: a window on a graphics adapter, and frames until it has done what was asked.
 //!
-//! Mesa's lavapipe is adapter enough. Without any, the tests are skipped with the reason; where `QUADFRONT_NEEDS_ADAPTER` is
-//! set, its absence is a failure.
+//! Mesa's lavapipe is adapter enough. Without any, the tests are skipped with the reason; where
+//! `QUADFRONT_NEEDS_ADAPTER` is set, its absence is a failure.
 
 use std::time::{Duration, Instant};
 

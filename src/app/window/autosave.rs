@@ -1,8 +1,8 @@
-//! Autosaves the run: each window has a file of its own in the user's state folder, which is removed once nothing is unsaved.
-//! After a crash, the next start offers to recover the run.
+//! Autosaves the run: each window has a file of its own in the user's state folder, which is removed once nothing is
+//! unsaved. After a crash, the next start offers to recover the run.
 //!
-//! A window holds a lock beside its file as long as it is open; the system releases it however the window ends. So two windows
-//! never take each other's runs, and a run whose lock is free was abandoned.
+//! A window holds a lock beside its file as long as it is open; the system releases it however the window ends. So two
+//! windows never take each other's runs, and a run whose lock is free was abandoned.
 
 mod slot;
 

@@ -320,8 +320,8 @@ impl Command {
         }
     }
 
-    /// Whether it works while a mesh is about to be converted. What belongs to a run has to wait until there is one, unless a
-    /// panel asked for it by itself in the frame in which the import began.
+    /// Whether it works while a mesh is about to be converted. What belongs to a run has to wait until there is one,
+    /// unless a panel asked for it by itself in the frame in which the import began.
     pub fn fits_import(&self) -> bool {
         matches!(
             self,

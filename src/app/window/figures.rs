@@ -1,4 +1,5 @@
-//! Figures from the window: the current state, or several steps as a strip, made in the background by the code of `render`.
+//! Figures from the window: the current state, or several steps as a strip, made in the background by the code of
+//! `render`.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -186,8 +187,8 @@ impl FigureForm {
     }
 }
 
-/// Starts to make the figure that the panel describes, on a thread of its own, in the working folder; does nothing if nothing is
-/// open. The thread calls `wake` when it is done.
+/// Starts to make the figure that the panel describes, on a thread of its own, in the working folder; does nothing if
+/// nothing is open. The thread calls `wake` when it is done.
 ///
 /// # Errors
 /// If the form has no meaning.

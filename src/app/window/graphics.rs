@@ -33,8 +33,8 @@ struct DeviceStatus {
     saved: Option<PathBuf>,
 }
 
-/// Notices when the device is lost. A lost device cannot draw any more, not even a message: the run is saved, the window closes,
-/// and the program prints what happened.
+/// Notices when the device is lost. A lost device cannot draw any more, not even a message: the run is saved, the
+/// window closes, and the program prints what happened.
 #[derive(Clone, Default)]
 pub struct Lost(Arc<Mutex<DeviceStatus>>);
 

@@ -1,5 +1,5 @@
-//! The import of a mesh file before it is converted: its options and what the mesh is like. A thread shows the effect of every
-//! change (`preview`); only the latest one counts.
+//! The import of a mesh file before it is converted: its options and what the mesh is like. A thread shows the effect
+//! of every change (`preview`); only the latest one counts.
 
 mod preview;
 

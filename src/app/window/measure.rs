@@ -29,8 +29,8 @@ impl Times {
         }
     }
 
-    /// A frame begins. `follows`: the frame before asked for it, so that the time between them is that of a whole frame, including
-    /// the work of the graphics card.
+    /// A frame begins. `follows`: the frame before asked for it, so that the time between them is that of a whole
+    /// frame, including the work of the graphics card.
     pub fn frame(&mut self, follows: bool) {
         let now = Instant::now();
         if let Some(begun) = self.begun.filter(|_| follows) {
@@ -75,8 +75,8 @@ impl Default for Measuring {
 }
 
 impl Measuring {
-    /// At the beginning of a frame: the next goal, if the frame before has shown the last one; none while it has not arrived.
-    /// `took`: how long its state took. `end`: the last step that is known.
+    /// At the beginning of a frame: the next goal, if the frame before has shown the last one; none while it has not
+    /// arrived. `took`: how long its state took. `end`: the last step that is known.
     pub fn next(&mut self, is_there: bool, took: Duration, end: u64) -> Option<Goal> {
         if !is_there {
             self.late = true;
@@ -119,8 +119,8 @@ impl Measuring {
         };
         let [on, back, leap] = [0, 1, 2].map(|k| (spread(&self.states[k], 2), spread(&self.frames[k], 0)));
         Some(format!(
-            "{QUADS} quads forward and back, {LEAPS} leaps; milliseconds, median (largest): state {} forward, {} back, {} leaping; until the \
-             picture is drawn {}, {}, {}.",
+            "{QUADS} quads forward and back, {LEAPS} leaps; milliseconds, median (largest): state {} forward, \
+             {} back, {} leaping; until the picture is drawn {}, {}, {}.",
             on.0, back.0, leap.0, on.1, back.1, leap.1
         ))
     }

@@ -1,4 +1,5 @@
-//! The panels. Each reads the state, keeps what is its own (a text that is being typed, a span, a drag), and returns commands.
+//! The panels. Each reads the state, keeps what is its own (a text that is being typed, a span, a drag), and returns
+//! commands.
 
 pub mod top;
 pub mod legend;

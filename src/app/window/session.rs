@@ -1,7 +1,8 @@
-//! The run on threads of its own: the window asks for a state and the session reports it, so that the window never waits.
+//! The run on threads of its own: the window asks for a state and the session reports it, so that the window never
+//! waits.
 //!
-//! One thread owns the history and goes to the requested steps; another runs ahead with the history's recorder and hands over its
-//! record. A goal beyond the recorded steps waits until the recorder gets there, or until it is stopped.
+//! One thread owns the history and goes to the requested steps; another runs ahead with the history's recorder and
+//! hands over its record. A goal beyond the recorded steps waits until the recorder gets there, or until it is stopped.
 
 mod goal;
 mod moment;

@@ -1,5 +1,5 @@
-//! Settings that outlast the window: where its panels are, what it draws, and how large it is, in a small file in the user's state
-//! folder. A file that cannot be read is reported and ignored.
+//! Settings that outlast the window: where its panels are, what it draws, and how large it is, in a small file in the
+//! user's state folder. A file that cannot be read is reported and ignored.
 
 use std::path::{Path, PathBuf};
 

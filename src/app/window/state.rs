@@ -1,7 +1,8 @@
 //! What the window knows, in four parts: the run, what the user has set up, what is seen, and the frame at hand.
 //!
-//! The whole window reads it; two modules change it. [`apply`] does what the user asks for, [`hearing`] takes in what worker threads
-//! report. The parts of [`State`] are private to this module and the two below it, so the compiler holds everybody else to that.
+//! The whole window reads it; two modules change it. [`apply`] does what the user asks for, [`hearing`] takes in what
+//! worker threads report. The parts of [`State`] are private to this module and the two below it, so the compiler holds
+//! everybody else to that.
 
 mod run_state;
 mod workspace;

@@ -250,7 +250,8 @@ impl Views {
         self.space.note(changes, slots);
     }
 
-    /// Brings a scene up to date with the state, by the differences if possible. `leads`: the scene is laid out for this view.
+    /// Brings a scene up to date with the state, by the differences if possible. `leads`: the scene is laid out for
+    /// this view.
     fn update(
         &mut self,
         state: &State,

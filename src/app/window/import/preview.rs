@@ -1,5 +1,5 @@
-//! The thread that reads a mesh, repairs it, finds its features and charts, and draws them. Of several requests the latest counts:
-//! work on an earlier one is stopped.
+//! The thread that reads a mesh, repairs it, finds its features and charts, and draws them. Of several requests the
+//! latest counts: work on an earlier one is stopped.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -116,7 +116,8 @@ impl Preview {
         Preview { ask, told, cancel }
     }
 
-    /// Asks for a picture in place of the one asked for before. It has this generation; an interim picture has the one before.
+    /// Asks for a picture in place of the one asked for before. It has this generation; an interim picture has the one
+    /// before.
     pub fn ask(&mut self, wanted: Wanted, generation: u64) {
         self.cancel.ask();
         self.cancel = Cancel::new();

@@ -44,8 +44,8 @@ fn write_tile(tiles: &Tiles<Pane>, id: TileId) -> Value {
     }
 }
 
-/// The docks of a value, and the tile with the main view; none if the value has another form, or a panel is missing or occurs
-/// twice.
+/// The docks of a value, and the tile with the main view; none if the value has another form, or a panel is missing or
+/// occurs twice.
 pub fn read(value: &Value) -> Option<(Tree<Pane>, TileId)> {
     let mut tiles = Tiles::default();
     let root = read_tile(&mut tiles, value, 0)?;

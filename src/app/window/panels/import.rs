@@ -25,8 +25,17 @@ const NAMES: f32 = 92.0;
 const REMESH: &str = "remesh its shape";
 const TRIANGLES: &str = "convert its triangles";
 const SPLIT_ODD: &str = "divide a side of odd borders";
-/// The first chord error when the user asks for sizes by curvature: the distance of a chord from its arc, over the radius.
+/// The first chord error when the user asks for sizes by curvature: the distance of a chord from its arc, over the
+/// radius.
 const CHORD: f64 = 0.01;
+
+/// How the sizes of elements are given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sizing {
+    OfMesh,
+    Uniform,
+    ByCurvature,
+}
 
 /// Shows it at the left of the view.
 pub fn show(ui: &mut Ui, state: &State, plain: Frame, commands: &mut Vec<Command>, palette: &Palette) {
@@ -221,8 +230,8 @@ fn used(ui: &mut Ui, options: &mut ImportOptions, import: &Import, palette: &Pal
         });
     }
     if now == MeshUse::Triangles {
-        let tip = "Quadrilaterals need an even number of sides around the mesh and around each hole. Where the number is odd, the \
-                   longest side is divided in two; otherwise such a mesh is refused (--split-odd)";
+        let tip = "Quadrilaterals need an even number of sides around the mesh and around each hole. If the number is \
+                   odd, the longest side is divided in two; otherwise such a mesh is refused (--split-odd)";
         row(ui, "", tip, palette, |ui| {
             ui.checkbox(&mut options.split_odd, SPLIT_ODD).on_hover_text(tip);
         });
@@ -238,28 +247,32 @@ fn sizes(
     palette: &Palette,
 ) {
     let Some(loaded) = &import.loaded else { return };
-    let way = match (options.mesh_size, options.curvature) {
-        (None, _) => 0,
-        (Some(_), None) => 1,
-        (Some(_), Some(_)) => 2,
+    let before = match (options.mesh_size, options.curvature) {
+        (None, _) => Sizing::OfMesh,
+        (Some(_), None) => Sizing::Uniform,
+        (Some(_), Some(_)) => Sizing::ByCurvature,
     };
     let own = if loaded.has_metric { "as given in the mesh" } else { "as its triangles" };
-    let mut wanted = way;
+    let mut wanted = before;
     row(ui, "size", "The size of elements (--mesh-size, --curvature)", palette, |ui| {
-        let names = [own, "the same everywhere", "finer where it is curved"];
-        let shown = ComboBox::from_id_salt("size").selected_text(names[way]).width(180.0).show_ui(ui, |ui| {
-            for (k, name) in names.into_iter().enumerate() {
-                ui.selectable_value(&mut wanted, k, name);
+        let name = |sizing: Sizing| match sizing {
+            Sizing::OfMesh => own,
+            Sizing::Uniform => "the same everywhere",
+            Sizing::ByCurvature => "finer where it is curved",
+        };
+        let shown = ComboBox::from_id_salt("size").selected_text(name(before)).width(180.0).show_ui(ui, |ui| {
+            for sizing in [Sizing::OfMesh, Sizing::Uniform, Sizing::ByCurvature] {
+                ui.selectable_value(&mut wanted, sizing, name(sizing));
             }
         });
         shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Size of elements"));
     });
-    if wanted != way {
+    if wanted != before {
         // Two digits are enough to start from.
         let mean = loaded.mean_edge * taking.scale;
         let plain: f64 = format!("{mean:.1e}").parse().unwrap_or(mean);
-        options.mesh_size = (wanted > 0).then(|| options.mesh_size.unwrap_or(plain));
-        options.curvature = (wanted > 1).then_some(CHORD);
+        options.mesh_size = (wanted != Sizing::OfMesh).then(|| options.mesh_size.unwrap_or(plain));
+        options.curvature = (wanted == Sizing::ByCurvature).then_some(CHORD);
     }
     if let Some(size) = &mut options.mesh_size {
         let name = if options.curvature.is_some() { "where flat" } else { "edge length" };

@@ -32,8 +32,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                 None => {
                     ui.label(note("Point at anything to inspect it; click to select it.", palette));
                     if moment.step == 0 {
-                        let text = "Right goes forward by one quadrilateral, Ctrl+Right by one operation; Left and Ctrl+Left go back. \
-                                    While a quadrilateral is made, this panel says why its base was selected.";
+                        let text = "Right goes forward by one quadrilateral, Ctrl+Right by one operation; Left and \
+                                    Ctrl+Left go back. While a quadrilateral is made, this panel says why its base \
+                                    was selected.";
                         ui.add_space(6.0);
                         ui.add(Label::new(note(text, palette)).wrap());
                     }

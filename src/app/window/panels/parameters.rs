@@ -83,7 +83,7 @@ const NUMBERS: [Number; 7] = [
         decimals: 1,
         unit: "°",
         paper: "225; classifies only",
-        tip: "Above this a corner is a reversal (fig. 12). It classifies only: changing it changes nothing in the mesh.",
+        tip: "Above this a corner is a reversal (fig. 12). It only classifies and does not change the mesh.",
     },
 ];
 

@@ -152,7 +152,7 @@ fn verdict(ui: &mut Ui, state: &State, times: &Times, palette: &Palette) {
     );
     if state.view().times {
         ui.label(super::note(times.told(moment.took), palette)).on_hover_text(
-            "From the request for the current state to its arrival, and from one frame to the next while something moves",
+            "From the request for a state to its arrival, and from one frame to the next while something moves",
         );
     }
 }

@@ -1,5 +1,5 @@
-//! The thread that owns the history of the run: it goes to the requested steps, answers questions about the current state, and
-//! lends another thread the recorder that runs ahead.
+//! The thread that owns the history of the run: it goes to the requested steps, answers questions about the current
+//! state, and lends another thread the recorder that runs ahead.
 
 mod arriving;
 
@@ -22,7 +22,8 @@ use crate::core::run::run::{Edit, Run};
 use crate::core::run::timeline::Sample;
 use crate::core::run::watch::Watched;
 
-/// How many steps the recorder does before it hands them over, least and most: few at first, since the window may be waiting.
+/// How many steps the recorder does before it hands them over, least and most: few at first, since the window may be
+/// waiting.
 const STRETCH: [u64; 2] = [64, 8192];
 /// How many steps back to look for changes.
 const RECENT: u64 = 12;

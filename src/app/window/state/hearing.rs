@@ -25,8 +25,8 @@ impl State {
         told.into_iter().for_each(|told| self.take(told));
     }
 
-    /// If the session owes an answer, waits for it, but not so long that anybody notices: most states are ready at once, and
-    /// are seen in the very frame that asked for them.
+    /// If the session owes an answer, waits for it, but not so long that anybody notices: most states are ready at
+    /// once, and are seen in the very frame that asked for them.
     pub(in crate::app::window) fn hear_soon(&mut self) {
         let begin = Instant::now();
         while self.run.waiting > 0

@@ -104,8 +104,8 @@ pub enum Overlay {
     Mesh,
 }
 
-/// A request that stands until whoever it is for has taken it, which may be shown only later. Requests are numbered, and the
-/// receiver keeps the number of the last one it took.
+/// A request that stands until whoever it is for has taken it, which may be shown only later. Requests are numbered,
+/// and the receiver keeps the number of the last one it took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Request<T> {
     number: u64,

@@ -12,8 +12,8 @@ use crate::render::scene::{ColourBy, Form, Layers, Outlined};
 /// How many changes can be undone.
 const UNDO: usize = 200;
 
-/// What the user has set up. A small file keeps the layers, the colours, the speed and the surface style from one start to the
-/// next (`settings`).
+/// What the user has set up. A small file keeps the layers, the colours, the speed and the surface style from one start
+/// to the next (`settings`).
 pub struct Workspace {
     pub document: Document,
     /// Quadrilaterals a second while playing.
@@ -133,7 +133,8 @@ impl Workspace {
         }
     }
 
-    /// Changes the document so that undo takes it back. Returns the document as it was before, if there is a difference.
+    /// Changes the document so that undo takes it back. Returns the document as it was before, if there is a
+    /// difference.
     pub(super) fn change(&mut self, change: impl FnOnce(&mut Document)) -> Option<Document> {
         let before = self.document.clone();
         change(&mut self.document);

@@ -59,8 +59,8 @@ impl Views {
         labels::shading(ui, &frame, &self.shading, palette);
     }
 
-    /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two fingers. Returns
-    /// whether the camera has moved.
+    /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two
+    /// fingers. Returns whether the camera has moved.
     fn steer(&mut self, ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect, moment: &Moment) -> bool {
         let frame = ViewFrame { camera: *camera, rect };
         if response.drag_started() {

@@ -1,5 +1,5 @@
-//! The history of something: the step that made it or ended it, the triangles that it was made of, every step that touched it; and
-//! what can be done with it.
+//! The history of something: the step that made it or ended it, the triangles that it was made of, every step that
+//! touched it; and what can be done with it.
 
 use eframe::egui::{Label, RichText, Sense, Ui};
 

@@ -1,4 +1,5 @@
-//! Why a segment was or was not selected (paper 4.3.3, table 1), and for which parameters the selection would be the same.
+//! Why a segment was or was not selected (paper 4.3.3, table 1), and for which parameters the selection would be the
+//! same.
 
 use eframe::egui::Ui;
 
