@@ -1,17 +1,17 @@
-//! Frontal angles: wedges at corners that are sides already, arcs with their values at the base.
+//! Frontal angles: wedges at corners where the front is the side, arcs with their values at the base.
 
 use eframe::egui::{Align2, Pos2, Shape, Stroke, Vec2};
 
-use super::{Over, Which};
+use super::{Labels, ViewRole};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
 use crate::render::scene::Decision;
 
-impl Over<'_> {
-    /// Wedges at corners that are sides already, arcs with their values where there is room.
-    pub(super) fn wedges_and_arcs(&mut self, decision: &Decision, which: Which) {
+impl Labels<'_> {
+    /// Wedges at corners where the front is the side, arcs with their values if there is room.
+    pub(super) fn wedges_and_arcs(&mut self, decision: &Decision, which: ViewRole) {
         let moment = self.moment;
         let rect = self.frame.rect.expand(40.0);
         for segment in &moment.front {
@@ -23,7 +23,7 @@ impl Over<'_> {
             for side in Side::BOTH {
                 let at = [segment.a, segment.b][side.index()];
                 let has_arc = decision.base.is_some_and(|base| base.contains(&at));
-                if is_base && which != Which::Whole {
+                if is_base && which != ViewRole::Whole {
                     self.arc(segment, side);
                 } else if !has_arc && segment.theta[side.index()] < moment.parameters.theta_rect {
                     self.wedge(segment, side);
@@ -32,7 +32,8 @@ impl Over<'_> {
         }
     }
 
-    /// The place of the corner and the screen directions of its two legs, anticlockwise in the mesh, with their lengths.
+    /// The place of the corner and the screen directions of its two legs, anticlockwise in the mesh, with their
+    /// lengths.
     fn corner(&self, segment: &Segment, side: Side) -> Option<(Pos2, [Vec2; 2])> {
         let mesh = &self.moment.mesh;
         let h = mesh.front_between(segment.a, segment.b)?;
@@ -42,7 +43,7 @@ impl Over<'_> {
         };
         let centre = self.place(at)?;
         let legs = [self.place(from)? - centre, self.place(to)? - centre];
-        // Seen from behind, the mesh runs the other way round.
+        // Seen from behind, the mesh turns the other way.
         Some((centre, if self.is_behind(at) { [legs[1], legs[0]] } else { legs }))
     }
 
@@ -73,8 +74,8 @@ impl Over<'_> {
     }
 }
 
-/// Points of the arc of `radius` from the first leg to the second, anticlockwise in the mesh (clockwise on a screen with y down
-/// is the other way round).
+/// Points of the arc of `radius` from the first leg to the second, anticlockwise in the mesh (clockwise on a screen
+/// with y down is the other way round).
 fn arc(centre: Pos2, legs: [Vec2; 2], radius: f32) -> Vec<Pos2> {
     let from = legs[0].angle();
     let mut turn = from - legs[1].angle();
