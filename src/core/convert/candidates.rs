@@ -120,7 +120,7 @@ impl Converter<'_> {
             } else {
                 Passed::Farther
             };
-            let across = [self.mesh.origin(opposite), self.mesh.target(opposite)];
+            let across = self.mesh.ends(opposite);
             edges.push(self.candidate(base, side, far, Some(across), chosen, passed));
         }
         Candidates { side, theta, target: self.target_angle(base, side), limit, edges }
@@ -143,6 +143,6 @@ impl Converter<'_> {
 
     /// Ends of the edge that a choice swaps.
     fn swapped(&self, choice: &Choice) -> Option<[NodeId; 2]> {
-        choice.swap().map(|h| [self.mesh.origin(h), self.mesh.target(h)])
+        choice.swap().map(|h| self.mesh.ends(h))
     }
 }

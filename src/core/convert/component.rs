@@ -40,7 +40,7 @@ pub fn live_components(mesh: &Mesh, face: Option<u32>) -> Vec<Component> {
         while let Some(&t) = triangles.get(next) {
             next += 1;
             for h in mesh.half_edges(t) {
-                match mesh.twin(h).map(HalfEdgeId::element).filter(|&u| mesh.is_triangle(u)) {
+                match mesh.live_twin(h).map(HalfEdgeId::element) {
                     Some(u) if seen[u.index()] => {}
                     Some(u) => {
                         seen[u.index()] = true;
@@ -65,7 +65,7 @@ pub(super) fn small_component(mesh: &Mesh, first: ElementId, most: usize) -> Opt
     while let Some(&t) = triangles.get(next) {
         next += 1;
         for h in mesh.half_edges(t) {
-            match mesh.twin(h).map(HalfEdgeId::element).filter(|&u| mesh.is_triangle(u)) {
+            match mesh.live_twin(h).map(HalfEdgeId::element) {
                 Some(u) if triangles.contains(&u) => {}
                 Some(_) if triangles.len() == most => return None,
                 Some(u) => triangles.push(u),

@@ -98,7 +98,7 @@ impl Converter<'_> {
             let e = found[next];
             next += 1;
             for h in mesh.half_edges(e) {
-                let (from, to) = (mesh.origin(h), mesh.target(h));
+                let [from, to] = mesh.ends(h);
                 if !nodes.contains(&from) && !inside.contains(&from) {
                     inside.push(from);
                 }
@@ -106,7 +106,7 @@ impl Converter<'_> {
                     sides += 1;
                     continue;
                 }
-                let t = mesh.twin(h).filter(|t| mesh.is_triangle(t.element())).ok_or(Why::NotDisc)?;
+                let t = mesh.live_twin(h).ok_or(Why::NotDisc)?;
                 if !found.contains(&t.element()) {
                     if found.len() == MOST_EATEN {
                         return Err(Why::NotDisc);
@@ -232,9 +232,7 @@ impl Converter<'_> {
     /// Whether the two nodes are joined by an edge between two live triangles.
     pub(super) fn is_live_edge(&self, a: NodeId, b: NodeId) -> bool {
         let mesh = &self.mesh;
-        mesh.half_edge_between(a, b).is_some_and(|h| {
-            mesh.is_triangle(h.element()) && mesh.twin(h).is_some_and(|t| mesh.is_triangle(t.element()))
-        })
+        mesh.half_edge_between(a, b).is_some_and(|h| mesh.is_triangle(h.element()) && mesh.live_twin(h).is_some())
     }
 
     /// Whether the edge between the two nodes is a front segment, in either direction.

@@ -111,9 +111,9 @@ impl Converter<'_> {
         let mesh = &self.mesh;
         let mut edges = SmallVec::new();
         for node in mesh.quad(element) {
-            for h in mesh.fan(node).filter(|h| mesh.is_triangle(h.element())) {
+            for h in mesh.live_fan(node) {
                 for h in [h, mesh.next(h)] {
-                    if mesh.twin(h).is_some_and(|t| mesh.is_triangle(t.element())) {
+                    if mesh.live_twin(h).is_some() {
                         edges.push(h);
                     }
                 }
@@ -147,9 +147,9 @@ impl Converter<'_> {
         if !mesh.has_element(h.element()) || !mesh.is_triangle(h.element()) {
             return None;
         }
-        let t = mesh.twin(h).filter(|t| mesh.is_triangle(t.element()))?;
+        let t = mesh.live_twin(h)?;
         let (a, b) = (mesh.origin(h), mesh.origin(t));
-        let (c, d) = (mesh.origin(mesh.previous(h)), mesh.origin(mesh.previous(t)));
+        let (c, d) = (mesh.apex(h), mesh.apex(t));
         let before = least_cosine(mesh, [a, b, c]).min(least_cosine(mesh, [b, a, d]));
         // A largest angle below 90 degrees is no reason to change anything.
         if before > 0.0 {
@@ -162,10 +162,7 @@ impl Converter<'_> {
         let h = self.mesh.swap(h);
         let mesh = &self.mesh;
         let t = mesh.twin(h)?;
-        Some((
-            Event::Enhanced { new: [mesh.origin(h), mesh.target(h)] },
-            [mesh.next(h), mesh.previous(h), mesh.next(t), mesh.previous(t)],
-        ))
+        Some((Event::Enhanced { new: mesh.ends(h) }, [mesh.next(h), mesh.previous(h), mesh.next(t), mesh.previous(t)]))
     }
 
     /// Smooths around the quadrilateral in the paper's order: nodes of the triangles around it, then its own. With
@@ -174,8 +171,8 @@ impl Converter<'_> {
         let corners = self.mesh.quad(element);
         let mut around: SmallVec<[NodeId; 24]> = SmallVec::new();
         for corner in corners {
-            for h in self.mesh.fan(corner).filter(|h| self.mesh.is_triangle(h.element())) {
-                for node in [self.mesh.target(h), self.mesh.origin(self.mesh.previous(h))] {
+            for h in self.mesh.live_fan(corner) {
+                for node in [self.mesh.target(h), self.mesh.apex(h)] {
                     if !around.contains(&node) && !corners.contains(&node) {
                         around.push(node);
                     }

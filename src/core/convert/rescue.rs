@@ -43,14 +43,14 @@ impl Converter<'_> {
             k -= spokes.len();
         }
         // The base triangle with its neighbour beyond the right edge, then the left one.
-        let apex = self.mesh.origin(self.mesh.previous(h));
+        let apex = self.mesh.apex(h);
         let (edge, beyond_right) = match k {
             0 => (self.mesh.next(h), true),
             1 => (self.mesh.previous(h), false),
             _ => return None,
         };
-        let pair = self.mesh.twin(edge).filter(|t| self.mesh.is_triangle(t.element())).map(|t| {
-            let far = self.mesh.origin(self.mesh.previous(t));
+        let pair = self.mesh.live_twin(edge).map(|t| {
+            let far = self.mesh.apex(t);
             let tops = if beyond_right { [Some(apex), Some(far)] } else { [Some(far), Some(apex)] };
             Attempt { tops, ..plain }
         });

@@ -83,13 +83,13 @@ impl Converter<'_> {
         // Gather.
         let h_qp = mesh.twin(h_pq).ok_or(Unmerged::Unlike)?;
         let (live, quad) = (h_pq.element(), h_qp.element());
-        let (p, q) = (mesh.origin(h_pq), mesh.target(h_pq));
-        let x = mesh.origin(mesh.previous(h_pq));
+        let [p, q] = mesh.ends(h_pq);
+        let x = mesh.apex(h_pq);
         let (h_pr, h_sq) = (mesh.next(h_qp), mesh.previous(h_qp));
         let (r, s) = (mesh.target(h_pr), mesh.origin(h_sq));
         // Check: the side that is freed must stay on the front.
         let freed = if a == p { h_sq } else { h_pr };
-        if mesh.twin(freed).is_some_and(|t| mesh.is_triangle(t.element())) {
+        if mesh.live_twin(freed).is_some() {
             return Err(Unmerged::Unlike);
         }
         let m_uv = self.metric_middle(p, q);
@@ -154,14 +154,14 @@ impl Converter<'_> {
         h_bc: HalfEdgeId,
         judged: &dyn Fn(&Mesh, ElementId) -> bool,
     ) -> Result<NodeId, Unmerged> {
-        let (b, c) = (self.mesh.origin(h_bc), self.mesh.target(h_bc));
+        let [b, c] = self.mesh.ends(h_bc);
         let h_cb = self.mesh.twin(h_bc).ok_or(Unmerged::BothFixed)?;
         let (gone, kept, h) = if self.mesh.is_fixed(b) { (c, b, h_cb) } else { (b, c, h_bc) };
         if self.mesh.is_fixed(gone) {
             return Err(Unmerged::BothFixed);
         }
         // The nodes opposite to the edge lose one edge each: fewer than three (on a boundary, two) would be a doublet.
-        for opposite in [h_bc, h_cb].map(|h| self.mesh.origin(self.mesh.previous(h))) {
+        for opposite in [h_bc, h_cb].map(|h| self.mesh.apex(h)) {
             if self.mesh.valence(opposite) < if self.mesh.is_fixed(opposite) { 3 } else { 4 } {
                 return Err(Unmerged::Doublet);
             }
@@ -179,7 +179,7 @@ impl Converter<'_> {
             let mark = self.mesh.mark();
             self.mesh.collapse(h, place, metric);
             let mesh = &self.mesh;
-            let around = mesh.fan(kept).map(HalfEdgeId::element).filter(|&e| judged(mesh, e));
+            let around = mesh.elements_at(kept).filter(|&e| judged(mesh, e));
             let after = around.map(|e| mesh.quality(e)).fold(f64::INFINITY, f64::min);
             if after >= 0.7 * worst {
                 return Ok(kept);

@@ -134,8 +134,8 @@ impl Converter<'_> {
             Side::Left => mesh.previous(spoke.h),
             Side::Right => mesh.next(spoke.h),
         };
-        let t = mesh.twin(opposite).filter(|t| mesh.is_triangle(t.element()))?;
-        Some((opposite, mesh.origin(mesh.previous(t))))
+        let t = mesh.live_twin(opposite)?;
+        Some((opposite, mesh.apex(t)))
     }
 
     /// The best swap of an edge opposite to the side's base node within the sector (iv), and the edge to be swapped.

@@ -39,7 +39,7 @@ impl Converter<'_> {
         let mesh = &self.mesh;
         let mut narrow = Narrow::default();
         for node in mesh.quad(quad) {
-            let live = mesh.fan(node).map(HalfEdgeId::element).filter(|&e| mesh.is_triangle(e));
+            let live = mesh.elements_at(node).filter(|&e| mesh.is_triangle(e));
             narrow.on_front.extend(live.filter(|&e| mesh.triangle(e).iter().all(|&n| self.is_on_front(n))));
         }
         narrow.on_front.sort_unstable();
@@ -75,7 +75,7 @@ impl Converter<'_> {
                 sides.swap(0, 1);
             }
             for side in sides {
-                let ends = [self.mesh.origin(side), self.mesh.target(side)];
+                let ends = self.mesh.ends(side);
                 let Some(segments) = self.parts(side) else { continue };
                 if segments.iter().any(|n| n % 2 == 1 || *n < LEAST_PART) {
                     continue;

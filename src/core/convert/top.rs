@@ -29,18 +29,18 @@ pub(super) fn recover_step(mesh: &mut Mesh, c: NodeId, d: NodeId, keep: &[NodeId
         if mesh.can_swap(h).is_ok() {
             // A swap that still crosses is only worth it where it brings an end of the new edge to C or D.
             let t = mesh.twin(h).ok_or(Why::NotDisc)?;
-            let new = [mesh.origin(mesh.previous(h)), mesh.origin(mesh.previous(t))];
+            let new = [mesh.apex(h), mesh.apex(t)];
             if crosses(mesh, new, c, d) && crossings.len() > 1 && !new.contains(&c) && !new.contains(&d) {
                 continue;
             }
-            let across = [mesh.origin(h), mesh.target(h)];
+            let across = mesh.ends(h);
             mesh.swap(h);
             return Ok(Recovery::Changed(Event::TopSwapped { across, new }));
         }
     }
     // No swap is possible: remove a node that keeps one from being valid (iii).
     for &h in &crossings {
-        for node in [mesh.origin(h), mesh.target(h)] {
+        for node in mesh.ends(h) {
             if !keep.contains(&node) && mesh.delete_node(node).is_ok() {
                 return Ok(Recovery::Changed(Event::NodeRemoved { node, purpose: Purpose::Recovery }));
             }
@@ -67,7 +67,7 @@ pub(super) fn crossings(mesh: &Mesh, c: NodeId, d: NodeId) -> Result<Vec<HalfEdg
         if !mesh.is_triangle(h.element()) {
             continue;
         }
-        let (e, f) = (mesh.target(h), mesh.origin(mesh.previous(h)));
+        let (e, f) = (mesh.target(h), mesh.apex(h));
         let (at_e, at_f) = (orient(p, q, mesh.uv(e)), orient(p, q, mesh.uv(f)));
         if at_e < 0.0 && at_f > 0.0 {
             start = Some(mesh.next(h));
@@ -82,13 +82,13 @@ pub(super) fn crossings(mesh: &Mesh, c: NodeId, d: NodeId) -> Result<Vec<HalfEdg
     let Some(mut h) = start else { return Err(Why::NotDisc) };
     let mut found = Vec::new();
     loop {
-        let ends = [mesh.origin(h), mesh.target(h)];
-        let Some(t) = mesh.twin(h).filter(|t| mesh.is_triangle(t.element())) else { return Err(Why::TopBlocked(ends)) };
+        let ends = mesh.ends(h);
+        let Some(t) = mesh.live_twin(h) else { return Err(Why::TopBlocked(ends)) };
         found.push(h);
         if found.len() > MOST_CROSSINGS {
             return Err(Why::TopTooLong);
         }
-        let apex = mesh.origin(mesh.previous(t));
+        let apex = mesh.apex(t);
         if apex == d {
             return Ok(found);
         }

@@ -176,7 +176,7 @@ impl<'a> Unfolding<'a> {
     /// The quadrilateral at a node that is to be mended, and its least sine: the worst one that folds; else one that has the points
     /// of another, or makes a doublet with another, or any where the node lies on another.
     fn at_fault(&self, mesh: &Mesh, node: NodeId) -> Option<(f64, ElementId)> {
-        let quads = || mesh.fan(node).map(|h| h.element()).filter(|&e| mesh.is_quad(e));
+        let quads = || mesh.elements_at(node).filter(|&e| mesh.is_quad(e));
         let worst = quads().map(|e| (self.sine(mesh, e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
         if worst.0 < FOLDED {
             return Some(worst);
@@ -214,7 +214,7 @@ impl<'a> Unfolding<'a> {
 
     /// How many elements around nodes are flat or turned, and how many fold.
     fn flaws(&self, mesh: &Mesh, nodes: &[NodeId]) -> [usize; 2] {
-        let mut around: Vec<ElementId> = nodes.iter().flat_map(|&n| mesh.fan(n).map(|h| h.element())).collect();
+        let mut around: Vec<ElementId> = nodes.iter().flat_map(|&n| mesh.elements_at(n)).collect();
         around.sort_unstable();
         around.dedup();
         let quads = around.into_iter().filter(|&e| mesh.is_quad(e));
@@ -292,7 +292,7 @@ impl<'a> Unfolding<'a> {
         let Some(point) = mesh.point(node) else { return Vec::new() };
         let copies = &self.copies[self.copies.partition_point(|copy| copy.0 < point)..];
         let others = copies.iter().take_while(|copy| copy.0 == point).map(|copy| copy.1).filter(|&n| n != node);
-        let elements = others.flat_map(|n| mesh.fan(n).map(|h| h.element()));
+        let elements = others.flat_map(|n| mesh.elements_at(n));
         let free = elements.flat_map(|e| mesh.corners(e)).filter(|&n| !mesh.is_fixed(n));
         free.map(|n| mesh.xyz(n)).collect()
     }

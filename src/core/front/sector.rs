@@ -55,7 +55,7 @@ impl Mesh {
     /// Whether the half-edge is a front segment: a side of a live triangle without a live triangle beyond.
     #[inline]
     pub fn is_front(&self, h: HalfEdgeId) -> bool {
-        self.is_triangle(h.element()) && self.twin(h).is_none_or(|t| !self.is_triangle(t.element()))
+        self.is_triangle(h.element()) && self.live_twin(h).is_none()
     }
 
     /// The segments of the merging front, by their triangles.
@@ -67,7 +67,7 @@ impl Mesh {
     #[inline]
     pub fn front_before(&self, h: HalfEdgeId) -> HalfEdgeId {
         let mut p = self.previous(h);
-        while let Some(t) = self.twin(p).filter(|t| self.is_triangle(t.element())) {
+        while let Some(t) = self.live_twin(p) {
             p = self.previous(t);
         }
         p
@@ -77,7 +77,7 @@ impl Mesh {
     #[inline]
     pub fn front_after(&self, h: HalfEdgeId) -> HalfEdgeId {
         let mut n = self.next(h);
-        while let Some(t) = self.twin(n).filter(|t| self.is_triangle(t.element())) {
+        while let Some(t) = self.live_twin(n) {
             n = self.next(t);
         }
         n
@@ -101,7 +101,7 @@ impl Mesh {
                 Side::Left => self.origin(h),
                 Side::Right => self.target(h),
             };
-            let beyond = self.twin(h).filter(|t| self.is_triangle(t.element()));
+            let beyond = self.live_twin(h);
             spokes.push(Spoke { node, h, is_front: beyond.is_none() });
             match beyond {
                 Some(t) => h = step(t),

@@ -1,7 +1,7 @@
 //! Structural and exact geometric checks of the half-edge mesh (spec 5): what must hold after every operation.
 
 use super::half_edge::Mesh;
-use super::ids::{ElementId, HalfEdgeId, NodeId};
+use super::ids::{ElementId, NodeId};
 use crate::core::kernel::predicates::{convex, positive};
 
 impl Mesh {
@@ -39,7 +39,7 @@ impl Mesh {
         let mut around: Vec<ElementId> = elements.iter().copied().filter(|e| self.has_element(*e)).collect();
         for &node in &at {
             self.check_node(node, None)?;
-            around.extend(self.fan(node).map(HalfEdgeId::element));
+            around.extend(self.elements_at(node));
         }
         around.sort_unstable();
         around.dedup();

@@ -43,7 +43,7 @@ impl Valences {
             let theta: f64 = mesh
                 .fan(node)
                 .map(|h| {
-                    let (next, previous) = (mesh.target(h), mesh.origin(mesh.previous(h)));
+                    let (next, previous) = (mesh.target(h), mesh.apex(h));
                     angle(mesh.metric_ref(node), mesh.uv(next) - p, mesh.uv(previous) - p)
                 })
                 .sum();
@@ -91,8 +91,7 @@ impl Valences {
             // Both diagonals of the element, both directions.
             for h_ab in mesh.half_edges(h.element()) {
                 let h_bc = mesh.next(h_ab);
-                let (a, b, c, d) =
-                    (mesh.origin(h_ab), mesh.origin(h_bc), mesh.target(h_bc), mesh.origin(mesh.previous(h_ab)));
+                let (a, b, c, d) = (mesh.origin(h_ab), mesh.origin(h_bc), mesh.target(h_bc), mesh.apex(h_ab));
                 if !mesh.is_fixed(a) && (mesh.is_fixed(c) || a < c) {
                     let (e_a, e_c) = (self.excess(mesh, a), self.excess(mesh, c));
                     // c takes over the elements of a but for the one that goes, and loses that one itself.

@@ -89,7 +89,7 @@ impl Converter<'_> {
             return Some(Vec::new());
         }
         let found = crossings(&self.mesh, c, d).ok()?;
-        Some(found.into_iter().map(|h| [self.mesh.origin(h), self.mesh.target(h)]).collect())
+        Some(found.into_iter().map(|h| self.mesh.ends(h)).collect())
     }
 
     pub(super) fn step_top(&mut self, base: Base, attempt: Attempt, tops: [NodeId; 2], swaps: u8) -> (Phase, Event) {
