@@ -1,7 +1,7 @@
 //! From a case to quadrilaterals: the order of the parts, and nothing of their insides.
 
 use super::converter::{Converter, Counts};
-use super::finish::Finished;
+use super::finish::parts::Finished;
 use super::last_resort::Outcome;
 use crate::core::background::adapt::Adapted;
 use crate::core::case::Case;
@@ -25,9 +25,9 @@ pub struct Converted {
     pub triangles: usize,
     /// What the adaptation of the background did.
     pub adapted: Adapted,
-    /// What was mended in a mesh that was given, for people.
+    /// Repairs of a given mesh, in words.
     pub repairs: Vec<String>,
-    /// How often what happened on the front.
+    /// What the steps of the front did.
     pub counts: Counts,
     /// What the last resort did, over all components.
     pub last_resort: Outcome,

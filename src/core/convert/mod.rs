@@ -1,28 +1,33 @@
 //! From triangles to quadrilaterals: the merging front (paper 4.3), the guarantee (spec 2.10), and what makes the mesh
 //! better in the end (spec 10).
+//!
+//! How a base segment becomes a quadrilateral that stands: [`select`] chooses it (4.3.3); [`side`] prepares its left side, then
+//! its right one, and [`top`] the edge between their tops (4.3.4); [`form`] merges the triangles between the four, and where
+//! that fails all of it is taken back, to be tried another way ([`form::attempts`]) or put off. Around the new quadrilateral
+//! [`local`] swaps, removes and smooths, [`seam`] closes small angles and [`split`] narrow regions (4.3.6). What the front leaves
+//! over goes to [`close`], which has small loops closed and the rest converted by the [`last_resort`]; [`finish`] cleans
+//! up and smooths the whole (4.3.7).
+//!
+//! Each of these takes a [`Front`](front::Front) and comes to the next [`Phase`](phase::Phase) and an
+//! [`Event`](event::Event); the [`converter`] ties them, a phase a line.
 
+mod sums;
 pub mod event;
 pub mod phase;
-pub mod converter;
-mod loops;
-pub mod walk;
-mod sides;
-pub mod candidates;
+mod front;
+mod relax;
+mod select;
+pub mod side;
 mod top;
 mod form;
-mod rescue;
 mod local;
 mod seam;
 pub mod split;
 mod close;
-pub mod settle;
-pub mod component;
-pub mod matching;
-mod t_join;
 pub mod last_resort;
-pub mod energy;
-mod worklist;
-pub mod clean_up;
-pub mod unfold;
 pub mod finish;
+pub mod converter;
+pub mod walk;
 pub mod conversion;
+
+pub use side::candidates;

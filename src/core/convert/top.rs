@@ -2,6 +2,8 @@
 //! step, with node removal where no swap is possible. Every crossing is found by exact predicates.
 
 use super::event::{Event, Purpose, Why};
+use super::front::{Done, Front};
+use super::phase::{Attempt, Base, Phase};
 use crate::core::kernel::predicates::orient;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
@@ -17,6 +19,22 @@ pub(super) enum Recovery {
     Found,
     /// Something was changed on the way.
     Changed(Event),
+}
+
+/// One step of the recovery of the top edge (top edge i to vi).
+pub(super) fn recover(
+    front: &mut Front<'_>,
+    base: Base,
+    attempt: Attempt,
+    tops: [NodeId; 2],
+    swaps: u8,
+) -> Result<Done, Why> {
+    let [c, d] = tops;
+    match recover_step(front.mesh, c, d, &[base.a, base.b, c, d])? {
+        Recovery::Found => Ok((Phase::Form { base, attempt, tops }, Some(Event::TopFound { ends: tops, swaps }))),
+        Recovery::Changed(_) if swaps == MOST_SWAPS => Err(Why::TopTooLong),
+        Recovery::Changed(event) => Ok((Phase::RecoverTop { base, attempt, tops, swaps: swaps + 1 }, Some(event))),
+    }
 }
 
 /// One step of the recovery of the edge from C to D; nodes in `keep` are not removed.

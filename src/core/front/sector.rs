@@ -58,6 +58,26 @@ impl Mesh {
         self.is_triangle(h.element()) && self.live_twin(h).is_none()
     }
 
+    /// Whether a node lies on the front (or on the boundary).
+    pub fn is_on_front(&self, node: NodeId) -> bool {
+        self.is_fixed(node) || self.elements_at(node).any(|e| !self.is_triangle(e))
+    }
+
+    /// Whether the elements around a node are all quadrilaterals.
+    pub fn is_buried(&self, node: NodeId) -> bool {
+        self.elements_at(node).all(|e| self.is_quad(e))
+    }
+
+    /// Whether two nodes are joined by an edge between two live triangles.
+    pub fn is_live_edge(&self, a: NodeId, b: NodeId) -> bool {
+        self.half_edge_between(a, b).is_some_and(|h| self.is_triangle(h.element()) && self.live_twin(h).is_some())
+    }
+
+    /// Whether the edge between two nodes is a front segment, in either direction.
+    pub fn is_front_edge(&self, a: NodeId, b: NodeId) -> bool {
+        self.front_between(a, b).is_some() || self.front_between(b, a).is_some()
+    }
+
     /// The segments of the merging front, by their triangles.
     pub fn front(&self) -> impl Iterator<Item = HalfEdgeId> + '_ {
         self.elements().flat_map(|e| self.half_edges(e)).filter(|h| self.is_front(*h))

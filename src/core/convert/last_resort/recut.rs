@@ -3,8 +3,9 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use super::{Means, Planner, Stuck, firm_quad};
-use crate::core::convert::component::NONE;
+use super::component::NONE;
+use super::planner::{Planner, firm_quad};
+use super::{Means, Stuck};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::metric::measure::quad_quality;
 
@@ -40,7 +41,7 @@ impl Planner<'_> {
     /// Cuts a crooked pair anew together with a few pairs around it: with one, and where that gives nothing good with
     /// two, and so on; where none of that is good, perhaps with a new node amidst them. Where all of that fails, the
     /// pair is left to the templates.
-    pub(super) fn recut(&mut self, side: u32, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
+    pub fn recut(&mut self, side: u32, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
         let pair = self.pair(side);
         let start = Ring {
             corners: (pair.nodes.into_iter().zip(pair.outline)).collect(),

@@ -1,4 +1,4 @@
-//! Quadrilaterals that fold over their surface, mended one at a time after the last smoothing. Everything before works in the
+//! Repair of quadrilaterals that fold over their surface, one at a time after the last smoothing. Everything before works in the
 //! parametric plane, where all stays strictly convex; between straight sides in space a corner may still turn against the surface,
 //! or a node between two faces have two edges only, or what lies on two faces come to one place. The nodes around are moved first (`moving`);
 //! where that does not help the quadrilateral has an edge rotated, is collapsed along a diagonal, or pillowed: a smaller one is inlaid, with
@@ -11,10 +11,11 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use self::moving::DIRECTIONS;
-use super::energy;
-use super::event::{Event, Mending};
-use super::settle::{Nodes, put, settle};
 use super::worklist::{ListMark, Worklist};
+use crate::core::convert::event::{Event, Mending};
+use crate::core::convert::relax::energy;
+use crate::core::convert::relax::settle::{Nodes, put, settle};
+use crate::core::convert::sums::summed;
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId, PointId};
 use crate::core::mesh::refusals::Operation;
@@ -22,7 +23,7 @@ use crate::core::metric::field::MetricSource;
 use crate::core::progress::Cancel;
 use crate::core::soup::weld::weld;
 
-/// A quadrilateral with a corner whose sine against the surface is below this is to be mended.
+/// A quadrilateral with a corner whose sine against the surface is below this is to be repaired.
 const FOLDED: f64 = 1e-3;
 /// One below this is flat or turned as any reader sees it. In the slivers of a surface many are between the two whatever is done.
 const FLAT: f64 = 1e-7;
@@ -32,11 +33,11 @@ const STIRRED: f64 = 0.05;
 const SAME_PLACE: f64 = 4e-9;
 /// How far the nodes of an inlaid quadrilateral lie from the corners towards the middle.
 const INLAID: [f64; 5] = [0.4, 0.6, 0.25, 0.5, 0.33];
-/// Looks at one quadrilateral that folds at the start, on average: what was mended may send its neighbours to be looked at.
+/// Looks at one quadrilateral that folds at the start, on average: a repair may send its neighbours to be looked at.
 const LOOKS: usize = 24;
 
-/// What was mended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+summed! {
+/// Repairs that were made.
 pub struct Unfolded {
     /// Times that nodes were moved.
     pub moved: usize,
@@ -47,25 +48,13 @@ pub struct Unfolded {
     /// Quadrilaterals that were pillowed.
     pub pillowed: usize,
 }
-
-impl Unfolded {
-    /// The sums of two.
-    #[must_use]
-    pub fn plus(&self, other: &Unfolded) -> Unfolded {
-        Unfolded {
-            moved: self.moved + other.moved,
-            rotated: self.rotated + other.rotated,
-            collapsed: self.collapsed + other.collapsed,
-            pillowed: self.pillowed + other.pillowed,
-        }
-    }
 }
 
-/// The mending under way.
+/// The repair under way.
 #[derive(Clone)]
 pub(super) struct Unfolding<'a> {
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
-    /// Nodes of quadrilaterals that are to be mended.
+    /// Nodes of quadrilaterals to be repaired.
     list: Worklist,
     /// Nodes of two faces with two edges between both, each with its copy on the other face, ascending.
     doublets: Vec<[NodeId; 2]>,
@@ -80,7 +69,7 @@ pub(super) struct Unfolding<'a> {
 }
 
 impl<'a> Unfolding<'a> {
-    /// The mending at its beginning.
+    /// The repair at its beginning.
     pub fn begin(mesh: &Mesh, source: Arc<dyn MetricSource + Send + Sync + 'a>, recording: bool) -> Unfolding<'a> {
         let mut copies: Vec<_> = mesh.nodes().filter_map(|n| Some((mesh.point(n)?, n))).collect();
         copies.sort_unstable();
@@ -118,7 +107,7 @@ impl<'a> Unfolding<'a> {
             + size_of::<(PointId, NodeId)>() * self.copies.capacity()
     }
 
-    /// Mends the next quadrilateral; what cannot be mended is passed over. None where nothing waits any more.
+    /// Repairs the next quadrilateral; what cannot be repaired is skipped. None where nothing waits any more.
     pub fn step(&mut self, mesh: &mut Mesh, keep_journal: bool) -> Option<Event> {
         while let Some(node) = self.list.take() {
             if !mesh.has_node(node) {
@@ -173,7 +162,7 @@ impl<'a> Unfolding<'a> {
         None
     }
 
-    /// The quadrilateral at a node that is to be mended, and its least sine: the worst one that folds; else one that has the points
+    /// The quadrilateral at a node that is to be repaired, and its least sine: the worst one that folds; else one that has the points
     /// of another, or makes a doublet with another, or any where the node lies on another.
     fn at_fault(&self, mesh: &Mesh, node: NodeId) -> Option<(f64, ElementId)> {
         let quads = || mesh.elements_at(node).filter(|&e| mesh.is_quad(e));

@@ -4,7 +4,7 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::{FOLDED, Unfolding};
-use crate::core::convert::energy;
+use crate::core::convert::relax::energy;
 use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};

@@ -1,45 +1,34 @@
-//! What the global post-processing (paper 4.3.7) has under way and has done; its steps are in `converter/post_processing`.
+//! What the global post-processing (paper 4.3.7) has under way and has done.
 
 use super::clean_up::{CleanUp, CleanedUp, Reach};
 use super::unfold::{Unfolded, Unfolding};
 use super::worklist::{ListMark, Worklist};
+use crate::core::convert::sums::summed;
 
+summed! {
 /// What the post-processing did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Finished {
     /// Changes of structure.
     pub cleaned_up: CleanedUp,
     /// Nodes moved by smoothing.
     pub moves: usize,
-    /// What folded over its surface and was mended.
+    /// Repairs of what folded over its surface.
     pub unfolded: Unfolded,
 }
-
-impl Finished {
-    /// The sums of two.
-    #[must_use]
-    pub fn plus(&self, other: &Finished) -> Finished {
-        Finished {
-            cleaned_up: self.cleaned_up.plus(&other.cleaned_up),
-            moves: self.moves + other.moves,
-            unfolded: self.unfolded.plus(&other.unfolded),
-        }
-    }
 }
 
-/// What the post-processing has under way: the parts that have begun. Those that are done are only there for whoever
-/// steps back.
+/// The parts of the post-processing that have begun. Those that are done are kept for stepping back.
 #[derive(Clone, Default)]
-pub(super) struct Finishing<'a> {
-    pub first_smoothing: Option<Worklist>,
-    pub clean_up: [Option<CleanUp<'a>>; 3],
-    pub last_smoothing: Option<Worklist>,
-    pub unfolding: Option<Unfolding<'a>>,
+pub struct Finishing<'a> {
+    pub(super) first_smoothing: Option<Worklist>,
+    pub(super) clean_up: [Option<CleanUp<'a>>; 3],
+    pub(super) last_smoothing: Option<Worklist>,
+    pub(super) unfolding: Option<Unfolding<'a>>,
 }
 
 /// Where the lists of the parts stood; none where a part had not begun.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PartMarks([Option<ListMark>; 6]);
+pub struct PartMarks([Option<ListMark>; 6]);
 
 impl Finishing<'_> {
     fn lists(&self) -> [Option<&Worklist>; 6] {

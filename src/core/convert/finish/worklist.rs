@@ -9,7 +9,7 @@ use crate::core::mesh::ids::NodeId;
 
 /// Nodes that wait.
 #[derive(Clone, Debug)]
-pub(super) struct Worklist {
+pub struct Worklist {
     queue: VecDeque<NodeId>,
     waits: Vec<bool>,
     /// Looks left.
@@ -26,7 +26,7 @@ enum Change {
 
 /// A place in the log to which everything later can be taken back.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ListMark(usize);
+pub struct ListMark(usize);
 
 impl Worklist {
     /// An empty list with a budget, which writes down what changes where `recording`.

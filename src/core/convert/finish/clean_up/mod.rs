@@ -12,10 +12,11 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::energy;
-use super::event::{Cleaning, Event};
-use super::settle::{Nodes, RELAX_ROUNDS, relax, untangle, worst_quality};
 use super::worklist::{ListMark, Worklist};
+use crate::core::convert::event::{Cleaning, Event};
+use crate::core::convert::relax::energy;
+use crate::core::convert::relax::settle::{Nodes, RELAX_ROUNDS, relax, untangle, worst_quality};
+use crate::core::convert::sums::summed;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;
 use crate::core::metric::field::MetricSource;
@@ -47,8 +48,8 @@ const ELEMENTS_A_PAIR_TRIAL: usize = 20;
 /// Trials of longer sequences, for every mesh whose pairs were searched to the end.
 const LONGER_TRIALS: usize = 40_000;
 
+summed! {
 /// What the clean-up did, by operation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CleanedUp {
     /// Diamonds collapsed.
     pub collapses: usize,
@@ -67,22 +68,6 @@ pub struct CleanedUp {
     /// Trials taken back.
     pub refused: usize,
 }
-
-impl CleanedUp {
-    /// The sums of two.
-    #[must_use]
-    pub fn plus(&self, other: &CleanedUp) -> CleanedUp {
-        CleanedUp {
-            collapses: self.collapses + other.collapses,
-            rotations: self.rotations + other.rotations,
-            openings: self.openings + other.openings,
-            doublets: self.doublets + other.doublets,
-            pairs: self.pairs + other.pairs,
-            longer: self.longer + other.longer,
-            trials: self.trials + other.trials,
-            refused: self.refused + other.refused,
-        }
-    }
 }
 
 /// How far a clean-up looks.

@@ -1,7 +1,7 @@
 //! What a trial may move, and how good it is: the nodes of a change with their neighbours, and the elements around them.
 
 use super::candidate::Valences;
-use crate::core::convert::energy;
+use crate::core::convert::relax::energy;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;
 

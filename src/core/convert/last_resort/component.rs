@@ -58,7 +58,7 @@ pub fn live_components(mesh: &Mesh, face: Option<u32>) -> Vec<Component> {
 }
 
 /// The live component of a triangle, where it has no more than `most` triangles.
-pub(super) fn small_component(mesh: &Mesh, first: ElementId, most: usize) -> Option<Component> {
+pub fn small_component(mesh: &Mesh, first: ElementId, most: usize) -> Option<Component> {
     let mut triangles = vec![first];
     let mut boundary = 0;
     let mut next = 0;
