@@ -1,5 +1,5 @@
-//! Promise: a crash or a kill loses nothing of what a person did in the window, a figure that is dropped on it opens what it shows,
-//! and a file that goes bad under it is told.
+//! Promise: a crash or a kill loses nothing of what a person did in the window, a figure that is dropped on it opens
+//! what it shows, and a file that goes bad under it is told.
 //!
 //! Needs a graphics adapter, as the window's own tests; without any they are skipped with the reason.
 #![allow(clippy::unwrap_used)]

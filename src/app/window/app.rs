@@ -52,7 +52,8 @@ impl App {
         App::kept(cc, source, None, Lost::default())
     }
 
-    /// The same, as the last one was left: what is kept of it is at `path`. `lost` hears whether the graphics device is lost.
+    /// The same, as the last one was left: what is kept of it is at `path`. `lost` hears whether the graphics device is
+    /// lost.
     pub fn kept(cc: &CreationContext<'_>, source: Option<Source>, path: Option<PathBuf>, lost: Lost) -> App {
         theme::install(&cc.egui_ctx);
         let context = cc.egui_ctx.clone();

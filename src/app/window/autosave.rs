@@ -1,8 +1,8 @@
-//! Runs that are kept while they are worked on: each window has a file of its own in the user's state folder, which grows with
-//! the run and goes when nothing is unsaved. What a crash leaves behind is offered at the next start.
+//! Runs that are kept while they are worked on: each window has a file of its own in the user's state folder, which
+//! grows with the run and goes when nothing is unsaved. What a crash leaves behind is offered at the next start.
 //!
-//! A window holds a lock beside its file for as long as it lives; the system releases it however the window ends. So two windows
-//! never take each other's runs, and a run whose lock is free was left behind.
+//! A window holds a lock beside its file for as long as it lives; the system releases it however the window ends. So
+//! two windows never take each other's runs, and a run whose lock is free was left behind.
 
 mod place;
 

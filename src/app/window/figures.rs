@@ -1,4 +1,5 @@
-//! Figures from the window: the state at hand, or several steps as a strip, made beside the window by what `render` is made by.
+//! Figures from the window: the state at hand, or several steps as a strip, made beside the window by what `render` is
+//! made by.
 
 use std::path::PathBuf;
 use std::sync::Arc;

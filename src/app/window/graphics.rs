@@ -33,8 +33,8 @@ struct Told {
     saved: Option<PathBuf>,
 }
 
-/// Hears when the device is lost. A lost device cannot draw any more, nor say so: the run is saved, the window closes, and the
-/// program says what happened where it was started.
+/// Hears when the device is lost. A lost device cannot draw any more, nor say so: the run is saved, the window closes,
+/// and the program says what happened where it was started.
 #[derive(Clone, Default)]
 pub struct Lost(Arc<Mutex<Told>>);
 

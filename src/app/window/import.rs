@@ -1,5 +1,5 @@
-//! A mesh file that is about to be converted: how it is taken, in the words of the command line, and what it is like. Whatever a person
-//! changes is previewed by a thread (`preview`), the newest wish alone.
+//! A mesh file that is about to be converted: how it is taken, in the words of the command line, and what it is like.
+//! Whatever a person changes is previewed by a thread (`preview`), the newest wish alone.
 
 mod preview;
 

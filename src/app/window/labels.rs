@@ -1,5 +1,5 @@
-//! What is laid over a view as text and curves: letters, H-values, frontal angles, node ids, ellipses, scale bar and axes. All of it
-//! thins out by its size on the screen; a label that would cover an earlier one is dropped.
+//! What is laid over a view as text and curves: letters, H-values, frontal angles, node ids, ellipses, scale bar and
+//! axes. All of it thins out by its size on the screen; a label that would cover an earlier one is dropped.
 
 mod corners;
 mod measures;
@@ -165,7 +165,8 @@ impl Over<'_> {
         }
     }
 
-    /// Whether the surface is seen from behind at a node, so that what runs anticlockwise in the mesh runs clockwise here.
+    /// Whether the surface is seen from behind at a node, so that what runs anticlockwise in the mesh runs clockwise
+    /// here.
     fn is_behind(&self, node: NodeId) -> bool {
         self.scene.spot(node).is_some_and(|spot| spot.normal.dot(self.frame.camera.towards()) < 0.0)
     }

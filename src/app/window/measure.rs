@@ -1,4 +1,5 @@
-//! How long states and frames take on this machine: shown in the status line where that is wanted, and measured by stepping.
+//! How long states and frames take on this machine: shown in the status line where that is wanted, and measured by
+//! stepping.
 
 use std::time::{Duration, Instant};
 
@@ -35,8 +36,8 @@ impl Times {
         self.state = Some(took);
     }
 
-    /// A frame begins. `follows`: it was asked for in the one before, so that the time between them is that of a frame, with all
-    /// that the card does.
+    /// A frame begins. `follows`: it was asked for in the one before, so that the time between them is that of a frame,
+    /// with all that the card does.
     pub fn frame(&mut self, follows: bool) {
         let now = Instant::now();
         if let Some(begun) = self.begun.filter(|_| follows) {

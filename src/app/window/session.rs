@@ -1,7 +1,9 @@
-//! The run at work, on threads of its own: the window asks for a state and is told when it is there, so that it never waits.
+//! The run at work, on threads of its own: the window asks for a state and is told when it is there, so that it never
+//! waits.
 //!
-//! One thread has the history and goes where it is asked to; another runs ahead with the history's recorder and hands over
-//! what it found. A goal that lies beyond what is known waits until that thread has come so far, or until it is stopped.
+//! One thread has the history and goes where it is asked to; another runs ahead with the history's recorder and hands
+//! over what it found. A goal that lies beyond what is known waits until that thread has come so far, or until it is
+//! stopped.
 
 mod goal;
 mod moment;

@@ -1,5 +1,5 @@
-//! What is kept of the window from one start to the next: where its panels are, what it draws, and how large it is. A small file in
-//! the user's own folder for such things; one that cannot be read is told and left out.
+//! What is kept of the window from one start to the next: where its panels are, what it draws, and how large it is. A
+//! small file in the user's own folder for such things; one that cannot be read is told and left out.
 
 use std::path::{Path, PathBuf};
 

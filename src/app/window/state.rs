@@ -291,8 +291,8 @@ impl State {
         }
     }
 
-    /// Opens a case or a mesh in place of what is open, which stays until the other one stands. Of a mesh it is shown first what
-    /// it is like.
+    /// Opens a case or a mesh in place of what is open, which stays until the other one stands. Of a mesh it is shown
+    /// first what it is like.
     pub fn open(&mut self, source: Source) {
         if let Source::File(path) = &source
             && Format::from_path(path).is_ok()

@@ -1,4 +1,5 @@
-//! The views: the mesh in space or in its plane, the same from the other end of the zoom, and through the metric of a node.
+//! The views: the mesh in space or in its plane, the same from the other end of the zoom, and through the metric of a
+//! node.
 
 mod cameras;
 mod faces;
@@ -249,7 +250,8 @@ impl Views {
         }
     }
 
-    /// Brings a scene up to date with the state: by what changed, where it is only that. `leads`: it is laid out for this view.
+    /// Brings a scene up to date with the state: by what changed, where it is only that. `leads`: it is laid out for
+    /// this view.
     fn update(
         &mut self,
         state: &mut State,

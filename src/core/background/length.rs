@@ -1,5 +1,5 @@
-//! Metric lengths of curves: each smooth piece with a table of its arclength (spec 3, step 1), and how many segments it is
-//! to have.
+//! Metric lengths of curves: each smooth piece with a table of its arclength (docs/algorithm.md, "Curves divided at
+//! equal metric length"), and how many segments it is to have.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -1,5 +1,5 @@
-//! The constrained Delaunay triangulation of divided curves (spec 3, step 2), by face, cut apart along shared curves,
-//! cracks and repeated lines.
+//! The constrained Delaunay triangulation of divided curves (docs/algorithm.md, "Triangulation and cuts"), by face, cut
+//! apart along shared curves, cracks and repeated lines.
 
 use glam::DVec2;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -38,7 +38,7 @@ pub struct Clash {
 }
 
 /// Divides the curves of a domain in the metric and triangulates it; curves whose chords clash are divided more finely
-/// (spec 4).
+/// (docs/algorithm.md, "Curves divided at equal metric length").
 ///
 /// # Errors
 /// What [`super::discretise::divide`] refuses, and chords that still clash after many rounds.
@@ -100,7 +100,7 @@ type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 /// Triangulates divided curves: all faces, without what is outside and in holes. Regions are the faces by number.
 ///
 /// # Errors
-/// Chords that cross, touch or coincide, and triangles that are too thin (spec 2.10).
+/// Chords that cross, touch or coincide, and triangles that are too thin (docs/algorithm.md, "Rounding").
 ///
 /// # Panics
 /// Where a boundary loop is odd: [`Division::even_out`] has made them even.

@@ -8,8 +8,8 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::journal::Mark;
 use crate::core::metric::field::MetricSource;
 
-/// What a step comes to: the phase after it and what it did. Without an event it found nothing to do, and the next phase has its
-/// turn in the same step.
+/// What a step comes to: the phase after it and what it did. Without an event it found nothing to do, and the next
+/// phase has its turn in the same step.
 pub(super) type Done = (Phase, Option<Event>);
 
 /// Least quality and largest new edge that a formation may have.

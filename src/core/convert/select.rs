@@ -10,8 +10,8 @@ use crate::core::front::selection::BaseChoice;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 
-/// Selects the base segment by the rules (4.3.3, steps i to iii), or takes the one that a person picked. Where every segment is
-/// put off, all are taken up once more with wider gates; after that what is left over is closed.
+/// Selects the base segment by the rules (4.3.3, steps i to iii), or takes the one that a person picked. Where every
+/// segment is put off, all are taken up once more with wider gates; after that what is left over is closed.
 pub(super) fn select(front: &mut Front<'_>, picked: Option<[NodeId; 2]>) -> Done {
     front.commit();
     let parameters = front.parameters;

@@ -1,5 +1,5 @@
-//! Front splitting (paper 4.3.6, fig. 19): where a new quadrilateral leaves a narrow region, two nodes of the front that face each
-//! other over a slender triangle become one, and the loop two even ones, before a slender quadrilateral is formed there.
+//! Front splitting (paper 4.3.6, fig. 19): where a new quadrilateral leaves a narrow region, two nodes of the front
+//! that face each other over a slender triangle become one and the loop two even ones, before a quadrilateral is.
 
 use smallvec::SmallVec;
 

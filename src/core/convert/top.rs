@@ -1,5 +1,5 @@
-//! Recovery of the top edge (paper 4.3.4, definition of the top edge, i to vi; spec 2.4): swaps along the line, one a
-//! step, with node removal where no swap is possible. Every crossing is found by exact predicates.
+//! Recovery of the top edge (paper 4.3.4, definition of the top edge, i to vi; docs/algorithm.md, "Top edge"): swaps
+//! along the line, one a step, with node removal where no swap is possible. Crossings are found exactly.
 
 use super::event::{Event, Purpose, Why};
 use super::front::{Done, Front};

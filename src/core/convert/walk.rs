@@ -68,16 +68,15 @@ pub struct StepReport<'e> {
     /// What a side edge was chosen from, where one was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub candidates: Option<&'e Candidates>,
-    /// The edges that the line from C to D crosses, from C on, where the top edge is being recovered (4.3.4): all live; a dead one
-    /// ends the recovery, and its `rolled_back` has it.
+    /// The edges that the line from C to D crosses, from C on, where the top edge is being recovered (4.3.4): all live;
+    /// a dead one ends the recovery, and its `rolled_back` has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossings: Option<&'e [[NodeId; 2]]>,
-    /// Segments of each loop of the front that runs through the nodes at which the front has changed, after the step; an even
-    /// number each (spec 2.6).
+    /// Segments of each loop of the front that runs through the nodes at which the front has changed, after the step;
+    /// an even number each (docs/algorithm.md, "The parity invariant").
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loops: Option<&'e [u32]>,
-    /// Worst quality of the elements around the last quadrilateral before and after, where its neighbourhood was improved
-    /// (4.3.6).
+    /// Worst quality around the last quadrilateral before and after, where its neighbourhood was improved (4.3.6).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<[f64; 2]>,
 }
@@ -86,8 +85,8 @@ pub struct StepReport<'e> {
 pub type Tell<'t> = &'t mut dyn FnMut(&StepReport<'_>);
 
 /// Steps until `stop` is reached, or to the end where there is none; the same states as
-/// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What an event
-/// leaves out (candidates, crossings, loops, qualities) is only computed where somebody listens.
+/// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What
+/// an event leaves out (candidates, crossings, loops, qualities) is only computed where somebody listens.
 ///
 /// # Errors
 /// As [`Converter::step`](super::converter::Converter::step); and where the conversion ends before the stop.

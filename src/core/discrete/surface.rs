@@ -1,5 +1,5 @@
 //! A surface of triangles as a domain: each chart is a face; borders of charts become curves between the points where they meet,
-//! divided once for all faces that share them, as the curves of a case are (spec 2.9, 4).
+//! divided once for all faces that share them, as the curves of a case are (docs/algorithm.md, "Charts of triangles").
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
 const LEAST_SIZE: f64 = 1.0 / 6.0;
 /// Such elements leave the surface by no more than about this part of its size.
 const MOST_AWAY: f64 = 0.003;
-/// Growth of such sizes from one element to the next (spec 3).
+/// Growth of such sizes from one element to the next (docs/algorithm.md, "Sizes where none are given").
 const GRADATION: f64 = 1.3;
 
 /// A surface laid into the plane.

@@ -1,4 +1,5 @@
-//! How a face's surface is laid out in the plane in which the face is meshed (paper 3.1; spec 2.9): the chart.
+//! How a face's surface is laid out in the plane in which the face is meshed (paper 3.1; docs/algorithm.md, "Charts and
+//! the atlas"): the chart.
 //!
 //! Away from singular points a chart is the parametric plane, scaled so that lengths are about those in space. Around a
 //! singular point (a pole, an apex: an edge of the parametric rectangle that is one point) the secondary mapping takes its

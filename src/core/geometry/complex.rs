@@ -1,6 +1,7 @@
-//! Faces on surfaces that share curves (paper 3.1; spec 2.9): each face gets a chart, each curve an image in the chart of
-//! every face that it bounds, and all charts lie side by side in the plane of an [`Atlas`]. What comes out is a [`Domain`] of
-//! that plane, which knows what its curves and vertices are in space.
+//! Faces on surfaces that share curves (paper 3.1; docs/algorithm.md, "Charts and the atlas", "Curves shared by
+//! faces"): each face gets a chart, each curve an image in the chart of every face that it bounds, and all charts lie
+//! side by side in the plane of an [`Atlas`]. What comes out is a [`Domain`] of that plane, which knows what its curves
+//! and vertices are in space.
 //!
 //! Here: which chart a face gets, and how all are set side by side. How images are chained to loops is in `lifting`, a surface
 //! that is a face as a whole in `whole_surface`.

@@ -23,8 +23,8 @@ pub struct DomainFace {
     pub name: String,
     /// Outer loop, anticlockwise, then the holes, clockwise: the face lies on the left of each.
     pub loops: Vec<Vec<DirectedCurve>>,
-    /// Its topological loops (spec 2.9): boundary walks with the face on their left, with the cracks and repeated lines
-    /// that hang on them; each must get an even number of segments.
+    /// Its topological loops (docs/algorithm.md, "Even loops"): boundary walks with the face on their left, with the
+    /// cracks and repeated lines that hang on them; each must get an even number of segments.
     pub walks: Vec<Vec<DirectedCurve>>,
 }
 

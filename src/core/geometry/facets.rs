@@ -1,5 +1,5 @@
-//! A chart of triangles as a surface: the ground of faces without CAD (spec 4). Within a triangle places in the plane and in space
-//! go together linearly, so that the derivatives are those of the triangle.
+//! A chart of triangles as a surface: the ground of faces without CAD (docs/algorithm.md, "Flattening"). Within a
+//! triangle places in the plane and in space go together linearly, so that the derivatives are those of the triangle.
 
 use glam::{DVec2, DVec3};
 

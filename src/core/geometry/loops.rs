@@ -103,7 +103,8 @@ pub fn doubled_area(points: &[DVec2]) -> f64 {
 
 /// The boundary walks of every face: each runs with the face on its left and turns at each vertex into the first curve
 /// clockwise, so that what hangs on a loop (cracks, repeated lines, loops that touch at a vertex) belongs to the same
-/// walk, an internal line twice. These are the topological loops that have to be even (spec 2.9).
+/// walk, an internal line twice. These are the topological loops that have to be even (docs/algorithm.md, "Even
+/// loops").
 ///
 /// # Errors
 /// Faces whose curves do not bound them: a curve that runs into another face at a vertex.

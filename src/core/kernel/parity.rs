@@ -1,5 +1,5 @@
-//! Even loops (spec 2.9): which curves get one segment more or fewer, so that every topological loop is even. A linear
-//! system over GF(2) with a row for each loop and a column for each curve.
+//! Even loops (docs/algorithm.md, "Even loops"): which curves get one segment more or fewer, so that every topological
+//! loop is even. A linear system over GF(2) with a row for each loop and a column for each curve.
 
 use rustc_hash::FxHashMap;
 

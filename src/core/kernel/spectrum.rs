@@ -1,4 +1,5 @@
-//! What needs the eigenvalues of a tensor: sizes, roots, logarithms, log-Euclidean means, and intersection (spec 3.6).
+//! What needs the eigenvalues of a tensor: sizes, roots, logarithms, log-Euclidean means, and intersection
+//! (docs/algorithm.md, "Fields and their intersection").
 //!
 //! Both dimensions stand on Jacobi's rotation: in the plane one is enough, in space sweeps of three. It keeps small
 //! eigenvalues accurate where the tensor is nearly diagonal, however stretched it is, and its operations are the same on
@@ -169,7 +170,8 @@ impl Metric2 {
         LogMetric2([m.uu, m.uv, m.vv])
     }
 
-    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (spec 3.6); the weights should add to one.
+    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (docs/algorithm.md, "Metric at new places"); the weights should
+    /// add to one.
     ///
     /// # Panics
     /// In debug builds, when the lengths differ.
@@ -178,7 +180,8 @@ impl Metric2 {
         weights.iter().zip(tensors).fold(LogMetric2::ZERO, |sum, (&w, m)| sum.plus(w, &m.ln())).exp()
     }
 
-    /// The intersection of two metrics (spec 3.6): the largest unit ball, by simultaneous reduction, that lies in both.
+    /// The intersection of two metrics (docs/algorithm.md, "Fields and their intersection"): the largest unit ball, by
+    /// simultaneous reduction, that lies in both.
     ///
     /// With `a = L L^T` the reduction diagonalises `S = L^-1 b L^-T`; equal and proportional metrics need no care then, since
     /// any basis diagonalises a multiple of the unit tensor. Where one contains the other that one is given back, bit for
@@ -244,7 +247,8 @@ impl Metric3 {
         LogMetric3(Metric3::from_eigen(values.map(libm::log), g).entries())
     }
 
-    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (spec 3.6); the weights should add to one.
+    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (docs/algorithm.md, "Metric at new places"); the weights should
+    /// add to one.
     ///
     /// # Panics
     /// In debug builds, when the lengths differ.

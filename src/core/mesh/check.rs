@@ -1,4 +1,5 @@
-//! Structural and exact geometric checks of the half-edge mesh (spec 5): what must hold after every operation.
+//! Structural and exact geometric checks of the half-edge mesh (docs/algorithm.md, "Checks"): what must hold after
+//! every operation.
 
 use super::half_edge::Mesh;
 use super::ids::{ElementId, NodeId};

@@ -1,4 +1,5 @@
-//! The mesh: triangles and quadrilaterals in one half-edge structure of plain arrays (spec 6).
+//! The mesh: triangles and quadrilaterals in one half-edge structure of plain arrays (docs/algorithm.md, "Half-edge
+//! structure").
 //!
 //! A half-edge is slot `4 * element + corner`; `next` and `previous` are arithmetic, only `origin` and `twin` are stored.
 //! Every node has one fan of elements (pinched nodes come in copies that share a `PointId`), and the fan of a node on a

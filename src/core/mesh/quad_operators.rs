@@ -1,5 +1,5 @@
-//! Operations on quadrilaterals that change their structure (spec 2.11, 10): diamond collapse, edge rotation, vertex
-//! opening and its inverse, and the removal of doublets.
+//! Operations on quadrilaterals that change their structure (docs/algorithm.md, "Clean-up"): diamond collapse, edge
+//! rotation, vertex opening and its inverse, and the removal of doublets.
 //!
 //! These judge the topology only: what comes out is conforming and manifold, but its elements may be inverted until the
 //! nodes around are relaxed. They are for use inside a transaction that ends with an exact check, or is taken back.

@@ -8,9 +8,9 @@ use super::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::kernel::tensor::Metric2;
 use crate::core::metric::measure::{quad_quality, triangle_quality};
 
-/// Length of `d` over two metrics: the logarithmic mean of the lengths in each (spec 2.1), by the approximation
-/// (4 sqrt(la lb) + la + lb) / 6, which is within 0.2 % of it where one is up to four times the other and costs no
-/// logarithm.
+/// Length of `d` over two metrics: the logarithmic mean of the lengths in each (docs/algorithm.md, "Lengths and
+/// angles"), by the approximation (4 sqrt(la lb) + la + lb) / 6, which is within 0.2 % of it where one is up to four
+/// times the other and costs no logarithm.
 #[inline]
 pub fn length_over(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
     let (l2_a, l2_b) = (m_a.norm2(d), m_b.norm2(d));

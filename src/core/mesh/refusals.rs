@@ -1,5 +1,5 @@
 //! Failure injection: operations refused at random although nothing speaks against them. Whatever is refused, the result
-//! must be right; tests say so (spec 5).
+//! must be right; tests say so (docs/algorithm.md, "Failure injection").
 //!
 //! Whether an operation is refused is a pure function of the seed, the operation and where it is to happen: judging twice
 //! gives the same answer, a step taken back and done again meets the same refusals, and nothing must be remembered. A

@@ -180,8 +180,8 @@ impl Field {
         Ok(Field(kind))
     }
 
-    /// A field by a table at the nodes of a triangle mesh in the parametric plane, log-Euclidean between them (spec 2.1.1);
-    /// outside the mesh, the value at its nearest point.
+    /// A field by a table at the nodes of a triangle mesh in the parametric plane, log-Euclidean between them
+    /// (docs/algorithm.md, "Metric at new places"); outside the mesh, the value at its nearest point.
     ///
     /// # Errors
     /// Lengths that differ, indices out of range, a triangle without area, a metric that is not positive definite.

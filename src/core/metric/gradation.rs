@@ -1,4 +1,5 @@
-//! Bounding how quickly the sizes of a tabulated metric change (spec 3, item 5; after Alauzet's mixed-space gradation).
+//! Bounding how quickly the sizes of a tabulated metric change (docs/algorithm.md, "Gradation"; after Alauzet's
+//! mixed-space gradation).
 
 use glam::{DVec2, DVec3};
 

@@ -1,4 +1,5 @@
-//! A field given by a table at the nodes of a frozen triangle mesh, between which it is log-Euclidean (spec 2.1.1, 3.6).
+//! A field given by a table at the nodes of a frozen triangle mesh, between which it is log-Euclidean
+//! (docs/algorithm.md, "Metric at new places").
 
 use glam::DVec2;
 

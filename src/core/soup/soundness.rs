@@ -1,5 +1,5 @@
-//! Whether a mesh of quadrilaterals is sound (spec 5), for any mesh file, in the plane or on a surface, from its plain
-//! arrays alone: nothing of the converter's own structures is trusted here.
+//! Whether a mesh of quadrilaterals is sound (docs/algorithm.md, "Checks"), for any mesh file, in the plane or on a
+//! surface, from its plain arrays alone: nothing of the converter's own structures is trusted here.
 //!
 //! In the plane convexity is exact, and so is the proof that nothing overlaps (see `overlap`). On a surface every corner
 //! is measured against the normal of its own element.

@@ -1,5 +1,5 @@
-//! The thread that reads a mesh, mends it, finds its features and charts, and makes the picture of them. Of several wishes the newest
-//! counts: what is under way for another one is ended.
+//! The thread that reads a mesh, mends it, finds its features and charts, and makes the picture of them. Of several
+//! wishes the newest counts: what is under way for another one is ended.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -116,7 +116,8 @@ impl Preview {
         Preview { ask, told, cancel }
     }
 
-    /// Asks for a picture in place of what was asked for before; it has this generation, and one on the way to it the one before.
+    /// Asks for a picture in place of what was asked for before; it has this generation, and one on the way to it the
+    /// one before.
     pub fn ask(&mut self, wanted: Wanted, generation: u64) {
         self.cancel.ask();
         self.cancel = Cancel::new();

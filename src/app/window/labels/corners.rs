@@ -32,7 +32,8 @@ impl Over<'_> {
         }
     }
 
-    /// The place of the corner and the screen directions of its two legs, anticlockwise in the mesh, with their lengths.
+    /// The place of the corner and the screen directions of its two legs, anticlockwise in the mesh, with their
+    /// lengths.
     fn corner(&self, segment: &Segment, side: Side) -> Option<(Pos2, [Vec2; 2])> {
         let mesh = &self.moment.mesh;
         let h = mesh.front_between(segment.a, segment.b)?;
@@ -73,8 +74,8 @@ impl Over<'_> {
     }
 }
 
-/// Points of the arc of `radius` from the first leg to the second, anticlockwise in the mesh (clockwise on a screen with y down
-/// is the other way round).
+/// Points of the arc of `radius` from the first leg to the second, anticlockwise in the mesh (clockwise on a screen
+/// with y down is the other way round).
 fn arc(centre: Pos2, legs: [Vec2; 2], radius: f32) -> Vec<Pos2> {
     let from = legs[0].angle();
     let mut turn = from - legs[1].angle();

@@ -1,5 +1,5 @@
-//! What is measured against: metric ellipses, the unit grid of the lens, the frame of the main view, scale bar and axes, and the
-//! legend of colours.
+//! What is measured against: metric ellipses, the unit grid of the lens, the frame of the main view, scale bar and
+//! axes, and the legend of colours.
 
 use eframe::egui::{Align2, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::DVec2;
@@ -33,7 +33,8 @@ impl Over<'_> {
         }
     }
 
-    /// The metric ellipse of a node on the screen, at a share of the unit length; in space it lies in the tangent plane.
+    /// The metric ellipse of a node on the screen, at a share of the unit length; in space it lies in the tangent
+    /// plane.
     fn ellipse(&self, node: NodeId, share: f64) -> Vec<Pos2> {
         let mesh = &self.moment.mesh;
         let p = mesh.uv(node);

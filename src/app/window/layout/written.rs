@@ -44,8 +44,8 @@ fn write_tile(tiles: &Tiles<Pane>, id: TileId) -> Value {
     }
 }
 
-/// The docks of a value, and the tile that has the main view; none where it is no such value, or where a panel is missing or there
-/// twice.
+/// The docks of a value, and the tile that has the main view; none where it is no such value, or where a panel is
+/// missing or there twice.
 pub fn read(value: &Value) -> Option<(Tree<Pane>, TileId)> {
     let mut tiles = Tiles::default();
     let root = read_tile(&mut tiles, value, 0)?;

@@ -369,7 +369,8 @@ fn three_digits(value: f64) -> String {
     Shortest(format!("{value:.2e}").parse().unwrap_or(value)).to_string()
 }
 
-/// How far the work is. The room is there when nothing is under way too, so that no button moves from under the pointer.
+/// How far the work is. The room is there when nothing is under way too, so that no button moves from under the
+/// pointer.
 fn under_way(ui: &mut Ui, import: &Import, is_opening: bool, progress: Option<&Progress>, palette: &Palette) {
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 30.0), Sense::hover());
     let text = match progress {

@@ -81,7 +81,8 @@ fn gone(ui: &mut Ui, what: &str, palette: &Palette) {
 /// Points between columns.
 const GAP: f32 = 7.0;
 
-/// One row of a table in columns of fixed widths, the last one taking the rest; what does not fit is cut and told on hover.
+/// One row of a table in columns of fixed widths, the last one taking the rest; what does not fit is cut and told on
+/// hover.
 fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground: Option<Rgba>) -> Response {
     // Numbers stand to the right, words to the left.
     let left_last = texts.last().is_some_and(|text| text.contains(char::is_alphabetic) && !text.ends_with('°'));

@@ -1,5 +1,5 @@
-//! The run along its steps: lanes for kinds of events, invariants, curves, bookmarks, and the play head. Click or drag to seek; the
-//! wheel zooms, sideways it moves, a double click shows the whole run.
+//! The run along its steps: lanes for kinds of events, invariants, curves, bookmarks, and the play head. Click or drag
+//! to seek; the wheel zooms, sideways it moves, a double click shows the whole run.
 
 mod columns;
 

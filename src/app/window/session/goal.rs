@@ -20,8 +20,8 @@ pub enum Goal {
 }
 
 impl Goal {
-    /// The step of the goal, seen from `step`; `None` where it is not known yet. `end` is the last step of the run, once it
-    /// is known.
+    /// The step of the goal, seen from `step`; `None` where it is not known yet. `end` is the last step of the run,
+    /// once it is known.
     pub fn resolve(self, log: &Log, step: u64, end: Option<u64>) -> Option<u64> {
         let known = |target: u64| if target <= log.known() { Some(target) } else { end };
         let with = |quads: u64, after: u64| if quads == 0 { Some(0) } else { log.first_with(quads, after).or(end) };

@@ -1,5 +1,5 @@
-//! The thread that has the history of the run: it goes where it is asked to go, answers what is asked of the state at hand, and
-//! lends another thread the recorder that runs ahead.
+//! The thread that has the history of the run: it goes where it is asked to go, answers what is asked of the state at
+//! hand, and lends another thread the recorder that runs ahead.
 
 mod arriving;
 

@@ -21,8 +21,8 @@ impl State {
         told.into_iter().for_each(|told| self.take(told));
     }
 
-    /// Where the session owes an answer, waits for it, but not so long that anybody notices: most states are there at once,
-    /// and are seen in the very frame that asked for them.
+    /// Where the session owes an answer, waits for it, but not so long that anybody notices: most states are there at
+    /// once, and are seen in the very frame that asked for them.
     pub fn hear_soon(&mut self) {
         let begin = Instant::now();
         while self.waiting > 0
@@ -102,7 +102,8 @@ impl State {
         None
     }
 
-    /// What became of something up to the step at hand; asked for where it is not known yet and nothing else is under way.
+    /// What became of something up to the step at hand; asked for where it is not known yet and nothing else is under
+    /// way.
     pub fn past(&mut self, watched: Watched) -> Option<Arc<Past>> {
         let step = self.moment.as_ref()?.step;
         if let Some(past) = &self.past

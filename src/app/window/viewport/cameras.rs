@@ -96,7 +96,8 @@ pub(super) fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera, rec
     }
 }
 
-/// The node whose metric the lens shows, and the node that lies to its right: A and B of what is picked or of the decision.
+/// The node whose metric the lens shows, and the node that lies to its right: A and B of what is picked or of the
+/// decision.
 pub fn lens_node(state: &State, moment: &Moment) -> Option<(NodeId, Option<NodeId>)> {
     let found = match (state.kept.picked, state.picked_segment().or(Decision::of(&moment.phase).base)) {
         (Some(Outlined::Node(node)), _) => (node, None),

@@ -62,8 +62,8 @@ impl Views {
         labels::shading(ui, &frame, &self.shading, palette);
     }
 
-    /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two fingers. Tells
-    /// whether the camera has moved.
+    /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two
+    /// fingers. Tells whether the camera has moved.
     fn steer(&mut self, ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect, moment: &Moment) -> bool {
         let frame = Frame { camera: *camera, rect };
         if response.drag_started() {
@@ -76,7 +76,8 @@ impl Views {
     }
 }
 
-/// Turns, moves and zooms by what is done in a view in space; a drag turns about `pivot`. Tells whether the camera has moved.
+/// Turns, moves and zooms by what is done in a view in space; a drag turns about `pivot`. Tells whether the camera has
+/// moved.
 pub(super) fn orbit(
     ui: &Ui,
     response: &egui::Response,

@@ -1,5 +1,5 @@
-//! What the front leaves over: small loops are closed (spec 2.7), and what cannot be closed is converted by the last resort
-//! (spec 2.10), component by component and patch by patch.
+//! What the front leaves over: small loops are closed (docs/algorithm.md, "Small loops"), and what cannot be closed is
+//! converted by the last resort (docs/algorithm.md, "The last resort"), component by component and patch by patch.
 
 mod ways;
 
@@ -20,8 +20,8 @@ const MOST_SEGMENTS: usize = 10;
 /// So are those with more triangles.
 const MOST_TRIANGLES: usize = 64;
 
-/// Closes the loop of a segment from which no quadrilateral can be formed, where it is a small one (spec 2.7); else puts
-/// the segment off until something near it changes.
+/// Closes the loop of a segment from which no quadrilateral can be formed, where it is a small one; else puts the
+/// segment off until something near it changes.
 pub(super) fn close_or_defer(front: &mut Front<'_>, base: Base) -> Done {
     let segment = base.half_edge(front.mesh);
     let mark = front.mesh.mark();
@@ -48,7 +48,7 @@ fn component_beside(mesh: &Mesh, h: HalfEdgeId) -> Option<Component> {
     is_short.then(|| small_component(mesh, h.element(), MOST_TRIANGLES)).flatten()
 }
 
-/// Closes the next small loop that is left over (spec 2.7); what cannot be closed goes to the last resort together.
+/// Closes the next small loop that is left over; what cannot be closed goes to the last resort together.
 pub(super) fn close_next(front: &mut Front<'_>, mut waiting: Vec<Component>, mut left: Vec<Component>) -> Done {
     while let Some(component) = waiting.pop() {
         if let Some(event) = ways::close(front.mesh, front.source, &component) {
@@ -59,7 +59,7 @@ pub(super) fn close_next(front: &mut Front<'_>, mut waiting: Vec<Component>, mut
     (Phase::Match { left: left.into(), at: 0 }, None)
 }
 
-/// Matches the triangles of the next component that is left over (spec 2.10); past the last one all are converted.
+/// Matches the triangles of the next component that is left over; past the last one all are converted.
 pub(super) fn match_next(
     front: &mut Front<'_>,
     left: Arc<[Component]>,

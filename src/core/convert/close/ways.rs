@@ -1,6 +1,6 @@
-//! The ways to close a small loop (spec 2.7, 10 rule 4): quadrilaterals between the nodes of the loop, formed even where
-//! they are flat, repaired by the rotation of an edge with a neighbour, by their collapse or by a smaller one set into them, and
-//! relaxed together with the elements around.
+//! The ways to close a small loop (docs/algorithm.md, "Small loops"): quadrilaterals between the nodes of the loop,
+//! formed even where they are flat, repaired by the rotation of an edge with a neighbour, by their collapse or by a
+//! smaller one set into them, and relaxed together with the elements around.
 
 use smallvec::SmallVec;
 
@@ -32,7 +32,7 @@ enum Repair {
     Rotate(usize, u32, usize),
     /// The node at the start of a side is merged with the opposite one: the element goes, as by two seams.
     Collapse(usize, u32),
-    /// A smaller quadrilateral is set into it: every corner gets an edge of its own, also one between two sides in a line.
+    /// A smaller quadrilateral is inset: every corner gets an edge of its own, even one between collinear sides.
     Inset(usize),
 }
 
@@ -184,8 +184,7 @@ fn inset(mesh: &mut Mesh, source: &dyn MetricSource, element: ElementId) -> Opti
     Some(inner)
 }
 
-/// The nodes of a component's single loop, anticlockwise; `None` where it is too long, has several loops,
-/// or touches itself.
+/// The nodes of a component's loop, anticlockwise; `None` where it is too long, not the only one, or touches itself.
 fn ring(mesh: &Mesh, component: &Component) -> Option<SmallVec<[NodeId; MOST_SEGMENTS]>> {
     if component.boundary > MOST_SEGMENTS || component.triangles.len() > MOST_TRIANGLES {
         return None;
@@ -216,7 +215,7 @@ fn inner_nodes(mesh: &Mesh, triangles: &[ElementId], ring: &[NodeId]) -> SmallVe
     inside
 }
 
-/// All ways to cover the polygon of the corners `from..=to` (an even number of them) by quadrilaterals between its corners.
+/// All ways to divide the polygon of the corners `from..=to` (an even number) into quadrilaterals between them.
 fn coverings(from: usize, to: usize) -> Vec<Vec<[usize; 4]>> {
     if to == from + 1 {
         return vec![Vec::new()];

@@ -13,7 +13,7 @@ pub struct Counts {
     pub formed: u64,
     /// Of those, how many with another right side (4.3.4).
     pub right_replaced: u64,
-    /// Of those, how many by the other rescues of spec 2.4 (b, c).
+    /// Of those, how many with another left side or a Lee-Lo pair (docs/algorithm.md, "Rescue").
     pub rescued: u64,
     /// Attempts taken back.
     pub rolled_back: u64,

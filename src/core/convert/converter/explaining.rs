@@ -1,4 +1,4 @@
-//! What the events leave unsaid, computed from the state when somebody asks: a run that nobody watches pays nothing for it.
+//! What the events leave out, computed from the state on demand: a run that nobody watches pays nothing for it.
 
 use smallvec::SmallVec;
 
@@ -20,8 +20,8 @@ impl Converter<'_> {
         Some(candidates::of(&here, attempt, *left))
     }
 
-    /// The edges that the top edge crosses, from C on, where the next step recovers it and none of them is dead; none where it is
-    /// there.
+    /// The edges that the top edge crosses, from C on, where the next step recovers it and none of them is dead; none
+    /// where it is there.
     pub fn top_crossings(&self) -> Option<Vec<[NodeId; 2]>> {
         let Phase::RecoverTop { tops: [c, d], .. } = self.phase else { return None };
         if self.mesh.are_joined(c, d) {
@@ -41,8 +41,9 @@ impl Converter<'_> {
         split::narrow(&self.mesh, &self.parameters, quad)
     }
 
-    /// The segments of each loop of the front that runs through the nodes at which an event, the last step's, has changed it; `None`
-    /// where it has not changed the front. Loops come in the order of the nodes; a loop that is gone is not among them.
+    /// The segments of each loop of the front that runs through the nodes at which an event, the last step's, has
+    /// changed it; `None` where it has not changed the front. Loops come in the order of the nodes; a loop that is gone
+    /// is not among them.
     pub fn loops_after(&self, event: &Event) -> Option<Vec<u32>> {
         match event {
             Event::Formed { nodes, .. } => Some(loops_through(&self.mesh, nodes)),

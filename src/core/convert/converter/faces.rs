@@ -69,8 +69,8 @@ impl<'a> Converter<'a> {
         (next, Some(event))
     }
 
-    /// Runs to the end with the faces in parallel, to the same bytes as one after another. In parallel only from step 0 and
-    /// without a history; else as [`Converter::run`].
+    /// Runs to the end with the faces in parallel, to the same bytes as one after another. In parallel only from step 0
+    /// and without a history; else as [`Converter::run`].
     ///
     /// # Errors
     /// As [`Converter::step`].

@@ -59,7 +59,7 @@ pub struct Converter<'a> {
     step_mark: Mark,
     /// Whether the gates are wide: every segment was put off and taken up again.
     second_pass: bool,
-    /// On surfaces: the faces, which are converted one after another, by region. Else none, and all is converted together.
+    /// On surfaces the faces by region, converted one after another; else none: all is converted together.
     faces: Arc<[u32]>,
     /// Which of them is being converted; past the last one, none.
     face: usize,
@@ -85,8 +85,8 @@ pub struct Converter<'a> {
 }
 
 impl<'a> Converter<'a> {
-    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is lent
-    /// (`&sizing`) or shared (`Arc<Sizing>`).
+    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is
+    /// lent (`&sizing`) or shared (`Arc<Sizing>`).
     pub fn new(mesh: Mesh, source: impl MetricSource + Send + Sync + 'a, parameters: Parameters) -> Self {
         let faces = if mesh.ground().is_some() { mesh.faces() } else { Vec::new() };
         let mut waiting = vec![0; faces.len()];
@@ -139,8 +139,8 @@ impl<'a> Converter<'a> {
         self.queue = None;
     }
 
-    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its event says
-    /// so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
+    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its
+    /// event says so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
     ///
     /// # Errors
     /// Where there is no such front segment now.
@@ -299,7 +299,8 @@ impl<'a> Converter<'a> {
         }
     }
 
-    /// Takes an attempt back; the next one follows, or where there is none the segment is put off (spec 2.4 d).
+    /// Takes an attempt back; the next one follows, or where there is none the segment is put off (docs/algorithm.md,
+    /// "Rescue").
     fn take_attempt_back(&mut self, base: Base, attempt: Attempt, why: Why) -> Done {
         if self.keeps_history() {
             // What this very step did is not part of the state before it.

@@ -135,8 +135,8 @@ impl<'a> Converter<'a> {
         phase + self.finishing.bytes()
     }
 
-    /// Forgets the older steps of the history, so that about `keep` can still be taken back: a few more where an attempt
-    /// was under way.
+    /// Forgets the older steps of the history, so that about `keep` can still be taken back: a few more where an
+    /// attempt was under way.
     pub fn shorten_history(&mut self, keep: usize) {
         let Some(records) = &mut self.history else { return };
         // Later steps take back no further than to the selection at which nothing was under way.

@@ -1,6 +1,6 @@
 //! Global post-processing (paper 4.3.7): smoothing by the energy, clean-up of the structure, smoothing again, all by
-//! worklists; once every face is converted, what folds over its surface is repaired. A step is one sweep of the smoothing
-//! or one change of the structure.
+//! worklists; once every face is converted, what folds over its surface is repaired. A step is one sweep of the
+//! smoothing or one change of the structure.
 
 pub(super) mod parts;
 mod worklist;
@@ -44,8 +44,7 @@ pub(super) struct PostProcessing<'f, 'a> {
 }
 
 impl PostProcessing<'_, '_> {
-    /// The next sweep or change of structure; where a part has nothing left to do, the next one follows. All elements stay
-    /// strictly convex.
+    /// The next sweep or change of structure; where a part is done, the next part. Elements stay strictly convex.
     pub fn step(&mut self, part: Part) -> Done {
         let event = match part {
             Part::FirstSmoothing | Part::LastSmoothing => self.sweep(part),
@@ -75,7 +74,7 @@ impl PostProcessing<'_, '_> {
             CleanUp::begin(mesh, (self.face, self.share), Arc::clone(self.source), reach, done, self.keeps_history)
         });
         let event = part.step(mesh, self.keeps_journal);
-        self.finished.cleaned_up = part.done();
+        self.finished.cleaned_up = part.done;
         event
     }
 

@@ -32,22 +32,27 @@ pub struct PartMarks([Option<ListMark>; 6]);
 
 impl Finishing<'_> {
     fn lists(&self) -> [Option<&Worklist>; 6] {
-        let [singles, pairs, longer] = self.clean_up.each_ref().map(|part| part.as_ref().map(CleanUp::list));
-        let unfolding = self.unfolding.as_ref().map(Unfolding::list);
+        let [singles, pairs, longer] = self.clean_up.each_ref().map(|part| part.as_ref().map(|part| &part.list));
+        let unfolding = self.unfolding.as_ref().map(|part| &part.list);
         [self.first_smoothing.as_ref(), singles, pairs, longer, self.last_smoothing.as_ref(), unfolding]
+    }
+
+    fn lists_mut(&mut self) -> [Option<&mut Worklist>; 6] {
+        let [singles, pairs, longer] = self.clean_up.each_mut().map(|part| part.as_mut().map(|part| &mut part.list));
+        let unfolding = self.unfolding.as_mut().map(|part| &mut part.list);
+        [self.first_smoothing.as_mut(), singles, pairs, longer, self.last_smoothing.as_mut(), unfolding]
     }
 
     /// Whether the budget of the pairs has ended before every node was looked at.
     pub fn pairs_are_cut_short(&self) -> bool {
-        self.clean_up[Reach::Pairs as usize].as_ref().is_some_and(CleanUp::is_cut_short)
+        self.clean_up[Reach::Pairs as usize].as_ref().is_some_and(|part| part.list.len() > 0)
     }
 
     /// Bytes that the parts take.
     pub fn bytes(&self) -> usize {
-        let lists = [&self.first_smoothing, &self.last_smoothing].into_iter().flatten();
-        lists.map(Worklist::bytes).sum::<usize>()
-            + self.clean_up.iter().flatten().map(CleanUp::bytes).sum::<usize>()
-            + self.unfolding.as_ref().map_or(0, Unfolding::bytes)
+        self.lists().into_iter().flatten().map(Worklist::bytes).sum::<usize>()
+            + self.clean_up.iter().flatten().map(CleanUp::bytes_of_rest).sum::<usize>()
+            + self.unfolding.as_ref().map_or(0, Unfolding::bytes_of_rest)
     }
 
     /// Bytes of what the parts have written down for taking back.
@@ -57,10 +62,7 @@ impl Finishing<'_> {
 
     /// Lets every part write down from now on what it needs to be taken back.
     pub fn record(&mut self) {
-        let clean_up = self.clean_up.iter_mut().flatten().map(CleanUp::list_mut);
-        let smoothing = [self.first_smoothing.as_mut(), self.last_smoothing.as_mut()];
-        let unfolding = self.unfolding.iter_mut().map(Unfolding::list_mut);
-        clean_up.chain(smoothing.into_iter().flatten()).chain(unfolding).for_each(Worklist::record);
+        self.lists_mut().into_iter().flatten().for_each(Worklist::record);
     }
 
     /// The present place.
@@ -69,26 +71,20 @@ impl Finishing<'_> {
     }
 
     /// Takes back everything that was done after the mark; `cleaned_up` is what the clean-up had done then.
-    pub fn take_back(
-        &mut self,
-        PartMarks([first, singles, pairs, longer, last, unfolding]): PartMarks,
-        cleaned_up: CleanedUp,
-    ) {
-        let list = |list: &mut Option<Worklist>, mark: Option<ListMark>| match (list.as_mut(), mark) {
-            (Some(list), Some(mark)) => list.take_back(mark),
-            _ => *list = None,
-        };
-        list(&mut self.first_smoothing, first);
-        list(&mut self.last_smoothing, last);
-        for (part, mark) in self.clean_up.iter_mut().zip([singles, pairs, longer]) {
-            match (part.as_mut(), mark) {
-                (Some(part), Some(mark)) => part.take_back(mark, cleaned_up),
-                _ => *part = None,
+    pub fn take_back(&mut self, PartMarks(marks): PartMarks, cleaned_up: CleanedUp) {
+        for (list, mark) in self.lists_mut().into_iter().zip(marks) {
+            if let (Some(list), Some(mark)) = (list, mark) {
+                list.take_back(mark);
             }
         }
-        match (self.unfolding.as_mut(), unfolding) {
-            (Some(part), Some(mark)) => part.take_back(mark),
-            _ => self.unfolding = None,
+        // A part without a mark had not begun.
+        let [first, clean_up @ .., last, unfolding] = marks;
+        self.first_smoothing.take_if(|_| first.is_none());
+        self.last_smoothing.take_if(|_| last.is_none());
+        self.unfolding.take_if(|_| unfolding.is_none());
+        for (part, mark) in self.clean_up.iter_mut().zip(clean_up) {
+            part.take_if(|_| mark.is_none());
+            part.iter_mut().for_each(|part| part.done = cleaned_up);
         }
     }
 
@@ -96,7 +92,7 @@ impl Finishing<'_> {
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         self.lists().into_iter().flatten().for_each(|list| list.write_state(bytes));
         // What pairs and longer sequences have left of their trials.
-        let trials = self.clean_up.iter().flatten().map(|part| part.done().trials).max().unwrap_or(0);
+        let trials = self.clean_up.iter().flatten().map(|part| part.done.trials).max().unwrap_or(0);
         bytes.extend_from_slice(&(trials as u64).to_le_bytes());
     }
 }

@@ -1,4 +1,4 @@
-//! The next way to try a quadrilateral whose formation was taken back (spec 2.4, 10 rules 1, 7, 9).
+//! The next way to try a quadrilateral whose formation was taken back (docs/algorithm.md, "Rescue").
 
 use crate::core::case::parameters::Parameters;
 use crate::core::convert::phase::{Attempt, Base};
@@ -9,8 +9,7 @@ use crate::core::mesh::journal::Mark;
 /// The first attempt that lays tops down: every other edge at B, then at A; the two Lee-Lo pairs come after.
 const ALTERNATIVES: u8 = 4;
 
-/// Finds the next attempt: divisions that are forced, then every other edge at B, then at A, then the Lee-Lo pairs of
-/// the base triangle (10 rules 1, 7, 9).
+/// The next attempt: forced divisions, then every other edge at B, then at A, then the base triangle's Lee-Lo pairs.
 pub fn next(mesh: &Mesh, parameters: &Parameters, base: &Base, failed: &Attempt) -> Option<Attempt> {
     let mut number = failed.number;
     loop {

@@ -1,5 +1,6 @@
-//! Formation of the quadrilateral (paper 4.3.4, spec 2.5) as the end of a transaction: the triangles between its four sides are
-//! merged, its new tops are placed, and shape, lengths and the parity of the loops that it touches are checked.
+//! Formation of the quadrilateral (paper 4.3.4; docs/algorithm.md, "Formation") as the end of a transaction: the
+//! triangles between its four sides are merged, its new tops are placed, and shape, lengths and the parity of the loops
+//! that it touches are checked.
 
 pub(super) mod attempts;
 mod parity;

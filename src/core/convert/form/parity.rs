@@ -1,4 +1,4 @@
-//! The parity of the loops that a new quadrilateral touches (spec 2.6, 10 rule 8).
+//! The parity of the loops that a new quadrilateral touches (docs/algorithm.md, "Parity after formation").
 
 use smallvec::SmallVec;
 

@@ -1,4 +1,4 @@
-//! Placement of a new top node (spec 10, rule 2).
+//! Placement of a new top node (docs/algorithm.md, "Placement of new top nodes").
 
 use glam::DVec2;
 

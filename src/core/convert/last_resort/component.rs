@@ -1,7 +1,7 @@
 //! Live components: triangles that are connected over their sides, and the dual graph of such.
 //!
-//! By 3T = 2E + B a component of T triangles with B sides on its boundary has T even exactly where B is even (spec 2.6),
-//! and only even ones can become quadrilaterals without a change of the boundary.
+//! By 3T = 2E + B a component of T triangles with B sides on its boundary has T even exactly where B is even
+//! (docs/algorithm.md, "The parity invariant"), and only even ones can become quadrilaterals with their boundary kept.
 
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId};
@@ -30,43 +30,35 @@ pub fn live_components(mesh: &Mesh, face: Option<u32>) -> Vec<Component> {
     let mut seen = vec![false; mesh.element_slots()];
     let mut components = Vec::new();
     for first in mesh.elements_of(face) {
-        if !mesh.is_triangle(first) || seen[first.index()] {
-            continue;
+        if mesh.is_triangle(first) && !seen[first.index()] {
+            seen[first.index()] = true;
+            let is_new = |_: &[ElementId], u: ElementId| !std::mem::replace(&mut seen[u.index()], true);
+            components.extend(component_of(mesh, first, usize::MAX, is_new));
         }
-        let mut triangles = vec![first];
-        let mut boundary = 0;
-        seen[first.index()] = true;
-        let mut next = 0;
-        while let Some(&t) = triangles.get(next) {
-            next += 1;
-            for h in mesh.half_edges(t) {
-                match mesh.live_twin(h).map(HalfEdgeId::element) {
-                    Some(u) if seen[u.index()] => {}
-                    Some(u) => {
-                        seen[u.index()] = true;
-                        triangles.push(u);
-                    }
-                    None => boundary += 1,
-                }
-            }
-        }
-        triangles.sort_unstable();
-        debug_assert_eq!(triangles.len() % 2, boundary % 2, "3T = 2E + B");
-        components.push(Component { triangles, boundary });
     }
     components
 }
 
 /// The live component of a triangle, where it has no more than `most` triangles.
 pub fn small_component(mesh: &Mesh, first: ElementId, most: usize) -> Option<Component> {
+    component_of(mesh, first, most, |found, u| !found.contains(&u))
+}
+
+/// The component of a triangle; `None` where it has more than `most`. `is_new` says of a triangle whether it is found for
+/// the first time.
+fn component_of(
+    mesh: &Mesh,
+    first: ElementId,
+    most: usize,
+    mut is_new: impl FnMut(&[ElementId], ElementId) -> bool,
+) -> Option<Component> {
     let mut triangles = vec![first];
-    let mut boundary = 0;
-    let mut next = 0;
+    let (mut boundary, mut next) = (0, 0);
     while let Some(&t) = triangles.get(next) {
         next += 1;
         for h in mesh.half_edges(t) {
             match mesh.live_twin(h).map(HalfEdgeId::element) {
-                Some(u) if triangles.contains(&u) => {}
+                Some(u) if !is_new(&triangles, u) => {}
                 Some(_) if triangles.len() == most => return None,
                 Some(u) => triangles.push(u),
                 None => boundary += 1,
@@ -74,6 +66,7 @@ pub fn small_component(mesh: &Mesh, first: ElementId, most: usize) -> Option<Com
         }
     }
     triangles.sort_unstable();
+    debug_assert_eq!(triangles.len() % 2, boundary % 2, "3T = 2E + B");
     Some(Component { triangles, boundary })
 }
 

@@ -1,5 +1,5 @@
-//! Maximum cardinality matching in a general graph (Edmonds 1965; spec 2.10, step 1), made for the dual graphs of
-//! triangulations: millions of vertices of degree at most three, of which a good start leaves few unmatched.
+//! Maximum cardinality matching in a general graph (Edmonds 1965; docs/algorithm.md, "The last resort", step 1), made
+//! for the dual graphs of triangulations: millions of vertices of degree at most three, nearly all matched greedily.
 //!
 //! The start takes edges by rank, best first, but serves vertices with one possibility left before all others
 //! (Karp & Sipser 1981: that loses no cardinality). Then one search for an augmenting path grows from each vertex left
@@ -57,8 +57,8 @@ pub struct Matching {
 
 /// A maximum cardinality matching of the graph with `n` vertices and the given edges, the partner of each vertex.
 ///
-/// `rank` has one value per edge; among several maximum matchings edges of higher rank are favoured (greedily). The same
-/// input gives the same matching.
+/// `rank` has one value per edge; among several maximum matchings edges of higher rank are favoured (greedily). The
+/// same input gives the same matching.
 pub fn maximum_matching(n: usize, edges: &[[u32; 2]], rank: &[f32]) -> Vec<Option<u32>> {
     let mut matching = Matching::new(n, edges, &[]);
     matching.start(edges, rank);
@@ -136,8 +136,7 @@ impl Matching {
     /// neighbour first, then the best edge left; ties by the edge's place in the list.
     pub fn start(&mut self, preferred: &[[u32; 2]], rank: &[f32]) {
         assert_eq!(preferred.len(), rank.len());
-        // One integer orders by falling rank, then by place: the bits of positive floats rise with them, those of
-        // negative ones fall.
+        // One integer orders by falling rank, then place: bits of positive floats rise, of negative ones fall.
         let mut order: Vec<u64> = (rank.iter().enumerate())
             .map(|(place, rank)| {
                 let bits = rank.to_bits();
@@ -183,8 +182,7 @@ impl Matching {
         }
     }
 
-    /// Makes the matching one of maximum cardinality, of the preferred edges or of all. Returns the number of
-    /// augmentations.
+    /// Augments to maximum cardinality, over the preferred edges or all. Returns the number of augmentations.
     pub fn augment(&mut self, with_reserve: bool) -> usize {
         // What an earlier call shut may be of use with other edges.
         self.mark.fill(0);
@@ -276,7 +274,7 @@ impl Matching {
         }
     }
 
-    /// Two even vertices are joined by an edge: an odd cycle, unless they are in one blossom already, becomes a blossom.
+    /// Two even vertices are joined by an edge: the odd cycle becomes a blossom, unless they are in one already.
     fn contract(&mut self, v: u32, w: u32) {
         let (mut a, mut b) = (self.base(v), self.base(w));
         if a == b {

@@ -26,8 +26,8 @@ pub struct Pair {
 /// Least share of a quadrilateral that the triangle at a corner must have, in halves of the whole.
 ///
 /// A corner that is straight but for rounding (three points of an arc or of a straight side with a middle) makes a
-/// quadrilateral that is strictly convex by the letter, and that nothing can repair where its nodes are fixed. The share
-/// is 1 for a parallelogram, and affine maps keep it: the measure knows nothing of the metric, which may fit badly.
+/// quadrilateral that is strictly convex by the letter, and that nothing can repair where its nodes are fixed. The
+/// share is 1 for a parallelogram, and affine maps keep it: a metric that fits badly does not matter.
 const FLAT: f64 = 0.05;
 
 /// Whether a quadrilateral is strictly convex, exactly, and not close to a triangle.

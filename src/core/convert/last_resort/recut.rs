@@ -1,4 +1,4 @@
-//! Step 4 of the last resort: a pair of triangles whose union is not firmly convex, cut anew together with pairs around it.
+//! Step 4 of the last resort: a pair whose union is not firmly convex, cut anew together with pairs around it.
 
 use glam::DVec2;
 use smallvec::SmallVec;

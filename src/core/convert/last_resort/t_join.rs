@@ -1,10 +1,10 @@
-//! T-joins (spec 2.10, step 3): sets of dual edges of which every triangle has one or three.
+//! T-joins (docs/algorithm.md, "The last resort", step 3): sets of dual edges of which every triangle has one or three.
 //!
-//! A perfect matching is one. Otherwise the triangles left over are paired by short paths J in the dual graph, over edges
-//! of any kind, and the join is the symmetric difference of the matching and J. The paths run along a tree that links the
-//! leftovers by nearly shortest connections (Voronoi cells of a breadth first search, then Kruskal), where an edge of the
-//! tree is used exactly if it parts the leftovers into two odd numbers: so no edge is used twice, and all is linear but
-//! for one sort.
+//! A perfect matching is one. Otherwise the triangles left over are paired by short paths J in the dual graph, over
+//! edges of any kind, and the join is the symmetric difference of the matching and J. The paths run along a tree that
+//! links the leftovers by nearly shortest connections (Voronoi cells of a breadth first search, then Kruskal), where an
+//! edge of the tree is used exactly if it parts the leftovers into two odd numbers: so no edge is used twice, and all
+//! is linear but for one sort.
 
 use super::component::{Dual, NONE};
 use super::matching::Matching;

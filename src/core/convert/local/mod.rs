@@ -1,5 +1,5 @@
-//! Local post-processing around a new quadrilateral (paper 4.3.6): structural enhancement, then smoothing. Seaming and splitting
-//! follow, in modules of their own.
+//! Local post-processing around a new quadrilateral (paper 4.3.6): structural enhancement, then smoothing. Seaming and
+//! splitting follow, in modules of their own.
 
 mod smooth;
 
@@ -13,11 +13,11 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::journal::Mark;
 
-/// Looks at edges for one enhancement: four times a ring's size (spec 2.8).
+/// Looks at edges for one enhancement: four times a ring's size (docs/algorithm.md, "Structural enhancement").
 const ENHANCEMENTS: u8 = 48;
 
-/// The first phase of the local post-processing around a new quadrilateral; the queue has not seen what the journal holds
-/// since the mark.
+/// The first phase of the local post-processing around a new quadrilateral; the queue has not seen what the journal
+/// holds since the mark.
 pub(super) fn begin(front: &Front<'_>, element: ElementId, mark: Mark) -> Phase {
     if front.parameters.enhancement {
         Phase::Enhance { element, mark, edges: edges_around(front.mesh, element), budget: ENHANCEMENTS }

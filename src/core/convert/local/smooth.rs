@@ -1,4 +1,4 @@
-//! Area-weighted smoothing around a new quadrilateral (paper 4.3.6, eqs. 9 and 10), with the guards of spec 2.8.
+//! Area-weighted smoothing with guards (paper 4.3.6, eqs. 9 and 10; docs/algorithm.md, "Local smoothing").
 
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -12,8 +12,8 @@ use crate::core::mesh::ids::{ElementId, NodeId};
 const KEPT_QUALITY: f64 = 0.9;
 
 /// Smooths around the quadrilateral in the paper's order: nodes of the triangles around it, then its own. With
-/// placement on, nodes of the front stay, and nodes that the quadrilateral buried are relaxed by the energy. Returns how many
-/// nodes moved.
+/// placement on, nodes of the front stay, and nodes that the quadrilateral buried are relaxed by the energy. Returns
+/// how many nodes moved.
 pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
     let corners = front.mesh.quad(element);
     let mut around: SmallVec<[NodeId; 24]> = SmallVec::new();

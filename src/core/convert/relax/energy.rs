@@ -1,4 +1,5 @@
-//! The energy that clean-up and global smoothing lower (spec 10), and the relaxation of one node by Newton's method.
+//! The energy that clean-up and global smoothing lower (docs/algorithm.md, "The energy"), and the relaxation of one
+//! node by Newton's method.
 //!
 //! Sum over corners of ((a^2 + b^2) / 2x)^2 - 1 (a, b: metric lengths of the corner's sides, x: their metric cross
 //! product; the corner's node gives the metric; 0 for a right angle with equal sides), plus for each edge the rational
@@ -18,8 +19,7 @@ const LENGTH_WEIGHT: f64 = 0.25;
 /// A node does not move farther than this in one step, in its metric.
 const LONGEST_MOVE: f64 = 0.5;
 
-/// Energy of the corner at p between the sides to `a` and to `b` (anticlockwise), by the metric at p and the root of its
-/// determinant.
+/// Energy of the corner at p between the sides to `a` and `b` (anticlockwise); `root`: root of the determinant of `m`.
 #[inline]
 fn corner(m: &Metric2, root: f64, p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let (a, b) = (a - p, b - p);
@@ -38,9 +38,9 @@ fn length(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
     LENGTH_WEIGHT * (a + 1.0 / a + b + 1.0 / b - 4.0)
 }
 
-/// What the clean-up judges a quadrilateral by: energy of its corners (1/sin^2 - 1, which leaves the lengths of a corner's
-/// sides to the next term) and half that of its sides' lengths (the other half is the neighbour's), infinite where it is not
-/// strictly convex; and its quality, as `Mesh::quality`.
+/// What the clean-up judges a quadrilateral by: energy of its corners (1/sin^2 - 1, which leaves the lengths of a
+/// corner's sides to the next term) and half that of its sides' lengths (the other half is the neighbour's), infinite
+/// where it is not strictly convex; and its quality, as `Mesh::quality`.
 pub fn judge(mesh: &Mesh, e: ElementId) -> (f64, f64) {
     let n = mesh.quad(e);
     let p = n.map(|n| mesh.uv(n));
@@ -194,7 +194,7 @@ pub fn relax(mesh: &mut Mesh, node: NodeId, source: &dyn MetricSource) -> f64 {
     let along = |g: DVec2| DVec2::new(g.dot(e[0]), g.dot(e[1]));
     let slope = star.slope(p, &m);
     let g = along(slope.gradient);
-    // The second derivative is seldom below 10: the step would be below the thousandth that is worth the journal's memory.
+    // The second derivative is seldom below 10: the step would be too short to be worth the journal's memory.
     if g.length_squared() < 1e-4 {
         return 0.0;
     }

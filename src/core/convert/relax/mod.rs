@@ -1,4 +1,4 @@
-//! Nodes moved until the elements around them are good: the energy that is lowered, and what a change of structure needs.
+//! Relaxation of nodes: the energy that it lowers, and settling after a change of structure.
 
 pub mod energy;
 pub mod settle;

@@ -18,8 +18,7 @@ const UNTANGLE_ROUNDS: usize = 3;
 /// A few nodes that a change concerns.
 pub type Nodes = SmallVec<[NodeId; 12]>;
 
-/// Places a node without asking whether its elements are positive. False where the field gives no metric there, or the move
-/// is refused.
+/// Places a node, whatever becomes of its elements. False where there is no metric, or the move is refused.
 pub fn put(mesh: &mut Mesh, source: &dyn MetricSource, node: NodeId, uv: DVec2) -> bool {
     let Ok(metric) = source.metric(uv) else { return false };
     if mesh.permit_move(node, uv).is_err() {
@@ -39,8 +38,8 @@ pub fn settle(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes) -> bool 
     convex
 }
 
-/// Moves the free ones of some nodes to the middle of their neighbours where elements around are inverted. True when every
-/// element around is strictly convex in the end.
+/// Moves the free ones of some nodes to the middle of their neighbours where elements around are inverted. True when
+/// every element around is strictly convex in the end.
 pub fn untangle(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes) -> bool {
     for _ in 0..UNTANGLE_ROUNDS {
         if all_convex(mesh, core) {

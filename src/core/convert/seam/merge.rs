@@ -5,8 +5,8 @@ use crate::core::convert::front::Front;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
-/// Collapses a live edge between two nodes of the front at the fixed end, else in the middle or as near to it as stays valid
-/// and, as far as elements are `judged`, good. Returns the merged node.
+/// Collapses a live edge between two nodes of the front at the fixed end, else in the middle or as near to it as stays
+/// valid and, as far as elements are `judged`, good. Returns the merged node.
 pub fn merge(
     front: &mut Front<'_>,
     h_bc: HalfEdgeId,

@@ -1,6 +1,7 @@
-//! Front segment seaming (paper 4.3.6, fig. 18): two adjacent front segments with a small angle become one dead edge. Where one is
-//! much longer than the other, it is divided first: a transition seam (after Owen et al. 1999). Deliberately absent: their
-//! transition split, for unlike segments at angles that are not small; it may never end (spec 2.8).
+//! Front segment seaming (paper 4.3.6, fig. 18): two adjacent front segments with a small angle become one dead edge.
+//! Where one is much longer than the other, it is divided first: a transition seam (after Owen et al. 1999).
+//! Deliberately absent: their transition split, for unlike segments at angles that are not small; it may never end
+//! (docs/algorithm.md, "Seaming").
 
 pub(super) mod merge;
 mod transition;
@@ -16,7 +17,8 @@ use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
 /// Segments whose lengths differ by more than this factor need a transition seam.
 const MOST_UNLIKE: f64 = 2.5;
-/// With this many dead elements at the node, angles up to `WIDE` are seamed too (Levik; spec 1).
+/// With this many dead elements at the node, angles up to `WIDE` are seamed too (after Levik; docs/algorithm.md,
+/// "Seaming").
 const CROWDED: usize = 5;
 /// So they are where the segments are shorter than this on average, in the metric: where sizes grow ahead of the front,
 /// columns must end, and this is where they do (docs/experiments.md).
@@ -40,8 +42,8 @@ pub(super) fn step(front: &mut Front<'_>, element: ElementId, mut nodes: SmallVe
     (Phase::Split { element }, None)
 }
 
-/// Seams at a node of the front where the frontal angle is small enough and the guards of spec 2.8 hold; says why it
-/// refuses where they do not. What was tried in vain is taken back.
+/// Seams at a node of the front where the frontal angle is small enough and the guards hold (docs/algorithm.md,
+/// "Seaming"); says why it refuses where they do not. A failed try is taken back.
 fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
     if !front.mesh.has_node(at) {
         return None;
@@ -79,8 +81,8 @@ fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
     refused
 }
 
-/// The widest frontal angle at a node that is seamed, where the mean metric length of the segments is `length`. The wider bound
-/// is ours: the paper's own reading has neither it nor placement.
+/// The widest frontal angle at a node that is seamed, where the mean metric length of the segments is `length`. The
+/// wider bound is ours: the paper's own reading has neither it nor placement.
 fn widest(front: &Front<'_>, at: NodeId, length: f64) -> f64 {
     let bound = front.parameters.theta_seam;
     let is_crowded = || front.mesh.elements_at(at).filter(|&e| front.mesh.is_quad(e)).count() >= CROWDED;

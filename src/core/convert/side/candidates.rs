@@ -1,5 +1,5 @@
-//! What a side edge is chosen from (paper 4.3.4, side edges i to vii): every edge and every swap, with what speaks against it.
-//! An explanation: computed from the state when somebody asks, so that a run that nobody watches pays nothing for it.
+//! What a side edge is chosen from (paper 4.3.4, side edges i to vii): every edge and every swap, with what speaks
+//! against it. Computed from the state on demand: a run that nobody watches pays nothing for it.
 
 use serde::Serialize;
 

@@ -10,8 +10,7 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::metric::measure::angle;
 
-/// The widest frontal angle that is bisected: at 225 degrees the bisector lies at 112 and is still near enough to a right angle. A
-/// rule of ours and no reading of `theta_revr`, which the paper draws (fig. 12) and never uses: that one only classifies.
+/// The widest frontal angle that is bisected: at 225 degrees the bisector, at 112, is still near a right angle. Our rule, not a reading of `theta_revr`, which the paper draws (fig. 12) and only classifies with.
 const WIDEST_BISECTED: f64 = 1.25 * PI;
 
 /// A side edge that was decided on, before anything is changed.
@@ -54,8 +53,8 @@ pub struct BaseSide<'a> {
 }
 
 impl BaseSide<'_> {
-    /// Chooses the side: (ii) the neighbouring front segment where the frontal angle is small, else (iii) the best edge, else
-    /// (iv, v) the best of the edges and swaps.
+    /// Chooses the side: (ii) the neighbouring front segment where the frontal angle is small, else (iii) the best
+    /// edge, else (iv, v) the best of the edges and swaps.
     pub fn choose(&self, attempt: &Attempt, left: Option<NodeId>) -> Result<SideChoice, Why> {
         let BaseSide { mesh, parameters, base, side } = *self;
         let none = Why::NoSide(side);
@@ -126,8 +125,8 @@ impl BaseSide<'_> {
         SideEdge { side: self.side, node, angle, deviation: (angle - self.target_angle()).abs() }
     }
 
-    /// The angle that the side aims at: the bisector of a frontal angle up to 225 degrees (it lies within 67 and 112 there),
-    /// else the right angle; always the right angle where the bisector is switched off.
+    /// The angle that the side aims at: the bisector of a frontal angle up to 225 degrees (it lies within 67 and 112
+    /// there), else the right angle; always the right angle where the bisector is switched off.
     pub fn target_angle(&self) -> f64 {
         let theta = self.base.theta[self.side.index()];
         if self.parameters.bisector && theta <= WIDEST_BISECTED { 0.5 * theta } else { FRAC_PI_2 }

@@ -25,8 +25,8 @@ pub struct Division {
 }
 
 impl BaseSide<'_> {
-    /// Where the side edge is to be divided: one that is live and longer than `side_split` times the base, or whose division is
-    /// forced; `None` where it stays whole.
+    /// Where the side edge is to be divided: one that is live and longer than `side_split` times the base, or whose
+    /// division is forced; `None` where it stays whole.
     pub fn division(&self, attempt: &Attempt, top: NodeId, source: &dyn MetricSource) -> Result<Option<Division>, Why> {
         let BaseSide { mesh, parameters, base, side } = *self;
         let at = base.node(side);

@@ -43,7 +43,7 @@ impl Mesh {
     }
 
     /// The smallest target size at a node, in units of length: on surfaces that of the intrinsic eigenvalues, of M
-    /// against `J^T J` (spec 1, on eq. 6).
+    /// against `J^T J` (docs/algorithm.md, "The H-value").
     #[inline]
     pub fn smallest_size(&self, node: NodeId) -> f64 {
         match &self.ground {

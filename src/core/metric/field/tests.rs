@@ -74,7 +74,8 @@ fn example_1_is_eq_12() {
 
 #[test]
 fn example_1_has_the_metric_area_of_the_specification() {
-    // The unit square less a centred disc of radius 0.2: 265.8 (spec, eq. 12), by the midpoint rule.
+    // The unit square less a centred disc of radius 0.2: 265.8 (docs/algorithm.md, "Examples of the paper"), by the
+    // midpoint rule.
     let sizing = sizing(&[example_1()]);
     let n = 400;
     let mut area = 0.0;

@@ -1,4 +1,5 @@
-//! What became of something: the step that made it or killed it, what it ate, every step that touched it; and what can be done with it.
+//! What became of something: the step that made it or killed it, what it ate, every step that touched it; and what can
+//! be done with it.
 
 use eframe::egui::{Label, RichText, Sense, Ui};
 

@@ -1,4 +1,5 @@
-//! Why a segment was, or was not, chosen (paper 4.3.3, table 1), and within which bounds the choice would have been the same.
+//! Why a segment was, or was not, chosen (paper 4.3.3, table 1), and within which bounds the choice would have been the
+//! same.
 
 use eframe::egui::Ui;
 

@@ -24,7 +24,8 @@ impl Worker {
         Ok(changes)
     }
 
-    /// Goes to a step in such a way that what the last steps changed is known; tells what the last one had to choose from.
+    /// Goes to a step in such a way that what the last steps changed is known; tells what the last one had to choose
+    /// from.
     fn walk_with_recent(&mut self, step: u64) -> Result<Option<Candidates>, Fault> {
         let first = (step + 1).saturating_sub(RECENT).max(1);
         let is_known = |recent: &VecDeque<(u64, _)>, step: u64| recent.iter().any(|known| known.0 == step);

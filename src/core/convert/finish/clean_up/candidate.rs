@@ -70,7 +70,7 @@ impl Valences {
         elements as i32 - self.ideal.get(node.index()).map_or(4, |&ideal| i32::from(ideal))
     }
 
-    /// The `most` best changes around a node that raise the sum of squared excesses by no more than `worse`, best first.
+    /// The `most` best changes around a node that raise the sum of squared excesses by at most `worse`, best first.
     pub fn candidates(&self, mesh: &Mesh, node: NodeId, worse: i32, most: usize) -> SmallVec<[Ranked; 32]> {
         let mut found: SmallVec<[Ranked; 32]> = SmallVec::new();
         let spokes: SmallVec<[HalfEdgeId; 8]> = mesh.fan(node).collect();

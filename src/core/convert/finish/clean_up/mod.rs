@@ -1,9 +1,9 @@
-//! Clean-up of the structure around irregular nodes (spec 10, 2.11): diamond collapse, edge rotation, vertex opening and
-//! the removal of doublets, each tried as a transaction and kept when the energy of all that it moves falls.
+//! Clean-up of the structure around irregular nodes (docs/algorithm.md, "Clean-up"): diamond collapse, edge rotation,
+//! vertex opening and the removal of doublets, each a transaction, kept when the energy of all that it moves falls.
 //!
 //! A worklist, not sweeps: the nodes whose valence is not ideal, and again the neighbours of whatever changed. Single
-//! changes come first, everywhere. Most irregular nodes that are then left are ends of columns that no single change moves
-//! downhill; pairs of changes do, and are tried at the worst nodes first, as far as a budget of trials reaches.
+//! changes come first, everywhere. Most irregular nodes that are then left are ends of columns that no single change
+//! moves downhill; pairs of changes do, and are tried at the worst nodes first, as far as a budget of trials reaches.
 
 mod candidate;
 mod region;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::worklist::{ListMark, Worklist};
+use super::worklist::Worklist;
 use crate::core::convert::event::{Cleaning, Event};
 use crate::core::convert::relax::energy;
 use crate::core::convert::relax::settle::{Nodes, RELAX_ROUNDS, relax, untangle, worst_quality};
@@ -33,15 +33,15 @@ const MOST_TRIALS: usize = 16;
 const POOR: f64 = 0.4;
 /// All changes of a sequence but the last may raise the sum of squared excesses by this much.
 const MOST_WORSE: i32 = 2;
-/// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are: those
-/// seldom give back more (for one trial in a hundred).
+/// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are:
+/// those seldom give back more (for one trial in a hundred).
 const HOPELESS: f64 = 1.5;
-/// And so it is when its own nodes have been relaxed once, and it stands this much higher: the other rounds give back less.
+/// So it is when it stands this much higher after its nodes were relaxed once: the other rounds give back less.
 const LATER_ROUNDS_GIVE: f64 = 0.5;
-/// Up to so many elements a face is searched thoroughly for sequences of changes. What a thorough search finds beyond the
-/// lean one is a tenth of the irregular nodes, for three times the trials: it tells where there are few.
+/// Up to so many elements a face is searched thoroughly for sequences of changes. What a thorough search finds beyond
+/// the lean one is a tenth of the irregular nodes, for three times the trials: it matters where there are few.
 const SMALL: usize = 3000;
-/// Trials of pairs: so many for every mesh, and one more for so many elements. Small meshes are searched to the end, and the
+/// Trials of pairs for every mesh, and one more for so many elements. Small meshes are searched to the end, and the
 /// time of large ones stays linear.
 const PAIR_TRIALS: usize = 30_000;
 const ELEMENTS_A_PAIR_TRIAL: usize = 20;
@@ -156,8 +156,8 @@ impl Trial {
     }
 }
 
-/// A clean-up of an all-quadrilateral mesh under way: until no change that it reaches lowers the energy, within a budget
-/// linear in the size of the mesh.
+/// A clean-up of an all-quadrilateral mesh under way: until no change that it reaches lowers the energy, within a
+/// budget linear in the size of the mesh.
 #[derive(Clone)]
 pub(super) struct CleanUp<'a> {
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
@@ -165,18 +165,19 @@ pub(super) struct CleanUp<'a> {
     breadth: Breadth,
     valences: Valences,
     /// Irregular nodes.
-    list: Worklist,
+    pub list: Worklist,
     /// Trials after which it ends.
     most_trials: usize,
     /// Kept for their memory.
     before: Region,
     after: Region,
-    done: CleanedUp,
+    /// What was done so far.
+    pub done: CleanedUp,
 }
 
 impl<'a> CleanUp<'a> {
-    /// A clean-up of a face, which is that share of the whole, or of all, at its beginning. Its list writes down what it needs to
-    /// be taken back where `recording`. It goes on counting where `done` stands.
+    /// A clean-up of a face, which is that share of the whole, or of all, at its beginning. Its list writes down what
+    /// it needs to be taken back where `recording`. It goes on counting where `done` stands.
     pub fn begin(
         mesh: &Mesh,
         (face, share): (Option<u32>, f64),
@@ -185,7 +186,7 @@ impl<'a> CleanUp<'a> {
         done: CleanedUp,
         recording: bool,
     ) -> CleanUp<'a> {
-        // Twice its share: the small faces of a mesh of many are seldom searched to the end, and are most of its irregular nodes.
+        // Twice its share: small faces are seldom searched to the end, and have most of the irregular nodes.
         let of_all = |trials: usize| (trials as f64 * (2.0 * share).min(1.0)).ceil() as usize;
         let elements = mesh.elements_of(face).count();
         let most_trials = match reach {
@@ -212,8 +213,8 @@ impl<'a> CleanUp<'a> {
         work
     }
 
-    /// One kept change, or pair of changes, of the structure: looks at the nodes that wait until there is one. None where no
-    /// node waits any more, or the budget is spent.
+    /// One kept change, or pair of changes, of the structure: looks at the nodes that wait until there is one. None
+    /// where no node waits any more, or the budget is spent.
     pub fn step(&mut self, mesh: &mut Mesh, keep_journal: bool) -> Option<Event> {
         while self.done.trials < self.most_trials {
             let node = self.list.take()?;
@@ -240,33 +241,9 @@ impl<'a> CleanUp<'a> {
         None
     }
 
-    /// Whether the budget of trials has ended it before every node was looked at.
-    pub fn is_cut_short(&self) -> bool {
-        self.list.len() > 0
-    }
-
-    /// What was done so far.
-    pub fn done(&self) -> CleanedUp {
-        self.done
-    }
-
-    /// Bytes that it takes.
-    pub fn bytes(&self) -> usize {
-        self.valences.bytes() + self.before.bytes() + self.after.bytes() + self.list.bytes()
-    }
-
-    pub fn list(&self) -> &Worklist {
-        &self.list
-    }
-
-    pub fn list_mut(&mut self) -> &mut Worklist {
-        &mut self.list
-    }
-
-    /// Takes the list back to a mark, at which `done` was done.
-    pub fn take_back(&mut self, mark: ListMark, done: CleanedUp) {
-        self.list.take_back(mark);
-        self.done = done;
+    /// Bytes that it takes beside its list.
+    pub fn bytes_of_rest(&self) -> usize {
+        self.valences.bytes() + self.before.bytes() + self.after.bytes()
     }
 
     fn enqueue(&mut self, mesh: &Mesh, node: NodeId) {
@@ -304,8 +281,8 @@ impl<'a> CleanUp<'a> {
         None
     }
 
-    /// Tries sequences of changes around one irregular node: first changes that cost little energy, cheapest first, each with
-    /// those that make up for what it did to the valences.
+    /// Tries sequences of changes around one irregular node: first changes that cost little energy, cheapest first,
+    /// each with those that make up for what it did to the valences.
     fn sequence(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
         let mut first: SmallVec<[(f64, Ranked); 24]> = SmallVec::new();
         for ranked in self.valences.candidates(mesh, node, MOST_WORSE, self.breadth.firsts) {
@@ -361,8 +338,8 @@ impl<'a> CleanUp<'a> {
         None
     }
 
-    /// Does a candidate and relaxes the nodes around. None where it cannot be done, or the energy has risen beyond `most`
-    /// when its own nodes are settled; whatever it did then is to be taken back.
+    /// Does a candidate and relaxes the nodes around. None where it cannot be done, or the energy has risen beyond
+    /// `most` when its own nodes are settled; whatever it did then is to be taken back.
     fn attempt(&mut self, mesh: &mut Mesh, candidate: Candidate, most: f64) -> Option<Trial> {
         self.done.trials += 1;
         let mut core = candidate.core(mesh);

@@ -1,8 +1,9 @@
-//! Repair of quadrilaterals that fold over their surface, one at a time after the last smoothing. Everything before works in the
-//! parametric plane, where all stays strictly convex; between straight sides in space a corner may still turn against the surface,
-//! or a node between two faces have two edges only, or what lies on two faces come to one place. The nodes around are moved first (`moving`);
-//! where that does not help the quadrilateral has an edge rotated, is collapsed along a diagonal, or pillowed: a smaller one is inlaid, with
-//! four between the two. What is flat or turned even then has its nodes moved in every way that is left.
+//! Repair of quadrilaterals that fold over their surface, one at a time after the last smoothing. Everything before
+//! works in the parametric plane, where all stays strictly convex; between straight sides in space a corner may still
+//! turn against the surface, or a node between two faces have two edges only, or what lies on two faces come to one
+//! place. The nodes around are moved first (`moving`); where that does not help the quadrilateral has an edge rotated,
+//! is collapsed along a diagonal, or pillowed: a smaller one is inlaid, with four between the two. What is flat or
+//! turned even then has its nodes moved in every way that is left.
 
 mod moving;
 
@@ -11,7 +12,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use self::moving::DIRECTIONS;
-use super::worklist::{ListMark, Worklist};
+use super::worklist::Worklist;
 use crate::core::convert::event::{Event, Mending};
 use crate::core::convert::relax::energy;
 use crate::core::convert::relax::settle::{Nodes, put, settle};
@@ -25,7 +26,7 @@ use crate::core::soup::weld::weld;
 
 /// A quadrilateral with a corner whose sine against the surface is below this is to be repaired.
 const FOLDED: f64 = 1e-3;
-/// One below this is flat or turned as any reader sees it. In the slivers of a surface many are between the two whatever is done.
+/// One below this is flat or inverted to any reader. In the slivers of a surface many remain between the two.
 const FLAT: f64 = 1e-7;
 /// How far a node is moved from the place of another.
 const STIRRED: f64 = 0.05;
@@ -55,7 +56,7 @@ pub struct Unfolded {
 pub(super) struct Unfolding<'a> {
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Nodes of quadrilaterals to be repaired.
-    list: Worklist,
+    pub list: Worklist,
     /// Nodes of two faces with two edges between both, each with its copy on the other face, ascending.
     doublets: Vec<[NodeId; 2]>,
     /// The points of quadrilaterals that a later one on another face has too, each ascending, all ascending.
@@ -86,23 +87,9 @@ impl<'a> Unfolding<'a> {
         work
     }
 
-    pub fn list(&self) -> &Worklist {
-        &self.list
-    }
-
-    pub fn list_mut(&mut self) -> &mut Worklist {
-        &mut self.list
-    }
-
-    /// Takes the list back to a mark.
-    pub fn take_back(&mut self, mark: ListMark) {
-        self.list.take_back(mark);
-    }
-
-    /// Bytes that it takes.
-    pub fn bytes(&self) -> usize {
-        self.list.bytes()
-            + size_of::<NodeId>() * (2 * self.doublets.capacity() + self.coincident.capacity())
+    /// Bytes that it takes beside its list.
+    pub fn bytes_of_rest(&self) -> usize {
+        size_of::<NodeId>() * (2 * self.doublets.capacity() + self.coincident.capacity())
             + size_of::<[PointId; 4]>() * self.doubles.capacity()
             + size_of::<(PointId, NodeId)>() * self.copies.capacity()
     }
@@ -162,8 +149,8 @@ impl<'a> Unfolding<'a> {
         None
     }
 
-    /// The quadrilateral at a node that is to be repaired, and its least sine: the worst one that folds; else one that has the points
-    /// of another, or makes a doublet with another, or any where the node lies on another.
+    /// The quadrilateral at a node that is to be repaired, and its least sine: the worst one that folds; else one that
+    /// has the points of another, or makes a doublet with another, or any where the node lies on another.
     fn at_fault(&self, mesh: &Mesh, node: NodeId) -> Option<(f64, ElementId)> {
         let quads = || mesh.elements_at(node).filter(|&e| mesh.is_quad(e));
         let worst = quads().map(|e| (self.sine(mesh, e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
@@ -186,8 +173,8 @@ impl<'a> Unfolding<'a> {
         points(mesh, e).is_some_and(|points| self.doubles.binary_search(&points).is_ok())
     }
 
-    /// The least sine of a quadrilateral's corners in space, against its own normal and that of the surface: 0 or less where it
-    /// folds, and where a side is nothing.
+    /// The least sine of a quadrilateral's corners in space, against its own normal and that of the surface: 0 or less
+    /// where it folds, and where a side is nothing.
     fn sine(&self, mesh: &Mesh, e: ElementId) -> f64 {
         mesh.least_sine(e, self.near)
     }
@@ -227,8 +214,8 @@ impl<'a> Unfolding<'a> {
         })
     }
 
-    /// Rotates an edge of a quadrilateral; the ends that it has then. None where not fewer elements around fold then; for a node that
-    /// needs an edge more, where it gets none, or more fold.
+    /// Rotates an edge of a quadrilateral; the ends that it has then. None where not fewer elements around fold then;
+    /// for a node that needs an edge more, where it gets none, or more fold.
     fn rotated(&self, mesh: &mut Mesh, element: ElementId, needy: Option<NodeId>) -> Option<[NodeId; 2]> {
         for h in mesh.half_edges(element).collect::<Vec<_>>() {
             let Ok(ring) = mesh.hexagon(h) else { continue };
@@ -253,8 +240,8 @@ impl<'a> Unfolding<'a> {
         None
     }
 
-    /// Merges two opposite corners of a quadrilateral, so that it goes; the node that both become. None where not fewer elements
-    /// around fold then.
+    /// Merges two opposite corners of a quadrilateral, so that it goes; the node that both become. None where not fewer
+    /// elements around fold then.
     fn collapsed(&self, mesh: &mut Mesh, element: ElementId) -> Option<NodeId> {
         let before = self.flaws(mesh, &mesh.quad(element));
         for h_ab in mesh.half_edges(element).collect::<Vec<_>>() {
@@ -331,7 +318,7 @@ impl<'a> Unfolding<'a> {
     }
 }
 
-/// Nodes between two faces, each with one quadrilateral there, that have but two edges in space: each copy with the other, ascending.
+/// Nodes with one quadrilateral on each of two faces and only two edges in space: each copy with the other, ascending.
 fn doublets(mesh: &Mesh, copies: &[(PointId, NodeId)]) -> Vec<[NodeId; 2]> {
     let mut found = Vec::new();
     for copies in copies.chunk_by(|a, b| a.0 == b.0) {
@@ -365,8 +352,8 @@ fn doubles(mesh: &Mesh) -> (Vec<[PointId; 4]>, Vec<ElementId>) {
     quads.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1]).unzip()
 }
 
-/// Free nodes at the place of another node in space, ascending: two sheets of the surface lie on each other there. And how near
-/// that is.
+/// Free nodes at the place of another node in space, ascending: two sheets of the surface lie on each other there. And
+/// how near that is.
 fn coincident(mesh: &Mesh, copies: &[(PointId, NodeId)]) -> (Vec<NodeId>, f64) {
     // Fixed nodes first, so that free ones are found to be where those are; of several at one point only the first.
     let mut nodes: Vec<NodeId> = copies.chunk_by(|a, b| a.0 == b.0).map(|at_point| at_point[0].1).collect();

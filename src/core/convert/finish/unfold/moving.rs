@@ -37,7 +37,7 @@ impl Unfolding<'_> {
         self.moved_in_turn(mesh, &mesh.quad(element))
     }
 
-    /// The same with every way that is left: another corner first, which decides where the others have room; and together.
+    /// The same in every other way: another corner first, which decides where the others have room; all together.
     pub(super) fn moved_anyhow(&self, mesh: &mut Mesh, element: ElementId) -> bool {
         let mut corners = mesh.quad(element);
         let in_turn = (1..corners.len()).any(|_| {
@@ -57,8 +57,8 @@ impl Unfolding<'_> {
         is_better
     }
 
-    /// Moves the free corners of a quadrilateral together towards a node around it, then each by itself. Whether fewer elements around
-    /// fold then: one node alone cannot leave a facet that is flat in space.
+    /// Moves the free corners of a quadrilateral together towards a node around it, then each by itself. Whether fewer
+    /// elements around fold then: one node alone cannot leave a facet that is flat in space.
     fn moved_together(&self, mesh: &mut Mesh, element: ElementId) -> bool {
         let corners = mesh.quad(element);
         let before = self.flaws(mesh, &corners);
@@ -106,8 +106,9 @@ impl Unfolding<'_> {
         let mut is_moved = false;
         let mut best = self.star_sine(mesh, node);
         let mut star = Star::of(mesh, node);
-        // Steps by the size that is asked for, then by that of the elements that are there; then towards the nodes around, and ever
-        // finer: in slivers there is no room for others, and in a facet that is flat in space the metric knows nothing of its width.
+        // Steps by the size that is asked for, then by that of the elements that are there; then towards the nodes
+        // around, and ever finer: in slivers there is no room for others, and in a facet that is flat in space the
+        // metric knows nothing of its width.
         let (from, metric) = (mesh.uv(node), mesh.metric(node));
         let shortest = mesh.neighbours(node).map(|n| metric.norm2(mesh.uv(n) - from)).fold(1.0, f64::min).sqrt();
         let around: Vec<DVec2> = ring(mesh, node).map(|n| mesh.uv(n)).collect();
