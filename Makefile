@@ -26,6 +26,7 @@ check:
 	@tools/setup build check
 	cargo fmt --check
 	cargo clippy --locked --all-targets -- -D warnings
+	cargo clippy --locked --no-default-features --features cli --all-targets -- -D warnings
 	cargo clippy --locked --no-default-features --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 
@@ -50,7 +51,7 @@ soak: export QUADFRONT_SOAK_ROUNDS = 10000
 soak: export QUADFRONT_SOAK_SECONDS ?= 3600
 soak:
 	@tools/setup build
-	cargo test --locked --release --no-default-features -- --include-ignored
+	cargo test --locked --release --no-default-features --features cli -- --include-ignored
 
 licenses:
 	@tools/setup build licenses

@@ -6,4 +6,5 @@
 
 pub mod core;
 pub mod render;
+#[cfg(feature = "cli")]
 pub mod app;

@@ -277,7 +277,7 @@ fn takes_triangles(case: &Case) -> bool {
 
 fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     if let Err(what) = mesh.check() {
-        return Some(Fault::new(format!("The mesh is not sound: {what}")));
+        return Some(Fault::new(format!("The mesh is invalid: {what}")));
     }
     let folded = if allow.triangles { Vec::new() } else { mesh.folded() };
     let Some(first) = folded.first().and_then(|&e| mesh.corners(e).next()) else {

@@ -1,7 +1,7 @@
 //! From a case to quadrilaterals: the order of the parts, and nothing of their insides.
 
 use super::converter::{Converter, Counts};
-use super::finish::parts::Finished;
+use super::finish::Finished;
 use super::last_resort::Outcome;
 use crate::core::background::adapt::Adapted;
 use crate::core::case::Case;
@@ -17,7 +17,7 @@ use crate::core::progress::Watch;
 pub struct Converted {
     /// All quadrilaterals, where the conversion was taken to its end.
     pub mesh: Mesh,
-    /// What gives the metric anywhere.
+    /// The metric field.
     pub sizing: Sizing,
     /// What its faces and lines are called.
     pub names: Names,

@@ -19,11 +19,11 @@ pub(super) struct Gates {
     pub length: f64,
 }
 
-/// The merging front at work: the mesh that it runs through, what the steps ask, and the segments that wait.
+/// The merging front at work: the mesh that it runs through, what steps look up, and the queue of segments.
 pub(super) struct Front<'f> {
     /// The mesh: the front runs between its live triangles and what is converted.
     pub mesh: &'f mut Mesh,
-    /// What gives the metric anywhere.
+    /// The metric field.
     pub source: &'f dyn MetricSource,
     pub parameters: &'f Parameters,
     /// A cache: rebuilt from the mesh where it is missing, and then chooses the same.
@@ -32,7 +32,7 @@ pub(super) struct Front<'f> {
     pub face: Option<u32>,
     /// Whether the gates are wide: every segment was put off and taken up again.
     pub second_pass: &'f mut bool,
-    /// Whether somebody may step back, and needs the journal for that.
+    /// Whether the journal is kept, so that steps can be taken back.
     pub keeps_journal: bool,
 }
 
@@ -55,7 +55,7 @@ impl Front<'_> {
         if *self.second_pass { Gates { quality: 0.05, length: 4.0 } } else { Gates { quality: 0.15, length: 2.0 } }
     }
 
-    /// Forgets the journal where nobody steps back: its memory is free again.
+    /// Clears the journal where it is not kept.
     pub fn commit(&mut self) {
         if !self.keeps_journal {
             self.mesh.commit();

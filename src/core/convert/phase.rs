@@ -183,7 +183,7 @@ pub enum Phase {
         /// Which part of it is under way.
         part: PostProcessingPart,
     },
-    /// The face at hand is converted; the next one is to be turned to.
+    /// The face at hand is converted; the next one follows.
     NextFace,
     /// Nothing is left to do.
     Done,

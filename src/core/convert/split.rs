@@ -92,7 +92,7 @@ fn split_front(front: &mut Front<'_>, quad: ElementId) -> Option<Event> {
                 continue;
             }
             let mark = front.mesh.mark();
-            // Slender triangles may stay in a narrow region; quadrilaterals are for good.
+            // Slender triangles may stay in a narrow region; quadrilaterals are permanent.
             match merge(front, side, &|mesh, e| mesh.is_quad(e)) {
                 Ok(node) => {
                     let gone = if node == ends[0] { ends[1] } else { ends[0] };

@@ -39,7 +39,7 @@ pub(super) fn close_or_defer(front: &mut Front<'_>, base: Base) -> Done {
 
 /// The live component beside a front segment, where it has few triangles and the segment's loop is short.
 fn component_beside(mesh: &Mesh, h: HalfEdgeId) -> Option<Component> {
-    // The walk is short; looking for the triangles is dearer.
+    // The walk is short; collecting the triangles is more expensive.
     let mut walk = h;
     let is_short = (0..MOST_SEGMENTS).any(|_| {
         walk = mesh.front_after(walk);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::helping::next_message;
 use super::{Converter, TELL};
 use crate::core::convert::event::Event;
 use crate::core::convert::front::Done;
@@ -43,7 +44,7 @@ impl<'a> Converter<'a> {
         let own = match self.face.checked_sub(1) {
             _ if self.faces.is_empty() => self.total,
             Some(before) => after(before) - after(self.face),
-            // The first face is what is left of all; of a face alone, that is the face.
+            // The first face is all but the later ones; a face by itself has none.
             None => self.elements_at_first - after(0),
         };
         own as f64 / self.total.max(1) as f64
@@ -85,7 +86,7 @@ impl<'a> Converter<'a> {
         }
         let total = self.mesh.element_count() as u64;
         watch.tell(Stage::Convert, 0, total);
-        let mut parts = self.mesh.parts();
+        let mut parts = self.mesh.face_meshes();
         let cancel = watch.cancel();
         let (sender, receiver) = std::sync::mpsc::channel();
         let mut done: Vec<Option<Result<Converter<'a>, Fault>>> = parts.iter().map(|_| None).collect();
@@ -116,7 +117,7 @@ impl<'a> Converter<'a> {
             drop(sender);
             let mut formed = vec![0; done.len()];
             let mut all = 0;
-            for (k, told) in receiver {
+            while let Some((k, told)) = next_message(&receiver) {
                 let own = match &told {
                     OfFace::Formed(own) => *own,
                     OfFace::Done(face) => face.as_ref().as_ref().map_or(formed[k], |converter| converter.counts.formed),

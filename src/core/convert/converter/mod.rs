@@ -6,6 +6,7 @@
 
 mod counts;
 mod explaining;
+mod helping;
 mod faces;
 mod taking_back;
 
@@ -17,8 +18,8 @@ use faces::Begun;
 use taking_back::Record;
 
 use super::event::{Event, Why};
-use super::finish::PostProcessing;
-use super::finish::parts::{Finished, Finishing};
+use super::finish::parts::Finishing;
+use super::finish::{Finished, PostProcessing};
 use super::front::{Done, Front};
 use super::last_resort::Outcome;
 use super::phase::{Attempt, Base, Phase, PostProcessingPart};
@@ -42,7 +43,7 @@ const TELL: u64 = 2048;
 pub struct Converter<'a> {
     /// The mesh: live triangles and dead quadrilaterals.
     pub mesh: Mesh,
-    /// What gives the metric anywhere.
+    /// The metric field.
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
     /// Parameters; may be changed between two steps by [`Converter::set_parameters`].
     parameters: Parameters,

@@ -1,7 +1,8 @@
 //! The steps of a converter taken back: what each needs for that, and what of it is kept.
 
 use super::{Begun, Converter, Counts};
-use crate::core::convert::finish::parts::{Finished, PartMarks};
+use crate::core::convert::finish::Finished;
+use crate::core::convert::finish::parts::PartMarks;
 use crate::core::convert::last_resort::Outcome;
 use crate::core::convert::last_resort::component::Component;
 use crate::core::convert::phase::Phase;

@@ -7,10 +7,12 @@ mod worklist;
 pub mod clean_up;
 pub mod unfold;
 
+pub use self::parts::Finished;
+
 use std::sync::Arc;
 
 use self::clean_up::{CleanUp, Reach};
-use self::parts::{Finished, Finishing};
+use self::parts::Finishing;
 use self::unfold::{Unfolded, Unfolding};
 use self::worklist::Worklist;
 use super::event::{Event, Mending};

@@ -25,7 +25,7 @@ impl Component {
     }
 }
 
-/// All live components of a face, or of all, by their least triangle. Live is what is a triangle still.
+/// All live components of a face, or of all, by their least triangle. Triangles are live.
 pub fn live_components(mesh: &Mesh, face: Option<u32>) -> Vec<Component> {
     let mut seen = vec![false; mesh.element_slots()];
     let mut components = Vec::new();

@@ -8,7 +8,7 @@ use super::{Means, Stuck};
 use crate::core::kernel::predicates::{convex, firm};
 
 impl Planner<'_> {
-    /// The templates of step 5, a patch for each part of the join that hangs together.
+    /// The templates of step 5, a patch for each connected part of the join.
     pub fn fill_with_templates(&mut self) -> Result<(), Stuck> {
         for first in 0..self.dual.triangles.len() as u32 {
             if self.done[first as usize] {

@@ -220,7 +220,7 @@ pub fn relax(mesh: &mut Mesh, node: NodeId, source: &dyn MetricSource) -> f64 {
     for _ in 0..4 {
         let place = p + (e[0] * newton.x + e[1] * newton.y) * step;
         if let Ok(metric) = source.metric(place) {
-            // The exact test comes last: it is the dearest and seldom fails where the energy is finite.
+            // The exact test comes last: it is expensive and seldom fails where the energy is finite.
             if star.energy(place, &metric) < before - 1e-9 && mesh.can_move(node, place).is_ok() {
                 found = Some((place, metric));
                 break;

@@ -70,9 +70,8 @@ pub fn relax(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes, rounds: u
 }
 
 /// The elements at some nodes, each once.
-pub fn elements_around(mesh: &Mesh, nodes: &Nodes) -> SmallVec<[ElementId; 24]> {
-    let mut elements: SmallVec<[ElementId; 24]> =
-        nodes.iter().flat_map(|&n| mesh.fan(n)).map(|h| h.element()).collect();
+pub fn elements_around(mesh: &Mesh, nodes: &[NodeId]) -> SmallVec<[ElementId; 24]> {
+    let mut elements: SmallVec<[ElementId; 24]> = nodes.iter().flat_map(|&n| mesh.elements_at(n)).collect();
     elements.sort_unstable();
     elements.dedup();
     elements

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::choice::BaseSide;
+use super::choice::{BaseSide, Way};
 use crate::core::convert::event::{SideEdge, degrees};
 use crate::core::convert::phase::Attempt;
 use crate::core::front::sector::Side;
@@ -74,6 +74,10 @@ pub(in crate::core::convert) fn of(here: &BaseSide<'_>, attempt: &Attempt, left:
     let theta = base.theta[side.index()];
     let limit = parameters.side_deviation;
     let chosen = here.choose(attempt, left).ok();
+    let swapped = match chosen.map(|choice| choice.way) {
+        Some(Way::Swap(h, _)) => Some(mesh.ends(h)),
+        _ => None,
+    };
     let taken = |n: NodeId| n == base.a || n == base.b || Some(n) == left;
     let spokes = base.half_edge(mesh).map(|h| mesh.spokes(h, side)).unwrap_or_default();
     let nearest = spokes
@@ -89,7 +93,7 @@ pub(in crate::core::convert) fn of(here: &BaseSide<'_>, attempt: &Attempt, left:
     };
     let candidate = |node: NodeId, swap: Option<[NodeId; 2]>, passed: Passed| {
         let SideEdge { angle, deviation, .. } = here.edge(node);
-        let is_chosen = chosen.is_some_and(|c| c.edge.node == node && c.swap().map(|h| mesh.ends(h)) == swap);
+        let is_chosen = chosen.is_some_and(|c| c.edge.node == node) && swapped == swap;
         let length = mesh.distance(base.node(side), node);
         Candidate { node, swap, angle, deviation, length, passed: (!is_chosen).then_some(passed) }
     };

@@ -33,16 +33,6 @@ pub enum Way {
     Swap(HalfEdgeId, Option<f64>),
 }
 
-impl SideChoice {
-    /// The edge that has to be swapped for it.
-    pub fn swap(&self) -> Option<HalfEdgeId> {
-        match self.way {
-            Way::Swap(h, _) => Some(h),
-            Way::Front | Way::Edge => None,
-        }
-    }
-}
-
 /// One side of a base segment.
 #[derive(Clone, Copy)]
 pub struct BaseSide<'a> {

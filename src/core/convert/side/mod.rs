@@ -54,7 +54,7 @@ pub(super) fn divide(
     let top = tops[side.index()].ok_or(Why::NoSide(side))?;
     let here = BaseSide { mesh: front.mesh, parameters: front.parameters, base: &base, side };
     let Some(Division { h, middle, metric, length }) = here.division(&attempt, top, front.source)? else {
-        // Somebody has changed the parameters since it was judged.
+        // The parameters have changed since it was judged.
         return Ok((after(base, attempt, side, tops), None));
     };
     let node = front.mesh.divide(h, middle, metric).expect("it was judged");

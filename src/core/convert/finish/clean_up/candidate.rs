@@ -145,7 +145,7 @@ impl Candidate {
         };
         match self {
             Candidate::Doublet(node) => {
-                mesh.fan(node).for_each(|h| mesh.corners(h.element()).for_each(&mut add));
+                mesh.elements_at(node).for_each(|e| mesh.corners(e).for_each(&mut add));
             }
             Candidate::Collapse(h) => mesh.corners(h.element()).for_each(add),
             Candidate::Rotate(h, _) => {

@@ -63,7 +63,7 @@ pub struct CleanedUp {
     pub pairs: usize,
     /// Sequences of three and of four.
     pub longer: usize,
-    /// Changes tried, each as often as it was.
+    /// Changes tried, repetitions included.
     pub trials: usize,
     /// Trials taken back.
     pub refused: usize,
@@ -177,7 +177,7 @@ pub(super) struct CleanUp<'a> {
 
 impl<'a> CleanUp<'a> {
     /// A clean-up of a face, which is that share of the whole, or of all, at its beginning. Its list writes down what
-    /// it needs to be taken back where `recording`. It goes on counting where `done` stands.
+    /// it needs to be taken back where `recording`. Counts continue from `done`.
     pub fn begin(
         mesh: &Mesh,
         (face, share): (Option<u32>, f64),
@@ -257,7 +257,7 @@ impl<'a> CleanUp<'a> {
         let mut nodes: Vec<(f64, NodeId)> = mesh
             .nodes_of(face)
             .filter(|&n| self.valences.excess(mesh, n) != 0)
-            .map(|n| (mesh.fan(n).map(|h| energy::judge(mesh, h.element()).0).sum::<f64>(), n))
+            .map(|n| (mesh.elements_at(n).map(|e| energy::judge(mesh, e).0).sum::<f64>(), n))
             .collect();
         nodes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         nodes.into_iter().for_each(|(_, node)| self.list.add(node));
@@ -267,7 +267,7 @@ impl<'a> CleanUp<'a> {
 
     /// Tries the candidates around one irregular node, best valence gain first, and keeps the first that is good.
     fn single(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
-        let worst = mesh.fan(node).map(|h| mesh.quality(h.element())).fold(f64::INFINITY, f64::min);
+        let worst = mesh.worst_quality_at(node);
         for (_, candidate) in
             self.valences.candidates(mesh, node, if worst < POOR { MOST_WORSE } else { 0 }, MOST_TRIALS)
         {

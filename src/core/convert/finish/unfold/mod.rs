@@ -15,7 +15,7 @@ use self::moving::DIRECTIONS;
 use super::worklist::Worklist;
 use crate::core::convert::event::{Event, Mending};
 use crate::core::convert::relax::energy;
-use crate::core::convert::relax::settle::{Nodes, put, settle};
+use crate::core::convert::relax::settle::{Nodes, elements_around, put, settle};
 use crate::core::convert::sums::summed;
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, NodeId, PointId};
@@ -133,7 +133,7 @@ impl<'a> Unfolding<'a> {
                 for &n in &nodes {
                     let waits =
                         |e: ElementId| mesh.is_quad(e) && (self.sine(mesh, e) < FOLDED || self.is_double(mesh, e));
-                    if mesh.fan(n).any(|h| waits(h.element())) {
+                    if mesh.elements_at(n).any(waits) {
                         self.list.add(n);
                     }
                 }
@@ -142,7 +142,7 @@ impl<'a> Unfolding<'a> {
                 mesh.commit();
             }
             if let Some(how) = how {
-                let after = mesh.fan(nodes[0]).map(|h| self.sine(mesh, h.element())).fold(f64::INFINITY, f64::min);
+                let after = self.star_sine(mesh, nodes[0]);
                 return Some(Event::Unfolded { element, how, sine: [before, after] });
             }
         }
@@ -181,7 +181,7 @@ impl<'a> Unfolding<'a> {
 
     /// The least sine of the elements around a node.
     fn star_sine(&self, mesh: &Mesh, node: NodeId) -> f64 {
-        mesh.fan(node).map(|h| self.sine(mesh, h.element())).fold(f64::INFINITY, f64::min)
+        mesh.elements_at(node).map(|e| self.sine(mesh, e)).fold(f64::INFINITY, f64::min)
     }
 
     fn folds(&self, mesh: &Mesh, e: ElementId) -> bool {
@@ -190,10 +190,7 @@ impl<'a> Unfolding<'a> {
 
     /// How many elements around nodes are flat or turned, and how many fold.
     fn flaws(&self, mesh: &Mesh, nodes: &[NodeId]) -> [usize; 2] {
-        let mut around: Vec<ElementId> = nodes.iter().flat_map(|&n| mesh.elements_at(n)).collect();
-        around.sort_unstable();
-        around.dedup();
-        let quads = around.into_iter().filter(|&e| mesh.is_quad(e));
+        let quads = elements_around(mesh, nodes).into_iter().filter(|&e| mesh.is_quad(e));
         let sines: Vec<f64> = quads.map(|e| self.sine(mesh, e)).collect();
         [FLAT, FOLDED].map(|least| sines.iter().filter(|&&sine| sine < least).count())
     }
