@@ -10,7 +10,7 @@ use quadfront::core::convert::candidates::Candidate;
 use quadfront::core::convert::converter::Converter;
 use quadfront::core::convert::event::{Event, Purpose, Why};
 use quadfront::core::convert::phase::Phase;
-use quadfront::core::convert::walk::{Told, walk};
+use quadfront::core::convert::walk::{StepReport, walk};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
@@ -75,7 +75,7 @@ fn every_operation_of_the_paper_is_done_on_some_built_in_case() {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for (name, _) in built_in::CASES {
         with_case(name, &[], |mut converter| {
-            let mut tell = |told: &Told<'_>| {
+            let mut tell = |told: &StepReport<'_>| {
                 let kind = match told.event {
                     Event::NodeRemoved { purpose: Purpose::Recovery, .. } => "node_removed for a top edge",
                     Event::NodeRemoved { purpose: Purpose::Enhancement, .. } => "node_removed by enhancement",
@@ -127,7 +127,8 @@ fn an_operation_that_is_switched_off_is_not_done() {
     ] {
         assert_eq!(Parameters::default().text_of(key).unwrap(), "true");
         with_case("repeated-line", &[(key, "false")], |mut converter| {
-            let mut tell = |told: &Told<'_>| assert!(!kinds.contains(&told.event.kind()), "{key}: {:?}", told.event);
+            let mut tell =
+                |told: &StepReport<'_>| assert!(!kinds.contains(&told.event.kind()), "{key}: {:?}", told.event);
             walk(&mut converter, None, &mut Nobody, Some(&mut tell)).unwrap();
         });
     }
@@ -138,7 +139,7 @@ fn loops_where_the_front_has_changed_are_told_and_even_and_crossings_name_the_ed
     for (name, least) in [("crack", 1), ("gear", 2), ("example1", 2)] {
         with_case(name, &[], |mut converter| {
             let (mut formed, mut several, mut swapped) = (0, 0, 0);
-            let mut look = |told: &Told<'_>| {
+            let mut look = |told: &StepReport<'_>| {
                 if let Some(loops) = told.loops {
                     assert!(loops.iter().all(|n| n % 2 == 0 && *n >= 2), "{name}, step {}: {loops:?}", told.step);
                     several += usize::from(loops.len() > 1);

@@ -9,7 +9,7 @@ use crate::core::case::{Case, DomainSource, MeshUse};
 use crate::core::convert::conversion::{self, Converted};
 use crate::core::convert::converter::{Converter, Counts};
 use crate::core::convert::phase::Phase;
-use crate::core::convert::walk::{Stop, Tell, Told, walk_editing};
+use crate::core::convert::walk::{StepReport, Stop, Tell, walk_editing};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::number;
 use crate::core::mesh::half_edge::Mesh;
@@ -94,7 +94,7 @@ pub(super) fn convert_telling(
     let mut quads = None;
     let written = events.write(|out| {
         let mut written = Ok(());
-        let mut tell = |told: &Told<'_>| {
+        let mut tell = |told: &StepReport<'_>| {
             if written.is_ok() {
                 written = serde_json::to_writer(&mut *out, told).map_err(io::Error::from).and_then(|()| writeln!(out));
             }

@@ -68,14 +68,14 @@ fn nearest(
         .filter(|n| n.0 <= NEAR[0] && is_seen([n.1; 2], 0.0))
         .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let edges = sides.iter().filter_map(|&h| {
-        let ends = [mesh.origin(h), mesh.target(h)];
+        let ends = mesh.ends(h);
         let on_front = front_side(mesh, h);
         let reach = if on_front.is_some() { NEAR[2] } else { NEAR[1] };
         let [a, b] = ends.map(place);
         let share = share(at, a, b);
         let away = at.distance(a.lerp(b, share));
         // A segment is named in its own direction, from A to B.
-        let directed = on_front.map_or(ends, |f| [mesh.origin(f), mesh.target(f)]);
+        let directed = on_front.map_or(ends, |f| mesh.ends(f));
         (away <= reach && is_seen(ends, share)).then_some((on_front.is_none(), away, a.distance(b), directed))
     });
     let nearest_edge = edges.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.3.cmp(&b.3)));

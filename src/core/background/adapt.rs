@@ -157,7 +157,7 @@ impl Adapter<'_> {
         let mesh = &self.mesh;
         let mut found = Vec::new();
         for h in edges {
-            let (from, to) = (mesh.origin(h), mesh.target(h));
+            let [from, to] = mesh.ends(h);
             // The length is no more than the greater one of those at the two ends, which nearly always is enough to know.
             let d = mesh.uv(to) - mesh.uv(from);
             let short = mesh.metric_ref(from).norm2(d).max(mesh.metric_ref(to).norm2(d)) < LONG * LONG;
@@ -200,7 +200,7 @@ impl Adapter<'_> {
             return Ok(None);
         }
         let Some(twin) = mesh.twin(f.h) else { return Ok(None) };
-        let (c, d) = (mesh.origin(mesh.previous(f.h)), mesh.origin(mesh.previous(twin)));
+        let (c, d) = (mesh.apex(f.h), mesh.apex(twin));
         let place = self.middle(f.from, f.to);
         let metric = self.metric(place)?;
         let near = |n: NodeId| length_over(&metric, mesh.metric_ref(n), mesh.uv(n) - place) < least;
@@ -208,7 +208,7 @@ impl Adapter<'_> {
             return Ok(None);
         }
         let fit = |h_ab: HalfEdgeId| {
-            let (a, b, c) = (mesh.origin(h_ab), mesh.target(h_ab), mesh.origin(mesh.previous(h_ab)));
+            let (a, b, c) = (mesh.origin(h_ab), mesh.target(h_ab), mesh.apex(h_ab));
             let half = |n: NodeId| {
                 quality_over([mesh.uv(n), place, mesh.uv(c)], [mesh.metric_ref(n), &metric, mesh.metric_ref(c)]).abs()
             };
@@ -326,7 +326,7 @@ impl Adapter<'_> {
     /// The worst quality around b after a would be merged into it, if that is possible and good enough.
     fn quality_after_collapse(&self, h_ab: HalfEdgeId) -> Option<f64> {
         let mesh = &self.mesh;
-        let (a, b) = (mesh.origin(h_ab), mesh.target(h_ab));
+        let [a, b] = mesh.ends(h_ab);
         if mesh.is_fixed(a) || mesh.neighbours(a).any(|n| n != b && mesh.distance(b, n) > LONG) {
             return None;
         }
@@ -367,7 +367,7 @@ impl Adapter<'_> {
         let mut star: SmallVec<[([DVec2; 2], Metric2); 12]> = SmallVec::new();
         let mut sum = DVec2::ZERO;
         for h in mesh.fan(node) {
-            let (b, c) = (mesh.target(h), mesh.origin(mesh.previous(h)));
+            let (b, c) = (mesh.target(h), mesh.apex(h));
             let (p_b, m_b, m_c) = (mesh.uv(b), mesh.metric_ref(b), mesh.metric_ref(c));
             star.push(([p_b, mesh.uv(c)], sum_of(m_b, m_c)));
             let away = here - p_b;
@@ -415,7 +415,7 @@ fn length_class(length: f64) -> i64 {
 fn is_delaunay(mesh: &Mesh, h_ab: HalfEdgeId) -> bool {
     let Some(h_ba) = mesh.twin(h_ab) else { return true };
     let (a, b) = (mesh.origin(h_ab), mesh.origin(h_ba));
-    let (c, d) = (mesh.origin(mesh.previous(h_ab)), mesh.origin(mesh.previous(h_ba)));
+    let (c, d) = (mesh.apex(h_ab), mesh.apex(h_ba));
     let mut m = Metric2 { uu: 0.0, uv: 0.0, vv: 0.0 };
     for n in [a, b, c, d] {
         let n = mesh.metric_ref(n);
@@ -438,7 +438,7 @@ fn better_by_swap(mesh: &Mesh, quality: &[f64], h_ab: HalfEdgeId) -> Option<[f64
         return None;
     }
     let (a, b) = (mesh.origin(h_ab), mesh.origin(h_ba));
-    let (c, d) = (mesh.origin(mesh.previous(h_ab)), mesh.origin(mesh.previous(h_ba)));
+    let (c, d) = (mesh.apex(h_ab), mesh.apex(h_ba));
     let least = before + 1e-6;
     let first = mesh.triangle_quality([a, d, c]);
     if first <= least {

@@ -17,7 +17,7 @@ use crate::core::progress::Watch;
 pub struct Converted {
     /// All quadrilaterals, where the conversion was taken to its end.
     pub mesh: Mesh,
-    /// What gives the metric anywhere.
+    /// The metric field.
     pub sizing: Sizing,
     /// What its faces and lines are called.
     pub names: Names,
@@ -25,9 +25,9 @@ pub struct Converted {
     pub triangles: usize,
     /// What the adaptation of the background did.
     pub adapted: Adapted,
-    /// What was mended in a mesh that was given, for people.
+    /// Repairs of a given mesh, in words.
     pub repairs: Vec<String>,
-    /// How often what happened on the front.
+    /// What the steps of the front did.
     pub counts: Counts,
     /// What the last resort did, over all components.
     pub last_resort: Outcome,

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::component::Component;
 use super::last_resort::Plan;
+use super::last_resort::component::Component;
 use crate::core::front::sector::Side;
+use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::journal::Mark;
 
@@ -25,6 +26,21 @@ pub struct Base {
     pub level: u16,
 }
 
+impl Base {
+    /// Its node at a side.
+    pub fn node(&self, side: Side) -> NodeId {
+        match side {
+            Side::Left => self.a,
+            Side::Right => self.b,
+        }
+    }
+
+    /// Its half-edge in its live triangle.
+    pub fn half_edge(&self, mesh: &Mesh) -> Option<HalfEdgeId> {
+        mesh.front_between(self.a, self.b)
+    }
+}
+
 /// One way to try to form the quadrilateral of a base segment (docs/algorithm.md, "Rescue").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attempt {
@@ -40,7 +56,7 @@ pub struct Attempt {
 
 /// A part of the post-processing (4.3.7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Part {
+pub enum PostProcessingPart {
     /// Smoothing of all that the front has left.
     FirstSmoothing,
     /// Clean-up of the structure by single changes.
@@ -165,9 +181,9 @@ pub enum Phase {
     /// Clean-up and smoothing of the whole mesh.
     PostProcess {
         /// Which part of it is under way.
-        part: Part,
+        part: PostProcessingPart,
     },
-    /// The face at hand is converted; the next one is to be turned to.
+    /// The face at hand is converted; the next one follows.
     NextFace,
     /// Nothing is left to do.
     Done,
@@ -202,24 +218,22 @@ impl Phase {
         self.last_formed().is_some()
     }
 
-    /// The mark of the journal to which the work at hand may be taken back; `None` where nothing is under way.
-    pub fn mark(&self) -> Option<Mark> {
+    /// The attempt at the quadrilateral at hand.
+    pub fn attempt(&self) -> Option<&Attempt> {
         match self {
             Phase::PrepareSide { attempt, .. }
             | Phase::DivideSide { attempt, .. }
             | Phase::RecoverTop { attempt, .. }
-            | Phase::Form { attempt, .. } => Some(attempt.mark),
+            | Phase::Form { attempt, .. } => Some(attempt),
+            _ => None,
+        }
+    }
+
+    /// The mark of the journal to which the work at hand may be taken back; `None` where nothing is under way.
+    pub fn mark(&self) -> Option<Mark> {
+        match self {
             Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => Some(*mark),
-            Phase::Select
-            | Phase::Defer { .. }
-            | Phase::Seam { .. }
-            | Phase::Split { .. }
-            | Phase::Close { .. }
-            | Phase::Match { .. }
-            | Phase::Patch { .. }
-            | Phase::PostProcess { .. }
-            | Phase::NextFace
-            | Phase::Done => None,
+            phase => phase.attempt().map(|attempt| attempt.mark),
         }
     }
 
@@ -233,16 +247,7 @@ impl Phase {
             | Phase::RecoverTop { attempt, .. }
             | Phase::Form { attempt, .. } => attempt.mark = Mark::default(),
             Phase::Enhance { mark, .. } | Phase::Smooth { mark, .. } => *mark = Mark::default(),
-            Phase::Select
-            | Phase::Defer { .. }
-            | Phase::Seam { .. }
-            | Phase::Split { .. }
-            | Phase::Close { .. }
-            | Phase::Match { .. }
-            | Phase::Patch { .. }
-            | Phase::PostProcess { .. }
-            | Phase::NextFace
-            | Phase::Done => {}
+            _ => {}
         }
         plain
     }

@@ -1,10 +1,13 @@
-//! Front splitting (paper 4.3.6, fig. 19): where a new quadrilateral leaves a narrow region, two nodes of the front that face each
-//! other over a slender triangle become one, and the loop two even ones, before a slender quadrilateral is formed there.
+//! Front splitting (paper 4.3.6, fig. 19): where a new quadrilateral leaves a narrow region, two nodes of the front
+//! that face each other over a slender triangle become one and the loop two even ones, before a quadrilateral is.
 
 use smallvec::SmallVec;
 
-use super::converter::Converter;
 use super::event::Event;
+use super::front::{Done, Front};
+use super::phase::Phase;
+use super::seam::merge::merge;
+use crate::core::case::parameters::Parameters;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId};
 
@@ -33,88 +36,94 @@ pub struct Narrow {
     pub slender: SmallVec<[Slender; 4]>,
 }
 
-impl Converter<'_> {
-    /// Looks for slender triangles around a quadrilateral (steps i and ii).
-    pub fn narrow(&self, quad: ElementId) -> Narrow {
-        let mesh = &self.mesh;
-        let mut narrow = Narrow::default();
-        for node in mesh.quad(quad) {
-            let live = mesh.fan(node).map(HalfEdgeId::element).filter(|&e| mesh.is_triangle(e));
-            narrow.on_front.extend(live.filter(|&e| mesh.triangle(e).iter().all(|&n| self.is_on_front(n))));
-        }
-        narrow.on_front.sort_unstable();
-        narrow.on_front.dedup();
-        narrow.slender.extend(narrow.on_front.iter().filter_map(|&e| self.slender(e)));
-        narrow
-            .slender
-            .sort_by(|s, t| (s.area / s.ratio).total_cmp(&(t.area / t.ratio)).then(s.element.cmp(&t.element)));
-        narrow
+/// Front splitting (4.3.6) around a new quadrilateral; then the next base segment is to be selected.
+pub(super) fn step(front: &mut Front<'_>, element: ElementId) -> Done {
+    if !front.parameters.splitting {
+        return (Phase::Select, None);
     }
-
-    /// Judges a triangle by the conditions (a) to (c) of step (ii).
-    fn slender(&self, element: ElementId) -> Option<Slender> {
-        let mesh = &self.mesh;
-        // (a) Two sides on the front are two adjacent front segments. Without any there is no base, and so no side edge.
-        let mut on_front = mesh.half_edges(element).filter(|&h| mesh.is_front(h));
-        let (Some(base), None) = (on_front.next(), on_front.next()) else { return None };
-        let area = metric_area(mesh, element);
-        if area >= self.parameters.eps1 {
-            return None;
-        }
-        let longest = mesh.half_edges(element).map(|h| mesh.length(h)).fold(0.0, f64::max);
-        let ratio = longest * longest / (2.0 * area);
-        (ratio > self.parameters.eps2).then_some(Slender { element, base, area, ratio })
+    let mark = front.mesh.mark();
+    let event = split_front(front, element);
+    if event.is_some() {
+        front.refresh(mark);
     }
+    (Phase::Select, event)
+}
 
-    /// Splits the front at the first slender triangle around a new quadrilateral that has a side edge whose collapse
-    /// leaves two even loops (step iii), the shorter side first. What would spoil an element is not done.
-    pub(super) fn split_front(&mut self, quad: ElementId) -> Option<Event> {
-        for Slender { base, area, ratio, .. } in self.narrow(quad).slender {
-            let mut sides = [self.mesh.next(base), self.mesh.previous(base)];
-            if self.mesh.length(sides[1]) < self.mesh.length(sides[0]) {
-                sides.swap(0, 1);
+/// Looks for slender triangles around a quadrilateral (steps i and ii).
+pub(super) fn narrow(mesh: &Mesh, parameters: &Parameters, quad: ElementId) -> Narrow {
+    let mut narrow = Narrow::default();
+    for node in mesh.quad(quad) {
+        let live = mesh.elements_at(node).filter(|&e| mesh.is_triangle(e));
+        narrow.on_front.extend(live.filter(|&e| mesh.triangle(e).iter().all(|&n| mesh.is_on_front(n))));
+    }
+    narrow.on_front.sort_unstable();
+    narrow.on_front.dedup();
+    narrow.slender.extend(narrow.on_front.iter().filter_map(|&e| slender(mesh, parameters, e)));
+    narrow.slender.sort_by(|s, t| (s.area / s.ratio).total_cmp(&(t.area / t.ratio)).then(s.element.cmp(&t.element)));
+    narrow
+}
+
+/// Judges a triangle by the conditions (a) to (c) of step (ii).
+fn slender(mesh: &Mesh, parameters: &Parameters, element: ElementId) -> Option<Slender> {
+    // (a) Two sides on the front are two adjacent front segments. Without any there is no base, and so no side edge.
+    let mut on_front = mesh.half_edges(element).filter(|&h| mesh.is_front(h));
+    let (Some(base), None) = (on_front.next(), on_front.next()) else { return None };
+    let area = metric_area(mesh, element);
+    if area >= parameters.eps1 {
+        return None;
+    }
+    let longest = mesh.half_edges(element).map(|h| mesh.length(h)).fold(0.0, f64::max);
+    let ratio = longest * longest / (2.0 * area);
+    (ratio > parameters.eps2).then_some(Slender { element, base, area, ratio })
+}
+
+/// Splits the front at the first slender triangle around a new quadrilateral that has a side edge whose collapse
+/// leaves two even loops (step iii), the shorter side first. What would spoil an element is not done.
+fn split_front(front: &mut Front<'_>, quad: ElementId) -> Option<Event> {
+    for Slender { base, area, ratio, .. } in narrow(front.mesh, front.parameters, quad).slender {
+        let mut sides = [front.mesh.next(base), front.mesh.previous(base)];
+        if front.mesh.length(sides[1]) < front.mesh.length(sides[0]) {
+            sides.swap(0, 1);
+        }
+        for side in sides {
+            let ends = front.mesh.ends(side);
+            let Some(segments) = parts(front.mesh, side) else { continue };
+            if segments.iter().any(|n| n % 2 == 1 || *n < LEAST_PART) {
+                continue;
             }
-            for side in sides {
-                let ends = [self.mesh.origin(side), self.mesh.target(side)];
-                let Some(segments) = self.parts(side) else { continue };
-                if segments.iter().any(|n| n % 2 == 1 || *n < LEAST_PART) {
-                    continue;
+            let mark = front.mesh.mark();
+            // Slender triangles may stay in a narrow region; quadrilaterals are permanent.
+            match merge(front, side, &|mesh, e| mesh.is_quad(e)) {
+                Ok(node) => {
+                    let gone = if node == ends[0] { ends[1] } else { ends[0] };
+                    return Some(Event::Split { node, gone, area, ratio, segments: segments.map(|n| n as u32) });
                 }
-                let mark = self.mesh.mark();
-                // Slender triangles may stay in a narrow region; quadrilaterals are for good.
-                match self.merge(side, &|mesh, e| mesh.is_quad(e)) {
-                    Ok(node) => {
-                        let gone = if node == ends[0] { ends[1] } else { ends[0] };
-                        return Some(Event::Split { node, gone, area, ratio, segments: segments.map(|n| n as u32) });
-                    }
-                    Err(_) => self.mesh.take_back(mark),
-                }
+                Err(_) => front.mesh.take_back(mark),
             }
         }
-        None
     }
+    None
+}
 
-    /// Segments of the two loops that the loop through both ends of a live edge would become by its collapse; `None`
-    /// where the ends lie on two loops, which no collapse splits.
-    fn parts(&self, side: HalfEdgeId) -> Option<[usize; 2]> {
-        let mesh = &self.mesh;
-        // The front segments that leave both ends, in the sector of the edge.
-        let from = mesh.front_after(mesh.previous(side));
-        let to = mesh.front_after(side);
-        let (mut h, mut count, mut parts) = (from, 0, [0; 2]);
-        loop {
-            if h == to {
-                parts[0] = count;
-            }
-            h = mesh.front_after(h);
-            count += 1;
-            if h == from {
-                break;
-            }
+/// Segments of the two loops that the loop through both ends of a live edge would become by its collapse; `None`
+/// where the ends lie on two loops, which no collapse splits.
+fn parts(mesh: &Mesh, side: HalfEdgeId) -> Option<[usize; 2]> {
+    // The front segments that leave both ends, in the sector of the edge.
+    let from = mesh.front_after(mesh.previous(side));
+    let to = mesh.front_after(side);
+    let (mut h, mut count, mut parts) = (from, 0, [0; 2]);
+    loop {
+        if h == to {
+            parts[0] = count;
         }
-        parts[1] = count - parts[0];
-        (parts[0] > 0).then_some(parts)
+        h = mesh.front_after(h);
+        count += 1;
+        if h == from {
+            break;
+        }
     }
+    parts[1] = count - parts[0];
+    (parts[0] > 0).then_some(parts)
 }
 
 /// Area of a triangle in the mean metric of its nodes.

@@ -1,8 +1,9 @@
 //! Recovery of the top edge (paper 4.3.4, definition of the top edge, i to vi; docs/algorithm.md, "Top edge"): swaps
-//! along the line, one a step, with node removal where no swap is possible. Every crossing is found by exact
-//! predicates.
+//! along the line, one a step, with node removal where no swap is possible. Crossings are found exactly.
 
 use super::event::{Event, Purpose, Why};
+use super::front::{Done, Front};
+use super::phase::{Attempt, Base, Phase};
 use crate::core::kernel::predicates::orient;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
@@ -20,6 +21,22 @@ pub(super) enum Recovery {
     Changed(Event),
 }
 
+/// One step of the recovery of the top edge (top edge i to vi).
+pub(super) fn recover(
+    front: &mut Front<'_>,
+    base: Base,
+    attempt: Attempt,
+    tops: [NodeId; 2],
+    swaps: u8,
+) -> Result<Done, Why> {
+    let [c, d] = tops;
+    match recover_step(front.mesh, c, d, &[base.a, base.b, c, d])? {
+        Recovery::Found => Ok((Phase::Form { base, attempt, tops }, Some(Event::TopFound { ends: tops, swaps }))),
+        Recovery::Changed(_) if swaps == MOST_SWAPS => Err(Why::TopTooLong),
+        Recovery::Changed(event) => Ok((Phase::RecoverTop { base, attempt, tops, swaps: swaps + 1 }, Some(event))),
+    }
+}
+
 /// One step of the recovery of the edge from C to D; nodes in `keep` are not removed.
 pub(super) fn recover_step(mesh: &mut Mesh, c: NodeId, d: NodeId, keep: &[NodeId]) -> Result<Recovery, Why> {
     if mesh.are_joined(c, d) {
@@ -30,18 +47,18 @@ pub(super) fn recover_step(mesh: &mut Mesh, c: NodeId, d: NodeId, keep: &[NodeId
         if mesh.can_swap(h).is_ok() {
             // A swap that still crosses is only worth it where it brings an end of the new edge to C or D.
             let t = mesh.twin(h).ok_or(Why::NotDisc)?;
-            let new = [mesh.origin(mesh.previous(h)), mesh.origin(mesh.previous(t))];
+            let new = [mesh.apex(h), mesh.apex(t)];
             if crosses(mesh, new, c, d) && crossings.len() > 1 && !new.contains(&c) && !new.contains(&d) {
                 continue;
             }
-            let across = [mesh.origin(h), mesh.target(h)];
+            let across = mesh.ends(h);
             mesh.swap(h);
             return Ok(Recovery::Changed(Event::TopSwapped { across, new }));
         }
     }
     // No swap is possible: remove a node that keeps one from being valid (iii).
     for &h in &crossings {
-        for node in [mesh.origin(h), mesh.target(h)] {
+        for node in mesh.ends(h) {
             if !keep.contains(&node) && mesh.delete_node(node).is_ok() {
                 return Ok(Recovery::Changed(Event::NodeRemoved { node, purpose: Purpose::Recovery }));
             }
@@ -68,7 +85,7 @@ pub(super) fn crossings(mesh: &Mesh, c: NodeId, d: NodeId) -> Result<Vec<HalfEdg
         if !mesh.is_triangle(h.element()) {
             continue;
         }
-        let (e, f) = (mesh.target(h), mesh.origin(mesh.previous(h)));
+        let (e, f) = (mesh.target(h), mesh.apex(h));
         let (at_e, at_f) = (orient(p, q, mesh.uv(e)), orient(p, q, mesh.uv(f)));
         if at_e < 0.0 && at_f > 0.0 {
             start = Some(mesh.next(h));
@@ -83,13 +100,13 @@ pub(super) fn crossings(mesh: &Mesh, c: NodeId, d: NodeId) -> Result<Vec<HalfEdg
     let Some(mut h) = start else { return Err(Why::NotDisc) };
     let mut found = Vec::new();
     loop {
-        let ends = [mesh.origin(h), mesh.target(h)];
-        let Some(t) = mesh.twin(h).filter(|t| mesh.is_triangle(t.element())) else { return Err(Why::TopBlocked(ends)) };
+        let ends = mesh.ends(h);
+        let Some(t) = mesh.live_twin(h) else { return Err(Why::TopBlocked(ends)) };
         found.push(h);
         if found.len() > MOST_CROSSINGS {
             return Err(Why::TopTooLong);
         }
-        let apex = mesh.origin(mesh.previous(t));
+        let apex = mesh.apex(t);
         if apex == d {
             return Ok(found);
         }

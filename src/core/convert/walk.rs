@@ -1,14 +1,14 @@
-//! A conversion walked step by step, to its end or to a stop, with each event told.
+//! A conversion walked step by step, to its end or to a stop, with a report on each step.
 
 use std::fmt;
 use std::str::FromStr;
 
 use serde::Serialize;
 
-use super::candidates::Candidates;
 use super::converter::Converter;
 use super::event::Event;
-use super::phase::{Part, Phase};
+use super::phase::{Phase, PostProcessingPart};
+use super::side::candidates::Candidates;
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::NodeId;
 use crate::core::progress::{Stage, Watch};
@@ -55,9 +55,9 @@ impl Stop {
     }
 }
 
-/// A step as it is told.
+/// A report on one step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Told<'e> {
+pub struct StepReport<'e> {
     /// Its number, from 1.
     pub step: u64,
     /// Quadrilaterals that stand after it.
@@ -68,26 +68,25 @@ pub struct Told<'e> {
     /// What a side edge was chosen from, where one was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub candidates: Option<&'e Candidates>,
-    /// The edges that the line from C to D crosses, from C on, where the top edge is being recovered (4.3.4): all live; a dead one
-    /// ends the recovery, and its `rolled_back` has it.
+    /// The edges that the line from C to D crosses, from C on, where the top edge is being recovered (4.3.4): all live;
+    /// a dead one ends the recovery, and its `rolled_back` has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossings: Option<&'e [[NodeId; 2]]>,
-    /// Segments of each loop of the front that runs through the nodes at which the front has changed, after the step; an even
-    /// number each (docs/algorithm.md, "The parity invariant").
+    /// Segments of each loop of the front that runs through the nodes at which the front has changed, after the step;
+    /// an even number each (docs/algorithm.md, "The parity invariant").
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loops: Option<&'e [u32]>,
-    /// Worst quality of the elements around the last quadrilateral before and after, where its neighbourhood was improved
-    /// (4.3.6).
+    /// Worst quality around the last quadrilateral before and after, where its neighbourhood was improved (4.3.6).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<[f64; 2]>,
 }
 
-/// Who is told of each step.
-pub type Tell<'t> = &'t mut dyn FnMut(&Told<'_>);
+/// Receives the report on each step.
+pub type Tell<'t> = &'t mut dyn FnMut(&StepReport<'_>);
 
 /// Steps until `stop` is reached, or to the end where there is none; the same states as
-/// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What an event
-/// leaves unsaid (candidates, crossings, loops, qualities) is only computed where somebody is told.
+/// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What
+/// an event leaves out (candidates, crossings, loops, qualities) is only computed where somebody listens.
 ///
 /// # Errors
 /// As [`Converter::step`](super::converter::Converter::step); and where the conversion ends before the stop.
@@ -103,7 +102,7 @@ pub fn walk(
 /// As [`walk`]; after each step `edit` may change parameters, or pick the next base segment.
 ///
 /// # Errors
-/// As [`walk`], and what `edit` says.
+/// As [`walk`], and those of `edit`.
 pub fn walk_editing(
     converter: &mut Converter<'_>,
     stop: Option<Stop>,
@@ -117,7 +116,7 @@ pub fn walk_editing(
     while !stop.is_some_and(|stop| stop.is_reached(converter)) {
         match converter.phase() {
             Phase::Done => return stop.map_or(Ok(()), |_| Err(past_the_end(converter))),
-            Phase::PostProcess { part: Part::FirstSmoothing } => watch.tell(Stage::Finish, 0, 0),
+            Phase::PostProcess { part: PostProcessingPart::FirstSmoothing } => watch.tell(Stage::Finish, 0, 0),
             _ => {}
         }
         let crossings = tell.as_ref().and_then(|_| converter.top_crossings());
@@ -140,7 +139,7 @@ pub fn walk_editing(
             let step = converter.counts.steps;
             let (crossings, loops) = (crossings.as_deref(), converter.loops_after(&event));
             let (candidates, loops) = (candidates.as_ref(), loops.as_deref());
-            tell(&Told { step, nq, event: &event, candidates, crossings, loops, quality });
+            tell(&StepReport { step, nq, event: &event, candidates, crossings, loops, quality });
         }
         edit(converter)?;
         if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::NextFace | Phase::Done)
@@ -155,6 +154,6 @@ pub fn walk_editing(
 
 fn past_the_end(converter: &Converter<'_>) -> Fault {
     let (steps, quads) = (converter.counts.steps, converter.standing());
-    Fault::new(format!("The conversion ends after step {steps} with {quads} quadrilaterals, before it comes there"))
+    Fault::new(format!("The conversion ends after step {steps} with {quads} quadrilaterals, before the stop"))
         .remedy(format!("Stop at step={steps} at the latest"))
 }

@@ -56,7 +56,27 @@ impl Mesh {
     /// Whether the half-edge is a front segment: a side of a live triangle without a live triangle beyond.
     #[inline]
     pub fn is_front(&self, h: HalfEdgeId) -> bool {
-        self.is_triangle(h.element()) && self.twin(h).is_none_or(|t| !self.is_triangle(t.element()))
+        self.is_triangle(h.element()) && self.live_twin(h).is_none()
+    }
+
+    /// Whether a node lies on the front (or on the boundary).
+    pub fn is_on_front(&self, node: NodeId) -> bool {
+        self.is_fixed(node) || self.elements_at(node).any(|e| !self.is_triangle(e))
+    }
+
+    /// Whether the elements around a node are all quadrilaterals.
+    pub fn is_buried(&self, node: NodeId) -> bool {
+        self.elements_at(node).all(|e| self.is_quad(e))
+    }
+
+    /// Whether two nodes are joined by an edge between two live triangles.
+    pub fn is_live_edge(&self, a: NodeId, b: NodeId) -> bool {
+        self.half_edge_between(a, b).is_some_and(|h| self.is_triangle(h.element()) && self.live_twin(h).is_some())
+    }
+
+    /// Whether the edge between two nodes is a front segment, in either direction.
+    pub fn is_front_edge(&self, a: NodeId, b: NodeId) -> bool {
+        self.front_between(a, b).is_some() || self.front_between(b, a).is_some()
     }
 
     /// The segments of the merging front, by their triangles.
@@ -68,7 +88,7 @@ impl Mesh {
     #[inline]
     pub fn front_before(&self, h: HalfEdgeId) -> HalfEdgeId {
         let mut p = self.previous(h);
-        while let Some(t) = self.twin(p).filter(|t| self.is_triangle(t.element())) {
+        while let Some(t) = self.live_twin(p) {
             p = self.previous(t);
         }
         p
@@ -78,7 +98,7 @@ impl Mesh {
     #[inline]
     pub fn front_after(&self, h: HalfEdgeId) -> HalfEdgeId {
         let mut n = self.next(h);
-        while let Some(t) = self.twin(n).filter(|t| self.is_triangle(t.element())) {
+        while let Some(t) = self.live_twin(n) {
             n = self.next(t);
         }
         n
@@ -102,7 +122,7 @@ impl Mesh {
                 Side::Left => self.origin(h),
                 Side::Right => self.target(h),
             };
-            let beyond = self.twin(h).filter(|t| self.is_triangle(t.element()));
+            let beyond = self.live_twin(h);
             spokes.push(Spoke { node, h, is_front: beyond.is_none() });
             match beyond {
                 Some(t) => h = step(t),

@@ -35,7 +35,7 @@ pub struct Segment {
 impl Segment {
     /// Measures a front segment.
     pub fn measure(mesh: &Mesh, h: HalfEdgeId, parameters: &Parameters) -> Segment {
-        let (a, b) = (mesh.origin(h), mesh.target(h));
+        let [a, b] = mesh.ends(h);
         let theta = Side::BOTH.map(|side| mesh.frontal_angle(h, side));
         let class = match theta.map(|t| t < parameters.theta_rect) {
             [true, true] => 1,

@@ -24,7 +24,7 @@ struct Waiting {
 
 /// The chosen base segment and why.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice {
+pub struct BaseChoice {
     /// The base segment.
     pub segment: Segment,
     /// Smallest H-value on the front (step i); on surfaces on that of the face at hand.
@@ -33,12 +33,12 @@ pub struct Choice {
     pub within_reach: bool,
 }
 
-impl Choice {
+impl BaseChoice {
     /// The choice of a segment that a person picked in place of what the rules choose.
-    pub fn of_person(segment: Segment, by_rule: Option<Choice>, parameters: &Parameters) -> Choice {
+    pub fn of_person(segment: Segment, by_rule: Option<BaseChoice>, parameters: &Parameters) -> BaseChoice {
         let h_min = by_rule.map_or(segment.h_value, |choice| choice.h_min);
         let within_reach = segment.class < 4 && segment.window(parameters.selection_window) < parameters.c * h_min;
-        Choice { segment, h_min, within_reach }
+        BaseChoice { segment, h_min, within_reach }
     }
 }
 
@@ -108,22 +108,22 @@ impl Queue {
 
     /// Selects the base segment (4.3.3, steps i to iii, or the criterion that the parameters name). The segment stays in
     /// the queue; it leaves by being put off, or by what its quadrilateral changes. None where every segment is put off.
-    pub fn select(&mut self, mesh: &Mesh, parameters: &Parameters) -> Option<Choice> {
+    pub fn select(&mut self, mesh: &Mesh, parameters: &Parameters) -> Option<BaseChoice> {
         let smallest = self.top(3, mesh)?;
         let measured = |waiting: Waiting| Segment::measure(mesh, waiting.h, parameters);
         if parameters.selection != Selection::Table1 {
             let segment = measured(smallest);
-            return Some(Choice { segment, h_min: segment.h_value, within_reach: true });
+            return Some(BaseChoice { segment, h_min: segment.h_value, within_reach: true });
         }
         let Key([layer, h_min, _]) = smallest.key;
         for class in 0..3 {
             let Some(waiting) = self.top(class, mesh) else { continue };
             let Key([its_layer, window, _]) = waiting.key;
             if its_layer == layer && window < parameters.c * h_min {
-                return Some(Choice { segment: measured(waiting), h_min, within_reach: true });
+                return Some(BaseChoice { segment: measured(waiting), h_min, within_reach: true });
             }
         }
-        Some(Choice { segment: measured(smallest), h_min, within_reach: false })
+        Some(BaseChoice { segment: measured(smallest), h_min, within_reach: false })
     }
 
     /// Puts a segment off until something near it changes.

@@ -2,7 +2,7 @@
 //! every operation.
 
 use super::half_edge::Mesh;
-use super::ids::{ElementId, HalfEdgeId, NodeId};
+use super::ids::{ElementId, NodeId};
 use crate::core::kernel::predicates::{convex, positive};
 
 impl Mesh {
@@ -40,7 +40,7 @@ impl Mesh {
         let mut around: Vec<ElementId> = elements.iter().copied().filter(|e| self.has_element(*e)).collect();
         for &node in &at {
             self.check_node(node, None)?;
-            around.extend(self.fan(node).map(HalfEdgeId::element));
+            around.extend(self.elements_at(node));
         }
         around.sort_unstable();
         around.dedup();

@@ -238,6 +238,18 @@ impl Mesh {
         Fan { mesh: self, start, next: Some(start) }
     }
 
+    /// The elements around a node, in the order of its [`fan`](Mesh::fan).
+    #[inline]
+    pub fn elements_at(&self, node: NodeId) -> impl Iterator<Item = ElementId> + '_ {
+        self.fan(node).map(HalfEdgeId::element)
+    }
+
+    /// The half-edges that leave a node in live triangles, anticlockwise.
+    #[inline]
+    pub fn live_fan(&self, node: NodeId) -> impl Iterator<Item = HalfEdgeId> + '_ {
+        self.fan(node).filter(|h| self.is_triangle(h.element()))
+    }
+
     /// The neighbours of a node along edges, anticlockwise; for a boundary node from boundary to boundary.
     #[inline]
     pub fn neighbours(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
@@ -313,6 +325,18 @@ impl Mesh {
         self.origin(self.next(h))
     }
 
+    /// The nodes where a half-edge starts and ends.
+    #[inline]
+    pub fn ends(&self, h: HalfEdgeId) -> [NodeId; 2] {
+        [self.origin(h), self.target(h)]
+    }
+
+    /// The node before a half-edge in its element: in a triangle the one opposite to it.
+    #[inline]
+    pub fn apex(&self, h: HalfEdgeId) -> NodeId {
+        self.origin(self.previous(h))
+    }
+
     /// The next half-edge of the same element.
     #[inline]
     pub fn next(&self, h: HalfEdgeId) -> HalfEdgeId {
@@ -338,6 +362,12 @@ impl Mesh {
     pub fn twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
         let t = self.twin[h.index()];
         (t != NONE).then_some(HalfEdgeId(t))
+    }
+
+    /// The same edge seen from the live triangle beyond; none on the front.
+    #[inline]
+    pub fn live_twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
+        self.twin(h).filter(|t| self.is_triangle(t.element()))
     }
 
     /// The nodes of an element, anticlockwise.

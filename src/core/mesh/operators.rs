@@ -78,7 +78,7 @@ impl Mesh {
     /// # Errors
     /// The reason of the refusal.
     pub fn can_collapse(&self, h_ab: HalfEdgeId, at: DVec2) -> Result<(), Refusal> {
-        let (a, b) = (self.origin(h_ab), self.target(h_ab));
+        let [a, b] = self.ends(h_ab);
         let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
         let (t, u) = (h_ab.element(), h_ba.element());
         if self.is_fixed(a) || (self.is_fixed(b) && at != self.uv(b)) {
@@ -87,7 +87,7 @@ impl Mesh {
         if !self.is_triangle(t) || !self.is_triangle(u) {
             return Err(Refusal::NotTriangles);
         }
-        let (c, d) = (self.origin(self.previous(h_ab)), self.origin(self.previous(h_ba)));
+        let (c, d) = (self.apex(h_ab), self.apex(h_ba));
         let around_b: SmallVec<[NodeId; 12]> = self.neighbours(b).collect();
         if self.neighbours(a).any(|n| n != c && n != d && around_b.contains(&n)) {
             return Err(Refusal::Link);
@@ -280,7 +280,7 @@ impl Mesh {
     /// As [`can_delete_node`](Mesh::can_delete_node).
     pub fn delete_node(&mut self, node: NodeId) -> Result<SmallVec<[ElementId; 2]>, Refusal> {
         let new = self.can_delete_node(node)?;
-        let old: SmallVec<[ElementId; 4]> = self.fan(node).map(|h| h.element()).collect();
+        let old: SmallVec<[ElementId; 4]> = self.elements_at(node).collect();
         let made = self.replace(&old, &new);
         self.free_node(node);
         Ok(SmallVec::from_slice(&made))
@@ -370,7 +370,7 @@ impl Mesh {
         if self.is_fixed(node) {
             return Err(Refusal::FixedNode);
         }
-        if self.fan(node).all(|h| self.stays_positive(h.element(), node, uv)) {
+        if self.elements_at(node).all(|e| self.stays_positive(e, node, uv)) {
             self.permit_move(node, uv)
         } else {
             Err(Refusal::NotPositive)

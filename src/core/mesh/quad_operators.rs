@@ -49,7 +49,7 @@ impl Mesh {
         if around_c.contains(&a) || self.neighbours(a).any(|n| n != b && n != d && around_c.contains(&n)) {
             return Err(Refusal::Link);
         }
-        let old: SmallVec<[ElementId; 8]> = self.fan(a).map(|h| h.element()).collect();
+        let old: SmallVec<[ElementId; 8]> = self.elements_at(a).collect();
         if old.iter().any(|&e| e != q && self.corners(e).any(|n| n == c)) {
             return Err(Refusal::Link);
         }
@@ -81,10 +81,10 @@ impl Mesh {
         // The element left of the edge n3 -> n0 has the nodes n1 and n2.
         let n0 = self.origin(t);
         let n1 = self.target(self.next(h));
-        let n2 = self.origin(self.previous(h));
+        let n2 = self.apex(h);
         let n3 = self.origin(h);
         let n4 = self.target(self.next(t));
-        let n5 = self.origin(self.previous(t));
+        let n5 = self.apex(t);
         Ok([n0, n1, n2, n3, n4, n5])
     }
 

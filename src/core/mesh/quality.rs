@@ -40,6 +40,18 @@ impl Mesh {
         length_over(&self.metric(a), &self.metric(b), self.uv(b) - self.uv(a))
     }
 
+    /// The place between two nodes that halves the metric length.
+    pub fn metric_middle(&self, a: NodeId, b: NodeId) -> DVec2 {
+        let (p, q) = (self.uv(a), self.uv(b));
+        let [l_p, l_q] = [a, b].map(|n| self.metric_ref(n).norm2(q - p).sqrt());
+        p + (q - p) * (l_q.sqrt() / (l_p.sqrt() + l_q.sqrt()))
+    }
+
+    /// The worst quality of the elements around a node.
+    pub fn worst_quality_at(&self, node: NodeId) -> f64 {
+        self.elements_at(node).map(|e| self.quality(e)).fold(f64::INFINITY, f64::min)
+    }
+
     /// Quality of an element: [`quality_over`] for a triangle, [`quad_quality`] for a quadrilateral.
     pub fn quality(&self, e: ElementId) -> f64 {
         if self.is_triangle(e) {

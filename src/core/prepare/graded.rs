@@ -15,8 +15,7 @@ use crate::core::metric::gradation::bound_gradation;
 pub(super) fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, Fault> {
     let (points, place) = places(mesh);
     let mut metrics = points.iter().map(|&uv| sizing.metric3_at(uv)).collect::<Result<Vec<_>, _>>()?;
-    let edges: Vec<[u32; 2]> =
-        mesh.edges().map(|h| [mesh.origin(h), mesh.target(h)].map(|n| place[n.index()])).collect();
+    let edges: Vec<[u32; 2]> = mesh.edges().map(|h| mesh.ends(h).map(|n| place[n.index()])).collect();
     let triangles: Vec<[u32; 3]> = mesh.elements().map(|e| mesh.triangle(e).map(|n| place[n.index()])).collect();
     let Some(ground) = mesh.ground() else {
         let in_space: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();

@@ -50,7 +50,7 @@ pub(super) fn offset_only(mesh: &mut Mesh, divided: &DividedDomain, curves: &[us
     let segments: Vec<HalfEdgeId> = mesh.front().collect();
     let mut layered = vec![false; mesh.node_slots()];
     for &start in &segments {
-        let follows = named.contains(&[mesh.origin(start), mesh.target(start)].map(|n| bits(mesh.uv(n))));
+        let follows = named.contains(&mesh.ends(start).map(|n| bits(mesh.uv(n))));
         if !follows || layered[mesh.origin(start).index()] {
             continue;
         }

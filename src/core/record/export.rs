@@ -71,7 +71,7 @@ impl Export {
         ];
         let (_, front) = line_tags(&names.lines);
         for h in mesh.front() {
-            let nodes = [mesh.origin(h), mesh.target(h)];
+            let nodes = mesh.ends(h);
             file.lines.push(nodes.map(|n| export.points[node_at[n.index()] as usize].0));
             file.line_tags.push(front);
         }
@@ -161,7 +161,7 @@ impl Export {
         }
         let mut sides = Vec::new();
         for h in mesh.edges().filter(|h| mesh.twin(*h).is_none()) {
-            let ends = [mesh.origin(h), mesh.target(h)];
+            let ends = mesh.ends(h);
             let [a, b] = ends.map(|n| point_of(node_at[n.index()]));
             let [p, q] = ends.map(|n| mesh.point(n));
             let line = p.zip(q).and_then(|(p, q)| names.line_of([p, q]));

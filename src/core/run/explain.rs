@@ -209,7 +209,7 @@ impl NodeTold {
             return None;
         }
         let uv = mesh.uv(node);
-        let (live, dead) = mesh.fan(node).map(HalfEdgeId::element).partition(|&e| mesh.is_triangle(e));
+        let (live, dead) = mesh.elements_at(node).partition(|&e| mesh.is_triangle(e));
         let leaving = mesh.fan(node).filter(|&h| mesh.is_front(h));
         Some(NodeTold {
             node,

@@ -180,7 +180,7 @@ impl Scene {
         if !shown {
             return Vec::new();
         }
-        let ends = [mesh.origin(h), mesh.target(h)];
+        let ends = mesh.ends(h);
         let heights = sides.iter().flatten().map(|h| self.room_over(mesh, *h, ends));
         let line = Line {
             ends: Default::default(),
@@ -204,7 +204,7 @@ impl Scene {
             dash: [0.0; 2],
             room: -1.0,
         };
-        self.chain(mesh, [mesh.origin(h), mesh.target(h)], line).collect()
+        self.chain(mesh, mesh.ends(h), line).collect()
     }
 
     fn set_node(&mut self, drawn: &Drawn<'_>, node: NodeId) {

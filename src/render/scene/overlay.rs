@@ -119,7 +119,7 @@ impl Scene {
         for h in background.edges() {
             // Its nodes are not those of the scene.
             let place = |n: NodeId| relative(Spot::of(background, n, self.form).at, self.anchor);
-            let ends = [background.origin(h), background.target(h)].map(place);
+            let ends = background.ends(h).map(place);
             let colour = ink(palette.hint.faded(0.5));
             over.push(Line { ends, colour, width: 0.6, dash: [0.0; 2], room: -1.0 });
         }
@@ -130,7 +130,7 @@ impl Scene {
         for (changed, fade) in overlay.changed.iter().zip(FADES).rev() {
             for &e in changed.iter().filter(|e| mesh.has_element(**e)) {
                 for h in mesh.half_edges(e) {
-                    self.add(over, mesh, [mesh.origin(h), mesh.target(h)], palette.changed_edge.faded(fade), 1.5);
+                    self.add(over, mesh, mesh.ends(h), palette.changed_edge.faded(fade), 1.5);
                 }
             }
         }
@@ -159,7 +159,7 @@ impl Scene {
                 Outlined::Edge(ends) => self.add(over, mesh, ends, palette.selection, 2.5),
                 Outlined::Element(e) if mesh.has_element(e) => {
                     for h in mesh.half_edges(e) {
-                        self.add(over, mesh, [mesh.origin(h), mesh.target(h)], palette.selection, 2.0);
+                        self.add(over, mesh, mesh.ends(h), palette.selection, 2.0);
                     }
                 }
                 _ => {}
@@ -173,7 +173,7 @@ impl Scene {
             Some(Outlined::Edge(ends)) => self.add(over, mesh, ends, palette.hover, 8.0),
             Some(Outlined::Element(e)) if mesh.has_element(e) => {
                 for h in mesh.half_edges(e) {
-                    self.add(over, mesh, [mesh.origin(h), mesh.target(h)], palette.hover, 4.0);
+                    self.add(over, mesh, mesh.ends(h), palette.hover, 4.0);
                 }
             }
             Some(Outlined::Node(node)) if mesh.has_node(node) => {
@@ -206,7 +206,7 @@ impl Scene {
             Some(Outlined::Element(e)) if mesh.has_element(e) => {
                 for (colour, width) in [(palette.selection, 4.5), (palette.ground, 2.0)] {
                     for h in mesh.half_edges(e) {
-                        self.add(over, mesh, [mesh.origin(h), mesh.target(h)], colour, width);
+                        self.add(over, mesh, mesh.ends(h), colour, width);
                     }
                 }
             }

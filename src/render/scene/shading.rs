@@ -124,7 +124,7 @@ impl Shading {
 pub fn angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
     let angle = |h: HalfEdgeId| {
         let p = mesh.uv(mesh.origin(h));
-        let (out, back) = (mesh.uv(mesh.target(h)) - p, mesh.uv(mesh.origin(mesh.previous(h))) - p);
+        let (out, back) = (mesh.uv(mesh.target(h)) - p, mesh.uv(mesh.apex(h)) - p);
         libm::atan2(out.perp_dot(back), out.dot(back)).rem_euclid(std::f64::consts::TAU)
     };
     mesh.half_edges(e).map(angle).fold([f64::INFINITY, 0.0], |[low, high], a| [low.min(a), high.max(a)])

@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         let mesh = &moment.mesh;
         let fits = |length: f64| length >= low && (length < high || high >= LONGEST);
         let edges = mesh.edges().filter(|h| fits(mesh.length(*h)));
-        let lit = edges.map(|h| Outlined::Edge([mesh.origin(h), mesh.target(h)])).collect();
+        let lit = edges.map(|h| Outlined::Edge(mesh.ends(h))).collect();
         light(commands, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
     }
     let (least, greatest, worst) = corner_angles(moment);

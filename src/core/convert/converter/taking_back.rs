@@ -1,9 +1,10 @@
 //! The steps of a converter taken back: what each needs for that, and what of it is kept.
 
 use super::{Begun, Converter, Counts};
-use crate::core::convert::component::Component;
-use crate::core::convert::finish::{Finished, PartMarks};
+use crate::core::convert::finish::Finished;
+use crate::core::convert::finish::parts::PartMarks;
 use crate::core::convert::last_resort::Outcome;
+use crate::core::convert::last_resort::component::Component;
 use crate::core::convert::phase::Phase;
 use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::half_edge::{Mesh, Undone};
@@ -90,19 +91,19 @@ impl<'a> Converter<'a> {
         true
     }
 
-    /// Lets the journal stand from step to step without keeping a history: it tells what the steps touched. Whoever drives
-    /// forgets it ([`Mesh::commit`]) where [`Phase::mark`] says that nothing is under way.
+    /// Keeps the journal from step to step without a history: it records what the steps touched. The caller clears it
+    /// ([`Mesh::commit`]) where [`Phase::mark`] says that nothing is under way.
     pub(in crate::core) fn keep_journal(&mut self) {
         self.mesh.commit();
         self.journal_kept = true;
     }
 
     /// Whether steps can be taken back.
-    pub(in crate::core::convert) fn keeps_history(&self) -> bool {
+    pub(super) fn keeps_history(&self) -> bool {
         self.history.is_some()
     }
 
-    pub(in crate::core::convert) fn keeps_journal(&self) -> bool {
+    pub(super) fn keeps_journal(&self) -> bool {
         self.journal_kept || self.keeps_history()
     }
 
@@ -135,8 +136,8 @@ impl<'a> Converter<'a> {
         phase + self.finishing.bytes()
     }
 
-    /// Forgets the older steps of the history, so that about `keep` can still be taken back: a few more where an attempt
-    /// was under way.
+    /// Forgets the older steps of the history, so that about `keep` can still be taken back: a few more where an
+    /// attempt was under way.
     pub fn shorten_history(&mut self, keep: usize) {
         let Some(records) = &mut self.history else { return };
         // Later steps take back no further than to the selection at which nothing was under way.

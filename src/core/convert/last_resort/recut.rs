@@ -1,10 +1,11 @@
-//! Step 4 of the last resort: a pair of triangles whose union is not firmly convex, cut anew together with pairs around it.
+//! Step 4 of the last resort: a pair whose union is not firmly convex, cut anew together with pairs around it.
 
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use super::{Means, Planner, Stuck, firm_quad};
-use crate::core::convert::component::NONE;
+use super::component::NONE;
+use super::planner::{Planner, firm_quad};
+use super::{Means, Stuck};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::metric::measure::quad_quality;
 
@@ -28,7 +29,7 @@ struct Cut {
 /// Pairs of triangles, each by the lesser side of the edge between the two; ascending.
 type Pairs = SmallVec<[u32; MOST_PAIRS]>;
 
-/// The outline of some pairs of triangles that hang together.
+/// The outline of some connected pairs of triangles.
 #[derive(Clone, Debug)]
 struct Ring {
     /// Its nodes, anticlockwise, each with the side from it to the next.
@@ -38,9 +39,9 @@ struct Ring {
 
 impl Planner<'_> {
     /// Cuts a crooked pair anew together with a few pairs around it: with one, and where that gives nothing good with
-    /// two, and so on; where none of that is good, perhaps with a new node amidst them. Where all of that fails, the
+    /// two, and so on; where none of that is good, perhaps with a new node in their middle. Where all of that fails, the
     /// pair is left to the templates.
-    pub(super) fn recut(&mut self, side: u32, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
+    pub fn recut(&mut self, side: u32, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
         let pair = self.pair(side);
         let start = Ring {
             corners: (pair.nodes.into_iter().zip(pair.outline)).collect(),

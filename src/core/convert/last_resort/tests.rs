@@ -1,9 +1,10 @@
 use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 
+use super::planner::firm_quad;
 use super::*;
-use crate::core::convert::component::live_components;
-use crate::core::kernel::predicates::positive;
+use crate::core::convert::last_resort::component::live_components;
+use crate::core::kernel::predicates::{convex, firm, positive};
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::place::MetricPlace;
@@ -176,7 +177,7 @@ fn any_even_region_becomes_convex_quads_with_its_boundary_as_it_was() {
         random_regions(round, &mut Random::new(round), &mut |_, mesh, part| {
             let plan = Plan::new(mesh, part, &Uniform).expect("the region is even and its triangles are firm");
             carry_out_and_check(mesh, part, &plan);
-            total = total.plus(&plan.outcome());
+            total += plan.outcome();
             regions += 1;
         });
     }

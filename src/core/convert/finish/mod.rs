@@ -1,0 +1,136 @@
+//! Global post-processing (paper 4.3.7): smoothing by the energy, clean-up of the structure, smoothing again, all by
+//! worklists; once every face is converted, what folds over its surface is repaired. A step is one sweep of the
+//! smoothing or one change of the structure.
+
+pub(super) mod parts;
+mod worklist;
+pub mod clean_up;
+pub mod unfold;
+
+pub use self::parts::Finished;
+
+use std::sync::Arc;
+
+use self::clean_up::{CleanUp, Reach};
+use self::parts::Finishing;
+use self::unfold::{Unfolded, Unfolding};
+use self::worklist::Worklist;
+use super::event::{Event, Mending};
+use super::front::Done;
+use super::phase::{Phase, PostProcessingPart as Part};
+use super::relax::energy;
+use crate::core::mesh::half_edge::Mesh;
+use crate::core::metric::field::MetricSource;
+
+/// A node that moved farther than this (in its metric) sends its neighbours to be looked at again.
+const STIRRED: f64 = 0.02;
+/// Looks at one node at the most, on average.
+const MOST_LOOKS: usize = 12;
+
+/// The post-processing of a mesh, or of the face of it that is at hand.
+pub(super) struct PostProcessing<'f, 'a> {
+    pub mesh: &'f mut Mesh,
+    pub source: &'f Arc<dyn MetricSource + Send + Sync + 'a>,
+    /// The face, by its region; none where it is all.
+    pub face: Option<u32>,
+    /// How much of the whole mesh that is, from 0 to 1.
+    pub share: f64,
+    /// What is under way.
+    pub parts: &'f mut Finishing<'a>,
+    /// What was done.
+    pub finished: &'f mut Finished,
+    /// Whether the parts write down what they need to be taken back.
+    pub keeps_history: bool,
+    /// Whether the journal stays; else it is forgotten on the way.
+    pub keeps_journal: bool,
+}
+
+impl PostProcessing<'_, '_> {
+    /// The next sweep or change of structure; where a part is done, the next part. Elements stay strictly convex.
+    pub fn step(&mut self, part: Part) -> Done {
+        let event = match part {
+            Part::FirstSmoothing | Part::LastSmoothing => self.sweep(part),
+            Part::CleanUp => self.clean_up(Reach::Singles),
+            Part::CleanUpByPairs => self.clean_up(Reach::Pairs),
+            Part::CleanUpBySequences => self.clean_up(Reach::Longer),
+            Part::Unfolding => self.unfold(),
+        };
+        if event.is_some() {
+            return (Phase::PostProcess { part }, event);
+        }
+        let next = match part {
+            Part::FirstSmoothing => Part::CleanUp,
+            Part::CleanUp => Part::CleanUpByPairs,
+            Part::CleanUpByPairs if !self.parts.pairs_are_cut_short() => Part::CleanUpBySequences,
+            Part::CleanUpByPairs | Part::CleanUpBySequences => Part::LastSmoothing,
+            Part::LastSmoothing if self.face.is_some() => return (Phase::NextFace, Some(Event::PostProcessed)),
+            Part::LastSmoothing | Part::Unfolding => return (Phase::Done, Some(Event::PostProcessed)),
+        };
+        (Phase::PostProcess { part: next }, None)
+    }
+
+    /// The next change of structure within reach.
+    fn clean_up(&mut self, reach: Reach) -> Option<Event> {
+        let (mesh, done) = (&mut *self.mesh, self.finished.cleaned_up);
+        let part = self.parts.clean_up[reach as usize].get_or_insert_with(|| {
+            CleanUp::begin(mesh, (self.face, self.share), Arc::clone(self.source), reach, done, self.keeps_history)
+        });
+        let event = part.step(mesh, self.keeps_journal);
+        self.finished.cleaned_up = part.done;
+        event
+    }
+
+    /// Repairs the next quadrilateral that folds over its surface.
+    fn unfold(&mut self) -> Option<Event> {
+        let (mesh, recording) = (&mut *self.mesh, self.keeps_history);
+        let begin = || Unfolding::begin(mesh, Arc::clone(self.source), recording);
+        let event = self.parts.unfolding.get_or_insert_with(begin).step(mesh, self.keeps_journal)?;
+        if let Event::Unfolded { how, .. } = event {
+            let Unfolded { moved, rotated, collapsed, pillowed } = &mut self.finished.unfolded;
+            match how {
+                Mending::Moved => *moved += 1,
+                Mending::Rotated { .. } => *rotated += 1,
+                Mending::Collapsed { .. } => *collapsed += 1,
+                Mending::Pillowed { .. } => *pillowed += 1,
+            }
+        }
+        Some(event)
+    }
+
+    /// Looks at every free node that waits: all in the first sweep of a part, then those around nodes that moved. None
+    /// where no node waits any more.
+    fn sweep(&mut self, part: Part) -> Option<Event> {
+        let mesh = &mut *self.mesh;
+        let list = match part {
+            Part::FirstSmoothing => &mut self.parts.first_smoothing,
+            _ => &mut self.parts.last_smoothing,
+        };
+        let list = list.get_or_insert_with(|| every_free_node(mesh, self.face, self.keeps_history));
+        let (mut looked, mut moved) = (0, 0);
+        for _ in 0..list.len() {
+            let Some(node) = list.take() else { break };
+            looked += 1;
+            let distance = energy::relax(mesh, node, &**self.source);
+            moved += u32::from(distance > 0.0);
+            if distance > STIRRED {
+                for n in mesh.neighbours(node).chain([node]) {
+                    if !mesh.is_fixed(n) {
+                        list.add(n);
+                    }
+                }
+            }
+            if !self.keeps_journal {
+                mesh.commit();
+            }
+        }
+        self.finished.moves += moved as usize;
+        (looked > 0).then_some(Event::Swept { looked, moved })
+    }
+}
+
+fn every_free_node(mesh: &Mesh, face: Option<u32>, recording: bool) -> Worklist {
+    let free = || mesh.nodes_of(face).filter(|&n| !mesh.is_fixed(n));
+    let mut list = Worklist::new(MOST_LOOKS * free().count(), recording);
+    free().for_each(|node| list.add(node));
+    list
+}

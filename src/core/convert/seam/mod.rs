@@ -1,0 +1,117 @@
+//! Front segment seaming (paper 4.3.6, fig. 18): two adjacent front segments with a small angle become one dead edge.
+//! Where one is much longer than the other, it is divided first: a transition seam (after Owen et al. 1999).
+//! Deliberately absent: their transition split, for unlike segments at angles that are not small; it may never end
+//! (docs/algorithm.md, "Seaming").
+
+pub(super) mod merge;
+mod transition;
+
+use smallvec::SmallVec;
+
+use super::event::{Event, Unmerged};
+use super::front::{Done, Front};
+use super::phase::Phase;
+use super::top::{MOST_SWAPS, Recovery, recover_step};
+use crate::core::front::sector::Side;
+use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+
+/// Segments whose lengths differ by more than this factor need a transition seam.
+const MOST_UNLIKE: f64 = 2.5;
+/// With this many dead elements at the node, angles up to `WIDE` are seamed too (after Levik; docs/algorithm.md,
+/// "Seaming").
+const CROWDED: usize = 5;
+/// So they are where the segments are shorter than this on average, in the metric: where sizes grow ahead of the front,
+/// columns must end, and this is where they do (docs/experiments.md).
+const SHORT: f64 = 0.85;
+const WIDE: f64 = std::f64::consts::FRAC_PI_4;
+
+/// One seam (4.3.6) at a node of the new quadrilateral, or why one is refused.
+pub(super) fn step(front: &mut Front<'_>, element: ElementId, mut nodes: SmallVec<[NodeId; 8]>) -> Done {
+    while front.parameters.seaming
+        && let Some(at) = nodes.pop()
+    {
+        let mark = front.mesh.mark();
+        let Some(event) = seam_at(front, at) else { continue };
+        if let Event::Seamed { node, .. } | Event::TransitionSeamed { node, .. } = event {
+            front.refresh(mark);
+            nodes.push(node);
+        }
+        let next = if nodes.is_empty() { Phase::Split { element } } else { Phase::Seam { element, nodes } };
+        return (next, Some(event));
+    }
+    (Phase::Split { element }, None)
+}
+
+/// Seams at a node of the front where the frontal angle is small enough and the guards hold (docs/algorithm.md,
+/// "Seaming"); says why it refuses where they do not. A failed try is taken back.
+fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
+    if !front.mesh.has_node(at) {
+        return None;
+    }
+    let mut refused = None;
+    let segments: SmallVec<[HalfEdgeId; 4]> = front.mesh.fan(at).filter(|&h| front.mesh.is_front(h)).collect();
+    for h in segments {
+        let mesh = &*front.mesh;
+        let before = mesh.front_before(h);
+        let [l_b, l_c] = [h, before].map(|h| mesh.length(h));
+        let angle = mesh.frontal_angle(h, Side::Left);
+        if angle > widest(front, at, 0.5 * (l_b + l_c)) {
+            continue;
+        }
+        let (b, c) = (mesh.target(h), mesh.origin(before));
+        let ratio = l_b.max(l_c) / l_b.min(l_c);
+        let mark = mesh.mark();
+        let seamed = if ratio > MOST_UNLIKE {
+            let long = if l_b > l_c { h } else { before };
+            transition::divide_segment(front, at, long).and_then(|middle| {
+                let (b, c) = if l_b > l_c { (middle, c) } else { (b, middle) };
+                Ok(Event::TransitionSeamed { at, node: seam(front, at, b, c)?, angle, ratio })
+            })
+        } else {
+            seam(front, at, b, c).map(|node| Event::Seamed { at, node, angle })
+        };
+        match seamed {
+            Ok(event) => return Some(event),
+            Err(why) => {
+                front.mesh.take_back(mark);
+                refused = refused.or(Some(Event::SeamRefused { at, ends: [b, c], angle, ratio, why }));
+            }
+        }
+    }
+    refused
+}
+
+/// The widest frontal angle at a node that is seamed, where the mean metric length of the segments is `length`. The
+/// wider bound is ours: the paper's own reading has neither it nor placement.
+fn widest(front: &Front<'_>, at: NodeId, length: f64) -> f64 {
+    let bound = front.parameters.theta_seam;
+    let is_crowded = || front.mesh.elements_at(at).filter(|&e| front.mesh.is_quad(e)).count() >= CROWDED;
+    if front.parameters.placement && (length < SHORT || is_crowded()) { bound.max(WIDE) } else { bound }
+}
+
+/// Recovers the edge between the far ends, empties the triangle, and merges the ends. Returns the merged node.
+fn seam(front: &mut Front<'_>, a: NodeId, b: NodeId, c: NodeId) -> Result<NodeId, Unmerged> {
+    let mesh = &*front.mesh;
+    if mesh.is_fixed(b) && mesh.is_fixed(c) {
+        return Err(Unmerged::BothFixed);
+    }
+    // A keeps at least three edges (or two on a boundary): else it would be a doublet.
+    if mesh.valence(a) < if mesh.is_fixed(a) { 3 } else { 4 } {
+        return Err(Unmerged::Doublet);
+    }
+    // The edge B-C (fig. 18b).
+    for _ in 0..MOST_SWAPS {
+        match recover_step(front.mesh, c, b, &[a, b, c]).map_err(|_| Unmerged::NotRecovered)? {
+            Recovery::Found => break,
+            Recovery::Changed(_) => {}
+        }
+    }
+    // The triangle A-B-C is one live triangle.
+    let h_ab = front.mesh.front_between(a, b).ok_or(Unmerged::NotRecovered)?;
+    let h_bc = front.mesh.next(h_ab);
+    if front.mesh.target(h_bc) != c || front.mesh.front_between(c, a) != Some(front.mesh.previous(h_ab)) {
+        return Err(Unmerged::NotEmpty);
+    }
+    // The merge (fig. 18c).
+    merge::merge(front, h_bc, &|_, _| true)
+}
