@@ -1,5 +1,6 @@
-//! Promise: whatever is odd in a mesh, the program either mends it for certain and says so, or refuses it with the elements called as the
-//! file counts them, and writes nothing. One row of a table for each oddity, for both uses of a mesh.
+//! Promise: whatever is odd in a mesh, the program either mends it for certain and says so, or refuses it with the
+//! elements called as the file counts them, and writes nothing. One row of a table for each oddity, for both uses of a
+//! mesh.
 #![allow(clippy::unwrap_used)]
 
 use std::fmt::Write as _;
@@ -34,7 +35,7 @@ const ORPHAN: &str = "1 point without triangles was left out";
 const SPLIT: &str = "1 node was split where triangles meet in a point only";
 const WELDED: &str = "1 point lay on another and was made one with it";
 const PARTED: &str = "1 point in which parts touched was parted";
-const CRACK: &str = "1 point stands at the place of another: taken as the other side of a crack";
+const CRACK: &str = "1 point coincides with another: treated as the other side of a crack";
 const FLAT: &str = "1 triangle without area was taken out";
 const DOUBLE: &str = "1 duplicate triangle was left out";
 const DOUBLES: &str = "8 duplicate triangles were left out";
@@ -140,7 +141,8 @@ impl Obj {
         self
     }
 
-    /// Triangle 1 with a point of its own in the middle of its long side, and a triangle that closes the gap, `high` where it is open.
+    /// Triangle 1 with a point of its own in the middle of its long side, and a triangle that closes the gap, `high`
+    /// where it is open.
     fn gap_closed(mut self, high: f64) -> Obj {
         let [a, b, c] = [0, 1, 2].map(|k| self.faces[0][k]);
         let middle = [0, 1, 2].map(|k| 0.5 * (self.points[a][k] + self.points[c][k]));
@@ -405,7 +407,7 @@ fn quadrilaterals_and_polygons() {
         Obj::of(&points, &[&[2, 4, 1], &[4, 5, 1], &[0, 1, 2, 3]])
     };
     let crosses = || Refused(&["at (0, 0, 0)", "Element 3 crosses itself", "in the order in which they lie"]);
-    let already = Refused(&["quadrilaterals already: all of its 4", "--use shape"]);
+    let already = Refused(&["already quadrilateral: all of its 4", "--use shape"]);
     hold(vec![
         ("quadrilaterals alone", quads(FLAT_PLATE), already, Mended(&[CUTS])),
         ("the same in space", quads(BENT), Mended(&[CUTS]), Mended(&[CUTS])),

@@ -1,8 +1,11 @@
-//! The background triangle mesh (spec 3): curves divided, loops made even, triangulated, adapted to the metric.
+//! The background triangle mesh (spec 3): division of curves with even loops, triangulation, adaptation to the metric; or an
+//! imported mesh.
 
 pub mod length;
 pub mod discretise;
 pub mod cut;
+pub mod clash;
 pub mod triangulate;
 pub mod import;
+pub mod implied_metric;
 pub mod adapt;

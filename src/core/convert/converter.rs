@@ -21,7 +21,7 @@ use crate::core::case::parameters::Parameters;
 use crate::core::fault::Fault;
 use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
-use crate::core::front::selection::{Choice, Queue};
+use crate::core::front::selection::{BaseChoice, Queue};
 use crate::core::kernel::fingerprint::Fingerprint;
 use crate::core::mesh::half_edge::{Mesh, Undone};
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
@@ -480,10 +480,10 @@ impl<'a> Converter<'a> {
         };
         let mut queue = self.take_queue();
         let choice = queue.select(&self.mesh, &self.parameters);
-        let choice = picked.map_or(choice, |segment| Some(Choice::of_person(segment, choice, &self.parameters)));
+        let choice = picked.map_or(choice, |segment| Some(BaseChoice::of_person(segment, choice, &self.parameters)));
         let taken_up = choice.is_none() && !self.second_pass && queue.take_up_all(&mut self.mesh, &self.parameters);
         self.queue = Some(queue);
-        let Some(Choice { segment, h_min, within_reach }) = choice else {
+        let Some(BaseChoice { segment, h_min, within_reach }) = choice else {
             if taken_up {
                 self.second_pass = true;
                 return Ok((Phase::Select, Event::SecondPass));

@@ -25,7 +25,7 @@ pub struct DomainFace {
     /// The outer loop, anticlockwise, then the holes, clockwise: the face lies on the left of each.
     pub loops: Vec<Vec<DirectedCurve>>,
     /// Its topological loops (spec 2.9): boundary walks with the face on their left, with the cracks and repeated lines
-    /// that hang on them; each must get an even number of segments.
+    /// attached to them; each must have an even number of segments.
     pub walks: Vec<Vec<DirectedCurve>>,
 }
 

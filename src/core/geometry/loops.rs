@@ -102,8 +102,8 @@ pub fn doubled_area(points: &[DVec2]) -> f64 {
     (1..points.len()).map(|i| (points[i - 1] - o).perp_dot(points[i] - o)).sum()
 }
 
-/// The boundary walks of every face: each runs with the face on its left and turns at each vertex into the first curve
-/// clockwise, so that what hangs on a loop (cracks, repeated lines, loops that touch at a vertex) belongs to the same
+/// The boundary walks of every face: each has the face on its left and continues at each vertex with the first curve
+/// clockwise, so that everything attached to a loop (cracks, repeated lines, loops that touch at a vertex) belongs to the same
 /// walk, an internal line twice. These are the topological loops that have to be even (spec 2.9).
 ///
 /// # Errors

