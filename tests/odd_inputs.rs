@@ -1,6 +1,5 @@
-//! Promise: whatever is odd in a mesh, the program either mends it for certain and says so, or refuses it with the
-//! elements called as the file counts them, and writes nothing. One row of a table for each oddity, for both uses of a
-//! mesh.
+//! Promise: whatever is odd in a mesh, the program either mends it for certain and says so, or refuses it with the elements called as the
+//! file counts them, and writes nothing. One row of a table for each oddity, for both uses of a mesh.
 #![allow(clippy::unwrap_used)]
 
 use std::fmt::Write as _;
@@ -141,8 +140,7 @@ impl Obj {
         self
     }
 
-    /// Triangle 1 with a point of its own in the middle of its long side, and a triangle that closes the gap, `high`
-    /// where it is open.
+    /// Triangle 1 with a point of its own in the middle of its long side, and a triangle that closes the gap, `high` where it is open.
     fn gap_closed(mut self, high: f64) -> Obj {
         let [a, b, c] = [0, 1, 2].map(|k| self.faces[0][k]);
         let middle = [0, 1, 2].map(|k| 0.5 * (self.points[a][k] + self.points[c][k]));
@@ -329,7 +327,7 @@ fn triangles_without_area_and_slivers() {
     };
     hold_for_all("three points on the border", on_border, &Mended(&[FLAT]));
     let crack = |bend: f64| Obj::plate(2, bend).point([0.5, 0.5, 0.25 * bend]).face(&[0, 4, 9]).face(&[4, 8, 9]);
-    let between = &["Triangles 9 and 10 are too flat: the first is without area", "Mend the mesh there"];
+    let between = &["Triangles 9 and 10 are too flat: the first is without area", "Repair the mesh there"];
     let in_line =
         |z: f64| Obj::plate(2, FLAT_PLATE).moved(|[x, y, _]| [x + 4.0 * y, 2.0 * (x + 4.0 * y), z * (x + 4.0 * y)]);
     let none = || Refused(&["No triangle of the mesh has an area", "Write it with more digits"]);

@@ -203,7 +203,7 @@ impl State {
             return;
         };
         // Surfaces are seen as in the window; meshes on them are drawn in space whatever it shows.
-        let on_surfaces = moment.mesh.ground().is_some();
+        let on_surfaces = moment.mesh.embedding().is_some();
         let (camera, size) = match (on_surfaces, self.is_in_space()) {
             (false, _) => (self.camera, self.view_size),
             (true, true) => (self.space.camera, self.space.size),

@@ -531,7 +531,7 @@ impl State {
 
     /// Whether the mesh lies on surfaces, and is shown in space.
     pub fn is_in_space(&self) -> bool {
-        self.space.place != Place::Plane && self.moment.as_ref().is_some_and(|moment| moment.mesh.ground().is_some())
+        self.space.place != Place::Plane && self.moment.as_ref().is_some_and(|moment| moment.mesh.embedding().is_some())
     }
 
     /// The camera of the main view, where it does not show all from where it did at first.

@@ -106,7 +106,7 @@ impl Views {
             return empty(ui, state, commands, palette);
         };
         let look = state.look.take();
-        let on_surfaces = moment.mesh.ground().is_some();
+        let on_surfaces = moment.mesh.embedding().is_some();
         match state.space.place {
             Place::Plane => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
             _ if !on_surfaces => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),

@@ -185,7 +185,7 @@ impl Adapter<'_> {
         let middle = self.metric(self.mesh.uv(from) + 0.5 * d)?;
         let end = |n: NodeId| self.mesh.metric_ref(n).norm2(d).sqrt();
         let middle = middle.norm2(d).sqrt();
-        if self.mesh.ground().is_none() {
+        if self.mesh.embedding().is_none() {
             return Ok((end(from) + 4.0 * middle + end(to)) / 6.0);
         }
         // On a surface the first triangles are as large as its faces, and the size may vary several times along an
@@ -221,7 +221,7 @@ impl Adapter<'_> {
         // On a surface, the first triangles hardly reflect the metric: away from the boundary, a poor triangle must not
         // prevent the division of an edge that is much too long.
         let inside = |h: HalfEdgeId| mesh.half_edges(h.element()).all(|h| mesh.twin(h).is_some());
-        let forced = mesh.ground().is_some() && f.length > MUCH_TOO_LONG && inside(f.h) && inside(twin);
+        let forced = mesh.embedding().is_some() && f.length > MUCH_TOO_LONG && inside(f.h) && inside(twin);
         if !(forced || fit(f.h) && fit(twin)) {
             return Ok(None);
         }

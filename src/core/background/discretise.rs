@@ -293,7 +293,8 @@ impl<'a> Division<'a> {
         let names: Vec<String> = blamed.iter().map(|(f, walk)| format!("the {}", self.loop_name(*f, walk))).collect();
         let total: u32 = fixed.iter().map(|id| self.segments(*id)).sum();
         let fault = Fault::new(format!(
-            "An all-quad mesh needs even loops, and {} cannot all be even: their fixed curves have {total} segments together",
+            "An all-quad mesh needs even loops, and {} cannot all be even: \
+             their fixed curves have {total} segments together",
             names.join(", ")
         ));
         placed(fault.remedy(remedy), &self.domain.curves[blamed[0].1[0].curve.index()].place)

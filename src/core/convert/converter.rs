@@ -1,8 +1,8 @@
 //! The converter as a resumable machine (paper 4.3): one elementary operation or decision a step.
 //!
 //! `step` looks at the phase, does one thing, and says what comes next and what it did. `run` is a loop over it. All
-//! changes go through the mesh's operators and so through the journal: an attempt that fails is taken back, and a
-//! person who steps back uses the same mechanism.
+//! changes go through the mesh's operators and so through the journal: an attempt that fails is taken back, and a person
+//! who steps back uses the same mechanism.
 
 mod formation;
 mod post_processing;
@@ -128,8 +128,7 @@ pub struct Converter<'a> {
     step_mark: Mark,
     /// Whether the gates are wide: every segment was put off and taken up again.
     second_pass: bool,
-    /// On surfaces: the faces, which are converted one after another, by region. Else none, and all is converted
-    /// together.
+    /// On surfaces: the faces, which are converted one after another, by region. Else none, and all is converted together.
     faces: Arc<[u32]>,
     /// Which of them is being converted; past the last one, none.
     face: usize,
@@ -155,10 +154,10 @@ pub struct Converter<'a> {
 }
 
 impl<'a> Converter<'a> {
-    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is
-    /// lent (`&sizing`) or shared (`Arc<Sizing>`).
+    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is lent
+    /// (`&sizing`) or shared (`Arc<Sizing>`).
     pub fn new(mesh: Mesh, source: impl MetricSource + Send + Sync + 'a, parameters: Parameters) -> Self {
-        let faces = if mesh.ground().is_some() { mesh.faces() } else { Vec::new() };
+        let faces = if mesh.embedding().is_some() { mesh.faces() } else { Vec::new() };
         let mut waiting = vec![0; faces.len()];
         if !faces.is_empty() {
             // Before each face, for now; then after it.
@@ -209,8 +208,8 @@ impl<'a> Converter<'a> {
         self.queue = None;
     }
 
-    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its
-    /// event says so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
+    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its event says
+    /// so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
     ///
     /// # Errors
     /// Where there is no such front segment now.
@@ -342,8 +341,8 @@ impl<'a> Converter<'a> {
         Ok(())
     }
 
-    /// Runs to the end, the faces at the same time: the same mesh to the last bit as one after another. Only from step
-    /// 0, and where no history is kept.
+    /// Runs to the end, the faces at the same time: the same mesh to the last bit as one after another. Only from step 0, and where
+    /// no history is kept.
     ///
     /// # Errors
     /// As [`Converter::step`].

@@ -55,7 +55,7 @@ impl Segment {
             theta,
             class,
             level: front_level(mesh, h),
-            face: if mesh.ground().is_some() { mesh.region(h.element()) } else { 0 },
+            face: if mesh.embedding().is_some() { mesh.region(h.element()) } else { 0 },
         }
     }
 

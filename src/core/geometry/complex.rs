@@ -1,6 +1,6 @@
 //! Faces on surfaces that share curves (paper 3.1; spec 2.9): each face gets a chart, each curve an image in the chart of
-//! every face that it bounds, and all charts lie side by side in the plane of an [`Atlas`]. The result is a [`Domain`] of
-//! that plane, with the geometry of its curves and vertices in space.
+//! every face that it bounds, and all charts lie side by side in the plane of an [`Atlas`]. The result is a [`Domain`]
+//! of that plane, with the geometry of its curves and vertices in space.
 //!
 //! This module chooses the chart of each face and places the charts side by side. `lifting` chains images into loops,
 //! `whole_surface` makes a face of a surface without loops.

@@ -103,7 +103,7 @@ pub fn doubled_area(points: &[DVec2]) -> f64 {
 }
 
 /// The boundary walks of every face: each has the face on its left and continues at each vertex with the first curve
-/// clockwise, so that everything attached to a loop (cracks, repeated lines, loops that touch at a vertex) belongs to the same
+/// clockwise, so that all that is attached to a loop (cracks, repeated lines, loops that touch it) belongs to the same
 /// walk, an internal line twice. These are the topological loops that have to be even (spec 2.9).
 ///
 /// # Errors

@@ -20,14 +20,14 @@ use crate::core::discrete::surface::{Surface, implied_sizes, surface};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::{Ground, Mesh};
+use crate::core::mesh::half_edge::{Embedding, Mesh};
 use crate::core::mesh::names::Names;
 use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
 use crate::core::soup::mesh_file::MeshFile;
 
-/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The
-/// metric is that of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
+/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The metric is that
+/// of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
 pub(super) fn from_mesh(
     case: &Case,
     path: &Path,
@@ -59,8 +59,7 @@ pub(super) fn from_mesh(
     }
     let mut sizing = Sizing::new(fields, case.parameters.size_scale);
     if given {
-        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be
-        // asked for.
+        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be asked for.
         let middle = |t: &[u32; 3]| t.iter().map(|&n| set.uv[n as usize]).sum::<DVec2>() / 3.0;
         let points: Vec<DVec2> = set.uv.iter().copied().chain(set.triangles.iter().map(middle)).collect();
         sizing.survey(&points, &|_| false)?;
@@ -78,9 +77,8 @@ pub(super) fn from_mesh(
     Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
-/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are
-/// those of the case's fields; where there are none those given at its points, or those that its triangles have.
-/// `place` is the file's name.
+/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
+/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is the file's name.
 fn from_surface(
     case: &Case,
     file: &MeshFile,
@@ -141,14 +139,14 @@ fn from_laid_out(
         n => repairs.push(format!("{n} sides of triangles were divided to make counts even")),
     }
     let atlas = laid.domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
-    let ground = atlas.clone().map(|atlas| Arc::new(Ground { atlas, points: set.xyz.clone() }));
+    let embedding = atlas.clone().map(|atlas| Arc::new(Embedding { atlas, points: set.xyz.clone() }));
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&set.uv, &|_| false)?;
     let meshed = |sizing: &Sizing| -> Result<Mesh, Fault> {
         let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
         let mut mesh = Mesh::from_triangles(&set, metric);
-        if let Some(ground) = &ground {
-            mesh.set_ground(Arc::clone(ground));
+        if let Some(embedding) = &embedding {
+            mesh.set_embedding(Arc::clone(embedding));
         }
         Ok(mesh.reordered())
     };

@@ -38,7 +38,7 @@ pub(super) fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<
             }
         }
         // One that was kept of space is not one of the plane.
-        Some(Look::Kept(_)) if moment.mesh.ground().is_some() && state.is_in_space() => {}
+        Some(Look::Kept(_)) if moment.mesh.embedding().is_some() && state.is_in_space() => {}
         Some(Look::Kept(kept)) => {
             camera.take_up(&kept, size);
             state.fitted = false;
