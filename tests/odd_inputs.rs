@@ -277,7 +277,8 @@ fn edges_of_three_faces_turned_and_double_triangles() {
     let fin =
         |p: [f64; 3]| Obj::plate(2, FLAT_PLATE).point(p).face(&[1, 4, 9]).point([0.5, -0.5, 0.4]).face(&[1, 9, 10]);
     let flat_fin = || Obj::plate(2, FLAT_PLATE).point([0.75, 0.2, 0.0]).face(&[1, 4, 9]);
-    let shared = &["at the edge from (0.5, 0) to (0.5, 0.5)", "Triangles 1, 4 and 9 share one edge", "Remove the surplus"];
+    let shared =
+        &["at the edge from (0.5, 0) to (0.5, 0.5)", "Triangles 1, 4 and 9 share one edge", "Remove the surplus"];
     let side_by_side = |bend: f64| {
         let other = Obj::plate(3, bend).inside_out();
         Obj::plate(2, bend).and(other, [3.0, 0.0, 0.0])

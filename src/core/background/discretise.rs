@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::length::{Piece, give, measure, share_out};
 use crate::core::fault::Fault;
-use crate::core::geometry::assembly::placed;
+use crate::core::geometry::assembly::{loop_name, placed};
 use crate::core::geometry::curve::distance_to_segment;
 use crate::core::geometry::domain::Domain;
 use crate::core::geometry::domain_curve::{CurveId, DirectedCurve};
@@ -258,8 +258,7 @@ impl<'a> Division<'a> {
             return format!("boundary loop \"{}\"", self.domain.curves[steps[0].curve.index()].name);
         }
         match face.loops.iter().position(|l| l.iter().any(|s| steps.contains(s))) {
-            Some(0) => format!("outer loop of \"{}\"", face.name),
-            Some(i) => format!("hole {i} of \"{}\"", face.name),
+            Some(i) => loop_name(&face.name, i),
             None => format!("loop of internal lines of \"{}\"", face.name),
         }
     }

@@ -172,7 +172,7 @@ fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
     for chart in charts {
         let chart = Arc::new(chart);
         let mut lift = Lift::new(&chart, curves, &spec.name);
-        let found = lift.chain(&outer, &loop_name(spec, 0));
+        let found = lift.chain(&outer, &loop_name(&spec.name, 0));
         let outer = match found {
             Ok(outer) => outer,
             Err(fault) => {
@@ -183,7 +183,8 @@ fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
         let around = Lift::polygon(&outer);
         let mut loops = vec![outer];
         for (i, hole) in spec.holes.iter().enumerate() {
-            let chained = lift.chain(&numbers(hole)?, &loop_name(spec, i + 1)).map_err(|f| placed(f, &spec.place))?;
+            let chained =
+                lift.chain(&numbers(hole)?, &loop_name(&spec.name, i + 1)).map_err(|f| placed(f, &spec.place))?;
             loops.push(lift.brought_inside(chained, &around));
         }
         let mut lines = |names: &[String]| -> Result<Vec<Piece>, Fault> {
