@@ -34,7 +34,7 @@ const ORPHAN: &str = "1 point without triangles was left out";
 const SPLIT: &str = "1 node was split where triangles meet in a point only";
 const WELDED: &str = "1 point lay on another and was made one with it";
 const PARTED: &str = "1 point in which parts touched was parted";
-const CRACK: &str = "1 point stands at the place of another: taken as the other side of a crack";
+const CRACK: &str = "1 point coincides with another: treated as the other side of a crack";
 const FLAT: &str = "1 triangle without area was taken out";
 const DOUBLE: &str = "1 duplicate triangle was left out";
 const DOUBLES: &str = "8 duplicate triangles were left out";
@@ -277,7 +277,8 @@ fn edges_of_three_faces_turned_and_double_triangles() {
     let fin =
         |p: [f64; 3]| Obj::plate(2, FLAT_PLATE).point(p).face(&[1, 4, 9]).point([0.5, -0.5, 0.4]).face(&[1, 9, 10]);
     let flat_fin = || Obj::plate(2, FLAT_PLATE).point([0.75, 0.2, 0.0]).face(&[1, 4, 9]);
-    let shared = &["at the edge from (0.5, 0) to (0.5, 0.5)", "Triangles 1, 4 and 9 share one edge", "Take out"];
+    let shared =
+        &["at the edge from (0.5, 0) to (0.5, 0.5)", "Triangles 1, 4 and 9 share one edge", "Remove the surplus"];
     let side_by_side = |bend: f64| {
         let other = Obj::plate(3, bend).inside_out();
         Obj::plate(2, bend).and(other, [3.0, 0.0, 0.0])
@@ -327,7 +328,7 @@ fn triangles_without_area_and_slivers() {
     };
     hold_for_all("three points on the border", on_border, &Mended(&[FLAT]));
     let crack = |bend: f64| Obj::plate(2, bend).point([0.5, 0.5, 0.25 * bend]).face(&[0, 4, 9]).face(&[4, 8, 9]);
-    let between = &["Triangles 9 and 10 are too flat: the first is without area", "Mend the mesh there"];
+    let between = &["Triangles 9 and 10 are too flat: the first is without area", "Repair the mesh there"];
     let in_line =
         |z: f64| Obj::plate(2, FLAT_PLATE).moved(|[x, y, _]| [x + 4.0 * y, 2.0 * (x + 4.0 * y), z * (x + 4.0 * y)]);
     let none = || Refused(&["No triangle of the mesh has an area", "Write it with more digits"]);
@@ -405,7 +406,7 @@ fn quadrilaterals_and_polygons() {
         Obj::of(&points, &[&[2, 4, 1], &[4, 5, 1], &[0, 1, 2, 3]])
     };
     let crosses = || Refused(&["at (0, 0, 0)", "Element 3 crosses itself", "in the order in which they lie"]);
-    let already = Refused(&["quadrilaterals already: all of its 4", "--use shape"]);
+    let already = Refused(&["already quadrilateral: all of its 4", "--use shape"]);
     hold(vec![
         ("quadrilaterals alone", quads(FLAT_PLATE), already, Mended(&[CUTS])),
         ("the same in space", quads(BENT), Mended(&[CUTS]), Mended(&[CUTS])),

@@ -148,7 +148,7 @@ pub(super) fn convert(
     watch.tell(Stage::Check, 0, 0);
     let data = shows_data.then_some((&converted.sizing, births.as_ref()));
     let (export, mut flaw) = exported(&converted.mesh, &converted.names, data, at.is_some())?;
-    if converted.mesh.ground().is_some() && takes_triangles(case) {
+    if converted.mesh.embedding().is_some() && takes_triangles(case) {
         flaw = flaw.map(|fault| fault.remedy("Its triangles leave no better here: mesh its shape anew (--use shape)"));
     }
     let resort = converted.last_resort.quads();
@@ -160,7 +160,7 @@ pub(super) fn convert(
         regions: converted.names.faces.len(),
         valid: flaw.is_none(),
         mesh: Statistics::measure(export.measured(), &converted.sizing)?,
-        on_surfaces: converted.mesh.ground().is_some(),
+        on_surfaces: converted.mesh.embedding().is_some(),
         last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
         repairs: converted.repairs.clone(),
         events: events(&converted),
@@ -265,7 +265,7 @@ pub(super) fn exported(
         export.describe(mesh, sizing, births)?;
     }
     // Both sides of a crack lie at the same place.
-    let allow = Allow { triangles: on_the_way, seams: true, branching: mesh.ground().is_some() };
+    let allow = Allow { triangles: on_the_way, seams: true, branching: mesh.embedding().is_some() };
     let flaw = flaw(mesh, &export.file, allow);
     Ok((export, flaw))
 }
@@ -282,7 +282,7 @@ fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
     let folded = if allow.triangles { Vec::new() } else { mesh.folded() };
     let Some(first) = folded.first().and_then(|&e| mesh.corners(e).next()) else {
         let fault = examine(file).verdict(allow).err()?;
-        let has_none = fault.remedy.is_empty() && mesh.ground().is_some();
+        let has_none = fault.remedy.is_empty() && mesh.embedding().is_some();
         return Some(if has_none { fault.remedy("Ask for other sizes there") } else { fault });
     };
     let [x, y, z] = mesh.xyz(first).to_array().map(number);

@@ -200,7 +200,7 @@ pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writi
         return Ok(None);
     };
     // Surfaces are seen as in the window; meshes on them are drawn in space whatever it shows.
-    let on_surfaces = moment.mesh.ground().is_some();
+    let on_surfaces = moment.mesh.embedding().is_some();
     let ViewCamera { camera, size, .. } = match (on_surfaces, state.is_in_space()) {
         (false, _) => state.view().plane,
         (true, true) => state.view().space,

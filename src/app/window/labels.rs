@@ -159,8 +159,8 @@ impl Labels<'_> {
 
     /// The place in the scene of a point of the plane.
     fn lifted(&self, p: DVec2) -> DVec3 {
-        match self.moment.mesh.ground() {
-            Some(ground) if self.scene.form().is_in_space() => ground.atlas.xyz(p),
+        match self.moment.mesh.embedding() {
+            Some(embedding) if self.scene.form().is_in_space() => embedding.atlas.xyz(p),
             _ => p.extend(0.0),
         }
     }

@@ -112,7 +112,7 @@ impl State {
 
     /// Whether the mesh lies on surfaces and is shown in space.
     pub fn is_in_space(&self) -> bool {
-        let on_surfaces = self.run.moment.as_ref().is_some_and(|moment| moment.mesh.ground().is_some());
+        let on_surfaces = self.run.moment.as_ref().is_some_and(|moment| moment.mesh.embedding().is_some());
         self.workspace.surfaces.view != SurfaceView::Plane && on_surfaces
     }
 

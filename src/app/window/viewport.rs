@@ -109,7 +109,7 @@ impl Views {
             return empty(ui, state, commands, palette);
         };
         let look = state.view().look.take(&mut self.looked);
-        let on_surfaces = moment.mesh.ground().is_some();
+        let on_surfaces = moment.mesh.embedding().is_some();
         match state.workspace().surfaces.view {
             SurfaceView::Plane => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
             _ if !on_surfaces => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),

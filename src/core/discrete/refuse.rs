@@ -1,5 +1,4 @@
-//! What no surface can be made of and nobody can mend for certain: refused with the elements called as the file counts
-//! them, and shown.
+//! What no surface can be made of and nobody can mend for certain: refused with the elements called as the file counts them, and shown.
 
 use glam::{DVec2, DVec3};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -12,13 +11,11 @@ use crate::core::kernel::predicates::orient;
 use crate::core::soup::mesh_file::MeshFile;
 use crate::core::soup::soundness::{Defect, examine};
 
-/// Coordinates beyond this, and meshes smaller than one over this, cannot be reckoned with: products of several of them
-/// have no number.
+/// Coordinates beyond this, and meshes smaller than one over this, cannot be reckoned with: products of several of them have no number.
 pub(in crate::core) const LARGEST: f64 = 1e30;
 /// A surface smaller than this part of how far it is from the origin has too few digits for its normals.
 const FAR: f64 = 5e-8;
-/// A polygon whose pieces face each other, so that no more than this part of their areas is left as a whole, crosses
-/// itself.
+/// A polygon whose pieces face each other, so that no more than this part of their areas is left as a whole, crosses itself.
 const CROSSED: f64 = 0.2;
 /// A polygon smaller than this part of its length squared has no area.
 const FLAT: f64 = 1e-6;
@@ -35,8 +32,7 @@ pub(super) fn place(p: DVec3) -> String {
 /// Whether the triangles that are made of a file have points that can be reckoned with; which of the points they have.
 ///
 /// # Errors
-/// No triangles, or too many; points that are not there, not finite, beyond [`LARGEST`], or all nearer to each other
-/// than one over it.
+/// No triangles, or too many; points that are not there, not finite, beyond [`LARGEST`], or all nearer to each other than one over it.
 pub(in crate::core) fn used_points(
     file: &MeshFile,
     triangles: &[[u32; 3]],
@@ -124,8 +120,8 @@ pub(in crate::core) fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Whether polygons that were cut cross themselves. What stands next to each other in `triangles` and comes from the
-/// same element are the pieces of one.
+/// Whether polygons that were cut cross themselves. What stands next to each other in `triangles` and comes from the same element are
+/// the pieces of one.
 ///
 /// # Errors
 /// Those that do.
@@ -193,8 +189,7 @@ pub(super) fn one_sided(file: &MeshFile, mesh: &Triangles, edges: &Edges) -> Res
     .showing(conflicts.iter().map(|[side, _]| mesh.side(*side).map(|k| mesh.points[k as usize]).to_vec())))
 }
 
-/// Whether a mesh in the plane, its triangles anticlockwise, covers no place twice and has no points that hang in
-/// sides.
+/// Whether a mesh in the plane, its triangles anticlockwise, covers no place twice and has no points that hang in sides.
 ///
 /// # Errors
 /// Triangles that overlap, and points that hang.

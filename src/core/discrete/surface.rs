@@ -64,8 +64,8 @@ struct Link {
     at: u32,
 }
 
-/// Divides a surface at its features (folds beyond `angle`, in radians) into charts and makes a domain of them;
-/// `regions` are the names of its regions, and `bound` is how much a chart may be stretched.
+/// Divides a surface at its features (folds beyond `angle`, in radians) into charts and makes a domain of them; `regions` are the
+/// names of its regions, and `bound` is how much a chart may be stretched.
 ///
 /// # Errors
 /// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that. [`Fault::stopped`].
@@ -155,9 +155,8 @@ impl Surface {
     }
 }
 
-/// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the
-/// mean length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it) and what leaves
-/// the surface by 0.3 % of its size, and growing by 1.3 at most from one element to the next.
+/// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the mean
+/// length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it) and what leaves the surface by 0.3 % of its size, and growing by 1.3 at most from one element to the next.
 pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     let edges = Edges::of(&mesh.triangles);
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
@@ -211,9 +210,8 @@ pub(super) fn sides(chart: &Chart) -> impl Iterator<Item = Vec<[u32; 2]>> + '_ {
     })
 }
 
-/// The chains of all borders, and for each edge of the surface that lies on one where. A chain goes on through a point
-/// where just two border edges meet that are shared by the same charts, are both features or both not, and lie on the
-/// same line or on none.
+/// The chains of all borders, and for each edge of the surface that lies on one where. A chain goes on through a point where just two
+/// border edges meet that are shared by the same charts, are both features or both not, and lie on the same line or on none.
 fn chains(
     mesh: &Triangles,
     edges: &Edges,

@@ -1,5 +1,5 @@
-//! From a case to its background mesh with its metric: which parts of `geometry`, `metric`, `discrete` and `background`
-//! make it, in which order.
+//! From a case to its background mesh with its metric: which parts of `geometry`, `metric`, `discrete` and `background` make it,
+//! in which order.
 
 mod graded;
 pub(in crate::core) mod layers;
@@ -61,8 +61,7 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     chosen_faces(made, &case.parameters.faces)
 }
 
-/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for
-/// all faces.
+/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for all faces.
 fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault> {
     if names.is_empty() {
         return Ok(made);

@@ -10,7 +10,7 @@ use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::case::Case;
 use crate::core::fault::Fault;
 use crate::core::geometry::domain::Domain;
-use crate::core::mesh::half_edge::{Ground, Mesh};
+use crate::core::mesh::half_edge::{Embedding, Mesh};
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::names::{Named, Names};
 use crate::core::mesh::triangle_set::TriangleSet;
@@ -85,7 +85,7 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
     let mut mesh = Mesh::from_triangles(&set, metric);
     if let Some(spatial) = &domain.spatial {
-        mesh.set_ground(Arc::new(Ground { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
+        mesh.set_embedding(Arc::new(Embedding { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
     }
     let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
     Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines })

@@ -9,7 +9,8 @@ use super::Background;
 use super::graded::bounded;
 use super::of_domain::{FileLines, from_domain};
 use crate::core::background::adapt::Adapted;
-use crate::core::background::import::{implied_metric, import};
+use crate::core::background::implied_metric::implied_metric;
+use crate::core::background::import::import;
 use crate::core::case::{Case, MeshUse, Taking};
 use crate::core::discrete::curvature::curvature_sizes;
 use crate::core::discrete::edges::Triangles;
@@ -19,7 +20,7 @@ use crate::core::discrete::surface::{Surface, implied_sizes, surface};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::{Ground, Mesh};
+use crate::core::mesh::half_edge::{Embedding, Mesh};
 use crate::core::mesh::names::Names;
 use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
@@ -138,14 +139,14 @@ fn from_laid_out(
         n => repairs.push(format!("{n} sides of triangles were divided to make counts even")),
     }
     let atlas = laid.domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
-    let ground = atlas.clone().map(|atlas| Arc::new(Ground { atlas, points: set.xyz.clone() }));
+    let embedding = atlas.clone().map(|atlas| Arc::new(Embedding { atlas, points: set.xyz.clone() }));
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&set.uv, &|_| false)?;
     let meshed = |sizing: &Sizing| -> Result<Mesh, Fault> {
         let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
         let mut mesh = Mesh::from_triangles(&set, metric);
-        if let Some(ground) = &ground {
-            mesh.set_ground(Arc::clone(ground));
+        if let Some(embedding) = &embedding {
+            mesh.set_embedding(Arc::clone(embedding));
         }
         Ok(mesh.reordered())
     };

@@ -40,9 +40,9 @@ impl Labels<'_> {
         let p = mesh.uv(node);
         let ([small, large], [along, across]) = mesh.metric(node).eigen();
         let axes = [along * (share / small.sqrt()), across * (share / large.sqrt())];
-        let (centre, axes) = match mesh.ground() {
-            Some(ground) if self.scene.form().is_in_space() => {
-                let at = ground.atlas.at(p);
+        let (centre, axes) = match mesh.embedding() {
+            Some(embedding) if self.scene.form().is_in_space() => {
+                let at = embedding.atlas.at(p);
                 (at.xyz, axes.map(|axis| at.j[0] * axis.x + at.j[1] * axis.y))
             }
             _ => (p.extend(0.0), axes.map(|axis| axis.extend(0.0))),

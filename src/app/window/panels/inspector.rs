@@ -140,7 +140,7 @@ fn elements(ui: &mut Ui, name: &str, ids: &[ElementId], commands: &mut Vec<Comma
 /// Nodes with their places and the sizes of their metrics.
 fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut Vec<Command>, palette: &Palette) {
     let widths = [38.0, 44.0, 44.0, 48.0, 44.0];
-    let axes = if moment.mesh.ground().is_some() { ["u", "v"] } else { ["x", "y"] };
+    let axes = if moment.mesh.embedding().is_some() { ["u", "v"] } else { ["x", "y"] };
     table_head(ui, &widths, &["", axes[0], axes[1], "h\u{2081}", "h\u{2082}", "axis °"], palette);
     for (k, (name, node)) in nodes.iter().enumerate() {
         let p = moment.mesh.uv(*node);
@@ -171,7 +171,7 @@ fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut V
             commands.push(Command::Pick(Some(Outlined::Node(*node))));
         }
     }
-    if moment.mesh.ground().is_none() {
+    if moment.mesh.embedding().is_none() {
         ui.label(note("Plane case: u = x, v = y, z = 0.", palette));
         return;
     }

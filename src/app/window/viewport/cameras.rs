@@ -35,7 +35,7 @@ pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look
             }
         }
         // A camera of space does not fit the plane.
-        Some(Look::Kept(_)) if moment.mesh.ground().is_some() && state.is_in_space() => {}
+        Some(Look::Kept(_)) if moment.mesh.embedding().is_some() && state.is_in_space() => {}
         Some(Look::Kept(kept)) => {
             camera.take_up(&kept, size);
             is_fitted = false;
