@@ -251,7 +251,7 @@ fn what_is_mended_is_told_and_what_cannot_be_read_names_file_and_line() {
     until(&mut harness, "refused", |app| !app.state.faults.is_empty());
     let state = &harness.state().state;
     assert!(state.import.is_none());
-    assert!(state.faults[0].contains("broken.obj, line 2: \"x\" stands where a coordinate"), "{:?}", state.faults);
+    assert!(state.faults[0].contains("broken.obj, line 2: Expected a coordinate, found \"x\""), "{:?}", state.faults);
 }
 
 #[test]

@@ -215,7 +215,7 @@ fn a_file_that_goes_bad_while_it_is_open_is_told_and_the_window_keeps_what_it_ha
     harness.state_mut().state.faults.clear();
     std::fs::remove_file(&path).unwrap();
     wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
-    assert!(harness.state().state.faults[0].contains("no such file"), "{:?}", harness.state().state.faults);
+    assert!(harness.state().state.faults[0].contains("No such file"), "{:?}", harness.state().state.faults);
 }
 
 #[test]

@@ -351,21 +351,21 @@ fn points_that_are_not_there_or_nowhere_and_meshes_of_nothing() {
     hold_for_all(
         "a corner that is not there",
         |obj| obj.face(&[0, 1, 98]),
-        &Refused(&["line 19", "vertex 99, and there are 9"]),
+        &Refused(&["line 19", "vertex 99 of 9"]),
     );
     let zero = |mut obj: Obj| {
         obj.rest = "f 1 2 0\n".to_owned();
         obj
     };
-    hold_for_all("a corner 0", zero, &Refused(&["line 19", "\"0\" stands where a vertex"]));
+    hold_for_all("a corner 0", zero, &Refused(&["line 19", "Expected a vertex of the face, found \"0\""]));
     let at = |x: f64| {
         move |mut obj: Obj| {
             obj.points[4][0] = x;
             obj
         }
     };
-    hold_for_all("no number", at(f64::NAN), &Refused(&["line 6", "NaN", "stands where a coordinate"]));
-    hold_for_all("an infinite number", at(f64::INFINITY), &Refused(&["line 6", "inf", "stands where a coordinate"]));
+    hold_for_all("no number", at(f64::NAN), &Refused(&["line 6", "Expected a coordinate, found NaN"]));
+    hold_for_all("an infinite number", at(f64::INFINITY), &Refused(&["line 6", "Expected a coordinate, found inf"]));
     hold_for_all("a huge number", at(1e200), &Refused(&["Point 5 is at (1e200, 0.5, ", "no larger than 1e30"]));
     let nothing = |text: &str| Obj { rest: text.to_owned(), ..Obj::default() };
     let points = Obj { faces: Vec::new(), ..Obj::plate(1, FLAT_PLATE) };
