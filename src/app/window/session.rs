@@ -260,7 +260,7 @@ impl Watch for Voice {
 pub(super) fn words_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "Reading",
-        Stage::Mend => "Mending the mesh",
+        Stage::Repair => "Repairing the mesh",
         Stage::Chart => "Laying the surface flat",
         Stage::Divide => "Dividing the curves",
         Stage::Triangulate => "Triangulating",

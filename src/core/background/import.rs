@@ -13,9 +13,9 @@ use rustc_hash::FxHashMap;
 
 use super::cut::{Cut, CutMesh, Side, cut, sorted_sides};
 use super::triangulate::too_thin;
+use crate::core::discrete::defects::{capital, crossed, overlapping, used_points};
 use crate::core::discrete::edges::Triangles;
 use crate::core::discrete::lines::on_edges;
-use crate::core::discrete::refuse::{capital, crossed, overlapping, used_points};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, told};
 use crate::core::kernel::disjoint_sets::DisjointSets;
@@ -27,6 +27,7 @@ use crate::core::mesh::names::Named;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::progress::Cancel;
 use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::repairs::Repair;
 
 /// A triangle lower than this part of its longest side is none (as `predicates::firm` has it).
 const FLAT: f64 = 1e-7;
@@ -69,12 +70,7 @@ pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
     let given = file;
     let (cut, file) = cut_to_triangles(file);
     let mut import = Import::checked(given, &file)?;
-    tell(
-        &mut import.repairs,
-        cut,
-        "quadrilateral or polygon was cut into triangles",
-        "quadrilaterals and polygons were cut into triangles",
-    );
+    Repair::Triangulated.report(cut, &mut import.repairs);
     import.drop_duplicates();
     import.mend();
     import.orient()?;
@@ -155,7 +151,7 @@ impl<'a> Import<'a> {
         }
         let mut repairs = Vec::new();
         let orphans = used.iter().filter(|u| !**u).count();
-        tell(&mut repairs, orphans, "point without triangles was left out", "points without triangles were left out");
+        Repair::UnusedPoint.report(orphans, &mut repairs);
         let mut import = Import {
             given,
             file,
@@ -173,12 +169,7 @@ impl<'a> Import<'a> {
             coincident: 0,
         };
         import.coincident = import.count_coincident(&used);
-        tell(
-            &mut import.repairs,
-            import.coincident,
-            "point stands at the place of another: taken as the other side of a crack",
-            "points stand at the places of others: taken as the other sides of cracks",
-        );
+        Repair::CrackPoint.report(import.coincident, &mut import.repairs);
         Ok(import)
     }
 
@@ -231,7 +222,7 @@ impl<'a> Import<'a> {
             retain(&mut self.region, &keep);
             retain(&mut self.element, &keep);
         }
-        tell(&mut self.repairs, doubles, "duplicate triangle was left out", "duplicate triangles were left out");
+        Repair::DuplicateTriangle.report(doubles, &mut self.repairs);
     }
 
     /// Takes out triangles too flat to be any, whose corner the neighbour beyond gets, and takes points into the sides in which they
@@ -245,19 +236,14 @@ impl<'a> Import<'a> {
             ..Triangles::default()
         };
         // Corners at one place are the banks of a crack, and what lies between them is not for others to take.
-        let flat = mesh.turn_flat_ones(&|mesh, t| {
+        let flat = mesh.swap_degenerate(&|mesh, t| {
             let [a, b, c] = mesh.corners(t).map(DVec3::truncate);
             let long = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
             a != b && b != c && c != a && orient(a, b, c).abs() < FLAT * long
         });
         let stitched = mesh.stitch(true, &Cancel::default());
-        tell(&mut self.repairs, flat, "triangle without area was taken out", "triangles without area were taken out");
-        tell(
-            &mut self.repairs,
-            stitched,
-            "point hung in a side and was taken into it",
-            "points hung in sides and were taken into them",
-        );
+        Repair::DegenerateTriangle.report(flat, &mut self.repairs);
+        Repair::HangingPoint.report(stitched, &mut self.repairs);
         if flat + stitched > 0 && !self.lines.is_empty() {
             let mut segments: Vec<([u32; 2], u32)> = self.lines.iter().map(|(&(a, b), &line)| ([a, b], line)).collect();
             segments.sort_unstable();
@@ -270,8 +256,8 @@ impl<'a> Import<'a> {
     fn orient(&mut self) -> Result<(), Fault> {
         if self.triangles.is_empty() {
             let shapes = self.given.triangles.iter().map(|t| t.map(|k| self.given.points[k as usize]).to_vec());
-            return Err(Fault::new("No triangle of the mesh has an area: the corners of each lie on a line")
-                .remedy("Write it with more digits, or in another unit")
+            return Err(Fault::new("No triangle of the mesh has an area: the corners of each are collinear")
+                .remedy("Export it with more digits, or in another unit")
                 .showing(shapes));
         }
         let mut clockwise = 0;
@@ -281,7 +267,7 @@ impl<'a> Import<'a> {
                 clockwise += 1;
             }
         }
-        tell(&mut self.repairs, clockwise, "clockwise triangle was turned", "clockwise triangles were turned");
+        Repair::ClockwiseTriangle.report(clockwise, &mut self.repairs);
         let flat: Vec<usize> = (0..self.triangles.len()).filter(|&i| !self.firm(self.triangles[i])).collect();
         let Some(&first) = flat.first() else { return Ok(()) };
         let [a, b, c] = self.triangles[first].map(|n| self.uv[n as usize]);
@@ -370,12 +356,7 @@ impl<'a> Import<'a> {
         for sides in &chosen {
             self.divide(sides, &mut halves)?;
         }
-        tell(
-            &mut self.repairs,
-            chosen.len(),
-            "boundary segment was divided, so that its part has an even number of triangles",
-            "boundary segments were divided, so that their parts have even numbers of triangles",
-        );
+        Repair::DividedSegment.report(chosen.len(), &mut self.repairs);
         self.sides = sorted_sides(self.uv.len(), &self.triangles);
         Ok(())
     }
@@ -469,24 +450,14 @@ impl<'a> Import<'a> {
                 lost += 1;
             }
         }
-        tell(
-            &mut self.repairs,
-            lost,
-            "line inside a region that is in no group is not kept",
-            "lines inside regions that are in no group are not kept",
-        );
+        Repair::UngroupedLine.report(lost, &mut self.repairs);
         let names = (0..self.tags.len() as u32).map(|r| self.region_name(r)).collect();
         let single = self.tags.len() == 1 && kept.is_empty();
         let CutMesh { mut set, origin, sides } = cut(&self.uv, self.triangles, self.region, &kept);
         if single {
             // Within one region only a pinched node becomes several.
             let pinched = origin.windows(2).filter(|w| w[0] == w[1]).count();
-            tell(
-                &mut self.repairs,
-                pinched,
-                "node was split where triangles meet in a point only",
-                "nodes were split where triangles meet in a point only",
-            );
+            Repair::PinchedNode.report(pinched, &mut self.repairs);
         }
         for ends in sides {
             let [a, b] = ends.map(|node| origin[node as usize]);
@@ -530,14 +501,6 @@ fn implied_by([a, b, c]: [DVec2; 3]) -> Metric2 {
 
 fn same_edge(a: &Side, b: &Side) -> bool {
     (a.low, a.high) == (b.low, b.high)
-}
-
-fn tell(repairs: &mut Vec<String>, n: usize, one: &str, several: &str) {
-    match n {
-        0 => {}
-        1 => repairs.push(format!("1 {one}")),
-        n => repairs.push(format!("{n} {several}")),
-    }
 }
 
 fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
