@@ -182,8 +182,8 @@ fn what_is_mended_is_told_and_what_cannot_be_read_names_file_and_line() {
     triangles[3].swap(0, 1);
     triangles.push(triangles[0]);
     open(&mut harness, &stl(folder.path(), "tube.stl", &triangles));
-    harness.get_by_label("1 duplicate triangle was left out");
-    harness.get_by_label("1 triangle was turned to agree with its neighbours");
+    harness.get_by_label("1 duplicate triangle was removed");
+    harness.get_by_label("1 triangle was reversed to match its neighbours");
     picture(&mut harness, "mended");
     let broken = folder.path().join("broken.obj");
     std::fs::write(&broken, "v 0 0 0\nv 1 0 x\n").unwrap();
@@ -192,7 +192,7 @@ fn what_is_mended_is_told_and_what_cannot_be_read_names_file_and_line() {
     let state = &harness.state().state;
     assert!(state.run().import.is_none());
     assert!(
-        state.view().faults[0].contains("broken.obj, line 2: \"x\" stands where a coordinate"),
+        state.view().faults[0].contains("broken.obj, line 2: Expected a coordinate, found \"x\""),
         "{:?}",
         state.view().faults
     );

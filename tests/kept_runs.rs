@@ -184,7 +184,7 @@ fn a_file_that_goes_bad_while_it_is_open_is_told_and_the_window_keeps_what_it_ha
     std::fs::remove_file(&path).unwrap();
     until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
     assert!(
-        harness.state().state.view().faults[0].contains("no such file"),
+        harness.state().state.view().faults[0].contains("No such file"),
         "{:?}",
         harness.state().state.view().faults
     );

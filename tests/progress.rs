@@ -10,7 +10,7 @@ use quadfront::core::case::{Case, DomainSource};
 use quadfront::core::convert::conversion;
 use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
-use quadfront::core::discrete::sound::sound;
+use quadfront::core::discrete::repair::repair;
 use quadfront::core::formats::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
@@ -120,7 +120,7 @@ fn mending_and_charts_are_told_and_can_be_ended_anywhere() {
     let mut witness = Witness::default();
     let made = background(&case, &mut witness).unwrap();
     let of = |wanted: Stage| witness.told.iter().filter(move |told| told.0 == wanted).map(|told| told.1);
-    assert_eq!(of(Stage::Mend).count(), 9);
+    assert_eq!(of(Stage::Repair).count(), 9);
     assert!(of(Stage::Chart).count() > 3 && of(Stage::Chart).is_sorted(), "{:?}", witness.told);
     let mut stages: Vec<Stage> = witness.told.iter().map(|told| told.0).collect();
     stages.dedup();
@@ -139,8 +139,8 @@ fn work_that_is_ended_before_it_begins_does_nothing() {
     let cancel = Cancel::new();
     cancel.ask();
     let mut witness = Witness { cancel, ..Witness::default() };
-    assert!(sound(&plate(4), &mut witness).unwrap_err().is_stop);
-    let mesh = sound(&plate(4), &mut Nobody).unwrap().mesh;
+    assert!(repair(&plate(4), &mut witness).unwrap_err().is_stop);
+    let mesh = repair(&plate(4), &mut Nobody).unwrap().mesh;
     let edges = Edges::of(&mesh.triangles);
     let found = features(&mesh, &edges, ANGLE);
     let charts = quadfront::core::discrete::chart::charts(&mesh, &edges, &found, Default::default(), &mut witness);

@@ -4,40 +4,40 @@ use std::fmt;
 
 use glam::DVec3;
 
-/// So many elements are shown of a fault that concerns more.
+/// Maximum number of elements shown for a fault.
 const SHOWN: usize = 1000;
 
-/// A refusal of bad input: what happened, where, and what to do, each a phrase that a person can read.
+/// A rejection of bad input: what is wrong, where, and what to do, each as a readable phrase.
 ///
-/// Displayed as one line: `place: what. remedy.` Bugs are assertions and never a `Fault`; a failed candidate inside the
+/// Displayed as one line: `place: what. remedy.` Bugs are assertions, never a `Fault`; a failed candidate inside the
 /// converter is an event and never a `Fault`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// What is wrong, a sentence without its full stop ("The loop \"hole\" has 27 segments").
     pub what: String,
-    /// Where: a file with its line, the name of a curve, a point; empty where there is no such thing.
+    /// Where: a file with its line, the name of a curve, a point; may be empty.
     pub place: String,
     /// What to do about it, a sentence without its full stop; may be empty.
     pub remedy: String,
-    /// The elements that it is about, for pictures, each by its corners in space: one of a point, two of an edge, three and more of a
-    /// triangle or polygon.
+    /// The elements concerned, for display, each by its corners in space: one for a point, two for an edge, three or
+    /// more for a triangle or polygon.
     pub shapes: Vec<Vec<DVec3>>,
-    /// Whether nothing is wrong: somebody has asked for the work to end.
+    /// Whether this is no error but a cancellation.
     pub is_stop: bool,
 }
 
 impl Fault {
-    /// A fault without a place or a remedy yet.
+    /// A fault without a place or a remedy.
     pub fn new(what: impl Into<String>) -> Self {
         Fault { what: what.into(), place: String::new(), remedy: String::new(), shapes: Vec::new(), is_stop: false }
     }
 
-    /// What work says that was told to end before it was done (`progress::Cancel`).
+    /// The fault of cancelled work (`progress::Cancel`).
     pub fn stopped() -> Self {
         Fault { is_stop: true, ..Fault::new("The work was stopped") }
     }
 
-    /// The same fault with its place; an outer place ("plate.toml, line 14") goes before an inner one.
+    /// Adds a place; an outer place ("plate.toml, line 14") precedes an inner one.
     #[must_use]
     pub fn at(mut self, place: impl Into<String>) -> Self {
         let outer = place.into();
@@ -45,14 +45,14 @@ impl Fault {
         self
     }
 
-    /// The same fault with the elements that it is about, by their corners; of very many the first.
+    /// Adds the elements concerned, by their corners, up to a maximum.
     #[must_use]
     pub fn showing(mut self, shapes: impl IntoIterator<Item = Vec<DVec3>>) -> Self {
         self.shapes.extend(shapes.into_iter().take(SHOWN));
         self
     }
 
-    /// The same fault with what to do about it.
+    /// Adds what to do about it.
     #[must_use]
     pub fn remedy(mut self, remedy: impl Into<String>) -> Self {
         self.remedy = remedy.into();

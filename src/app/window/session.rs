@@ -261,7 +261,7 @@ impl Watch for Voice {
 pub(super) fn words_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "Reading",
-        Stage::Mend => "Repairing the mesh",
+        Stage::Repair => "Repairing the mesh",
         Stage::Chart => "Flattening the surface",
         Stage::Divide => "Dividing the curves",
         Stage::Triangulate => "Triangulating",

@@ -16,7 +16,7 @@ pub use crate::render::number::{UNDEFINED, decimals, degrees, fixed, grouped, si
 pub fn progress(progress: &Progress) -> String {
     let Progress { words, done, total } = *progress;
     // These stages count bytes, or steps of unequal length.
-    if total > 0 && [Stage::Read, Stage::Mend].map(words_of).contains(&words) {
+    if total > 0 && [Stage::Read, Stage::Repair].map(words_of).contains(&words) {
         format!("{words}: {} %", 100 * done.min(total) / total)
     } else if total > 0 {
         format!("{words} {} of about {}", grouped(done), grouped(total.max(done)))

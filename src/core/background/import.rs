@@ -14,9 +14,9 @@ use rustc_hash::FxHashMap;
 
 use super::clash::too_thin;
 use super::cut::{Cut, CutMesh, Side, cut, sorted_sides};
+use crate::core::discrete::defects::{capital, crossed, overlapping, used_points};
 use crate::core::discrete::edges::Triangles;
 use crate::core::discrete::lines::on_edges;
-use crate::core::discrete::refuse::{capital, crossed, overlapping, used_points};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::{firm, orient};
@@ -26,6 +26,7 @@ use crate::core::mesh::names::Named;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::progress::Cancel;
 use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::repairs::Repair;
 
 /// A triangle with a smaller ratio of height to longest side is flat (as in `predicates::firm`).
 const FLAT: f64 = 1e-7;
@@ -68,12 +69,7 @@ pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
     let given = file;
     let (cut, file) = cut_to_triangles(file);
     let mut import = Import::checked(given, &file)?;
-    report(
-        &mut import.repairs,
-        cut,
-        "quadrilateral or polygon was cut into triangles",
-        "quadrilaterals and polygons were cut into triangles",
-    );
+    Repair::Triangulated.report(cut, &mut import.repairs);
     import.drop_duplicates();
     import.repair();
     import.orient()?;
@@ -154,7 +150,7 @@ impl<'a> Import<'a> {
         }
         let mut repairs = Vec::new();
         let orphans = used.iter().filter(|u| !**u).count();
-        report(&mut repairs, orphans, "point without triangles was left out", "points without triangles were left out");
+        Repair::UnusedPoint.report(orphans, &mut repairs);
         let mut import = Import {
             given,
             file,
@@ -172,12 +168,7 @@ impl<'a> Import<'a> {
             coincident: 0,
         };
         import.coincident = import.count_coincident(&used);
-        report(
-            &mut import.repairs,
-            import.coincident,
-            "point coincides with another: treated as the other side of a crack",
-            "points coincide with others: treated as the other sides of cracks",
-        );
+        Repair::CrackPoint.report(import.coincident, &mut import.repairs);
         Ok(import)
     }
 
@@ -230,7 +221,7 @@ impl<'a> Import<'a> {
             retain(&mut self.region, &keep);
             retain(&mut self.element, &keep);
         }
-        report(&mut self.repairs, doubles, "duplicate triangle was left out", "duplicate triangles were left out");
+        Repair::DuplicateTriangle.report(doubles, &mut self.repairs);
     }
 
     /// Removes flat triangles, whose corner the neighbour across the longest side receives, and connects hanging nodes
@@ -243,20 +234,15 @@ impl<'a> Import<'a> {
             origin: std::mem::take(&mut self.element),
             ..Triangles::default()
         };
-        // Coincident corners are the sides of a crack: a triangle between them cannot be merged with a neighbour.
-        let flat = mesh.turn_flat_ones(&|mesh, t| {
+        // Corners at one place are the banks of a crack, and what lies between them is not for others to take.
+        let flat = mesh.swap_degenerate(&|mesh, t| {
             let [a, b, c] = mesh.corners(t).map(DVec3::truncate);
             let long = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
             a != b && b != c && c != a && orient(a, b, c).abs() < FLAT * long
         });
         let stitched = mesh.stitch(true, &Cancel::default());
-        report(&mut self.repairs, flat, "triangle without area was taken out", "triangles without area were taken out");
-        report(
-            &mut self.repairs,
-            stitched,
-            "point hung in a side and was taken into it",
-            "points hung in sides and were taken into them",
-        );
+        Repair::DegenerateTriangle.report(flat, &mut self.repairs);
+        Repair::HangingPoint.report(stitched, &mut self.repairs);
         if flat + stitched > 0 && !self.lines.is_empty() {
             let mut segments: Vec<([u32; 2], u32)> = self.lines.iter().map(|(&(a, b), &line)| ([a, b], line)).collect();
             segments.sort_unstable();
@@ -270,7 +256,7 @@ impl<'a> Import<'a> {
         if self.triangles.is_empty() {
             let shapes = self.given.triangles.iter().map(|t| t.map(|k| self.given.points[k as usize]).to_vec());
             return Err(Fault::new("No triangle of the mesh has an area: the corners of each are collinear")
-                .remedy("Write it with more digits, or in another unit")
+                .remedy("Export it with more digits, or in another unit")
                 .showing(shapes));
         }
         let mut clockwise = 0;
@@ -280,7 +266,7 @@ impl<'a> Import<'a> {
                 clockwise += 1;
             }
         }
-        report(&mut self.repairs, clockwise, "clockwise triangle was turned", "clockwise triangles were turned");
+        Repair::ClockwiseTriangle.report(clockwise, &mut self.repairs);
         let flat: Vec<usize> = (0..self.triangles.len()).filter(|&i| !self.firm(self.triangles[i])).collect();
         let Some(&first) = flat.first() else { return Ok(()) };
         let [a, b, c] = self.triangles[first].map(|n| self.uv[n as usize]);
@@ -335,24 +321,14 @@ impl<'a> Import<'a> {
                 lost += 1;
             }
         }
-        report(
-            &mut self.repairs,
-            lost,
-            "line inside a region belongs to no group and is not kept",
-            "lines inside regions belong to no group and are not kept",
-        );
+        Repair::UngroupedLine.report(lost, &mut self.repairs);
         let names = (0..self.tags.len() as u32).map(|r| self.region_name(r)).collect();
         let single = self.tags.len() == 1 && kept.is_empty();
         let CutMesh { mut set, origin, sides } = cut(&self.uv, self.triangles, self.region, &kept);
         if single {
             // In a single region only pinched nodes are split.
             let pinched = origin.windows(2).filter(|w| w[0] == w[1]).count();
-            report(
-                &mut self.repairs,
-                pinched,
-                "node was split where triangles meet in a point only",
-                "nodes were split where triangles meet in a point only",
-            );
+            Repair::PinchedNode.report(pinched, &mut self.repairs);
         }
         for ends in sides {
             let [a, b] = ends.map(|node| origin[node as usize]);
@@ -367,14 +343,6 @@ impl<'a> Import<'a> {
 
 fn same_edge(a: &Side, b: &Side) -> bool {
     a.ends() == b.ends()
-}
-
-fn report(repairs: &mut Vec<String>, n: usize, one: &str, several: &str) {
-    match n {
-        0 => {}
-        1 => repairs.push(format!("1 {one}")),
-        n => repairs.push(format!("{n} {several}")),
-    }
 }
 
 fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {

@@ -14,8 +14,8 @@ use crate::core::background::import::import;
 use crate::core::case::{Case, MeshUse, Taking};
 use crate::core::discrete::curvature::curvature_sizes;
 use crate::core::discrete::edges::Triangles;
-use crate::core::discrete::given::implied_metric_in_space;
-use crate::core::discrete::sound::{Sound, sound};
+use crate::core::discrete::own_triangles::implied_metric_in_space;
+use crate::core::discrete::repair::{Repaired, repair};
 use crate::core::discrete::surface::{Surface, implied_sizes, surface};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
@@ -26,8 +26,8 @@ use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
 use crate::core::soup::mesh_file::MeshFile;
 
-/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The metric is that
-/// of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
+/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The
+/// metric is that of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
 pub(super) fn from_mesh(
     case: &Case,
     path: &Path,
@@ -59,7 +59,8 @@ pub(super) fn from_mesh(
     }
     let mut sizing = Sizing::new(fields, case.parameters.size_scale);
     if given {
-        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be asked for.
+        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be
+        // asked for.
         let middle = |t: &[u32; 3]| t.iter().map(|&n| set.uv[n as usize]).sum::<DVec2>() / 3.0;
         let points: Vec<DVec2> = set.uv.iter().copied().chain(set.triangles.iter().map(middle)).collect();
         sizing.survey(&points, &|_| false)?;
@@ -77,8 +78,9 @@ pub(super) fn from_mesh(
     Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
-/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
-/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is the file's name.
+/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are
+/// those of the case's fields; where there are none those given at its points, or those that its triangles have.
+/// `place` is the file's name.
 fn from_surface(
     case: &Case,
     file: &MeshFile,
@@ -88,7 +90,7 @@ fn from_surface(
 ) -> Result<Background, Fault> {
     // What the case says of sizes has a place of its own.
     let here = |fault: Fault| if fault.is_stop { fault } else { fault.at(place) };
-    let Sound { mesh, copied, regions, lines, mut repairs } = sound(file, watch).map_err(here)?;
+    let Repaired { mesh, copied, regions, lines, mut repairs } = repair(file, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();

@@ -221,7 +221,7 @@ pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], ti
 fn word(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "read",
-        Stage::Mend => "mend",
+        Stage::Repair => "mend",
         Stage::Chart => "chart",
         Stage::Divide => "divide",
         Stage::Triangulate => "triangulate",

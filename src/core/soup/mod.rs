@@ -6,3 +6,4 @@ pub mod counting;
 pub mod polygons;
 pub(in crate::core) mod weld;
 pub mod soundness;
+pub mod repairs;

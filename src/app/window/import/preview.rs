@@ -15,8 +15,8 @@ use crate::core::discrete::census::{Census, Division, count_of};
 use crate::core::discrete::chart::charts;
 use crate::core::discrete::edges::{Edges, Triangles};
 use crate::core::discrete::features::{Feature, features, with_lines};
-use crate::core::discrete::flat::Bound;
-use crate::core::discrete::sound::{Sound, as_given, sound};
+use crate::core::discrete::planar_map::StretchBound;
+use crate::core::discrete::repair::{Repaired, repair, unrepaired};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::progress::{Cancel, Stage, Watch};
@@ -56,7 +56,7 @@ pub struct Wanted {
     /// In radians.
     pub feature_angle: f64,
     /// How far charts may be stretched; none if it has no charts.
-    pub bound: Option<Bound>,
+    pub bound: Option<StretchBound>,
     /// The elements for which it is refused, by their corners.
     pub marks: Arc<[Vec<DVec3>]>,
     pub dark: bool,
@@ -172,15 +172,15 @@ fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
     let (is_plane, has_metric) = (file.is_plane(), file.metric.is_some());
     let skipped: Vec<String> =
         file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
-    let (mut found, fault) = match sound(&file, voice) {
+    let (mut found, fault) = match repair(&file, voice) {
         Ok(found) => (found, None),
         Err(fault) if fault.is_stop => return Err(fault),
         Err(fault) => {
-            let mesh = as_given(&file);
+            let mesh = unrepaired(&file);
             if mesh.triangles.is_empty() {
                 return Err(place(fault));
             }
-            let nothing = Sound { mesh, copied: vec![], regions: vec![], lines: vec![], repairs: vec![] };
+            let nothing = Repaired { mesh, copied: vec![], regions: vec![], lines: vec![], repairs: vec![] };
             (nothing, Some(fault))
         }
     };
@@ -206,7 +206,7 @@ fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
 struct Work {
     loaded: Arc<Loaded>,
     features: Option<(f64, Arc<[Option<Feature>]>)>,
-    division: Option<(f64, Bound, Arc<Division>)>,
+    division: Option<(f64, StretchBound, Arc<Division>)>,
 }
 
 impl Work {
@@ -280,7 +280,7 @@ mod tests {
 
     fn wish(degrees: f64) -> Wanted {
         let marks = Arc::default();
-        Wanted { feature_angle: degrees.to_radians(), bound: Some(Bound::default()), marks, dark: true }
+        Wanted { feature_angle: degrees.to_radians(), bound: Some(StretchBound::default()), marks, dark: true }
     }
 
     /// What comes within a while.

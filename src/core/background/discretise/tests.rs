@@ -1,7 +1,7 @@
 use super::*;
 use crate::core::discrete::features::ANGLE;
-use crate::core::discrete::flat::Bound;
-use crate::core::discrete::sound::sound;
+use crate::core::discrete::planar_map::StretchBound;
+use crate::core::discrete::repair::repair;
 use crate::core::discrete::surface::surface;
 use crate::core::geometry::fixtures::*;
 use crate::core::kernel::tensor::Metric2;
@@ -234,8 +234,8 @@ fn a_bent_chord_beside_a_divided_one_is_divided_too() {
         triangles: floor.into_iter().chain(wall).collect(),
         ..MeshFile::default()
     };
-    let given = sound(&file, &mut Nobody).unwrap();
-    let domain = surface(&given.mesh, &given.regions, ANGLE, Bound::default(), &mut Nobody).unwrap().domain;
+    let given = repair(&file, &mut Nobody).unwrap();
+    let domain = surface(&given.mesh, &given.regions, ANGLE, StretchBound::default(), &mut Nobody).unwrap().domain;
     let spatial = domain.spatial.clone().unwrap();
     let between = |id: &CurveId| {
         let ends = domain.curves[id.index()].ends.map(|v| spatial.vertices[spatial.vertex_of[v as usize] as usize]);

@@ -5,12 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
-use super::{Import, report, same_edge};
+use super::{Import, same_edge};
 use crate::core::background::cut::{Side, cut, sorted_sides};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::point_text;
 use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::kernel::parity::toggles;
+use crate::core::soup::repairs::Repair;
 
 impl Import<'_> {
     /// Makes the number of triangles of every part even by the division of sides.
@@ -66,12 +67,7 @@ impl Import<'_> {
         for sides in &chosen {
             self.divide(sides, &mut halves)?;
         }
-        report(
-            &mut self.repairs,
-            chosen.len(),
-            "boundary segment was divided, so that its part has an even number of triangles",
-            "boundary segments were divided, so that their parts have even numbers of triangles",
-        );
+        Repair::DividedSegment.report(chosen.len(), &mut self.repairs);
         self.sides = sorted_sides(self.uv.len(), &self.triangles);
         Ok(())
     }

@@ -53,11 +53,7 @@ fn clockwise_and_duplicate_triangles_and_orphans_are_repaired_and_reported() {
     assert_eq!(imported.set.triangles.len(), 4);
     assert_eq!(
         imported.repairs,
-        [
-            "1 point without triangles was left out",
-            "1 duplicate triangle was left out",
-            "1 clockwise triangle was turned"
-        ]
+        ["1 unused point was removed", "1 duplicate triangle was removed", "1 clockwise triangle was reversed"]
     );
 }
 
@@ -73,7 +69,7 @@ fn quadrilaterals_and_polygons_among_triangles_are_cut_and_reported() {
     };
     let imported = import(&file, false).unwrap();
     assert_eq!(imported.set.triangles.len(), 6);
-    assert_eq!(imported.repairs, ["2 quadrilaterals and polygons were cut into triangles"]);
+    assert_eq!(imported.repairs, ["2 quadrilaterals and polygons were split into triangles"]);
     file.triangles.clear();
     file.quads.clear();
     assert!(import(&file, true).is_ok());
@@ -106,7 +102,7 @@ fn bad_numbers_are_refused() {
     assert!(refusal(&file).contains("Point 3 is at (NaN, 1, 0)"));
     let mut file = star();
     file.triangles[2][1] = 9;
-    assert!(refusal(&file).contains("Triangle 3 has the point 10, and there are 5"));
+    assert!(refusal(&file).contains("Triangle 3 refers to point 10 of 5"));
     file.triangles[2][1] = u32::MAX;
     assert!(refusal(&file).contains("4294967296"));
 }
@@ -119,7 +115,7 @@ fn flat_triangles_are_removed() {
         file.points[4] = DVec3::new(0.5, height, 0.0);
         let imported = import(&file, true).unwrap();
         assert_eq!(imported.set.triangles.len(), 4);
-        assert_eq!(imported.repairs[0], "1 triangle without area was taken out");
+        assert_eq!(imported.repairs[0], "1 degenerate triangle was removed");
     }
     let mut file = star();
     file.triangles.push([3, 3, 4]);
@@ -131,7 +127,7 @@ fn flat_triangles_are_removed() {
     file.lines = vec![[0, 4]];
     file.line_tags = vec![8];
     let imported = import(&file, true).unwrap();
-    assert_eq!(imported.repairs[0], "1 triangle without area was taken out");
+    assert_eq!(imported.repairs[0], "1 degenerate triangle was removed");
     // The line runs along what its side has become.
     assert_eq!((imported.set.triangles.len(), imported.set.lines.len()), (6, 4));
 }
@@ -156,14 +152,14 @@ fn hanging_nodes_are_connected_unless_there_is_a_gap() {
     file.points.extend([(0.5, 1.0), (0.0, 2.0), (1.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0)));
     file.triangles.extend([[3, 5, 6], [5, 7, 6], [5, 2, 7]]);
     let imported = import(&file, true).unwrap();
-    assert_eq!(imported.repairs[0], "1 point hung in a side and was taken into it");
+    assert_eq!(imported.repairs[0], "1 hanging point was inserted into its edge");
     assert_eq!(imported.set.triangles.len(), 8);
     // The square has points of its own, at the ends of the side too.
     file.points.extend([file.points[3], file.points[2]]);
     file.triangles.truncate(4);
     file.triangles.extend([[8, 5, 6], [5, 7, 6], [5, 9, 7]]);
     let fault = import(&file, true).unwrap_err();
-    assert!(fault.to_string().contains("Point 6 hangs in a side of another triangle"), "{fault}");
+    assert!(fault.to_string().contains("Point 6 hangs on a side of another triangle"), "{fault}");
     assert_eq!(fault.shapes, [[DVec3::new(0.5, 1.0, 0.0)]]);
 }
 
@@ -195,7 +191,7 @@ fn pinched_nodes_are_split_and_so_are_their_points() {
     let imported = import(&file, false).unwrap();
     assert_eq!(imported.set.uv.len(), 9);
     assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(8));
-    assert_eq!(imported.repairs, ["1 node was split where triangles meet in a point only"]);
+    assert_eq!(imported.repairs, ["1 node was split where triangles share only a point"]);
 }
 
 #[test]
@@ -218,7 +214,7 @@ fn coincident_nodes_remain_the_two_sides_of_a_crack() {
     let imported = import(&file, false).unwrap();
     assert_eq!(imported.set.uv.len(), 6);
     assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(5));
-    assert_eq!(imported.repairs, ["1 point coincides with another: treated as the other side of a crack"]);
+    assert_eq!(imported.repairs, ["1 coincident point was kept as the other side of a crack"]);
 }
 
 #[test]
@@ -287,7 +283,7 @@ fn odd_loops_of_an_even_part_are_fine() {
 fn lost_lines_inside_regions_are_reported() {
     let mut file = star();
     file.lines = vec![[0, 1], [4, 0]];
-    assert_eq!(import(&file, false).unwrap().repairs, ["1 line inside a region belongs to no group and is not kept"]);
+    assert_eq!(import(&file, false).unwrap().repairs, ["1 line inside a region without a group was ignored"]);
 }
 
 #[test]
