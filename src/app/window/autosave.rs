@@ -126,10 +126,10 @@ impl Work {
             None => Keeper::new(place.path.clone(), run)?,
         };
         let kept = self.keeper.insert(keeper).keep(run);
-        kept.map(drop).map_err(|fault| {
-            let remedy = fault.remedy.clone();
-            let told = Fault { what: format!("The run cannot be kept while you work on it: {}", fault.what), ..fault };
-            told.remedy(format!("{remedy}; it is tried again, and Ctrl+S saves the run elsewhere"))
+        kept.map(drop).map_err(|mut fault| {
+            fault.what = format!("The run cannot be kept while you work on it: {}", fault.what);
+            fault.remedy += "; it is tried again, and Ctrl+S saves the run elsewhere";
+            fault
         })
     }
 }

@@ -369,7 +369,7 @@ impl State {
                 Told::Fault(fault, asks) => {
                     let opening = self.opening.take();
                     match opening {
-                        _ if fault.is_stop => {}
+                        _ if fault.is_stop() => {}
                         Some((Source::Mesh(path, options), _)) => self.refuse(path, options, fault),
                         _ => self.complain(&fault),
                     }

@@ -7,7 +7,7 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::predicates::firm;
 use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::half_edge::Mesh;
@@ -223,6 +223,7 @@ impl Adapter<'_> {
         }
         if mesh.element_count() + 2 > self.most_elements {
             return Err(Fault::new(format!("The metric asks for more than {} triangles", self.most_elements))
+                .of_kind(FaultKind::Limit)
                 .at(format!("near ({}, {}), where the smallest size is {}", place.x, place.y, metric.min_size()))
                 .remedy("Make the sizes larger there, or allow more by max_quads"));
         }

@@ -12,7 +12,7 @@ use super::ply;
 use super::save::{load_watched, save};
 use super::stl;
 use super::vtu;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::progress::{Nobody, Pace, Reading, Watch};
 use crate::core::soup::mesh_file::MeshFile;
 
@@ -90,6 +90,10 @@ impl Format {
     /// # Errors
     /// For an unknown extension, or none: the fault lists the known ones.
     pub fn from_path(path: &Path) -> Result<Format, Fault> {
+        Format::of_extension(path).map_err(|fault| fault.of_kind(FaultKind::Syntax))
+    }
+
+    fn of_extension(path: &Path) -> Result<Format, Fault> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if let Some(&format) = Format::ALL.iter().find(|format| format.extension() == extension) {
             return Ok(format);
@@ -133,8 +137,8 @@ pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch)
     let sol = sol.or_else(|| (format == Format::Medit && beside.is_file()).then_some(beside.as_path()));
     if let Some(sol) = sol {
         let bytes = load_watched(sol, &pace)?;
-        let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace)?;
-        mesh.metric = Some(metric);
+        let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace);
+        mesh.metric = Some(metric.map_err(|fault| fault.of_kind(FaultKind::Syntax))?);
     }
     Ok(mesh)
 }
@@ -156,7 +160,7 @@ fn read_in(
     pace: &dyn Pace,
 ) -> Result<MeshFile, Fault> {
     if bytes.trim_ascii().is_empty() {
-        return Err(Fault::new("The file is empty").at(name).remedy("Write it again"));
+        return Err(Fault::new("The file is empty").of_kind(FaultKind::Syntax).at(name).remedy("Write it again"));
     }
     let read = match format {
         Format::Msh => msh::read(name, bytes, pace),
@@ -169,7 +173,7 @@ fn read_in(
         Format::Gltf | Format::Glb => gltf::read(name, bytes, folder, pace),
     };
     // A reader that was told to end has seen a part of the file, and may have complained of that.
-    pace.cancel().check().and(read)
+    pace.cancel().check().and(read.map_err(|fault| fault.of_kind(FaultKind::Syntax)))
 }
 
 /// Writes a mesh to a stream. The metric of Medit, which is a file of its own, is not written.

@@ -11,7 +11,7 @@ use super::boundary_layer::{BoundaryLayer, Distance};
 use super::curvature::Curvature;
 use super::place::MetricPlace;
 use super::table::Table;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::atlas::Atlas;
 use crate::core::geometry::domain::Line;
 use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric2, Metric3, check_sizes};
@@ -34,7 +34,8 @@ impl From<Box<BadMetric>> for Fault {
         } else {
             format!("({}, {}, {}), u = {}, v = {}", p.x, p.y, p.z, uv.x, uv.y)
         };
-        Fault::new(bad.what).at(place).remedy("The metric must be positive and finite on the whole domain")
+        let fault = Fault::new(bad.what).of_kind(FaultKind::Metric).at(place);
+        fault.remedy("The metric must be positive and finite on the whole domain")
     }
 }
 
@@ -146,6 +147,10 @@ impl Field {
     /// A size that is no size, a formula that does not compile or leaves too much open, an unknown curve; the place of
     /// the specification goes into the fault.
     pub fn compile(spec: &FieldSpec, curves: &dyn Fn(&str) -> Option<Line>) -> Result<Field, Fault> {
+        Field::kind(spec, curves).map(Field).map_err(|fault| fault.of_kind(FaultKind::Metric))
+    }
+
+    fn kind(spec: &FieldSpec, curves: &dyn Fn(&str) -> Option<Line>) -> Result<Kind, Fault> {
         let lines = |names: &[String], field: &str, place: &String| -> Result<Vec<Line>, Fault> {
             let line = |name: &String| {
                 curves(name).ok_or_else(|| {
@@ -154,7 +159,7 @@ impl Field {
             };
             names.iter().map(line).collect()
         };
-        let kind = match spec {
+        Ok(match spec {
             FieldSpec::Uniform { h } => {
                 check_sizes(&[*h]).map_err(|what| Fault::new(what.replace("h1", "h")))?;
                 Kind::Uniform(Metric3::isotropic(*h))
@@ -176,8 +181,7 @@ impl Field {
                 let field = Curvature::new(*chord, *least, *far);
                 Kind::Curvature(field.map_err(|fault| at(fault, place))?)
             }
-        };
-        Ok(Field(kind))
+        })
     }
 
     /// A field by a table at the nodes of a triangle mesh in the parametric plane, log-Euclidean between them (spec 2.1.1);
@@ -186,7 +190,8 @@ impl Field {
     /// # Errors
     /// Lengths that differ, indices out of range, a triangle without area, a metric that is not positive definite.
     pub fn table(points: &[DVec2], triangles: &[[u32; 3]], metrics: Vec<Metric3>) -> Result<Field, Fault> {
-        Ok(Field(Kind::Table(Box::new(Table::new(points, triangles, &metrics)?))))
+        let table = Table::new(points, triangles, &metrics).map_err(|fault| fault.of_kind(FaultKind::Metric))?;
+        Ok(Field(Kind::Table(Box::new(table))))
     }
 
     /// Whether it gives a tensor of itself; a boundary layer without a size along its curves only cuts back others.

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::field::{MetricSource, Sizing};
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::tensor::Metric2;
 
 /// What a survey found at its points and near them.
@@ -96,6 +96,7 @@ impl Sizing {
         if survey.smallest < nothing {
             let p = survey.smallest_at;
             return Err(Fault::new(format!("The size falls to {:e}, as good as zero", survey.smallest))
+                .of_kind(FaultKind::Metric)
                 .at(format!("({}, {})", p.x, p.y))
                 .remedy("Bound the size from below, as in max(h, 0.001)"));
         }

@@ -1,6 +1,5 @@
 //! The background mesh of a mesh that was given: its triangles as they are, or its shape meshed anew.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -10,7 +9,7 @@ use super::graded::bounded;
 use super::of_domain::{FileLines, from_domain};
 use crate::core::background::adapt::Adapted;
 use crate::core::background::import::{implied_metric, import};
-use crate::core::case::{Case, MeshUse, Taking};
+use crate::core::case::{Case, MeshSource, MeshUse, Taking};
 use crate::core::discrete::curvature::curvature_sizes;
 use crate::core::discrete::edges::Triangles;
 use crate::core::discrete::given::implied_metric_in_space;
@@ -29,15 +28,20 @@ use crate::core::soup::mesh_file::MeshFile;
 /// of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
 pub(super) fn from_mesh(
     case: &Case,
-    path: &Path,
-    sol: Option<&Path>,
+    source: &MeshSource,
     taking: &Taking,
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     watch.tell(Stage::Read, 0, 0);
-    let mut file = read_mesh_watched(path, sol, watch)?;
+    let (mut file, place) = match source {
+        MeshSource::File { path, sol } => (read_mesh_watched(path, sol.as_deref(), watch)?, path.display().to_string()),
+        MeshSource::Memory(mesh) => {
+            let place = format!("the mesh \"{}\"", case.name);
+            mesh.check_lists().map_err(|fault| fault.at(place.clone()))?;
+            (MeshFile::clone(mesh), place)
+        }
+    };
     taking.scale(&mut file);
-    let place = path.display().to_string();
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
         return from_surface(case, &file, &place, taking, watch);
     }
@@ -77,7 +81,7 @@ pub(super) fn from_mesh(
 }
 
 /// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
-/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is the file's name.
+/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is what messages call it.
 fn from_surface(
     case: &Case,
     file: &MeshFile,
@@ -86,7 +90,7 @@ fn from_surface(
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     // What the case says of sizes has a place of its own.
-    let here = |fault: Fault| if fault.is_stop { fault } else { fault.at(place) };
+    let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
     let Sound { mesh, copied, regions, lines, mut repairs } = sound(file, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
     let converts = taking.used == Some(MeshUse::Triangles);

@@ -6,7 +6,7 @@ use super::shown::Shown;
 use crate::core::case::Case;
 use crate::core::case::parameters::Parameters;
 use crate::core::convert::converter::Converter;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::mesh::ids::NodeId;
 use crate::core::prepare::{Background, background};
 use crate::core::progress::Watch;
@@ -52,6 +52,7 @@ impl EditKind {
         parameters.set(key, value)?;
         if OF_BACKGROUND.contains(&key) {
             return Err(Fault::new(format!("{key} belongs to the background mesh and cannot change at a step"))
+                .of_kind(FaultKind::Parameter)
                 .remedy("Change it for the whole run"));
         }
         // As it is written everywhere else, so that a run reads back as it was.
