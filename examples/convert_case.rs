@@ -4,8 +4,8 @@
 //! cargo run --example convert_case [CASE] [MESH]
 //! ```
 //!
-//! CASE is the name of a built-in case or a file in TOML, `example1` where it is left out. MESH is the file to write; its
-//! extension says the format (`msh`, `mesh`, `vtu`, `obj`, `inp`, `ply`).
+//! CASE is the name of a built-in case or a file in TOML, `example1` where it is left out. MESH is the file to write;
+//! its extension says the format (`msh`, `mesh`, `vtu`, `obj`, `inp`, `ply`).
 
 use std::path::{Path, PathBuf};
 

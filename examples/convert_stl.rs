@@ -4,8 +4,8 @@
 //! cargo run --example convert_stl [STL] [SIZE]
 //! ```
 //!
-//! STL is a file in STL, or in another format that is read; a small wedge where it is left out. SIZE is the length of the
-//! sides of quadrilaterals, in the units of the file, 0.1 where it is left out.
+//! STL is a file in STL, or in another format that is read; a small wedge where it is left out. SIZE is the length of
+//! the sides of quadrilaterals, in the units of the file, 0.1 where it is left out.
 
 use std::process::ExitCode;
 

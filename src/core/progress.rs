@@ -8,6 +8,7 @@ use super::fault::Fault;
 
 /// The parts of a conversion, in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Stage {
     /// Reading the case or the mesh; counted in bytes.
     Read,

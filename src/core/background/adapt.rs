@@ -38,6 +38,7 @@ const NOT_MUCH_WORSE: f64 = 0.55;
 
 /// What the adaptation did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Adapted {
     /// Edges divided.
     pub divisions: usize,

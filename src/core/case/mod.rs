@@ -33,6 +33,7 @@ pub const VERSION: u32 = 1;
 
 /// Where the domain of a case comes from.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum DomainSource {
     /// Curves and the faces that they bound.
     Curves {
@@ -63,6 +64,7 @@ pub enum DomainSource {
 
 /// A case: everything that a conversion starts from.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Case {
     /// Short name: that of the file without its extension.
     pub name: String,
@@ -180,8 +182,8 @@ impl Case {
         Case::of_source(name, title, MeshSource::File { path, sol })
     }
 
-    /// The case that a mesh in memory is, called `name`: default parameters, the metric at its points or that of its own
-    /// triangles. The same mesh in a file converts to the same quadrilaterals.
+    /// The case that a mesh in memory is, called `name`: default parameters, the metric at its points or that of its
+    /// own triangles. The same mesh in a file converts to the same quadrilaterals.
     pub fn of_mesh_in_memory(name: impl Into<String>, mesh: impl Into<Arc<MeshFile>>) -> Case {
         let name = name.into();
         let title = format!("Mesh {name}");

@@ -1,4 +1,5 @@
-//! Where the mesh of a case is, and how it is used: its triangles or its shape, where it is folded, how far its charts may be stretched, its scale.
+//! Where the mesh of a case is, and how it is used: its triangles or its shape, where it is folded, how far its charts
+//! may be stretched, its scale.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,6 +13,7 @@ use crate::core::soup::mesh_file::MeshFile;
 
 /// Where a mesh is.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum MeshSource {
     /// In a file.
     File {

@@ -50,6 +50,7 @@ pub(super) struct Gates {
 
 /// How often what happened, since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Counts {
     /// Steps.
     pub steps: u64,

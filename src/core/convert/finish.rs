@@ -6,6 +6,7 @@ use super::worklist::{ListMark, Worklist};
 
 /// What the post-processing did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Finished {
     /// Changes of structure.
     pub cleaned_up: CleanedUp,

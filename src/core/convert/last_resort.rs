@@ -37,6 +37,7 @@ use crate::core::metric::measure::quad_quality;
 
 /// What the last resort did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Outcome {
     /// Triangles it was given.
     pub triangles: usize,

@@ -57,6 +57,7 @@ pub enum Part {
 
 /// Where the converter stands.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Phase {
     /// A base segment is to be selected.
     Select,

@@ -18,6 +18,7 @@ use crate::core::soup::mesh_file::MeshFile;
 
 /// The formats of meshes, read and written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// Gmsh, `.msh`.
     Msh,

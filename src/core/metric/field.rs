@@ -65,6 +65,7 @@ impl<T: MetricSource + ?Sized> MetricSource for Arc<T> {
 /// One field as a case gives it; several are intersected.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a case has a handful of them")]
+#[non_exhaustive]
 pub enum FieldSpec {
     /// The same size everywhere, in all directions.
     Uniform {

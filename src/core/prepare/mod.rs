@@ -24,6 +24,7 @@ use crate::core::progress::Watch;
 
 /// The background triangle mesh of a case with its metric.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Background {
     /// Triangles; every node with its metric.
     pub mesh: Mesh,

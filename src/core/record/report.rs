@@ -20,6 +20,7 @@ use crate::core::progress::Stage;
 
 /// Everything that is told about a conversion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Who made it.
     pub program: Program,
@@ -52,6 +53,7 @@ pub struct Report {
 
 /// Name and version of the program.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Program {
     /// Its name.
     pub name: String,
@@ -61,6 +63,7 @@ pub struct Program {
 
 /// A case as a report tells it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct CaseTold {
     /// Short name.
     pub name: String,
@@ -72,6 +75,7 @@ pub struct CaseTold {
 
 /// What the last resort (spec 2.10) made.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LastResort {
     /// Quadrilaterals made by it.
     pub quads: usize,

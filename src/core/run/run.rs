@@ -25,6 +25,7 @@ pub struct Edit {
 
 /// What an edit changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum EditKind {
     /// A parameter is given another value, both as [`Parameters::set`] takes them.
     Parameter {

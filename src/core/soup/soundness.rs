@@ -21,6 +21,7 @@ use faces::Faces;
 /// Everything that can be wrong with a mesh, in the order in which it is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Defect {
     /// There is neither a triangle nor a quadrilateral.
     NoElements,
