@@ -1,4 +1,5 @@
-//! Promise: background meshes are unit in their metric, whatever its size, stretching and direction (spec 3).
+//! Promise: background meshes are unit in their metric, whatever its size, stretching and direction (docs/algorithm.md,
+//! "Adaptation to the metric").
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;

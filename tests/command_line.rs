@@ -255,7 +255,7 @@ fn a_result_that_is_not_valid_is_told_and_not_written() {
     assert_eq!(code, 1, "{err}");
     assert!(
         out.contains("NOT VALID")
-            && err.contains("not sound")
+            && err.contains("is invalid")
             && err.contains("other sizes")
             && err.contains("No mesh was written"),
         "{out}{err}"

@@ -2,6 +2,9 @@
 //! figure that somebody has tampered with is told and never a crash.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/environment.rs"]
+mod environment;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -220,7 +223,7 @@ fn figures_with_bytes_changed_at_random_never_panic() {
         seed ^= seed << 17;
         (seed % below as u64) as usize
     };
-    let rounds = std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(3000);
+    let rounds = environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(3000);
     let mut read = 0;
     for _ in 0..rounds {
         let mut bytes = text.clone().into_bytes();

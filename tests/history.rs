@@ -2,6 +2,9 @@
 //! running there afresh gives; and what a history takes stays within its budget.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/environment.rs"]
+mod environment;
+
 use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
@@ -390,12 +393,8 @@ fn moves() -> impl Strategy<Value = Move> {
     ]
 }
 
-fn rounds() -> u32 {
-    std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(120)
-}
-
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(rounds()))]
+    #![proptest_config(ProptestConfig::with_cases(environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(120) as u32))]
 
     #[test]
     fn every_walk_of_stepping_seeking_and_editing_ends_in_the_bytes_of_a_fresh_run(

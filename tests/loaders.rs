@@ -5,15 +5,23 @@
 //! Its own program, since it counts all memory that is asked for.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/environment.rs"]
+mod environment;
+#[path = "common/grid.rs"]
+mod grid;
+#[path = "common/xor_shift.rs"]
+mod xor_shift;
+
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
+use grid::grid;
 use peak_alloc::PeakAlloc;
 use quadfront::core::formats::format::{Format, WriteOptions, read_bytes, write_to};
 use quadfront::core::soup::mesh_file::{Group, MeshFile};
+use xor_shift::XorShift;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -32,39 +40,10 @@ const HANGS: Duration = Duration::from_secs(20);
 static BEGUN: AtomicU64 = AtomicU64::new(0);
 static ROUND: AtomicU64 = AtomicU64::new(0);
 
-struct XorShift(u64);
-
-impl XorShift {
-    fn of(seed: u64) -> XorShift {
-        let mut random = XorShift(seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15 | 1);
-        (0..4).for_each(|_| _ = random.next());
-        random
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound.max(1) as u64) as usize
-    }
-}
-
 /// A wavy plate with two regions and a named side.
 fn plate(n: u32) -> MeshFile {
-    let mut mesh = MeshFile::default();
-    for k in 0..(n + 1) * (n + 1) {
-        let (x, y) = (f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n));
-        mesh.points.push(DVec3::new(x, y, 0.1 * x * (1.0 - y)));
-    }
-    for k in 0..n * n {
-        let a = k % n + k / n * (n + 1);
-        mesh.triangles.extend([[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]);
-        mesh.triangle_tags.extend([1 + u32::from(k % n > n / 2); 2]);
-    }
+    let mut mesh = grid(n, |x, y| 0.1 * x * (1.0 - y));
+    mesh.triangle_tags = (0..2 * n * n).map(|t| 1 + u32::from(t / 2 % n > n / 2)).collect();
     mesh.lines = (0..n).map(|k| [k, k + 1]).collect();
     mesh.line_tags = vec![3; n as usize];
     for (dimension, tag, name) in [(1, 3, "floor"), (2, 1, "left"), (2, 2, "right")] {
@@ -162,9 +141,8 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut XorShift) {
 
 #[test]
 fn no_mutation_of_a_file_takes_a_loader_down_or_more_memory_than_a_few_times_the_file() {
-    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
-    let limit = Duration::from_secs(number("QUADFRONT_SOAK_SECONDS").unwrap_or(2));
-    let first = number("QUADFRONT_SEED").unwrap_or(1);
+    let limit = Duration::from_secs(environment::number("QUADFRONT_SOAK_SECONDS").unwrap_or(2));
+    let first = environment::number("QUADFRONT_SEED").unwrap_or(1);
     let samples = samples();
     let start = Instant::now();
     std::thread::spawn(move || {

@@ -1,9 +1,13 @@
 //! Two ways to use a mesh: its triangles as they are, or its shape meshed anew; in the plane and in space, by words of a case.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/grid.rs"]
+mod grid;
+
 use std::path::Path;
 
 use glam::DVec3;
+use grid::grid;
 use quadfront::core::case::Case;
 use quadfront::core::convert::conversion::convert;
 use quadfront::core::discrete::chart::charts;
@@ -20,16 +24,8 @@ use quadfront::core::soup::soundness::{Allow, examine};
 
 /// A plate of `n` by `n` squares of two regions, bent up along a parabola.
 fn plate(n: u32, height: f64) -> MeshFile {
-    let mut mesh = MeshFile::default();
-    for k in 0..(n + 1) * (n + 1) {
-        let (x, y) = (f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n));
-        mesh.points.push(DVec3::new(x, y, height * x * x));
-    }
-    for k in 0..n * n {
-        let a = k % n + k / n * (n + 1);
-        mesh.triangles.extend([[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]);
-        mesh.triangle_tags.extend([if k % n < n / 2 { 7 } else { 9 }; 2]);
-    }
+    let mut mesh = grid(n, |x, _| height * x * x);
+    mesh.triangle_tags = (0..2 * n * n).map(|t| if t / 2 % n < n / 2 { 7 } else { 9 }).collect();
     for (tag, name) in [(7, "left plate"), (9, "right")] {
         mesh.groups.push(Group { dimension: 2, tag, name: name.to_owned() });
     }

@@ -1,6 +1,9 @@
 //! Meshes in space, without CAD: whatever the shape, they become sound meshes of quadrilaterals on the same surface.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/environment.rs"]
+mod environment;
+
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
@@ -356,7 +359,7 @@ fn damaged(seed: u64) -> MeshFile {
 /// `QUADFRONT_SOAK_ROUNDS` sets the number of rounds (`make soak`).
 #[test]
 fn damaged_surfaces_become_sound_meshes() {
-    let rounds = std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|text| text.parse().ok()).unwrap_or(12_u64);
+    let rounds = environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(12);
     for seed in 0..rounds {
         converted(&format!("seed {seed}"), &damaged(seed), Allow { branching: true, seams: true, ..Allow::default() });
     }

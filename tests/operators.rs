@@ -1,6 +1,9 @@
 //! Promise: any sequence of operators keeps the checks, and taking back gives identical bytes.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/environment.rs"]
+mod environment;
+
 use glam::DVec2;
 use proptest::prelude::*;
 use quadfront::core::kernel::tensor::Metric2;
@@ -154,7 +157,7 @@ fn apply(mesh: &mut Mesh, operation: Operation) -> Option<bool> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: rounds(), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(300) as u32, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_sequence_of_operators_keeps_the_checks_and_is_taken_back_exactly(
@@ -200,10 +203,6 @@ fn euler(mesh: &Mesh) -> i64 {
 }
 
 /// Many more in `make soak`.
-fn rounds() -> u32 {
-    std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(300)
-}
-
 fn two_triangles() -> Mesh {
     let set = TriangleSet {
         uv: vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y],

@@ -1,7 +1,10 @@
 //! Promise: long work tells how far it is, and ends soon when it is told to, with nothing but that to say.
 #![allow(clippy::unwrap_used)]
 
-use glam::DVec3;
+#[path = "common/grid.rs"]
+mod grid;
+
+use grid::grid;
 use quadfront::core::case::built_in;
 use quadfront::core::case::{Case, DomainSource};
 use quadfront::core::convert::conversion;
@@ -40,18 +43,10 @@ impl Watch for Witness {
     }
 }
 
-/// A wavy plate of `2 n^2` triangles.
+/// A wavy plate of `2 n^2` triangles, with coordinates of single precision.
 fn plate(n: u32) -> MeshFile {
-    let mut mesh = MeshFile::default();
-    for k in 0..(n + 1) * (n + 1) {
-        let (x, y) = (f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n));
-        let p = DVec3::new(x, y, 0.1 * libm::sin(6.0 * x) * libm::cos(5.0 * y));
-        mesh.points.push(p.as_vec3().as_dvec3());
-    }
-    for k in 0..n * n {
-        let a = k % n + k / n * (n + 1);
-        mesh.triangles.extend([[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]);
-    }
+    let mut mesh = grid(n, |x, y| 0.1 * libm::sin(6.0 * x) * libm::cos(5.0 * y));
+    mesh.points.iter_mut().for_each(|p| *p = p.as_vec3().as_dvec3());
     mesh
 }
 

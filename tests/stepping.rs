@@ -9,13 +9,6 @@ use quadfront::core::convert::phase::Phase;
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
-/// A hash of the canonical serialisation (FNV-1a): enough to tell states apart.
-fn fingerprint(converter: &Converter<'_>) -> u64 {
-    let mut bytes = Vec::new();
-    converter.write_state(&mut bytes);
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3))
-}
-
 /// Calls `look` with a converter of a built-in case at a coarse size.
 fn with_case(name: &str, size_scale: f64, look: impl FnOnce(Converter<'_>)) {
     let mut case = built_in::named(name).unwrap().unwrap();
@@ -34,7 +27,7 @@ fn running_is_a_loop_over_steps() {
             while *stepped.phase() != Phase::Done {
                 stepped.step().unwrap();
             }
-            assert_eq!(fingerprint(&ran), fingerprint(&stepped), "{name}");
+            assert_eq!(ran.fingerprint(), stepped.fingerprint(), "{name}");
             assert!(ran.mesh.elements().all(|e| ran.mesh.is_quad(e)));
             ran.mesh.check().unwrap();
         });
@@ -60,7 +53,7 @@ fn faces_at_the_same_time_end_in_the_same_state_as_one_after_another() {
                     assert!(stepped.mesh.elements_of(Some(to_come)).all(|e| stepped.mesh.is_triangle(e)));
                 }
             }
-            assert_eq!(fingerprint(&together), fingerprint(&stepped), "{name}");
+            assert_eq!(together.fingerprint(), stepped.fingerprint(), "{name}");
             assert_eq!((together.counts, together.finished), (stepped.counts, stepped.finished), "{name}");
             assert!(faces.is_sorted() && faces == stepped.mesh.faces(), "{name}: {faces:?}");
             stepped.mesh.check().unwrap();
@@ -75,14 +68,14 @@ fn every_walk_of_steps_forward_and_back_meets_the_same_states() {
     {
         with_case(name, size_scale, |mut converter| {
             let mut rolled_back = 0;
-            let mut states = vec![fingerprint(&converter)];
+            let mut states = vec![converter.fingerprint()];
             let mut events: Vec<Event> = Vec::new();
             converter.keep_history();
             while *converter.phase() != Phase::Done {
                 let event = converter.step().unwrap();
                 rolled_back += usize::from(matches!(event, Event::RolledBack { .. }));
                 events.push(event);
-                states.push(fingerprint(&converter));
+                states.push(converter.fingerprint());
             }
             assert!(rolled_back > 0, "{name} shows that rollbacks are taken back too");
             for kind in ["swept", "cleaned"] {
@@ -109,7 +102,7 @@ fn every_walk_of_steps_forward_and_back_meets_the_same_states() {
                         at += 1;
                     }
                 }
-                assert_eq!(fingerprint(&converter), states[at], "{name}, step {at}");
+                assert_eq!(converter.fingerprint(), states[at], "{name}, step {at}");
             }
         });
     }

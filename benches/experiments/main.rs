@@ -1,4 +1,4 @@
-//! The experiments behind the defaults (paper 4.3.1 to 4.3.7, spec 10): each switch of the conversion against the others, on
+//! The experiments behind the defaults (paper 4.3.1 to 4.3.7): each switch of the conversion against the others, on
 //! several backgrounds of each case, and what every built-in case comes to. Writes Markdown to standard output, the same
 //! bytes on every run; how far it is goes to standard error.
 #![allow(clippy::unwrap_used)]

@@ -60,7 +60,7 @@ pub const QUESTIONS: [Question; 8] = [
         of_the_front: true,
     },
     Question {
-        asks: "Are new top nodes placed, or smoothed by eq. (9)? (4.3.6, spec 10 rules 2 and 3)",
+        asks: "Are new top nodes placed, or smoothed by eq. (9)? (4.3.6)",
         defaults: "placement",
         others: &[Setting::With(&[("placement", "false")])],
         of_the_front: true,

@@ -10,6 +10,13 @@ mod plain_readers;
 mod read_back;
 mod refused;
 
+#[path = "../common/environment.rs"]
+mod environment;
+#[path = "../common/grid.rs"]
+mod grid;
+#[path = "../common/xor_shift.rs"]
+mod xor_shift;
+
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;

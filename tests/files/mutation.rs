@@ -9,6 +9,7 @@ use quadfront::core::soup::mesh_file::MeshFile;
 use quadfront::core::soup::soundness::examine;
 
 use super::foreign::SETS;
+use super::xor_shift::XorShift;
 use super::{MSH2, TEXT, bytes_of, data, plates};
 
 #[test]
@@ -42,17 +43,6 @@ fn samples() -> Vec<(Format, Vec<u8>)> {
         samples.extend(names.iter().map(|name| (format, fs::read(data(name)).unwrap())));
     }
     samples
-}
-
-struct XorShift(u64);
-
-impl XorShift {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % bound.max(1) as u64) as usize
-    }
 }
 
 /// Bytes changed, cut out, doubled, swapped for hostile numbers and words.
@@ -100,14 +90,12 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut XorShift) {
 /// `QUADFRONT_SOAK_ROUNDS` sets the number of rounds (`make soak`).
 #[test]
 fn no_mutation_of_a_file_makes_a_reader_panic_hang_or_break_its_promise() {
-    let rounds = std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|text| text.parse().ok()).unwrap_or(400u64);
+    let rounds = crate::environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(400);
     let samples = samples();
     let mut read = 0u64;
     for round in 0..rounds {
         for (sample, (format, bytes)) in samples.iter().enumerate() {
-            let mut random =
-                XorShift(0x9e37_79b9_7f4a_7c15 ^ (round * 64 + sample as u64 + 1).wrapping_mul(0xd134_2543_de82_ef95));
-            random.below(1);
+            let mut random = XorShift::of(round * 64 + sample as u64 + 1);
             let mut bytes = bytes.clone();
             mutate(&mut bytes, &mut random);
             let begin = Instant::now();
@@ -124,7 +112,7 @@ fn no_mutation_of_a_file_makes_a_reader_panic_hang_or_break_its_promise() {
     let sol = b"MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n2\n1 3\n1 0 1 0 0 1\n2 0 2 0 0 2\nEnd\n";
     for round in 0..rounds {
         let mut bytes = sol.to_vec();
-        mutate(&mut bytes, &mut XorShift(round + 1));
+        mutate(&mut bytes, &mut XorShift::of(round + 1));
         read += u64::from(medit::read_metric("a", &bytes, 2).is_ok());
     }
     assert!(read > rounds, "mutations are too wild to test what comes behind the header: {read}");

@@ -14,6 +14,7 @@ use quadfront::core::record::export::Export;
 use quadfront::core::soup::mesh_file::{Group, MeshFile};
 use quadfront::core::soup::soundness::{Allow, examine};
 
+use super::grid::grid;
 use super::{MSH2, TEXT, bytes_of, data};
 
 /// The groups of [`plate`]: dimension, name, tag; how long or large they are seen from above, and within which x and y.
@@ -30,16 +31,9 @@ const GROUPS: [(u8, &str, u32, [f64; 5]); 7] = [
 /// A plate of `2 n` by `2 n` squares, `n` a multiple of 4, bent up along a parabola: two regions and the line between them, two sides of
 /// it, a line across one region and one that ends within the other.
 pub fn plate(n: u32, height: f64) -> MeshFile {
-    let (n, mut mesh) = (2 * n, MeshFile::default());
-    for k in 0..(n + 1) * (n + 1) {
-        let (x, y) = (f64::from(k % (n + 1)) / f64::from(n), f64::from(k / (n + 1)) / f64::from(n));
-        mesh.points.push(DVec3::new(x, y, height * x * x));
-    }
-    for k in 0..n * n {
-        let a = k % n + k / n * (n + 1);
-        mesh.triangles.extend([[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]);
-        mesh.triangle_tags.extend([if k % n < n / 2 { 7 } else { 9 }; 2]);
-    }
+    let n = 2 * n;
+    let mut mesh = grid(n, |x, _| height * x * x);
+    mesh.triangle_tags = (0..2 * n * n).map(|t| if t / 2 % n < n / 2 { 7 } else { 9 }).collect();
     let sides = (0..(n + 1) * (n + 1)).flat_map(|a| [[a, a + 1], [a, a + n + 1]]);
     for side in sides.filter(|side| side[1] < (n + 1) * (n + 1) && (side[1] != side[0] + 1 || side[1] % (n + 1) != 0)) {
         let [p, q] = side.map(|k| mesh.points[k as usize]);

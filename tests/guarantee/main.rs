@@ -1,4 +1,5 @@
-//! Promise: every valid case becomes strictly convex quadrilaterals, its boundary untouched (spec 2.6, 2.10, 5).
+//! Promise: every valid case becomes strictly convex quadrilaterals, its boundary untouched (docs/algorithm.md, "What
+//! is guaranteed").
 //!
 //! Rounds of the random tests: 60 and 100, or what QUADFRONT_SOAK_ROUNDS says. QUADFRONT_SEED runs one case alone, and
 //! QUADFRONT_SHOW=1 prints its text, which the command line takes as it is.
@@ -12,6 +13,9 @@ mod random_case;
 mod random_metric;
 mod refusals;
 mod shape;
+
+#[path = "../common/environment.rs"]
+mod environment;
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -32,10 +36,6 @@ use random::Random;
 const SLOW: Duration = Duration::from_secs(20);
 /// Of so many cases one may be refused: curves that the generator puts too near to each other.
 const ONE_REFUSED_OF: usize = 30;
-
-fn number_from_environment(name: &str) -> Option<u64> {
-    std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name}={text} is not a number")))
-}
 
 /// The case of a seed, of 25 to 800 quadrilaterals.
 fn random_case(seed: u64) -> Case {
@@ -133,7 +133,7 @@ fn every_random_case_becomes_convex_quadrilaterals_with_its_boundary_untouched()
 /// Holds `one` against the cases of seeds from 0 on: as many as are asked for, unless the environment says how many.
 fn all_random_cases(rounds: u64, one: &(dyn Fn(u64) -> Outcome + Sync)) {
     let one = |seed| caught(|| one(seed));
-    if let Some(seed) = number_from_environment("QUADFRONT_SEED") {
+    if let Some(seed) = environment::number("QUADFRONT_SEED") {
         if std::env::var_os("QUADFRONT_SHOW").is_some() {
             println!("{}", random_case(seed).text);
         }
@@ -144,7 +144,7 @@ fn all_random_cases(rounds: u64, one: &(dyn Fn(u64) -> Outcome + Sync)) {
         }
         return;
     }
-    let rounds = number_from_environment("QUADFRONT_SOAK_ROUNDS").unwrap_or(rounds);
+    let rounds = environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(rounds);
     let (next, tally) = (AtomicU64::new(0), Mutex::new(Tally::default()));
     std::thread::scope(|scope| {
         for _ in 0..2 {

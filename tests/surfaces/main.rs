@@ -5,6 +5,9 @@
 mod faults;
 mod random;
 
+#[path = "../common/environment.rs"]
+mod environment;
+
 use std::path::Path;
 
 use glam::DVec3;

@@ -8,12 +8,12 @@ use quadfront::core::progress::Nobody;
 use super::{make, parsed};
 
 /// Rounds, or as many as `QUADFRONT_SOAK_ROUNDS` says.
-fn rounds(few: u32) -> u32 {
-    std::env::var("QUADFRONT_SOAK_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(few)
-}
-
-fn run<S: Strategy>(few: u32, strategy: &S, test: impl Fn(S::Value) -> Result<(), TestCaseError>) {
-    let config = ProptestConfig { cases: rounds(few), failure_persistence: None, ..ProptestConfig::default() };
+fn run<S: Strategy>(few: u64, strategy: &S, test: impl Fn(S::Value) -> Result<(), TestCaseError>) {
+    let config = ProptestConfig {
+        cases: crate::environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(few) as u32,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
     TestRunner::new_with_rng(config, proptest::test_runner::TestRng::deterministic_rng(Default::default()))
         .run(strategy, test)
         .unwrap();

@@ -1,4 +1,5 @@
-//! The background mesh made unit in the metric (spec 3): local remeshing by split, collapse, swap and smooth.
+//! The background mesh made unit in the metric (docs/algorithm.md, "Adaptation to the metric"): local remeshing by
+//! split, collapse, swap and smooth.
 //!
 //! Boundary edges and nodes are never touched. Every operation is judged first (exactly where it is topological) and then
 //! done; the metric only ranks. First a coarse mesh is refined from the longest edge down with Delaunay swaps in the

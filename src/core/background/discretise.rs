@@ -1,4 +1,5 @@
-//! Curves divided at equal metric arclength, with even loops (spec 2.9 and step 1 of 3).
+//! Curves divided at equal metric arclength, with even loops (docs/algorithm.md, "Curves divided at equal metric
+//! length", "Even loops").
 
 use glam::{DVec2, DVec3};
 

@@ -1,9 +1,10 @@
-//! An existing triangle mesh as background: checked, repaired where nothing is lost by it, and cut apart between regions.
+//! An existing triangle mesh as background: checked, repaired where nothing is lost by it, and cut apart between
+//! regions.
 //!
-//! What is refused: curved meshes, meshes of quadrilaterals alone, triangles without room that no neighbour can take in, edges of three
-//! triangles, overlaps, points that hang in sides beside a gap, and parts with an odd number of triangles. Lines that are in a group
-//! stay, also inside regions. Nodes at the same place are kept apart as the file has them: they are the two sides of a crack.
-//! Deliberately absent: reading files (`core/io`).
+//! What is refused: curved meshes, meshes of quadrilaterals alone, triangles without room that no neighbour can take
+//! in, edges of three triangles, overlaps, points that hang in sides beside a gap, and parts with an odd number of
+//! triangles. Lines that are in a group stay, also inside regions. Nodes at the same place are kept apart as the file
+//! has them: they are the two sides of a crack. Deliberately absent: reading files (`core/io`).
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,7 +18,7 @@ use crate::core::discrete::edges::Triangles;
 use crate::core::discrete::lines::on_edges;
 use crate::core::discrete::refuse::{capital, crossed, overlapping, used_points};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::{number, told};
+use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::kernel::parity::toggles;
 use crate::core::kernel::predicates::{firm, orient};
@@ -58,10 +59,10 @@ impl Imported {
     }
 }
 
-/// Takes in a planar triangle mesh. Regions are the tags of the triangles in ascending order. Of parts (triangles of one
-/// region that hang together by edges on no line) with an odd number of triangles two are made even by dividing the longest
-/// side on a line between them; one for which that is no way is refused, or where `split_odd` allows, its longest boundary segment
-/// that no other region shares is divided.
+/// Takes in a planar triangle mesh. Regions are the tags of the triangles in ascending order. Of parts (triangles of
+/// one region that hang together by edges on no line) with an odd number of triangles two are made even by dividing the
+/// longest side on a line between them; one for which that is no way is refused, or where `split_odd` allows, its
+/// longest boundary segment that no other region shares is divided.
 ///
 /// # Errors
 /// All that the module's doc says, with the triangles as the file counts them, and places.
@@ -84,8 +85,8 @@ pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
     Ok(import.finish())
 }
 
-/// A mesh of triangles and larger elements with these cut; one of quadrilaterals alone stays, and is refused: it is what a
-/// conversion ends with.
+/// A mesh of triangles and larger elements with these cut; one of quadrilaterals alone stays, and is refused: it is
+/// what a conversion ends with.
 fn cut_to_triangles(file: &MeshFile) -> (usize, Cow<'_, MeshFile>) {
     if file.polygons.is_empty() && (file.triangles.is_empty() || file.quads.is_empty()) {
         return (0, Cow::Borrowed(file));
@@ -209,7 +210,7 @@ impl<'a> Import<'a> {
 
     fn told(&self, triangles: impl IntoIterator<Item = usize>) -> String {
         let places: Vec<u32> = triangles.into_iter().map(|t| self.element[t]).collect();
-        capital(&self.given.elements_told(&places))
+        capital(&self.given.describe_elements(&places))
     }
 
     /// Each triangle once.
@@ -234,8 +235,8 @@ impl<'a> Import<'a> {
         tell(&mut self.repairs, doubles, "duplicate triangle was left out", "duplicate triangles were left out");
     }
 
-    /// Takes out triangles too flat to be any, whose corner the neighbour beyond gets, and takes points into the sides in which they
-    /// hang where there is no gap; lines run along what these sides become.
+    /// Takes out triangles too flat to be any, whose corner the neighbour beyond gets, and takes points into the sides
+    /// in which they hang where there is no gap; lines run along what these sides become.
     fn mend(&mut self) {
         let mut mesh = Triangles {
             points: self.places(),
@@ -290,7 +291,7 @@ impl<'a> Import<'a> {
             _ => format!("{} are too flat: the first is {}", self.told(flat.iter().copied()), too_thin(a, b, c)),
         };
         Err(Fault::new(what)
-            .at(format!("at {}, {}, {}", told(a), told(b), told(c)))
+            .at(format!("at {}, {}, {}", point_text(a), point_text(b), point_text(c)))
             .remedy("Mend the mesh there: collapse or swap its longest side")
             .showing(self.shapes(flat)))
     }
@@ -310,7 +311,7 @@ impl<'a> Import<'a> {
             };
             let (a, b) = (self.uv[group[0].low as usize], self.uv[group[0].high as usize]);
             return Err(Fault::new(what)
-                .at(format!("at the edge from {} to {}", told(a), told(b)))
+                .at(format!("at the edge from {} to {}", point_text(a), point_text(b)))
                 .remedy("Take out what is too much: in the plane an edge has one triangle on each side")
                 .showing(self.shapes(of())));
         }
@@ -380,7 +381,8 @@ impl<'a> Import<'a> {
         Ok(())
     }
 
-    /// Divides the sides on one edge, and their triangles with them. `halves` has the triangles that came from each by dividing.
+    /// Divides the sides on one edge, and their triangles with them. `halves` has the triangles that came from each by
+    /// dividing.
     fn divide(&mut self, sides: &[Side], halves: &mut FxHashMap<usize, Vec<usize>>) -> Result<(), Fault> {
         let [a, b] = [sides[0].low, sides[0].high];
         let middle = self.uv[a as usize].midpoint(self.uv[b as usize]);
@@ -400,7 +402,7 @@ impl<'a> Import<'a> {
             let parts = [[a, m, c], [m, b, c]];
             if parts.iter().any(|&h| !self.firm(h)) {
                 return Err(Fault::new(format!("{} is too thin to be divided", self.told([t])))
-                    .at(format!("at {}", told(middle)))
+                    .at(format!("at {}", point_text(middle)))
                     .remedy("Divide another boundary segment of its part in the mesh")
                     .showing(self.shapes([t])));
             }
@@ -441,11 +443,11 @@ impl<'a> Import<'a> {
         let is_beside = |t: &[u32; 3]| (0..3).any(|k| ends.contains(&[t[k], t[(k + 1) % 3]]));
         let beside =
             members.into_iter().zip(&mesh.set.triangles).filter(|(_, t)| is_beside(t)).map(|(t, _)| self.element[t]);
-        let beside = self.given.elements_told(&beside.collect::<Vec<_>>());
+        let beside = self.given.describe_elements(&beside.collect::<Vec<_>>());
         Fault::new(format!(
             "The boundary loop of {segments} segments leaves a part{region} with {count} {triangles}; an all-quad mesh needs an even count"
         ))
-        .at(format!("at {}, sides of {beside}", told(place)))
+        .at(format!("at {}, sides of {beside}", point_text(place)))
         .remedy(remedy)
         .showing(sides.into_iter().map(side))
     }

@@ -1,12 +1,12 @@
-//! Metric lengths of curves: each smooth piece with a table of its arclength (spec 3, step 1), and how many segments it is
-//! to have.
+//! Metric lengths of curves: each smooth piece with a table of its arclength (docs/algorithm.md, "Curves divided at
+//! equal metric length"), and how many segments it is to have.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::core::fault::Fault;
 use crate::core::geometry::domain_curve::DomainCurve;
-use crate::core::kernel::decimal::told;
+use crate::core::kernel::decimal::point_text;
 use crate::core::metric::field::MetricSource;
 
 /// A piece of a curve between two corners.
@@ -28,8 +28,8 @@ impl Piece {
         self.table[self.table.len() - 1].0
     }
 
-    /// Divides it at an entry of its table, its segments shared among the two by their lengths, with an even number more
-    /// than before or none; `None` where there is no such entry inside.
+    /// Divides it at an entry of its table, its segments shared among the two by their lengths, with an even number
+    /// more than before or none; `None` where there is no such entry inside.
     pub fn parted(&self, t: f64) -> Option<[Piece; 2]> {
         let k = self.table.iter().position(|entry| entry.0 == t).filter(|&k| k > 0 && k + 1 < self.table.len())?;
         let before = self.table[k].1;
@@ -71,8 +71,8 @@ impl Piece {
     }
 }
 
-/// The pieces of a curve, given by all its images in the plane (one, but on surfaces), between its corners, their tables halved until the quadrature agrees with itself; one segment
-/// each for now.
+/// The pieces of a curve, given by all its images in the plane (one, but on surfaces), between its corners, their
+/// tables halved until the quadrature agrees with itself; one segment each for now.
 ///
 /// # Errors
 /// Where the metric fails or is so large that the length overflows.
@@ -167,20 +167,20 @@ fn parameter(
     Ok(t)
 }
 
-/// Metric length of the derivative at `t`: on every face of the curve the same, but where sizes depend on the surface, of
-/// which the smallest rule.
+/// Metric length of the derivative at `t`: on every face of the curve the same, but where sizes depend on the surface,
+/// of which the smallest rule.
 fn speed(images: &[&DomainCurve], metric: &dyn MetricSource, t: f64) -> Result<f64, Fault> {
     let mut fastest = 0.0_f64;
     for curve in images {
         let (p, d) = curve.curve.at(t);
         let m = metric.metric(p).map_err(|bad| {
-            let place = format!("on the curve \"{}\" at {}", curve.name, told(bad.place.uv));
+            let place = format!("on the curve \"{}\" at {}", curve.name, point_text(bad.place.uv));
             about(curve, Fault::new(bad.what.clone()).at(place))
         })?;
         let square = m.norm2(d);
         if !square.is_finite() {
             let fault = Fault::new(format!("The curve \"{}\" is no finite number of target sizes long", curve.name));
-            return Err(about(curve, fault.at(format!("at {}", told(p))).remedy("Ask for larger sizes there")));
+            return Err(about(curve, fault.at(format!("at {}", point_text(p))).remedy("Ask for larger sizes there")));
         }
         fastest = fastest.max(square.max(0.0).sqrt());
     }

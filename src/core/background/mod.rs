@@ -1,4 +1,5 @@
-//! The background triangle mesh (spec 3): curves divided, loops made even, triangulated, adapted to the metric.
+//! The background triangle mesh (docs/algorithm.md, "The background mesh"): curves divided, loops made even,
+//! triangulated, adapted to the metric.
 
 pub mod length;
 pub mod discretise;

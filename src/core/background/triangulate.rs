@@ -1,5 +1,5 @@
-//! The constrained Delaunay triangulation of divided curves (spec 3, step 2), by face, cut apart along shared curves,
-//! cracks and repeated lines.
+//! The constrained Delaunay triangulation of divided curves (docs/algorithm.md, "Triangulation and cuts"), by face, cut
+//! apart along shared curves, cracks and repeated lines.
 
 use glam::DVec2;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -12,7 +12,7 @@ use crate::core::fault::Fault;
 use crate::core::geometry::crossing::crossing_of;
 use crate::core::geometry::domain::Domain;
 use crate::core::geometry::domain_curve::{CurveId, CurveKind};
-use crate::core::kernel::decimal::{number, told};
+use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::{firm, orient, positive};
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
@@ -22,7 +22,8 @@ use crate::core::metric::field::MetricSource;
 const ROUNDS: usize = 64;
 /// Two chords of a corner whose sine in space is below this are divided more finely.
 const LEAST_SINE: f64 = 0.02;
-/// So is a chord that leaves its curve by more than this part of the height of the triangle on it: the surface would bulge out.
+/// So is a chord that leaves its curve by more than this part of the height of the triangle on it: the surface would
+/// bulge out.
 const MOST_BULGE: f64 = 0.25;
 
 /// A chord of a divided curve: the curve, and which of its chords.
@@ -38,7 +39,7 @@ pub struct Clash {
 }
 
 /// Divides the curves of a domain in the metric and triangulates it; curves whose chords clash are divided more finely
-/// (spec 4).
+/// (docs/algorithm.md, "Curves divided at equal metric length").
 ///
 /// # Errors
 /// What [`super::discretise::divide`] refuses, and chords that still clash after many rounds.
@@ -100,7 +101,7 @@ type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 /// Triangulates divided curves: all faces, without what is outside and in holes. Regions are the faces by number.
 ///
 /// # Errors
-/// Chords that cross, touch or coincide, and triangles that are too thin (spec 2.10).
+/// Chords that cross, touch or coincide, and triangles that are too thin (docs/algorithm.md, "Rounding").
 ///
 /// # Panics
 /// Where a boundary loop is odd: [`Division::even_out`] has made them even.
@@ -110,7 +111,7 @@ pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<Triangula
         assert!(
             nodes.len().is_multiple_of(2),
             "the boundary loop through {} is odd",
-            told(mesh.set.uv[nodes[0] as usize])
+            point_text(mesh.set.uv[nodes[0] as usize])
         );
     }
     Ok(Triangulated { set: mesh.set, folded })
@@ -161,12 +162,13 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<(CutMesh, Vec<D
     Ok((mesh, folded))
 }
 
-/// The Delaunay triangulation of the nodes, and where each is in it. Scaled by a power of two, so that signs are those of
-/// the given coordinates.
+/// The Delaunay triangulation of the nodes, and where each is in it. Scaled by a power of two, so that signs are those
+/// of the given coordinates.
 ///
-/// Nodes are inserted from coarse to fine along each curve: every round halves the steps of the one before, so that each
-/// insertion changes little and begins beside the one before. (spade's bulk loaders need quadratic time for nodes that
-/// lie on a few lines, and the one that takes constraints walks a hash set of std, whose order differs between runs.)
+/// Nodes are inserted from coarse to fine along each curve: every round halves the steps of the one before, so that
+/// each insertion changes little and begins beside the one before. (spade's bulk loaders need quadratic time for nodes
+/// that lie on a few lines, and the one that takes constraints walks a hash set of std, whose order differs between
+/// runs.)
 fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVertexHandle>), Box<Clash>> {
     let largest = divided.nodes.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let scale = libm::ldexp(1.0, -libm::ilogb(largest));
@@ -353,11 +355,12 @@ impl<'a> Edges<'a> {
         firm(a, b, c)
     }
 
-    /// Swaps the longest side of triangles that are too thin where both triangles are firm then: three nodes of a curve that is
-    /// all but straight make such a triangle, which its neighbour can be divided into.
+    /// Swaps the longest side of triangles that are too thin where both triangles are firm then: three nodes of a curve
+    /// that is all but straight make such a triangle, which its neighbour can be divided into.
     fn turn_thin(&self, triangles: &mut [[u32; 3]], region: &[u32]) {
         let mut thin: Vec<usize> = (0..triangles.len()).filter(|&t| !self.is_firm(triangles[t])).collect();
-        // One swap may leave a neighbour as thin, which is then swapped in its turn: the thin triangles of a row, one by one.
+        // One swap may leave a neighbour as thin, which is then swapped in its turn: the thin triangles of a row, one
+        // by one.
         for _ in 0..ROUNDS {
             if thin.is_empty() {
                 return;
@@ -394,9 +397,10 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Chords of curves of sides with a corner of a triangle between them that lies flat or turned over in space, along the normal of
-    /// the surface there, and chords that leave their curve by much of the height of the triangle on them: between bent curves
-    /// that are near each other chords may cross in space that do not in the plane. (Smooth curves are left as they are: their sizes follow the surface.)
+    /// Chords of curves of sides with a corner of a triangle between them that lies flat or turned over in space, along
+    /// the normal of the surface there, and chords that leave their curve by much of the height of the triangle on
+    /// them: between bent curves that are near each other chords may cross in space that do not in the plane. (Smooth
+    /// curves are left as they are: their sizes follow the surface.)
     fn folded(&self, triangles: &[[u32; 3]]) -> Vec<DividedChord> {
         let Some(spatial) = &self.domain.spatial else { return Vec::new() };
         let is_polygonal = |chord: &DividedChord| self.domain.curves[chord.0.index()].curve.polygonal();
@@ -462,9 +466,9 @@ impl<'a> Edges<'a> {
             curves.iter().map(|id| format!("\"{}\"", self.domain.curves[id.index()].name)).collect();
         let fault = Fault::new(format!(
             "The nodes {}, {} and {} of {} make a triangle that is {}",
-            told(a),
-            told(b),
-            told(c),
+            point_text(a),
+            point_text(b),
+            point_text(c),
             names.join(", "),
             too_thin(a, b, c)
         ));
@@ -510,7 +514,7 @@ fn clash(domain: &Domain, chords: Vec<DividedChord>, verb: &str, at: DVec2) -> B
         [one, other, ..] => format!("The curves {} and {} {verb} when divided into segments", named(one), named(other)),
     };
     let fault = Fault::new(what)
-        .at(format!("at {}", told(at)))
+        .at(format!("at {}", point_text(at)))
         .remedy("Keep them further apart, ask for smaller sizes there, or fix larger numbers of segments");
     Box::new(Clash { chords, fault })
 }

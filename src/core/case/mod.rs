@@ -78,7 +78,7 @@ pub struct Case {
     pub domain: DomainSource,
     /// Metric fields, intersected; empty only with a mesh, whose own metric is then taken.
     pub fields: Vec<FieldSpec>,
-    /// Bound of the metric's gradation (spec 3, item 5), greater than 1; `None`: not bounded.
+    /// Bound of the metric's gradation (docs/algorithm.md, "Gradation"), greater than 1; `None`: not bounded.
     pub gradation: Option<f64>,
     /// Whether a boundary whose count of segments is odd, and fixed, may be given one segment more; otherwise it is refused.
     pub split_odd: bool,

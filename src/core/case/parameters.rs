@@ -1,15 +1,15 @@
-//! The parameters of a conversion: thresholds of the paper (spec 1) and limits. Radians here, degrees in files, on the
+//! The parameters of a conversion: thresholds of the paper and limits. Radians here, degrees in files, on the
 //! command line and in [`Parameters::text_of`].
 
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::spelling::nearest;
 
-/// Which front segment the next quadrilateral grows from (spec 2.2, 10).
+/// Which front segment the next quadrilateral grows from (docs/algorithm.md, "Selection of the base segment").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Selection {
     /// The paper's table 1: classes by frontal angles, within reach of the smallest H-value.
     Table1,
-    /// The shortest metric length.
+    /// The shortest physical length.
     Shortest,
     /// The smallest frontal angle.
     SmallestAngle,
@@ -17,7 +17,7 @@ pub enum Selection {
     Level,
 }
 
-/// What is held against `c` times the smallest H-value (spec 1, "the worst ambiguity").
+/// What is held against `c` times the smallest H-value (docs/algorithm.md, "The selection window").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelectionWindow {
     /// Metric length times H: near H for unit edges, larger for long ones.
@@ -33,15 +33,15 @@ pub enum SelectionWindow {
 pub struct Parameters {
     /// Every target size is multiplied by this.
     pub size_scale: f64,
-    /// The selection factor c of section 4.3.1: 1.5-2.0 in the paper, which used 2.0.
+    /// The selection factor c of section 4.3.3: 1.5-2.0 in the paper, which used 2.0.
     pub c: f64,
     /// Below this frontal angle the neighbouring front segment is the side edge (table 1).
     pub theta_rect: f64,
-    /// At or below this frontal angle a front corner is closed by a seam (section 4.3.7).
+    /// At or below this frontal angle a front corner is closed by a seam (section 4.3.6).
     pub theta_seam: f64,
     /// Above this frontal angle a corner is a reversal (fig. 12).
     pub theta_revr: f64,
-    /// A live side edge longer than this times the base is split (section 4.3.2).
+    /// A live side edge longer than this times the base is split (section 4.3.4, vi).
     pub side_split: f64,
     /// A side edge may be off its target direction by this (eq. 8).
     pub side_deviation: f64,
@@ -62,7 +62,8 @@ pub struct Parameters {
     /// Aim a side edge at the bisector of a frontal angle up to 225 degrees, and at the right angle beyond; off: always at
     /// the right angle, as the paper says.
     pub bisector: bool,
-    /// Place the new top nodes of each quadrilateral (spec 10, rule 2); off: the paper's eq. (9) on front nodes.
+    /// Place the new top nodes of each quadrilateral (docs/algorithm.md, "Placement of new top nodes"); off: the
+    /// paper's eq. (9) on front nodes.
     pub placement: bool,
     /// Smooth around each new quadrilateral (4.3.6).
     pub smoothing: bool,
@@ -152,9 +153,9 @@ impl Parameters {
         "max_quads",
     ];
 
-    /// The paper's own reading of everything (spec 1): its words where ours differ, the values that it used where it gives a
-    /// range. Front segments are chosen by physical length, side edges stand at right angles, nodes are moved by eq. (9) and
-    /// not placed.
+    /// The paper's own reading of everything (docs/algorithm.md, "Departures from the paper"): its words where ours
+    /// differ, the values that it used where it gives a range. Front segments are chosen by physical length, side edges
+    /// stand at right angles, nodes are moved by eq. (9) and not placed.
     pub fn paper() -> Parameters {
         Parameters {
             c: 2.0,

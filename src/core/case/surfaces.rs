@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::geometry::{self, known_curves, name, shape_of};
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
-use crate::core::geometry::frame::Frame;
+use crate::core::geometry::frame::AxisFrame;
 use crate::core::geometry::spec::SpaceShape;
 use crate::core::geometry::spec::SurfaceShape;
 use crate::core::geometry::spec::{ComplexSpec, SpaceCurveSpec, SurfaceFaceSpec, SurfaceSpec};
@@ -66,10 +66,10 @@ fn vectors(value: &Value<'_>) -> Result<Vec<DVec3>, Fault> {
 }
 
 /// Centre (default: the origin), axis (default: z) and start of something that turns.
-fn frame(table: &Table<'_>) -> Result<Frame, Fault> {
+fn frame(table: &Table<'_>) -> Result<AxisFrame, Fault> {
     let or = |key, default| table.get(key).map_or(Ok(default), |v| vector(&v));
     let start = table.get("start").map(|v| vector(&v)).transpose()?;
-    Frame::new(or("centre", DVec3::ZERO)?, or("axis", DVec3::Z)?, start).map_err(|fault| fault.at(table.place()))
+    AxisFrame::new(or("centre", DVec3::ZERO)?, or("axis", DVec3::Z)?, start).map_err(|fault| fault.at(table.place()))
 }
 
 fn range(table: &Table<'_>, keys: [&str; 2], default: [f64; 2]) -> Result<[f64; 2], Fault> {

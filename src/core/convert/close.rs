@@ -1,6 +1,6 @@
-//! Closing what is left of small loops (spec 2.7, 10 rule 4): quadrilaterals between the nodes of the loop, formed even where
-//! they are flat, mended by the rotation of an edge with a neighbour, by their collapse or by a smaller one set into them, and
-//! relaxed together with the elements around.
+//! Closing what is left of small loops (docs/algorithm.md, "Small loops"): quadrilaterals between the nodes of the
+//! loop, formed even where they are flat, mended by the rotation of an edge with a neighbour, by their collapse or by a
+//! smaller one set into them, and relaxed together with the elements around.
 
 use smallvec::SmallVec;
 

@@ -1,7 +1,8 @@
 //! Live components: triangles that are connected over their sides, and the dual graph of such.
 //!
-//! By 3T = 2E + B a component of T triangles with B sides on its boundary has T even exactly where B is even (spec 2.6),
-//! and only even ones can become quadrilaterals without a change of the boundary.
+//! By 3T = 2E + B a component of T triangles with B sides on its boundary has T even exactly where B is even
+//! (docs/algorithm.md, "The parity invariant"), and only even ones can become quadrilaterals without a change of the
+//! boundary.
 
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId};

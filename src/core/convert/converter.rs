@@ -1,8 +1,8 @@
 //! The converter as a resumable machine (paper 4.3): one elementary operation or decision a step.
 //!
 //! `step` looks at the phase, does one thing, and says what comes next and what it did. `run` is a loop over it. All
-//! changes go through the mesh's operators and so through the journal: an attempt that fails is taken back, and a person
-//! who steps back uses the same mechanism.
+//! changes go through the mesh's operators and so through the journal: an attempt that fails is taken back, and a
+//! person who steps back uses the same mechanism.
 
 mod formation;
 mod post_processing;
@@ -58,7 +58,7 @@ pub struct Counts {
     pub formed: u64,
     /// Of those, how many with another right side (4.3.4).
     pub right_replaced: u64,
-    /// Of those, how many by the other rescues of spec 2.4 (b, c).
+    /// Of those, how many with another left side or a Lee-Lo pair (docs/algorithm.md, "Rescue").
     pub rescued: u64,
     /// Attempts taken back.
     pub rolled_back: u64,
@@ -130,7 +130,8 @@ pub struct Converter<'a> {
     step_mark: Mark,
     /// Whether the gates are wide: every segment was put off and taken up again.
     second_pass: bool,
-    /// On surfaces: the faces, which are converted one after another, by region. Else none, and all is converted together.
+    /// On surfaces: the faces, which are converted one after another, by region. Else none, and all is converted
+    /// together.
     faces: Arc<[u32]>,
     /// Which of them is being converted; past the last one, none.
     face: usize,
@@ -156,8 +157,8 @@ pub struct Converter<'a> {
 }
 
 impl<'a> Converter<'a> {
-    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is lent
-    /// (`&sizing`) or shared (`Arc<Sizing>`).
+    /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is
+    /// lent (`&sizing`) or shared (`Arc<Sizing>`).
     pub fn new(mesh: Mesh, source: impl MetricSource + Send + Sync + 'a, parameters: Parameters) -> Self {
         let faces = if mesh.ground().is_some() { mesh.faces() } else { Vec::new() };
         let mut waiting = vec![0; faces.len()];
@@ -210,8 +211,8 @@ impl<'a> Converter<'a> {
         self.queue = None;
     }
 
-    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its event says
-    /// so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
+    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its
+    /// event says so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
     ///
     /// # Errors
     /// Where there is no such front segment now.
@@ -343,8 +344,8 @@ impl<'a> Converter<'a> {
         Ok(())
     }
 
-    /// Runs to the end, the faces at the same time: the same mesh to the last bit as one after another. Only from step 0, and where
-    /// no history is kept.
+    /// Runs to the end, the faces at the same time: the same mesh to the last bit as one after another. Only from step
+    /// 0, and where no history is kept.
     ///
     /// # Errors
     /// As [`Converter::step`].
@@ -359,7 +360,7 @@ impl<'a> Converter<'a> {
         }
         let total = self.mesh.element_count() as u64;
         watch.tell(Stage::Convert, 0, total);
-        let mut parts = self.mesh.parts();
+        let mut parts = self.mesh.face_meshes();
         let cancel = watch.cancel();
         let (sender, receiver) = std::sync::mpsc::channel();
         let mut done: Vec<Option<Result<Converter<'a>, Fault>>> = parts.iter().map(|_| None).collect();
@@ -519,7 +520,8 @@ impl<'a> Converter<'a> {
         ))
     }
 
-    /// Closes the next small loop that is left over (spec 2.7); what cannot be closed goes to the last resort together.
+    /// Closes the next small loop that is left over (docs/algorithm.md, "Small loops"); what cannot be closed goes to
+    /// the last resort together.
     fn step_close(&mut self, mut waiting: Vec<Component>, mut left: Vec<Component>) -> Result<(Phase, Event), Fault> {
         while let Some(component) = waiting.pop() {
             if let Some((quads, event)) = self.close(&component) {
@@ -551,7 +553,8 @@ impl<'a> Converter<'a> {
         (next, event)
     }
 
-    /// Matches the triangles of the next component that is left over (spec 2.10); past the last one all are converted.
+    /// Matches the triangles of the next component that is left over (docs/algorithm.md, "The last resort"); past the
+    /// last one all are converted.
     fn step_match(&mut self, left: Arc<[Component]>, at: usize) -> Result<(Phase, Event), Fault> {
         let Some(component) = left.get(at) else {
             let next = if self.parameters.post_processing {

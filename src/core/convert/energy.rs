@@ -1,4 +1,5 @@
-//! The energy that clean-up and global smoothing lower (spec 10), and the relaxation of one node by Newton's method.
+//! The energy that clean-up and global smoothing lower (docs/algorithm.md, "The energy"), and the relaxation of one
+//! node by Newton's method.
 //!
 //! Sum over corners of ((a^2 + b^2) / 2x)^2 - 1 (a, b: metric lengths of the corner's sides, x: their metric cross
 //! product; the corner's node gives the metric; 0 for a right angle with equal sides), plus for each edge the rational

@@ -235,7 +235,7 @@ pub enum Event {
         element: ElementId,
         /// Its nodes A, B, D, C.
         nodes: [NodeId; 4],
-        /// Its quality (spec 2.1.5).
+        /// Its quality (docs/algorithm.md, "Quality").
         quality: f64,
         /// Triangles that it ate.
         eaten: u8,
@@ -317,7 +317,7 @@ pub enum Event {
         /// Segments of the two loops, where nothing else had become of the one.
         segments: [u32; 2],
     },
-    /// A small loop was closed (spec 2.7).
+    /// A small loop was closed (docs/algorithm.md, "Small loops").
     Closed {
         /// Its segments.
         segments: u8,
@@ -328,7 +328,8 @@ pub enum Event {
     },
     /// Every segment is put off: all are taken up again with wider gates.
     SecondPass,
-    /// The triangles of a component that was left over were matched (spec 2.10, steps 1 to 4).
+    /// The triangles of a component that was left over were matched (docs/algorithm.md, "The last resort", steps 1 to
+    /// 3).
     Matched {
         /// Its triangles.
         triangles: usize,
@@ -339,7 +340,7 @@ pub enum Event {
         /// Steps in which the component becomes quadrilaterals.
         patches: usize,
     },
-    /// The last resort made quadrilaterals of a few triangles (spec 2.10, steps 4 and 5).
+    /// The last resort made quadrilaterals of a few triangles (docs/algorithm.md, "The last resort", steps 4 and 5).
     Patched {
         /// How.
         means: Means,

@@ -1,5 +1,5 @@
-//! Formation of the quadrilateral as the end of a transaction (paper 4.3.4, spec 2.5), its placement (spec 10, rule 2) and
-//! the parity of the loops that it touches (spec 2.6, 10 rule 8).
+//! Formation of the quadrilateral as the end of a transaction (paper 4.3.4), its placement and the parity of the loops
+//! that it touches (docs/algorithm.md, "Formation", "Placement of new top nodes", "Parity after formation").
 
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -124,7 +124,8 @@ impl Converter<'_> {
     }
 
     /// Places a new top node at the mean of the place at unit metric length along the side's target direction and the
-    /// parallelogram's corner, as far as everything around stays valid and good (spec 10, rule 2).
+    /// parallelogram's corner, as far as everything around stays valid and good (docs/algorithm.md, "Placement of new
+    /// top nodes").
     fn place(&mut self, base: &Base, element: ElementId, side: Side, tops: [NodeId; 2]) {
         let mesh = &self.mesh;
         let (node, other_top) = (tops[side.index()], tops[side.other().index()]);

@@ -1,5 +1,5 @@
-//! The last resort (spec 2.10): any component with an even number of positive triangles becomes strictly convex
-//! quadrilaterals, its boundary untouched.
+//! The last resort (docs/algorithm.md, "The guarantee"): any component with an even number of positive triangles
+//! becomes strictly convex quadrilaterals, its boundary untouched.
 //!
 //! 1. A maximum matching of neighbouring triangles whose union is strictly convex and not close to a triangle
 //!    ([`super::matching`]).
@@ -13,7 +13,7 @@
 //!    divided at its middle, and its triangles are filled by templates.
 //!
 //! Why this always succeeds: neighbours agree on which edges are divided; the templates are affine images of strictly
-//! convex ones, and affine maps keep that; no edge of the boundary is ever in the join. Step 2 is not in the spec's list:
+//! convex ones, and affine maps keep that; no edge of the boundary is ever in the join. Step 2 is a matter of quality:
 //! it replaces long paths of divided edges by single ones.
 //!
 //! All is planned first, in a [`Plan`], corner by corner verified exactly; only then is the mesh changed, patch by patch.

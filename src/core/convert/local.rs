@@ -1,5 +1,6 @@
 //! Local post-processing around a new quadrilateral (paper 4.3.6): the order of its four parts, structural enhancement, and
-//! area-weighted smoothing by eqs. (9) and (10), with the guards of spec 2.8. Seaming and splitting have modules of their own.
+//! area-weighted smoothing by eqs. (9) and (10), with guards (docs/algorithm.md, "Local smoothing"). Seaming and
+//! splitting have modules of their own.
 
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -14,7 +15,7 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::journal::Mark;
 
-/// Looks at edges for one enhancement: four times a ring's size (spec 2.8).
+/// Looks at edges for one enhancement: four times a ring's size (docs/algorithm.md, "Structural enhancement").
 const ENHANCEMENTS: u8 = 48;
 /// A smoothed node must not let the worst quality around fall below this share of what it was.
 const KEPT_QUALITY: f64 = 0.9;

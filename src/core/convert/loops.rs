@@ -1,4 +1,5 @@
-//! The loops of the front at the nodes where a step has changed it, for whoever watches (spec 2.6). Walked only when asked for.
+//! The loops of the front at the nodes where a step has changed it, for whoever watches (docs/algorithm.md, "The parity
+//! invariant"). Walked only when asked for.
 
 use smallvec::SmallVec;
 

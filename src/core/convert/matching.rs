@@ -1,5 +1,6 @@
-//! Maximum cardinality matching in a general graph (Edmonds 1965; spec 2.10, step 1), made for the dual graphs of
-//! triangulations: millions of vertices of degree at most three, of which a good start leaves few unmatched.
+//! Maximum cardinality matching in a general graph (Edmonds 1965; docs/algorithm.md, "The last resort", step 1), made
+//! for the dual graphs of triangulations: millions of vertices of degree at most three, of which a good start leaves
+//! few unmatched.
 //!
 //! The start takes edges by rank, best first, but serves vertices with one possibility left before all others
 //! (Karp & Sipser 1981: that loses no cardinality). Then one search for an augmenting path grows from each vertex left

@@ -1,5 +1,5 @@
-//! From triangles to quadrilaterals: the merging front (paper 4.3), the guarantee (spec 2.10), and what makes the mesh
-//! better in the end (spec 10).
+//! From triangles to quadrilaterals: the merging front (paper 4.3), the guarantee (docs/algorithm.md, "The guarantee"),
+//! and what makes the mesh better in the end (docs/algorithm.md, "Post-processing").
 
 pub mod event;
 pub mod phase;

@@ -25,7 +25,7 @@ pub struct Base {
     pub level: u16,
 }
 
-/// One way to try to form the quadrilateral of a base segment (spec 2.4, 10 rules 1, 7, 9).
+/// One way to try to form the quadrilateral of a base segment (docs/algorithm.md, "Rescue").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attempt {
     /// 0 is the paper's; then divisions that are forced; then every other edge at B, at A; last the Lee-Lo pairs.
@@ -145,7 +145,7 @@ pub enum Phase {
         /// Those that could not be closed: they go to the last resort.
         left: Vec<Component>,
     },
-    /// The triangles of the next component that is left over are to be matched: the last resort (spec 2.10).
+    /// The triangles of the next component that is left over are to be matched (docs/algorithm.md, "The last resort").
     Match {
         /// What is left over.
         left: Arc<[Component]>,

@@ -1,4 +1,4 @@
-//! The next way to try a quadrilateral whose formation was taken back (spec 2.4, 10 rules 1, 7, 9).
+//! The next way to try a quadrilateral whose formation was taken back (docs/algorithm.md, "Rescue").
 
 use super::converter::Converter;
 use super::phase::{Attempt, Base};
@@ -10,7 +10,7 @@ const ALTERNATIVES: u8 = 4;
 
 impl Converter<'_> {
     /// Finds the next attempt: divisions that are forced, then every other edge at B, then at A, then the Lee-Lo pairs of
-    /// the base triangle (10 rules 1, 7, 9).
+    /// the base triangle (docs/algorithm.md, "Rescue").
     pub(super) fn next_attempt(&self, base: &Base, failed: &Attempt) -> Option<Attempt> {
         let mut number = failed.number;
         loop {

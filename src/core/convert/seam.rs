@@ -1,6 +1,7 @@
 //! Front segment seaming (paper 4.3.6, fig. 18): two adjacent front segments with a small angle become one dead edge. Where one is
 //! much longer than the other, it is divided first: a transition seam (after Owen et al. 1999). Deliberately absent: their
-//! transition split, for unlike segments at angles that are not small; it can go on for ever (spec 2.8).
+//! transition split, for unlike segments at angles that are not small; it can go on for ever (docs/algorithm.md,
+//! "Seaming").
 
 use smallvec::SmallVec;
 
@@ -14,7 +15,8 @@ use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
 /// Segments whose lengths differ by more than this factor need a transition seam.
 const MOST_UNLIKE: f64 = 2.5;
-/// With this many dead elements at the node, angles up to `WIDE` are seamed too (Levik; spec 1).
+/// With this many dead elements at the node, angles up to `WIDE` are seamed too (after Levik; docs/algorithm.md,
+/// "Seaming").
 const CROWDED: usize = 5;
 /// So they are where the segments are shorter than this on average, in the metric: where sizes grow ahead of the front,
 /// columns must end, and this is where they do (docs/experiments.md).
@@ -22,8 +24,8 @@ const SHORT: f64 = 0.85;
 const WIDE: f64 = std::f64::consts::FRAC_PI_4;
 
 impl Converter<'_> {
-    /// Seams at a node of the front where the frontal angle is small enough and the guards of spec 2.8 hold; says why it
-    /// refuses where they do not. What was tried in vain is taken back.
+    /// Seams at a node of the front where the frontal angle is small enough and the guards hold (docs/algorithm.md,
+    /// "Seaming"); says why it refuses where they do not. What was tried in vain is taken back.
     pub(super) fn seam_at(&mut self, at: NodeId) -> Option<Event> {
         if !self.mesh.has_node(at) {
             return None;

@@ -1,4 +1,5 @@
-//! Side edges (paper 4.3.4, definition of left and right side edges, i to vii; spec 2.3). Left and right are one function.
+//! Side edges (paper 4.3.4, definition of left and right side edges, i to vii; docs/algorithm.md, "Side edges"). Left
+//! and right are one function.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,4 +1,4 @@
-//! T-joins (spec 2.10, step 3): sets of dual edges of which every triangle has one or three.
+//! T-joins (docs/algorithm.md, "The last resort", step 3): sets of dual edges of which every triangle has one or three.
 //!
 //! A perfect matching is one. Otherwise the triangles left over are paired by short paths J in the dual graph, over edges
 //! of any kind, and the join is the symmetric difference of the matching and J. The paths run along a tree that links the

@@ -1,5 +1,6 @@
-//! Recovery of the top edge (paper 4.3.4, definition of the top edge, i to vi; spec 2.4): swaps along the line, one a
-//! step, with node removal where no swap is possible. Every crossing is found by exact predicates.
+//! Recovery of the top edge (paper 4.3.4, definition of the top edge, i to vi; docs/algorithm.md, "Top edge"): swaps
+//! along the line, one a step, with node removal where no swap is possible. Every crossing is found by exact
+//! predicates.
 
 use super::event::{Event, Purpose, Why};
 use crate::core::kernel::predicates::orient;

@@ -73,7 +73,7 @@ pub struct Told<'e> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossings: Option<&'e [[NodeId; 2]]>,
     /// Segments of each loop of the front that runs through the nodes at which the front has changed, after the step; an even
-    /// number each (spec 2.6).
+    /// number each (docs/algorithm.md, "The parity invariant").
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loops: Option<&'e [u32]>,
     /// Worst quality of the elements around the last quadrilateral before and after, where its neighbourhood was improved

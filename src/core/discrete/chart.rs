@@ -1,4 +1,5 @@
-//! Charts: parts of a surface of triangles that can be laid into the plane one to one (spec 4).
+//! Charts: parts of a surface of triangles that can be laid into the plane one to one (docs/algorithm.md, "Charts of
+//! triangles").
 //!
 //! The features divide the surface into parts. A part with holes that does not lie flat enough is slit from one border to another
 //! along the shortest way; one that is no disc for another reason, or that the plane would stretch too much, is cut in two

@@ -169,7 +169,7 @@ impl Triangles {
     /// What triangles are called, as the file counts its elements ([`Elements::told`]).
     pub fn told(&self, triangles: &[u32]) -> String {
         let origin = |&triangle: &u32| self.origin.get(triangle as usize).copied().unwrap_or(triangle);
-        self.elements.told(&triangles.iter().map(origin).collect::<Vec<_>>())
+        self.elements.describe(&triangles.iter().map(origin).collect::<Vec<_>>())
     }
 
     /// Where a side begins and ends.

@@ -1,6 +1,7 @@
-//! Feature edges: those that the mesh of quadrilaterals must keep (spec 4). An edge is one where the surface ends (one triangle),
-//! where it branches (three or more), where its regions meet, where it is folded by more than an angle, where its two
-//! triangles disagree on which side is outside, or where it lies on a line that the file has a group for.
+//! Feature edges: those that the mesh of quadrilaterals must keep (docs/algorithm.md, "Features"). An edge is one where
+//! the surface ends (one triangle), where it branches (three or more), where its regions meet, where it is folded by
+//! more than an angle, where its two triangles disagree on which side is outside, or where it lies on a line that the
+//! file has a group for.
 
 use super::edges::{Edge, Edges, Triangles};
 
@@ -21,7 +22,7 @@ pub enum Feature {
     Line,
 }
 
-/// The folds that are features where nothing else is said (spec 4).
+/// The folds that are features where nothing else is said (docs/algorithm.md, "Features").
 pub const ANGLE: f64 = 40.0 / 180.0 * std::f64::consts::PI;
 
 /// What kind of feature each edge is by the shape alone, if it is one; `angle` is the fold (in radians: 0 where the surface is plane) beyond

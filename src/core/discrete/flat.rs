@@ -32,8 +32,8 @@ pub struct Bound {
 
 impl Default for Bound {
     fn default() -> Self {
-        // Far below what the arithmetic would bear (50 and 1e4, spec 4): the mesh is made in the plane, and follows its metric the
-        // better the less that changes from triangle to triangle.
+        // Far below what the arithmetic would bear (50 and 1e4; docs/algorithm.md, "Charts of triangles"): the mesh is
+        // made in the plane, and follows its metric the better the less that changes from triangle to triangle.
         Bound { shape: 4.0, area: 16.0 }
     }
 }

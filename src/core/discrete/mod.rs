@@ -1,5 +1,6 @@
-//! Surfaces that are known as triangles only, without CAD (spec 4): their feature edges, their charts (discs of triangles), and a
-//! one-to-one map of each chart onto a disc of the plane, in which it is meshed.
+//! Surfaces that are known as triangles only, without CAD (docs/algorithm.md, "Discrete surfaces"): their feature
+//! edges, their charts (discs of triangles), and a one-to-one map of each chart onto a disc of the plane, in which it
+//! is meshed.
 //!
 //! Deliberately absent: reading files (`core/io`), sizes (`core/metric`).
 

@@ -1,4 +1,5 @@
-//! What no surface can be made of and nobody can mend for certain: refused with the elements called as the file counts them, and shown.
+//! What no surface can be made of and nobody can mend for certain: refused with the elements called as the file counts
+//! them, and shown.
 
 use glam::{DVec2, DVec3};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -6,16 +7,18 @@ use rstar::{AABB, RTree};
 
 use super::edges::{Edges, Triangles};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::{number, told};
+use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::orient;
 use crate::core::soup::mesh_file::MeshFile;
 use crate::core::soup::soundness::{Defect, examine};
 
-/// Coordinates beyond this, and meshes smaller than one over this, cannot be reckoned with: products of several of them have no number.
+/// Coordinates beyond this, and meshes smaller than one over this, cannot be reckoned with: products of several of them
+/// have no number.
 pub(in crate::core) const LARGEST: f64 = 1e30;
 /// A surface smaller than this part of how far it is from the origin has too few digits for its normals.
 const FAR: f64 = 5e-8;
-/// A polygon whose pieces face each other, so that no more than this part of their areas is left as a whole, crosses itself.
+/// A polygon whose pieces face each other, so that no more than this part of their areas is left as a whole, crosses
+/// itself.
 const CROSSED: f64 = 0.2;
 /// A polygon smaller than this part of its length squared has no area.
 const FLAT: f64 = 1e-6;
@@ -32,7 +35,8 @@ pub(super) fn place(p: DVec3) -> String {
 /// Whether the triangles that are made of a file have points that can be reckoned with; which of the points they have.
 ///
 /// # Errors
-/// No triangles, or too many; points that are not there, not finite, beyond [`LARGEST`], or all nearer to each other than one over it.
+/// No triangles, or too many; points that are not there, not finite, beyond [`LARGEST`], or all nearer to each other
+/// than one over it.
 pub(in crate::core) fn used_points(
     file: &MeshFile,
     triangles: &[[u32; 3]],
@@ -59,7 +63,7 @@ pub(in crate::core) fn used_points(
             let Some(used) = used.get_mut(k as usize) else {
                 let what = format!(
                     "{} has the point {}, and there are {}",
-                    capital(&file.elements_told(&[*origin])),
+                    capital(&file.describe_elements(&[*origin])),
                     u64::from(k) + 1,
                     file.points.len()
                 );
@@ -74,8 +78,8 @@ pub(in crate::core) fn used_points(
     if let Some(&first) = beyond.first() {
         let p = place(file.points[first as usize]);
         let what = match beyond.len() {
-            1 => format!("{} is at {p}", capital(&file.points_told(&beyond))),
-            _ => format!("{} are not where points can be, the first at {p}", capital(&file.points_told(&beyond))),
+            1 => format!("{} is at {p}", capital(&file.describe_points(&beyond))),
+            _ => format!("{} are not where points can be, the first at {p}", capital(&file.describe_points(&beyond))),
         };
         let remedy = format!("Coordinates must be finite numbers no larger than {LARGEST:e}");
         let with = |t: &&[u32; 3]| t.iter().any(|k| beyond.binary_search(k).is_ok());
@@ -120,8 +124,8 @@ pub(in crate::core) fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Whether polygons that were cut cross themselves. What stands next to each other in `triangles` and comes from the same element are
-/// the pieces of one.
+/// Whether polygons that were cut cross themselves. What stands next to each other in `triangles` and comes from the
+/// same element are the pieces of one.
 ///
 /// # Errors
 /// Those that do.
@@ -162,7 +166,7 @@ pub(in crate::core) fn crossed(file: &MeshFile, triangles: &[[u32; 3]], origins:
         corners.iter().map(|&k| file.points[k as usize]).collect::<Vec<_>>()
     };
     let verb = if bad.len() == 1 { "crosses itself" } else { "cross themselves" };
-    Err(Fault::new(format!("{} {verb}", capital(&file.elements_told(&bad))))
+    Err(Fault::new(format!("{} {verb}", capital(&file.describe_elements(&bad))))
         .at(format!("at {}", place(corners(&bad[0])[0])))
         .remedy("Give the corners in the order in which they lie around it, or cut it into triangles")
         .showing(bad.iter().map(corners)))
@@ -182,14 +186,15 @@ pub(super) fn one_sided(file: &MeshFile, mesh: &Triangles, edges: &Edges) -> Res
     let at = mesh.points[mesh.side(first[0])[0] as usize];
     Err(Fault::new(format!(
         "The surface has one side only, as a Moebius strip: however its triangles are turned, some disagree with their neighbours, here {}",
-        file.elements_told(&origins)
+        file.describe_elements(&origins)
     ))
     .at(format!("at {}", place(at)))
     .remedy("Cut a gap across it: a mesh has an outside")
     .showing(conflicts.iter().map(|[side, _]| mesh.side(*side).map(|k| mesh.points[k as usize]).to_vec())))
 }
 
-/// Whether a mesh in the plane, its triangles anticlockwise, covers no place twice and has no points that hang in sides.
+/// Whether a mesh in the plane, its triangles anticlockwise, covers no place twice and has no points that hang in
+/// sides.
 ///
 /// # Errors
 /// Triangles that overlap, and points that hang.
@@ -210,8 +215,8 @@ pub(in crate::core) fn overlapping(
     if let Some(&first) = bad.first() {
         let named: Vec<u32> = bad.iter().map(|&t| origins[t as usize]).collect();
         let at = corners(&triangles[first as usize]).iter().sum::<DVec3>() / 3.0;
-        return Err(Fault::new(format!("{} overlap", capital(&file.elements_told(&named))))
-            .at(format!("at {}", told(at.truncate())))
+        return Err(Fault::new(format!("{} overlap", capital(&file.describe_elements(&named))))
+            .at(format!("at {}", point_text(at.truncate())))
             .remedy("Take out what is too much: in the plane a place belongs to one triangle")
             .showing(bad.iter().map(|&t| corners(&triangles[t as usize]).to_vec())));
     }
@@ -224,8 +229,8 @@ pub(in crate::core) fn overlapping(
     let more = hanging.count.saturating_sub(own.len() as u64);
     let and = if more > 0 { format!(" and {more} more") } else { String::new() };
     let first = points[nodes[0] as usize];
-    Err(Fault::new(format!("{}{and} {verb}", capital(&file.points_told(&own))))
-        .at(format!("at {}", told(first.truncate())))
+    Err(Fault::new(format!("{}{and} {verb}", capital(&file.describe_points(&own))))
+        .at(format!("at {}", point_text(first.truncate())))
         .remedy("Divide that side there, or mesh the shape anew (--use shape)")
         .showing(nodes.iter().map(|&k| vec![points[k as usize]])))
 }

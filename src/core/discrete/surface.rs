@@ -1,5 +1,5 @@
 //! A surface of triangles as a domain: each chart is a face; borders of charts become curves between the points where they meet,
-//! divided once for all faces that share them, as the curves of a case are (spec 2.9, 4).
+//! divided once for all faces that share them, as the curves of a case are (docs/algorithm.md, "Charts of triangles").
 
 use std::sync::Arc;
 
@@ -13,8 +13,8 @@ use super::flat::Bound;
 use crate::core::fault::Fault;
 use crate::core::geometry::complex::{Lifted, assemble};
 use crate::core::geometry::domain::Domain;
+use crate::core::geometry::face_surface::FaceSurface;
 use crate::core::geometry::facets::Facets;
-use crate::core::geometry::ground::Ground;
 use crate::core::geometry::image::Image;
 use crate::core::geometry::lifting::Piece;
 use crate::core::geometry::named_curve::NamedCurve;
@@ -32,7 +32,7 @@ const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
 const LEAST_SIZE: f64 = 1.0 / 6.0;
 /// Such elements leave the surface by no more than about this part of its size.
 const MOST_AWAY: f64 = 0.003;
-/// Growth of such sizes from one element to the next (spec 3).
+/// Growth of such sizes from one element to the next (docs/algorithm.md, "Sizes where none are given").
 const GRADATION: f64 = 1.3;
 
 /// A surface laid into the plane.
@@ -64,8 +64,8 @@ struct Link {
     at: u32,
 }
 
-/// Divides a surface at its features (folds beyond `angle`, in radians) into charts and makes a domain of them; `regions` are the
-/// names of its regions, and `bound` is how much a chart may be stretched.
+/// Divides a surface at its features (folds beyond `angle`, in radians) into charts and makes a domain of them;
+/// `regions` are the names of its regions, and `bound` is how much a chart may be stretched.
 ///
 /// # Errors
 /// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that. [`Fault::stopped`].
@@ -126,7 +126,7 @@ pub fn surface(
             repeated: Vec::new(),
             place: String::new(),
         });
-        lifts.push(Lifted { ground: Ground::Facets(facets), loops, cracks: Vec::new(), repeated: Vec::new() });
+        lifts.push(Lifted { surface: FaceSurface::Facets(facets), loops, cracks: Vec::new(), repeated: Vec::new() });
     }
     let domain = assemble(&curves, &vertices, &specs, lifts)?;
     let region = |chart: &Chart| regions[mesh.region[chart.triangles[0] as usize] as usize].clone();
@@ -155,8 +155,9 @@ impl Surface {
     }
 }
 
-/// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the mean
-/// length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it) and what leaves the surface by 0.3 % of its size, and growing by 1.3 at most from one element to the next.
+/// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the
+/// mean length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it) and what leaves
+/// the surface by 0.3 % of its size, and growing by 1.3 at most from one element to the next.
 pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     let edges = Edges::of(&mesh.triangles);
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
@@ -210,8 +211,9 @@ pub(super) fn sides(chart: &Chart) -> impl Iterator<Item = Vec<[u32; 2]>> + '_ {
     })
 }
 
-/// The chains of all borders, and for each edge of the surface that lies on one where. A chain goes on through a point where just two
-/// border edges meet that are shared by the same charts, are both features or both not, and lie on the same line or on none.
+/// The chains of all borders, and for each edge of the surface that lies on one where. A chain goes on through a point
+/// where just two border edges meet that are shared by the same charts, are both features or both not, and lie on the
+/// same line or on none.
 fn chains(
     mesh: &Triangles,
     edges: &Edges,

@@ -1,8 +1,8 @@
-//! glTF 2.0, as text (`.gltf`, buffers within or beside it) or in one file (`.glb`); the crate `gltf` parses and validates the
-//! document. Triangles, strips and fans of the default scene (of all scenes where none is named) are read, with the nodes'
-//! transforms applied; each node with a mesh becomes a group. Points at one place are welded, since glTF repeats a point where
-//! its normal or texture differs. Deliberately absent: writing (glTF has no quadrilaterals), materials, skins, morph
-//! targets; points and lines are counted as skipped.
+//! glTF 2.0, as text (`.gltf`, buffers within or beside it) or in one file (`.glb`); the crate `gltf` parses and
+//! validates the document. Triangles, strips and fans of the default scene (of all scenes where none is named) are
+//! read, with the nodes' transforms applied; each node with a mesh becomes a group. Points at one place are welded,
+//! since glTF repeats a point where its normal or texture differs. Deliberately absent: writing (glTF has no
+//! quadrilaterals), materials, skins, morph targets; points and lines are counted as skipped.
 
 mod bytes;
 
@@ -32,12 +32,13 @@ const MOST_TIMES: usize = 12;
 /// Whatever the size of its files, this much it may take.
 const ALWAYS: usize = 64 << 20;
 
-/// Reads a mesh from the bytes of a glTF document; buffers beside it are looked for in `folder` only, and not at all without
-/// one.
+/// Reads a mesh from the bytes of a glTF document; buffers beside it are looked for in `folder` only, and not at all
+/// without one.
 ///
 /// # Errors
-/// Documents that are not valid glTF 2.0; extensions that are required and not known here (Draco and other compressed meshes), by
-/// name; buffers that are missing, lie elsewhere, or end too soon; nodes with two parents; indices that point nowhere.
+/// Documents that are not valid glTF 2.0; extensions that are required and not known here (Draco and other compressed
+/// meshes), by name; buffers that are missing, lie elsewhere, or end too soon; nodes with two parents; indices that
+/// point nowhere.
 pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) -> Result<MeshFile, Fault> {
     pace.goes_on(0, bytes.len());
     let (document, blob) = document(name, bytes)?;
@@ -69,7 +70,7 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
     let keep = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
     let mut of_triangle = mesh.triangles.iter();
     mesh.triangle_tags.retain(|_| of_triangle.next().is_some_and(keep));
-    mesh.texture = scene.texture.of_all(&mesh);
+    mesh.texture = scene.texture.filled(&mesh);
     if let Some(texture) = &mut mesh.texture {
         let mut of_triangle = mesh.triangles.iter();
         texture.triangles.retain(|_| of_triangle.next().is_some_and(keep));
@@ -197,11 +198,11 @@ impl Scene<'_> {
             Some(indices) => Box::new(self.buffers.indices(self.name, &indices)?),
             None => Box::new(0..positions.count() as u32),
         };
-        let first_place = self.texture.places.len();
+        let first_place = self.texture.uv.len();
         if let Some(accessor) = primitive.get(&gltf::Semantic::TexCoords(0)) {
-            self.buffers.texture(&accessor, &mut self.texture.places);
+            self.buffers.texture(&accessor, &mut self.texture.uv);
         }
-        let places = self.texture.places.len() - first_place;
+        let places = self.texture.uv.len() - first_place;
         let most = if primitive.mode() == Mode::Triangles { count / 3 } else { count };
         self.mesh.triangles.reserve(most);
         self.mesh.triangle_tags.reserve(most);
@@ -212,9 +213,9 @@ impl Scene<'_> {
             self.mesh.triangles.push(t.map(|corner| first as u32 + corner));
             self.mesh.triangle_tags.push(tag);
             let place = |corner: u32| {
-                if (corner as usize) < places { first_place as u32 + corner } else { Texture::NOWHERE }
+                if (corner as usize) < places { first_place as u32 + corner } else { Texture::NONE }
             };
-            self.texture.place_triangle(self.mesh.triangles.len() - 1, t.map(place));
+            self.texture.set_triangle(self.mesh.triangles.len() - 1, t.map(place));
         };
         let [mut first_corner, mut a, mut b] = [0; 3];
         for (i, corner) in corners.enumerate() {

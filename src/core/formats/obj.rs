@@ -1,5 +1,5 @@
-//! Wavefront OBJ: vertices, faces with their texture coordinates and lines, and their groups or objects. Deliberately absent:
-//! everything else (normals, materials) is passed over.
+//! Wavefront OBJ: vertices, faces with their texture coordinates and lines, and their groups or objects. Deliberately
+//! absent: everything else (normals, materials) is passed over.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -43,11 +43,11 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
             Some(b"vt") => {
                 // One that is no place on a texture is none: the faces there have no texture then.
                 let mut coordinate = || words.next().and_then(parse_real).unwrap_or(f64::NAN);
-                texture.places.push(DVec2::new(coordinate(), coordinate()));
+                texture.uv.push(DVec2::new(coordinate(), coordinate()));
             }
             Some(b"f") => {
                 places.clear();
-                places.extend(words.clone().map(|word| place(word, texture.places.len())));
+                places.extend(words.clone().map(|word| place(word, texture.uv.len())));
                 take_corners(&s, words, mesh.points.len(), "face", &mut largest, &mut corners)?;
                 let tag = names.tag(&mut mesh);
                 faces += 1;
@@ -56,13 +56,13 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                         mesh.counting.triangles.push(mesh.triangles.len(), faces);
                         mesh.triangles.push([a, b, c]);
                         mesh.triangle_tags.push(tag);
-                        texture.place_triangle(mesh.triangles.len() - 1, [places[0], places[1], places[2]]);
+                        texture.set_triangle(mesh.triangles.len() - 1, [places[0], places[1], places[2]]);
                     }
                     [a, b, c, d] => {
                         mesh.counting.quads.push(mesh.quads.len(), faces);
                         mesh.quads.push([a, b, c, d]);
                         mesh.quad_tags.push(tag);
-                        texture.place_quad(mesh.quads.len() - 1, [places[0], places[1], places[2], places[3]]);
+                        texture.set_quad(mesh.quads.len() - 1, [places[0], places[1], places[2], places[3]]);
                     }
                     [] | [_] | [_, _] => return Err(s.fault("A face has fewer than three vertices")),
                     _ => {
@@ -93,8 +93,8 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         let what = format!("A face or line has the vertex {}, and there are {}", largest.0, mesh.points.len());
         return Err(s.fault_at(largest.1, what));
     }
-    mesh.counting.in_one_row = true;
-    mesh.texture = texture.of_all(&mesh);
+    mesh.counting.shared = true;
+    mesh.texture = texture.filled(&mesh);
     let has = |dimension| mesh.groups.iter().any(|group| group.dimension == dimension);
     let (faces, lines) = (has(2), has(1));
     if !faces {
@@ -164,14 +164,15 @@ fn corner(word: &[u8], so_far: usize) -> Option<u32> {
     u32::try_from(index).ok().filter(|&index| index < u32::MAX)
 }
 
-/// The zero-based texture coordinate of `v/vt` or `v/vt/vn`; [`Texture::NOWHERE`] where there is none.
+/// The zero-based texture coordinate of `v/vt` or `v/vt/vn`; [`Texture::NONE`] where there is none.
 fn place(word: &[u8], so_far: usize) -> u32 {
     let place = word.split(|&b| b == b'/').nth(1).unwrap_or_default();
     // Numbered as vertices are.
-    corner(place, so_far).unwrap_or(Texture::NOWHERE)
+    corner(place, so_far).unwrap_or(Texture::NONE)
 }
 
-/// Writes points, triangles and quadrilaterals, and the lines that are in a group of their own, in groups where they have names.
+/// Writes points, triangles and quadrilaterals, and the lines that are in a group of their own, in groups where they
+/// have names.
 ///
 /// # Errors
 /// What `out` says.

@@ -1,7 +1,8 @@
-//! PLY (Stanford): the elements `vertex` and `face`, in text or binary; the crate `ply-rs-bw` parses. Tags are properties of faces:
-//! `region`, and `line1` to `line4` for lines along their sides (the first from the first corner to the second; 0 for none). Names of
-//! groups are comments (`comment region 7 left plate`). Deliberately absent: all other elements (edges among them, which common
-//! readers refuse) and properties, colours and normals; triangle strips are counted as skipped.
+//! PLY (Stanford): the elements `vertex` and `face`, in text or binary; the crate `ply-rs-bw` parses. Tags are
+//! properties of faces: `region`, and `line1` to `line4` for lines along their sides (the first from the first corner
+//! to the second; 0 for none). Names of groups are comments (`comment region 7 left plate`). Deliberately absent: all
+//! other elements (edges among them, which common readers refuse) and properties, colours and normals; triangle strips
+//! are counted as skipped.
 
 use std::io::{self, Write};
 
@@ -26,8 +27,8 @@ const KINDS: [(u8, &str); 2] = [(1, "line"), (2, "region")];
 /// Properties of faces with the tags of lines along their sides.
 const SIDES: [&str; 4] = ["line1", "line2", "line3", "line4"];
 
-/// Reads a mesh from the bytes of a PLY file: points, triangles, quadrilaterals and polygons, with the lines, tags and names that
-/// [`write`](fn@write) writes.
+/// Reads a mesh from the bytes of a PLY file: points, triangles, quadrilaterals and polygons, with the lines, tags and
+/// names that [`write`](fn@write) writes.
 ///
 /// # Errors
 /// What is wrong with the file, with the line where it is text; and faces whose vertex does not exist.
@@ -75,7 +76,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
             }
         }
     }
-    mesh.counting.in_one_row = true;
+    mesh.counting.shared = true;
     mesh.counting.points = Count::From(0);
     let points = mesh.points.len();
     let elements =
@@ -285,8 +286,8 @@ fn number(value: &Property) -> Option<f64> {
     })
 }
 
-/// Writes points, triangles and quadrilaterals as text, in double precision, with the tag of each as `region`; lines that are in a
-/// group of their own as tags of the first face's side there; and the names of these groups as comments.
+/// Writes points, triangles and quadrilaterals as text, in double precision, with the tag of each as `region`; lines
+/// that are in a group of their own as tags of the first face's side there; and the names of these groups as comments.
 ///
 /// # Errors
 /// What `out` says.

@@ -1,5 +1,6 @@
-//! The live sector between two front segments at a node, walked from a front segment (spec 2.1.4): frontal angles are
-//! stored per end of a segment and not per node, since a pinched node has several sectors.
+//! The live sector between two front segments at a node, walked from a front segment (docs/algorithm.md, "Front, loops
+//! and frontal angles"): frontal angles are stored per end of a segment and not per node, since a pinched node has
+//! several sectors.
 
 use serde::Serialize;
 use smallvec::SmallVec;

@@ -57,7 +57,8 @@ impl Segment {
         }
     }
 
-    /// What must be below c Hmin for the segment to be within reach (4.3.3, step ii; the readings of spec 1).
+    /// What must be below c Hmin for the segment to be within reach (4.3.3, step ii; the readings of docs/algorithm.md,
+    /// "The selection window").
     pub fn window(&self, window: SelectionWindow) -> f64 {
         match window {
             SelectionWindow::HValue => self.h_value,

@@ -1,4 +1,4 @@
-//! From the words of a case to curves that meet at vertices.
+//! From the specifications in a case to curves that meet at vertices.
 
 use glam::DVec2;
 use rstar::RTree;
@@ -9,40 +9,56 @@ use super::course::Course;
 use super::domain_curve::{CurveId, CurveKind, DomainCurve};
 use super::spec::{CurveSpec, FaceSpec};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::told;
+use crate::core::kernel::decimal::point_text;
+use crate::core::kernel::spelling::suggestion;
 
-/// How messages call a loop of a face: its single curve where it has one, else its number.
+/// The name of loop `i` of a face in messages.
 pub fn loop_name(spec: &FaceSpec, i: usize) -> String {
     if i == 0 { format!("outer loop of \"{}\"", spec.name) } else { format!("hole {i} of \"{}\"", spec.name) }
 }
 
-/// A fault with the place of what it is about, where there is one.
+/// A fault with the place in the case that it is about, if that is known.
 pub fn placed(fault: Fault, place: &str) -> Fault {
     if place.is_empty() { fault } else { fault.at(place) }
+}
+
+/// The fault of a second `kind` ("curve", "face") with the same name.
+pub(super) fn second(kind: &str, name: &str, place: &str) -> Fault {
+    placed(Fault::new(format!("There are two {kind}s \"{name}\"")), place).remedy("Rename one of them")
+}
+
+/// The fault of a face that names an unknown curve.
+pub(super) fn unknown_curve<'a>(face: &FaceSpec, name: &str, known: impl Iterator<Item = &'a str>) -> Fault {
+    let fault = Fault::new(format!("The face \"{}\" names the curve \"{name}\", which does not exist", face.name));
+    let remedy = suggestion(name, known).unwrap_or_else(|| "Add the curve, or name another one".to_owned());
+    placed(fault.remedy(remedy), &face.place)
+}
+
+/// The fault of a case without faces.
+pub(super) fn no_face(remedy: &str) -> Fault {
+    Fault::new("There is no face to mesh").remedy(remedy)
 }
 
 /// The curves of each loop of a face: the outer one, then the holes.
 pub type Lists = Vec<Vec<CurveId>>;
 
-/// Resolves the names of the faces; makes the curves that are used, in the order of the case.
+/// Resolves the names in the faces and builds the curves that they use, in the order of the case.
 ///
 /// # Errors
-/// Names that are unknown, given twice or used wrongly, and curves that are no curves.
+/// Names that are unknown, given twice or used wrongly, and invalid curves.
 pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCurve>, Vec<Lists>), Fault> {
     let mut by_name: FxHashMap<&str, usize> = FxHashMap::default();
     for (i, spec) in specs.iter().enumerate() {
         if by_name.insert(&spec.name, i).is_some() {
-            return Err(placed(Fault::new(format!("There are two curves \"{}\"", spec.name)), &spec.place)
-                .remedy("Rename one of them"));
+            return Err(second("curve", &spec.name, &spec.place));
         }
     }
     if faces.is_empty() {
-        return Err(Fault::new("There is no face to mesh").remedy("Add a face with an outer loop"));
+        return Err(no_face("Add a face with an outer loop"));
     }
     for (i, face) in faces.iter().enumerate() {
         if faces[..i].iter().any(|f| f.name == face.name) {
-            return Err(placed(Fault::new(format!("There are two faces \"{}\"", face.name)), &face.place)
-                .remedy("Rename one of them"));
+            return Err(second("face", &face.name, &face.place));
         }
     }
     for face in faces {
@@ -55,26 +71,14 @@ pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCur
     let mut used: Vec<Option<(CurveKind, u32)>> = vec![None; specs.len()];
     let mut loops_by_spec: Vec<Vec<Vec<usize>>> = Vec::new();
     for (f, face) in faces.iter().enumerate() {
-        let find = |name: &String| {
-            by_name.get(name.as_str()).copied().ok_or_else(|| {
-                let fault =
-                    Fault::new(format!("The face \"{}\" names the curve \"{name}\", which is not there", face.name));
-                let nearest = specs.iter().map(|s| (strsim::damerau_levenshtein(name, &s.name), &s.name)).min();
-                placed(
-                    match nearest {
-                        Some((_, near)) => fault.remedy(format!("The nearest known name is \"{near}\"")),
-                        None => fault.remedy("The case has no curves"),
-                    },
-                    &face.place,
-                )
-            })
-        };
         let mut claim = |name: &String, kind: CurveKind| -> Result<usize, Fault> {
-            let i = find(name)?;
+            let known = || specs.iter().map(|spec| spec.name.as_str());
+            let i = *by_name.get(name.as_str()).ok_or_else(|| unknown_curve(face, name, known()))?;
             match used[i] {
                 Some((CurveKind::Boundary, _)) if kind == CurveKind::Boundary => {}
                 Some(_) => {
-                    let what = format!("The curve \"{name}\" is a crack or a repeated line and something else besides");
+                    let what =
+                        format!("The curve \"{name}\" is a crack or a repeated line, and is listed a second time");
                     return Err(placed(Fault::new(what), &face.place).remedy("Name it in one list only"));
                 }
                 None => used[i] = Some((kind, f as u32)),
@@ -99,9 +103,8 @@ pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCur
         let Some((kind, face)) = *usage else { continue };
         let named = |fault: Fault| placed(fault.at(format!("curve \"{}\"", spec.name)), &spec.place);
         if spec.segments == Some(0) {
-            return Err(named(
-                Fault::new("It is to have 0 segments").remedy("Give at least 1, or leave the number out"),
-            ));
+            let fault = Fault::new("Its number of segments is 0");
+            return Err(named(fault.remedy("Give at least 1, or leave the number out")));
         }
         ids[i] = CurveId(curves.len() as u32);
         let internal = (kind != CurveKind::Boundary).then_some(face);
@@ -124,12 +127,12 @@ pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCur
     Ok((curves, lists))
 }
 
-/// Joins ends that are within the tolerance into vertices, and makes the fine polylines between them.
+/// Merges curve ends within the tolerance into vertices, and makes the fine polylines between them.
 ///
 /// # Errors
 /// Curves of zero length.
 pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Result<Vec<DVec2>, Fault> {
-    // Ends that were given as numbers come first: where they meet computed ones, theirs is the place.
+    // Ends given by coordinates come first: where they meet computed ones, the vertex takes the given coordinates.
     let mut ends: Vec<(bool, usize, usize, DVec2)> = Vec::new();
     for (i, c) in curves.iter().enumerate() {
         ends.push((!c.curve.ends_given(), i, 0, c.curve.start()));
@@ -139,7 +142,7 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
     let mut tree: RTree<GeomWithData<[f64; 2], u32>> = RTree::new();
     let mut vertices: Vec<DVec2> = Vec::new();
     for &(_, i, which, p) in &ends {
-        // The tree works on coordinates of order 1, so that no square underflows.
+        // The tree works with coordinates of order 1, so that no square underflows.
         let q = [p.x / size, p.y / size];
         let known =
             tree.nearest_neighbor(q).filter(|v| vertices[v.data as usize].distance(p) <= tolerance).map(|v| v.data);
@@ -160,8 +163,8 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
             let p = short.map_or(c.first(), |w| w[0].1);
             return Err(placed(
                 Fault::new(format!("The curve \"{}\" has (nearly) zero length", c.name))
-                    .at(format!("at {}", told(p)))
-                    .remedy("Take it, or the point too many, out"),
+                    .at(format!("at {}", point_text(p)))
+                    .remedy("Remove the curve, or the superfluous point"),
                 &c.place,
             ));
         }
@@ -169,8 +172,8 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
     Ok(vertices)
 }
 
-/// Joins ends that are the same place to the last bit into vertices, and makes the fine polylines between them: for images
-/// of sides of triangles, whose places are the triangles' own.
+/// Merges curve ends that are equal to the last bit into vertices, and makes the fine polylines between them: for
+/// images of triangle edges, whose ends are nodes of the triangles.
 pub fn join_equal_ends(curves: &mut [DomainCurve]) -> Vec<DVec2> {
     let mut known: FxHashMap<[u64; 2], u32> = FxHashMap::default();
     let mut vertices: Vec<DVec2> = Vec::new();

@@ -1,46 +1,49 @@
-//! Faces on surfaces that share curves (paper 3.1; spec 2.9): each face gets a chart, each curve an image in the chart of
-//! every face that it bounds, and all charts lie side by side in the plane of an [`Atlas`]. What comes out is a [`Domain`] of
-//! that plane, which knows what its curves and vertices are in space.
+//! Faces on surfaces that share curves (paper 3.1; docs/algorithm.md, "Charts and the atlas", "Curves shared by
+//! faces"): each face gets a chart, each curve an image in the chart of every face that it bounds, and all charts lie
+//! side by side in the plane of an [`Atlas`]. What comes out is a [`Domain`] of that plane, which knows what its curves
+//! and vertices are in space.
 //!
-//! Here: which chart a face gets, and how all are set side by side. How images are chained to loops is in `lifting`, a surface
-//! that is a face as a whole in `whole_surface`.
+//! This module chooses the chart of each face and places the charts side by side. `lifting` chains images into loops,
+//! `whole_surface` makes a face of a surface without loops.
 
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use super::assembly::{join_ends, join_equal_ends, loop_name, placed};
+use super::assembly::{join_ends, join_equal_ends, loop_name, no_face, placed, second, unknown_curve};
 use super::atlas::Atlas;
 use super::chart::{Chart, singular_edges};
 use super::course::Course;
+use super::curve::extent;
 use super::domain::{Borders, Domain, Extent, Spatial};
 use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
-use super::ground::Ground;
+use super::face_surface::FaceSurface;
 use super::lifting::{Lift, Piece};
 use super::named_curve::NamedCurve;
-use super::space_curve::{SpaceCurve, told_xyz};
+use super::space_curve::SpaceCurve;
 use super::spec::{ComplexSpec, FaceSpec, SurfaceFaceSpec};
 use super::surface::{Edge, NurbsSurface};
 use super::whole_surface::{FacePart, whole};
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::point_text;
 
-/// Ends of curves in space nearer than this part of the size of all are one vertex.
+/// Ends of curves in space closer than this fraction of the total size are one vertex.
 const SAME_VERTEX: f64 = 1e-9;
 
-/// Builds the domain of faces on surfaces. Faces stand in it by name.
+/// Builds the domain of faces on surfaces; its faces are sorted by name.
 ///
 /// # Errors
-/// Surfaces and curves that are none; names that are unknown, given twice or used wrongly; curves that do not lie on the
-/// surface of their face, with the distance; loops that do not close on their surface; and what [`Domain::build`] refuses.
+/// Invalid surfaces and curves; names that are unknown, given twice or used wrongly; curves that do not lie on the
+/// surface of their face, with the distance; loops that do not close on their surface; and what [`Domain::build`]
+/// refuses.
 pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
     let surfaces = surfaces(spec)?;
     let find = |name: &str| surfaces.iter().find(|(known, _)| known == name).map(|(_, s)| Arc::clone(s));
     let mut curves: Vec<NamedCurve> = Vec::new();
     for given in &spec.curves {
         if curves.iter().any(|c| c.name == given.name) {
-            let fault = Fault::new(format!("There are two curves \"{}\"", given.name)).remedy("Rename one of them");
-            return Err(placed(fault, &given.place));
+            return Err(second("curve", &given.name, &given.place));
         }
         let curve = SpaceCurve::new(&given.shape, &find)
             .map_err(|fault| placed(fault.at(format!("curve \"{}\"", given.name)), &given.place))?;
@@ -56,15 +59,14 @@ pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
     let mut faces: Vec<&SurfaceFaceSpec> = spec.faces.iter().collect();
     faces.sort_by(|a, b| a.face.name.cmp(&b.face.name));
     if let Some(w) = faces.windows(2).find(|w| w[0].face.name == w[1].face.name) {
-        let fault = Fault::new(format!("There are two faces \"{}\"", w[0].face.name)).remedy("Rename one of them");
-        return Err(placed(fault, &w[1].face.place));
+        return Err(second("face", &w[0].face.name, &w[1].face.place));
     }
     if faces.is_empty() {
-        return Err(Fault::new("There is no face to mesh").remedy("Add a face"));
+        return Err(no_face("Add a face"));
     }
     for face in faces {
         let surface = find(&face.surface).ok_or_else(|| {
-            let what = format!("The face \"{}\" lies on \"{}\", which is not there", face.face.name, face.surface);
+            let what = format!("The face \"{}\" lies on \"{}\", which does not exist", face.face.name, face.surface);
             placed(Fault::new(what).remedy("Add it as [[surface]]"), &face.face.place)
         })?;
         if face.face.outer.is_empty() {
@@ -85,15 +87,14 @@ pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
 
 fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Fault> {
     let mut surfaces: Vec<(String, Arc<NurbsSurface>)> = Vec::new();
-    // Curves in space, for surfaces that are swept; curves on surfaces come after those.
+    // Swept surfaces may use curves in space only: curves on surfaces are built later.
     let swept = |name: &str| {
         let given = spec.curves.iter().find(|c| c.name == name)?;
         SpaceCurve::new(&given.shape, &|_| None).ok()
     };
     for given in &spec.surfaces {
         if surfaces.iter().any(|(name, _)| *name == given.name) {
-            let fault = Fault::new(format!("There are two surfaces \"{}\"", given.name)).remedy("Rename one of them");
-            return Err(placed(fault, &given.place));
+            return Err(second("surface", &given.name, &given.place));
         }
         let surface = given
             .shape
@@ -104,7 +105,7 @@ fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Faul
     Ok(surfaces)
 }
 
-/// Joins ends of curves in space into vertices; ends that were given as numbers come first, theirs is the place.
+/// Merges ends of curves in space into vertices; ends given by coordinates come first, and their coordinates are kept.
 fn join_in_space(curves: &mut [NamedCurve]) -> Vec<DVec3> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for p in curves.iter().flat_map(|c| c.curve.polyline()) {
@@ -118,7 +119,7 @@ fn join_in_space(curves: &mut [NamedCurve]) -> Vec<DVec3> {
         }
     }
     ends.sort_by_key(|e| (e.0, e.1, e.2));
-    // Cells of a grid wider than the tolerance; the neighbours of a cell are looked into too.
+    // A grid with cells wider than the tolerance, so that the search visits a cell and its neighbours.
     let cell = |p: DVec3| {
         let q = ((p - low) / (8.0 * tolerance.max(f64::MIN_POSITIVE))).floor();
         [q.x as i64, q.y as i64, q.z as i64]
@@ -145,9 +146,9 @@ fn join_in_space(curves: &mut [NamedCurve]) -> Vec<DVec3> {
     vertices
 }
 
-/// A face in its chart: the images of its curves, chained.
+/// A face in its chart: the images of its curves, chained into loops.
 pub(in crate::core) struct Lifted {
-    pub ground: Ground,
+    pub surface: FaceSurface,
     /// Outer loop, holes.
     pub loops: Vec<Vec<Piece>>,
     pub cracks: Vec<Piece>,
@@ -158,18 +159,8 @@ pub(in crate::core) struct Lifted {
 fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
     let spec = &part.spec;
     let find = |name: &String| {
-        curves.iter().position(|c| c.name == *name).ok_or_else(|| {
-            let what = format!("The face \"{}\" names the curve \"{name}\", which is not there", spec.name);
-            let nearest = curves.iter().map(|c| (strsim::damerau_levenshtein(name, &c.name), &c.name)).min();
-            let fault = Fault::new(what);
-            placed(
-                match nearest {
-                    Some((_, near)) => fault.remedy(format!("The nearest known name is \"{near}\"")),
-                    None => fault.remedy("The case has no curves"),
-                },
-                &spec.place,
-            )
-        })
+        let known = || curves.iter().map(|c| c.name.as_str());
+        known().position(|known| known == name).ok_or_else(|| unknown_curve(spec, name, known()))
     };
     let numbers = |names: &[String]| names.iter().map(find).collect::<Result<Vec<_>, _>>();
     let outer = numbers(&spec.outer)?;
@@ -206,22 +197,20 @@ fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
                 .collect()
         };
         let (cracks, repeated) = (lines(&spec.cracks)?, lines(&spec.repeated)?);
-        return Ok(Lifted { ground: Ground::Chart(chart), loops, cracks, repeated });
+        return Ok(Lifted { surface: FaceSurface::Chart(chart), loops, cracks, repeated });
     }
     Err(placed(refusal.unwrap_or_else(|| Fault::new(format!("The face \"{}\" has no chart", spec.name))), &spec.place))
 }
 
-/// Charts in which a face with these outer curves may lie: about the singular point that is nearest to them, then the
-/// others; the parametric plane where there is none, or last.
+/// Candidate charts of a face with these outer curves: one about each singular point, the nearest to the curves first,
+/// and then the parametric plane.
 fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[NamedCurve]) -> Vec<Chart> {
     let points: Vec<DVec3> = outer.iter().flat_map(|&c| curves[c].curve.polyline()).collect();
     let domain = surface.domain();
     let mut edges: Vec<(f64, Edge)> = singular_edges(surface)
         .into_iter()
         .map(|edge| {
-            let (value, along) = (domain[edge.axis][usize::from(edge.last)], domain[1 - edge.axis][0]);
-            let uv = if edge.axis == 0 { DVec2::new(value, along) } else { DVec2::new(along, value) };
-            let apex = surface.at(uv, 1).p;
+            let apex = surface.at(edge.uv(domain[1 - edge.axis][0], domain[edge.axis][usize::from(edge.last)]), 1).p;
             (points.iter().map(|p| p.distance(apex)).fold(f64::INFINITY, f64::min), edge)
         })
         .collect();
@@ -231,7 +220,7 @@ fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[NamedCurve
     charts
 }
 
-/// Where a whole surface was divided between its poles, each hole and line belongs to the half in which it lies.
+/// Assigns holes and lines of a whole surface that is divided between its poles to the half in which they lie.
 fn keep_own(part: &mut FacePart, curves: &[NamedCurve]) -> Result<(), Fault> {
     let Some((axis, [first, last])) = part.half else { return Ok(()) };
     let chart = Chart::sheet(Arc::clone(&part.surface));
@@ -257,16 +246,15 @@ fn keep_own(part: &mut FacePart, curves: &[NamedCurve]) -> Result<(), Fault> {
     spec.repeated.retain(|line| is_own(std::slice::from_ref(line)));
     part.spec = spec;
     let Some(name) = crossing else { return Ok(()) };
-    let fault =
-        Fault::new(format!("The curve \"{name}\" crosses the line at which its surface is divided between its poles"))
-            .remedy("Turn the surface's axis, so that this line lies elsewhere, or give the face an outer loop");
+    let fault = Fault::new(format!("The curve \"{name}\" crosses the line that divides its surface between the poles"))
+        .remedy("Rotate the axis of the surface to move this line, or give the face an outer loop");
     Err(placed(fault, &part.spec.place))
 }
 
-/// An image in the order of all: its curve, its face, its place in a loop (the loop and the number in it), what it is.
-type Placed = (usize, usize, Option<(usize, usize)>, CurveKind, Piece);
+/// An image with its curve, its face, its position in a loop (the loop and the index in it) and its kind.
+type PlacedImage = (usize, usize, Option<(usize, usize)>, CurveKind, Piece);
 
-/// Puts the lifted faces side by side and makes the domain of them.
+/// Places the lifted faces side by side and makes a domain of them.
 pub(in crate::core) fn assemble(
     curves: &[NamedCurve],
     vertices: &[DVec3],
@@ -275,14 +263,11 @@ pub(in crate::core) fn assemble(
 ) -> Result<Domain, Fault> {
     let bounds: Vec<[DVec2; 2]> = lifts
         .iter()
-        .map(|lifted| {
-            let places = lifted.loops.iter().flatten().flat_map(|piece| piece.image.places());
-            places.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
-        })
+        .map(|lifted| extent(lifted.loops.iter().flatten().flat_map(|piece| piece.image.points())).into())
         .collect();
-    let atlas = Arc::new(Atlas::new(lifts.iter().map(|l| l.ground.clone()).collect(), &bounds));
-    // Every piece by curve, then by face, so that the images of one curve stand together.
-    let mut pieces: Vec<Placed> = Vec::new();
+    let atlas = Arc::new(Atlas::new(lifts.iter().map(|l| l.surface.clone()).collect(), &bounds));
+    // All pieces sorted by curve, then by face, so that the images of one curve are consecutive.
+    let mut pieces: Vec<PlacedImage> = Vec::new();
     for (f, lifted) in lifts.into_iter().enumerate() {
         for (i, chain) in lifted.loops.into_iter().enumerate() {
             for (k, piece) in chain.into_iter().enumerate() {
@@ -336,21 +321,20 @@ pub(in crate::core) fn assemble(
         loops[i].push(step);
     }
     let extent = Extent::of(&domain_curves)?;
-    let is_embedded = atlas.charts().iter().all(|chart| matches!(chart, Ground::Facets(_)));
+    let is_embedded = atlas.charts().iter().all(|chart| matches!(chart, FaceSurface::Facets(_)));
     let (plane, borders) = if is_embedded {
         (join_equal_ends(&mut domain_curves), Borders::Embedded)
     } else {
-        (join_ends(&mut domain_curves, extent.size, extent.tolerance)?, Borders::Given)
+        (join_ends(&mut domain_curves, extent.size, extent.tolerance)?, Borders::Unchecked)
     };
     let mut vertex_of = vec![u32::MAX; plane.len()];
     for (curve, &number) in domain_curves.iter().zip(&numbers) {
         for (own, in_space) in curve.ends.iter().zip(curves[number].ends) {
             let known = &mut vertex_of[*own as usize];
             if *known != u32::MAX && *known != in_space {
-                let [a, b] = [*known, in_space].map(|v| told_xyz(vertices[v as usize]));
-                let fault =
-                    Fault::new(format!("The ends of curves at {a} and {b} come to one place of a face's chart"))
-                        .remedy("Let them meet, or move them apart");
+                let [a, b] = [*known, in_space].map(|v| point_text(vertices[v as usize]));
+                let fault = Fault::new(format!("The curve ends at {a} and {b} coincide in the chart of a face"))
+                    .remedy("Make them meet in space, or move them apart");
                 return Err(placed(fault, &curve.place));
             }
             *known = in_space;

@@ -1,4 +1,4 @@
-//! The course of a curve in the plane of a domain: a plane curve, or the image of a curve in space in a face's chart.
+//! The course of a curve in the plane of a domain: a plane curve, or the image of a space curve in the chart of a face.
 
 use std::sync::Arc;
 
@@ -9,28 +9,28 @@ use super::image::Image;
 use super::spec::CurveShape;
 use crate::core::fault::Fault;
 
-/// Degree of the polynomials that an image is taken for where it is divided into chords.
+/// The polynomial degree assumed for an image when it is divided into chords.
 const DEGREE_OF_IMAGE: usize = 4;
 
-/// Where a curve of a domain runs, with a parameter in [0, 1].
+/// The course of a curve of a domain, with a parameter in [0, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Course {
     /// A curve of the plane.
     Plane(Curve),
-    /// The image of a curve in space.
-    Image(Picture),
+    /// The image of a space curve.
+    Image(ImageCourse),
 }
 
-/// The image of a curve in space in a face's chart, with what is asked of it often; two are equal where they are the same one.
+/// The image of a space curve in the chart of a face, with cached properties; compared by identity.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct ImageCourse {
     image: Arc<Image>,
     closed: bool,
     corners: Vec<f64>,
     breaks: Vec<f64>,
 }
 
-impl PartialEq for Picture {
+impl PartialEq for ImageCourse {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.image, &other.image)
     }
@@ -49,103 +49,103 @@ impl Course {
     pub fn of_image(image: Arc<Image>) -> Course {
         let (corners, breaks) = (image.curve().corners(), image.curve().breaks());
         let closed = image.point(0.0) == image.point(1.0);
-        Course::Image(Picture { image, closed, corners, breaks })
+        Course::Image(ImageCourse { image, closed, corners, breaks })
     }
 
     /// The point at `t` in [0, 1].
     pub fn point(&self, t: f64) -> DVec2 {
         match self {
             Course::Plane(curve) => curve.point(t),
-            Course::Image(picture) => picture.image.point(t),
+            Course::Image(course) => course.image.point(t),
         }
     }
 
-    /// Point and derivative by `t`; at a corner the derivative of the piece after it.
+    /// Point and derivative by `t`; at a corner, the derivative after it.
     pub fn at(&self, t: f64) -> (DVec2, DVec2) {
         match self {
             Course::Plane(curve) => curve.at(t),
-            Course::Image(picture) => picture.image.at(t),
+            Course::Image(course) => course.image.at(t),
         }
     }
 
-    /// Where it begins.
+    /// The start point.
     pub fn start(&self) -> DVec2 {
         self.point(0.0)
     }
 
-    /// Where it ends.
+    /// The end point.
     pub fn end(&self) -> DVec2 {
         self.point(1.0)
     }
 
-    /// Whether it ends exactly where it begins.
+    /// Whether its end is exactly its start.
     pub fn closed(&self) -> bool {
         match self {
             Course::Plane(curve) => curve.closed(),
-            Course::Image(picture) => picture.closed,
+            Course::Image(course) => course.closed,
         }
     }
 
-    /// Whether all its pieces are straight, so that dividing it more finely changes nothing of its course.
+    /// Whether all its pieces are straight, so that a finer subdivision does not change its course.
     pub fn straight(&self) -> bool {
         match self {
             Course::Plane(curve) => curve.straight(),
-            Course::Image(picture) => picture.image.straight(),
+            Course::Image(course) => course.image.straight(),
         }
     }
 
-    /// Whether it is an image that runs straight from one of its breaks to the next.
+    /// Whether it is an image that is straight between its breaks.
     pub fn polygonal(&self) -> bool {
-        matches!(self, Course::Image(picture) if picture.image.polygonal())
+        matches!(self, Course::Image(course) if course.image.polygonal())
     }
 
-    /// Whether its ends are numbers that were given, and not computed.
+    /// Whether its ends are given coordinates, not computed ones.
     pub fn ends_given(&self) -> bool {
         matches!(self, Course::Plane(curve) if curve.ends_given())
     }
 
-    /// Parameters strictly inside at which the direction jumps, ascending: they are kept as nodes.
+    /// Inner parameters at which the direction jumps, ascending: they become nodes.
     pub fn corners(&self) -> &[f64] {
         match self {
             Course::Plane(curve) => curve.corners(),
-            Course::Image(picture) => &picture.corners,
+            Course::Image(course) => &course.corners,
         }
     }
 
-    /// Parameters between which it is smooth, from 0 to 1: its corners, and the knots of a NURBS.
+    /// Parameters between which it is smooth, from 0 to 1: its corners and the knots of a NURBS.
     pub fn breaks(&self) -> Vec<f64> {
         match self {
             Course::Plane(curve) => curve.breaks(),
-            Course::Image(picture) => picture.breaks.clone(),
+            Course::Image(course) => course.breaks.clone(),
         }
     }
 
-    /// Lower and upper corner of its bounding box, to a millionth of its size.
+    /// Lower and upper corner of its bounding box, accurate to a millionth of its size.
     pub fn bounds(&self) -> (DVec2, DVec2) {
         let (low, high) = self.hull();
         extent(self.polyline(1e-6 * (high - low).max_element()).into_iter().map(|(_, p)| p))
     }
 
-    /// Points of the curve with their parameters, from 0 to 1, so dense that the chords are about `tolerance` from the
-    /// curve at most. All corners are among them. There are never more than about 65,000 between two breaks, however
-    /// small the tolerance.
+    /// Points of the curve with their parameters, from 0 to 1, so dense that the distance of the chords from the curve
+    /// is at most about `tolerance`. They include all corners. There are at most about 65,000 between two breaks,
+    /// however small the tolerance.
     pub fn polyline(&self, tolerance: f64) -> Vec<(f64, DVec2)> {
         match self {
             Course::Plane(curve) => curve.polyline(tolerance),
-            Course::Image(picture) if picture.image.straight() || picture.image.polygonal() => {
-                picture.breaks.iter().map(|&t| (t, self.point(t))).collect()
+            Course::Image(course) if course.image.straight() || course.image.polygonal() => {
+                course.breaks.iter().map(|&t| (t, self.point(t))).collect()
             }
-            Course::Image(picture) => {
-                chords(&|t| self.point(t), &picture.breaks, DEGREE_OF_IMAGE, self.hull(), tolerance)
+            Course::Image(course) => {
+                chords(&|t| self.point(t), &course.breaks, DEGREE_OF_IMAGE, self.hull(), tolerance)
             }
         }
     }
 
-    /// A box that holds the curve, not always the smallest.
+    /// A box that contains the curve, not always the smallest.
     fn hull(&self) -> (DVec2, DVec2) {
         match self {
             Course::Plane(curve) => curve.hull(),
-            Course::Image(picture) => extent(picture.image.places()),
+            Course::Image(course) => extent(course.image.points()),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Where curves cross or touch: chords of the fine polylines whose boxes meet are halved together until they are
-//! straight within the tolerance, then judged by exact orientation.
+//! Detection of curves that cross or touch: chords of the fine polylines whose boxes overlap are bisected until they
+//! are straight within the tolerance, then compared by exact orientation.
 
 use glam::DVec2;
 use rstar::RTree;
@@ -8,20 +8,20 @@ use super::curve::distance_to_segment;
 use super::domain_curve::{CurveId, DomainCurve};
 use super::inside::Chord;
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::told;
+use crate::core::kernel::decimal::point_text;
 use crate::core::kernel::predicates::orient;
 
-/// What judges: lengths below `tolerance` are nothing; two curves may run closer than that only within `near` of a vertex
-/// that they share (they may be tangent there).
+/// The tolerances of the test. Two curves may be closer than `tolerance` only within `near` of a vertex that they share
+/// (they may be tangent there).
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Ends closer than this are one vertex.
     pub tolerance: f64,
-    /// How far from a shared vertex curves may still run together.
+    /// The distance from a shared vertex within which curves may run together.
     pub near: f64,
 }
 
-/// A piece of a curve between two parameters.
+/// The part of a curve between two parameters.
 #[derive(Clone, Copy)]
 struct Arc<'a> {
     curve: &'a DomainCurve,
@@ -37,7 +37,7 @@ enum Meeting {
     Touches(DVec2),
 }
 
-/// Bound on how far a curve leaves its chord, from the distance of its middle.
+/// Bound on the distance of a curve from its chord, estimated at its middle.
 pub fn bulge(curve: &DomainCurve, from: (f64, DVec2), to: (f64, DVec2)) -> f64 {
     if curve.curve.straight() {
         return 0.0;
@@ -64,7 +64,7 @@ impl<'a> Arc<'a> {
 /// Refuses curves that cross or touch each other or themselves anywhere but at shared vertices.
 ///
 /// # Errors
-/// The first such pair in the order of the curves, named and placed; `face_of` names a face that a curve bounds.
+/// The first such pair in the order of the curves, with names and position; `face_of` names a face that a curve bounds.
 pub fn check<'n>(
     curves: &[DomainCurve],
     tree: &RTree<Chord>,
@@ -101,7 +101,7 @@ fn meets_itself(curve: &DomainCurve, i: u32, j: u32, limits: Limits) -> Option<M
         let folds = curve.curve.straight() && runs_along(corner, far_a, far_b, limits.tolerance);
         return folds.then_some(Meeting::Touches(corner));
     }
-    // Chords that are neighbours but for a short stretch run close to each other in all innocence.
+    // Chords separated only by a short stretch of the curve may legitimately be close to each other.
     let stretch = |from: u32, to: u32| {
         let points = &curve.fine[from as usize..=to as usize];
         let mut length = 0.0;
@@ -133,16 +133,16 @@ fn shared_vertices(a: &DomainCurve, b: &DomainCurve) -> Vec<DVec2> {
         .collect()
 }
 
-/// Whether two straight pieces from one corner leave it in the same direction.
+/// Whether two straight pieces leave their common corner in the same direction.
 fn runs_along(corner: DVec2, p: DVec2, q: DVec2, tolerance: f64) -> bool {
     (p - corner).dot(q - corner) > 0.0
         && distance_to_segment(p, corner, q).min(distance_to_segment(q, corner, p)) <= tolerance
 }
 
-/// The first place where two pieces meet, by halving the one that bulges more.
+/// The first point at which two pieces meet, by bisection of the one that bulges more.
 fn meet(a: Arc, b: Arc, shared: &[DVec2], limits: Limits) -> Option<Meeting> {
     let mut stack = vec![(a, b, 0)];
-    // After a first touch the search goes on for a while, to tell the place well or to find a crossing.
+    // After a first touch the search continues for a while, to locate the point better or to find a crossing.
     let (mut touch, mut patience): (Option<(f64, DVec2)>, u32) = (None, 500);
     while let Some((a, b, depth)) = stack.pop() {
         if touch.is_some() {
@@ -194,12 +194,12 @@ fn meet(a: Arc, b: Arc, shared: &[DVec2], limits: Limits) -> Option<Meeting> {
     touch.map(|(_, p)| Meeting::Touches(p))
 }
 
-/// Where two chords cross in their insides, exactly decided, the place rounded.
+/// The point at which the interiors of two chords cross; the decision is exact, the point is rounded.
 fn crossing(a: &Arc, b: &Arc) -> Option<DVec2> {
     crossing_of([a.from.1, a.to.1], [b.from.1, b.to.1])
 }
 
-/// Where two straight pieces cross in their insides, exactly decided, the place rounded.
+/// The point at which the interiors of two straight segments cross; the decision is exact, the point is rounded.
 pub fn crossing_of(a: [DVec2; 2], b: [DVec2; 2]) -> Option<DVec2> {
     let (s, t) = (orient(a[0], a[1], b[0]), orient(a[0], a[1], b[1]));
     let (u, v) = (orient(b[0], b[1], a[0]), orient(b[0], b[1], a[1]));
@@ -216,7 +216,7 @@ fn chord_distance(a: &Arc, b: &Arc) -> f64 {
     to_b(a.from.1).min(to_b(a.to.1)).min(to_a(b.from.1)).min(to_a(b.to.1))
 }
 
-/// The end of one chord that is nearest to the other.
+/// The end of one chord that is closest to the other chord.
 fn nearest_end(a: &Arc, b: &Arc) -> DVec2 {
     let from_b = |p: DVec2| (distance_to_segment(p, b.from.1, b.to.1), p);
     let from_a = |p: DVec2| (distance_to_segment(p, a.from.1, a.to.1), p);
@@ -237,20 +237,20 @@ fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits, f
         _ if is_end(a) != is_end(b) => {
             let (end, whole) = if is_end(a) { (a, b) } else { (b, a) };
             (
-                format!("The end of \"{}\" touches \"{}\" inside", end.name, whole.name),
-                format!("Divide \"{}\" there into two curves, so that they share an end point", whole.name),
+                format!("The end of \"{}\" touches the interior of \"{}\"", end.name, whole.name),
+                format!("Divide \"{}\" there into two curves that share this end point", whole.name),
             )
         }
         Meeting::Crosses(_) => (
             format!("The curves \"{}\" and \"{}\" cross", a.name, b.name),
-            "Move one of them, or divide both there, so that they share an end point".to_owned(),
+            "Move one of them, or divide both there at a common end point".to_owned(),
         ),
         Meeting::Touches(_) => (
             format!("The curves \"{}\" and \"{}\" touch or cross", a.name, b.name),
-            "Keep them apart, or let them meet at end points only".to_owned(),
+            "Move them apart, or make them meet at end points only".to_owned(),
         ),
     };
-    let fault = Fault::new(what).at(format!("at {}", told(p))).remedy(remedy);
+    let fault = Fault::new(what).at(format!("at {}", point_text(p))).remedy(remedy);
     let fault = match face {
         Some(face) => fault.at(format!("face \"{face}\"")),
         None => fault,

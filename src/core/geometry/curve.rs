@@ -1,18 +1,17 @@
-//! Planar curves: segment, circular arc, polyline, NURBS, all with a parameter in [0, 1].
-//!
-//! Deliberately absent: names, and which curves meet where (see `domain`).
+//! Planar curves: segment, circular arc, polyline, NURBS, all with a parameter in [0, 1]. Their names and common
+//! vertices are in `domain`.
 
 use glam::DVec2;
 
-use super::nurbs::NurbsCurve;
+use super::nurbs::{NurbsCurve, Vector};
 use super::spec::CurveShape;
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::{number, told};
+use crate::core::kernel::decimal::{number, point_text};
 
-/// Coordinates beyond this are refused, so that no square of one overflows.
-const LARGEST: f64 = 1e100;
+/// Larger coordinates are refused, so that no square of one overflows.
+pub(super) const LARGEST: f64 = 1e100;
 
-/// A curve that has been checked: all its numbers are finite, no straight piece is of zero length.
+/// A valid curve: all its numbers are finite, and no straight piece has zero length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     path: Path,
@@ -32,7 +31,7 @@ enum Path {
         from_angle: f64,
         turn: f64,
     },
-    /// The first point stands again at the end where the polyline is closed.
+    /// A closed polyline repeats its first point at the end.
     Polyline {
         points: Vec<DVec2>,
     },
@@ -50,14 +49,14 @@ impl Curve {
         let mut closed = false;
         let path = match shape {
             CurveShape::Segment { from, to } => {
-                sound(&[*from, *to])?;
+                check_coordinates(&[*from, *to])?;
                 if from == to {
-                    return Err(Fault::new(format!("It has zero length: both its ends are {}", told(*from))));
+                    return Err(Fault::new(format!("It has zero length: both its ends are {}", point_text(*from))));
                 }
                 Path::Segment { from: *from, to: *to }
             }
             CurveShape::Arc { centre, radius, from_angle, to_angle } => {
-                sound(&[*centre])?;
+                check_coordinates(&[*centre])?;
                 if !(*radius > 0.0 && *radius <= LARGEST) {
                     return Err(Fault::new(format!("Its radius is {radius}")).remedy("Give a positive radius"));
                 }
@@ -68,7 +67,7 @@ impl Curve {
                 }
                 if turn == 0.0 {
                     return Err(Fault::new("It has zero length: the arc begins and ends at the same angle")
-                        .remedy("For a circle let the last angle be a full turn more than the first"));
+                        .remedy("For a circle, make to_angle 360 degrees more than from_angle"));
                 }
                 if (turn.abs() - full).abs() <= 1e-9 {
                     turn = full * turn.signum();
@@ -79,36 +78,18 @@ impl Curve {
                         "The arc turns by {} degrees, more than a full turn",
                         number(turn.to_degrees())
                     ))
-                    .remedy("Bring its angles to within 360 degrees of each other"));
+                    .remedy("Make its angles differ by at most 360 degrees"));
                 }
                 Path::Arc { centre: *centre, radius: *radius, from_angle: *from_angle, turn }
             }
             CurveShape::Polyline { points, closed: close } => {
-                sound(points)?;
-                let mut points = points.clone();
-                if *close && points.len() > 1 && points.first() != points.last() {
-                    points.extend(points.first().copied());
-                }
-                if points.len() < if *close { 4 } else { 2 } {
-                    return Err(Fault::new(format!(
-                        "A {} polyline of {} points is no curve",
-                        if *close { "closed" } else { "plain" },
-                        points.len().saturating_sub(usize::from(*close))
-                    )));
-                }
-                if let Some(i) = (1..points.len()).find(|&i| points[i] == points[i - 1]) {
-                    return Err(Fault::new(format!(
-                        "Its points {i} and {} are the same, {}: a piece of zero length",
-                        i + 1,
-                        told(points[i])
-                    ))
-                    .remedy("Leave one of them out"));
-                }
+                check_coordinates(points)?;
+                let points = corners_of_polyline(points, *close)?;
                 closed = points.first() == points.last();
                 Path::Polyline { points }
             }
             CurveShape::Nurbs { degree, knots, weights, points } => {
-                sound(points)?;
+                check_coordinates(points)?;
                 if points.windows(2).all(|w| w[0] == w[1]) {
                     return Err(Fault::new("It has zero length: all its control points are the same"));
                 }
@@ -134,11 +115,11 @@ impl Curve {
                 let (i, s) = piece(points.len() - 1, t);
                 lerp(points[i], points[i + 1], s)
             }
-            Path::Nurbs(nurbs) => nurbs.at(knot_parameter(nurbs, t)).0,
+            Path::Nurbs(nurbs) => nurbs.at_unit(t).0,
         }
     }
 
-    /// The derivative by `t`; at a corner the one of the piece after it.
+    /// The derivative by `t`; at a corner, the derivative after it.
     pub fn derivative(&self, t: f64) -> DVec2 {
         match &self.path {
             Path::Segment { from, to } => *to - *from,
@@ -150,41 +131,34 @@ impl Curve {
                 let (i, _) = piece(points.len() - 1, t);
                 (points.len() - 1) as f64 * (points[i + 1] - points[i])
             }
-            Path::Nurbs(nurbs) => {
-                let (first, last) = nurbs.basis().domain();
-                (last - first) * nurbs.at(knot_parameter(nurbs, t)).1
-            }
+            Path::Nurbs(nurbs) => nurbs.at_unit(t).1,
         }
     }
 
     /// Point and derivative by `t` at once.
     pub fn at(&self, t: f64) -> (DVec2, DVec2) {
         match &self.path {
-            Path::Nurbs(nurbs) => {
-                let (first, last) = nurbs.basis().domain();
-                let (p, d) = nurbs.at(knot_parameter(nurbs, t));
-                (p, (last - first) * d)
-            }
+            Path::Nurbs(nurbs) => nurbs.at_unit(t),
             _ => (self.point(t), self.derivative(t)),
         }
     }
 
-    /// Where it begins.
+    /// The start point.
     pub fn start(&self) -> DVec2 {
         self.point(0.0)
     }
 
-    /// Where it ends.
+    /// The end point.
     pub fn end(&self) -> DVec2 {
         self.point(1.0)
     }
 
-    /// Whether it ends exactly where it begins.
+    /// Whether its end is exactly its start.
     pub fn closed(&self) -> bool {
         self.closed
     }
 
-    /// Whether all its pieces are straight, so that dividing it more finely changes nothing of its course.
+    /// Whether all its pieces are straight, so that a finer subdivision does not change its course.
     pub fn straight(&self) -> bool {
         match &self.path {
             Path::Segment { .. } | Path::Polyline { .. } => true,
@@ -193,25 +167,24 @@ impl Curve {
         }
     }
 
-    /// Whether its ends are numbers that were given, and not computed.
+    /// Whether its ends are given coordinates, not computed ones.
     pub fn ends_given(&self) -> bool {
         matches!(self.path, Path::Segment { .. } | Path::Polyline { .. })
     }
 
-    /// Parameters strictly inside at which the direction jumps, ascending: they are kept as nodes.
+    /// Inner parameters at which the direction jumps, ascending: they become nodes.
     pub fn corners(&self) -> &[f64] {
         &self.corners
     }
 
-    /// Parameters between which the curve is smooth, from 0 to 1: its corners, and the knots of a NURBS.
+    /// Parameters between which the curve is smooth, from 0 to 1: its corners and the knots of a NURBS.
     pub fn breaks(&self) -> Vec<f64> {
         let mut breaks = vec![0.0];
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => {}
             Path::Polyline { .. } => breaks.extend(&self.corners),
             Path::Nurbs(nurbs) => {
-                let (first, last) = nurbs.basis().domain();
-                breaks.extend(nurbs.basis().inner_knots().iter().map(|(k, _)| (k - first) / (last - first)));
+                breaks.extend(nurbs.basis().unit_knots());
                 breaks.retain(|&t| t < 1.0);
                 breaks.dedup();
             }
@@ -220,16 +193,16 @@ impl Curve {
         breaks
     }
 
-    /// Points of the curve with their parameters, from 0 to 1, so dense that the chords are about `tolerance` from the
-    /// curve at most. All corners are among them. There are never more than about 65,000 between two breaks, however
-    /// small the tolerance.
+    /// Points of the curve with their parameters, from 0 to 1, so dense that the distance of the chords from the curve
+    /// is at most about `tolerance`. They include all corners. There are at most about 65,000 between two breaks,
+    /// however small the tolerance.
     pub fn polyline(&self, tolerance: f64) -> Vec<(f64, DVec2)> {
         match &self.path {
             Path::Segment { .. } | Path::Polyline { .. } => {
                 self.breaks().into_iter().map(|t| (t, self.point(t))).collect()
             }
             Path::Arc { radius, turn, .. } => {
-                // A chord over the angle 2a is r (1 - cos a), about r a^2 / 2, from its arc.
+                // The distance of a chord over the angle 2a from its arc is r (1 - cos a), about r a^2 / 2.
                 let step = (2.0 * (2.0 * tolerance.max(0.0) / radius).sqrt()).clamp(1e-4, std::f64::consts::FRAC_PI_6);
                 let n = (turn.abs() / step).ceil().max(1.0);
                 (0..=n as usize).map(|i| i as f64 / n).map(|t| (t, self.point(t))).collect()
@@ -240,7 +213,7 @@ impl Curve {
         }
     }
 
-    /// A box that holds the curve, not always the smallest.
+    /// A box that contains the curve, not always the smallest.
     pub(super) fn hull(&self) -> (DVec2, DVec2) {
         match &self.path {
             Path::Segment { from, to } => (from.min(*to), from.max(*to)),
@@ -257,27 +230,16 @@ impl Curve {
                 let n = points.len() - 1;
                 (1..n).map(|i| i as f64 / n as f64).collect()
             }
-            Path::Nurbs(nurbs) => {
-                let (first, last) = nurbs.basis().domain();
-                let degree = nurbs.basis().degree();
-                let knots = nurbs.basis().inner_knots();
-                let sharp = |&&(knot, times): &&(f64, usize)| {
-                    // Fewer repetitions leave the curve smooth; as many as the degree may break its direction.
-                    if times < degree {
-                        return false;
-                    }
-                    let before = nurbs.at_in(nurbs.basis().span(knot.next_down()), knot).1;
-                    let after = nurbs.at(knot).1;
-                    before.perp_dot(after).abs() > 1e-6 * before.length() * after.length() || before.dot(after) < 0.0
-                };
-                knots.iter().filter(sharp).map(|(k, _)| (k - first) / (last - first)).collect()
-            }
+            Path::Nurbs(nurbs) => nurbs.sharp_knots(|before, after| {
+                before.perp_dot(after).abs() > 1e-6 * before.length() * after.length() || before.dot(after) < 0.0
+            }),
         }
     }
 }
 
-/// Points of a smooth curve with their parameters, from 0 to 1, so dense that the chords are about `tolerance` from it: all
-/// breaks are among them. A curve of degree 1 is straight between them. `hull` is a box that holds the curve.
+/// Points of a curve with their parameters, from 0 to 1, so dense that the distance of the chords from the curve is at
+/// most about `tolerance`. They include all breaks; a curve of degree 1 is straight between those. `(low, high)` is a
+/// box that contains the curve.
 pub(super) fn chords(
     point: &dyn Fn(f64) -> DVec2,
     breaks: &[f64],
@@ -298,7 +260,8 @@ pub(super) fn chords(
     points
 }
 
-/// Appends points after `a` up to and with `b`, halving while the curve leaves the chord by more than `tolerance`.
+/// Appends the points after `a` up to and including `b`, bisecting while the curve is farther than `tolerance` from the
+/// chord.
 fn refine(
     point: &dyn Fn(f64) -> DVec2,
     a: (f64, DVec2),
@@ -319,7 +282,7 @@ fn refine(
     }
 }
 
-/// The distance of `p` from the straight line from `a` to `b`.
+/// The distance of `p` from the straight segment from `a` to `b`.
 pub fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let d = b - a;
     let square = d.length_squared();
@@ -327,15 +290,16 @@ pub fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     (p - (a + s * d)).length()
 }
 
-fn lerp(a: DVec2, b: DVec2, t: f64) -> DVec2 {
-    if t <= 0.5 { a + t * (b - a) } else { b - (1.0 - t) * (b - a) }
+/// Linear interpolation that is exact at both ends.
+pub(super) fn lerp<P: Vector>(a: P, b: P, t: f64) -> P {
+    if t <= 0.5 { a + (b - a) * t } else { b - (b - a) * (1.0 - t) }
 }
 
-/// Which of `n` equal pieces of [0, 1] holds `t`, and where in it, exactly 0 or 1 at its ends.
+/// The piece that contains `t`, of `n` equal pieces of [0, 1], and the parameter in it: exactly 0 or 1 at its ends.
 pub(super) fn piece(n: usize, t: f64) -> (usize, f64) {
     let x = t * n as f64;
     let nearest = x.round();
-    // A corner's parameter i / n comes back as i.
+    // The parameter i / n of a corner gives exactly i.
     if nearest / n as f64 == t {
         let i = nearest as usize;
         return if i >= n { (n - 1, 1.0) } else { (i, 0.0) };
@@ -344,20 +308,43 @@ pub(super) fn piece(n: usize, t: f64) -> (usize, f64) {
     (i, x - i as f64)
 }
 
-fn knot_parameter(nurbs: &NurbsCurve, t: f64) -> f64 {
-    let (first, last) = nurbs.basis().domain();
-    if t >= 1.0 { last } else { (first + t * (last - first)).min(last) }
-}
-
+/// Lower and upper corner of the bounding box of points.
 pub(super) fn extent(points: impl Iterator<Item = DVec2>) -> (DVec2, DVec2) {
     points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
-fn sound(points: &[DVec2]) -> Result<(), Fault> {
-    match points.iter().find(|p| !(p.is_finite() && p.abs().max_element() <= LARGEST)) {
-        Some(p) => Err(Fault::new(format!("Its point ({}, {}) is not finite or beyond 1e100", p.x, p.y))),
+/// Refuses points that are not finite or have coordinates beyond [`LARGEST`].
+pub(super) fn check_coordinates<const N: usize, P: Copy + Into<[f64; N]>>(points: &[P]) -> Result<(), Fault> {
+    match points.iter().find(|&&p| !p.into().iter().all(|x| x.abs() <= LARGEST)) {
+        Some(&p) => Err(Fault::new(format!("Its point {} is not finite or is beyond 1e100", point_text(p)))),
         None => Ok(()),
     }
+}
+
+/// The corners of a polyline, with the first one repeated at the end if it is to be closed.
+///
+/// # Errors
+/// Coordinates that [`check_coordinates`] refuses, too few points, two equal points in a row.
+pub(super) fn corners_of_polyline<const N: usize, P: Vector + Into<[f64; N]>>(
+    points: &[P],
+    close: bool,
+) -> Result<Vec<P>, Fault> {
+    check_coordinates(points)?;
+    let mut corners = points.to_vec();
+    if close && points.len() > 1 && points.first() != points.last() {
+        corners.push(points[0]);
+    }
+    if corners.len() < if close { 4 } else { 2 } {
+        let kind = if close { "A closed" } else { "An open" };
+        let count = corners.len().saturating_sub(usize::from(close));
+        return Err(Fault::new(format!("{kind} polyline needs more than {count} points")));
+    }
+    if let Some(i) = (1..corners.len()).find(|&i| corners[i] == corners[i - 1]) {
+        let at = point_text(corners[i]);
+        return Err(Fault::new(format!("Its points {i} and {} are the same, {at}: a piece of zero length", i + 1))
+            .remedy("Remove one of them"));
+    }
+    Ok(corners)
 }
 
 #[cfg(test)]

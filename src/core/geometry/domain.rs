@@ -1,4 +1,5 @@
-//! Planar domains: outer loops and holes made of named curves, crack lines, repeated lines, several faces sharing curves.
+//! Planar domains: faces bounded by outer loops and holes of named curves, with crack lines and repeated lines; faces
+//! may share curves.
 
 use std::sync::Arc;
 
@@ -14,26 +15,26 @@ use super::loops;
 use super::space_curve::SpaceCurve;
 use super::spec::{CurveSpec, FaceSpec};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::told;
+use crate::core::kernel::decimal::point_text;
 
-/// A face in its place in the domain.
+/// A face of the domain.
 #[derive(Clone, Debug)]
 pub struct DomainFace {
     /// Its name.
     pub name: String,
-    /// Outer loop, anticlockwise, then the holes, clockwise: the face lies on the left of each.
+    /// The outer loop, anticlockwise, then the holes, clockwise: the face lies on the left of each.
     pub loops: Vec<Vec<DirectedCurve>>,
-    /// Its topological loops (spec 2.9): boundary walks with the face on their left, with the cracks and repeated lines
-    /// that hang on them; each must get an even number of segments.
+    /// Its topological loops (docs/algorithm.md, "Even loops"): boundary walks with the face on their left, with the
+    /// cracks and repeated lines that hang on them; each must get an even number of segments.
     pub walks: Vec<Vec<DirectedCurve>>,
 }
 
 /// Points along a curve, from its start to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Line {
-    /// In a planar domain.
+    /// Of a planar domain.
     Plane(Vec<DVec2>),
-    /// In space.
+    /// Of a domain on surfaces.
     Space(Vec<DVec3>),
 }
 
@@ -47,33 +48,33 @@ impl Line {
     }
 }
 
-/// What a domain is in space: the plane in which it is meshed is an atlas of its faces' charts.
+/// The geometry in space of a domain on surfaces, which is meshed in the plane of an atlas of charts.
 #[derive(Clone, Debug)]
 pub struct Spatial {
     /// The charts.
     pub atlas: Arc<Atlas>,
-    /// Places of the vertices in space.
+    /// The vertices in space.
     pub vertices: Vec<DVec3>,
     /// The vertex in space that each vertex of the plane is an image of.
     pub vertex_of: Vec<u32>,
     /// The curve in space that each curve of the plane is an image of.
     pub curves: Vec<Arc<SpaceCurve>>,
-    /// Points along every named curve, those on no face included: for fields by distance.
+    /// Points along every named curve, including curves that no face uses: for fields by distance.
     pub polylines: Vec<(String, Vec<DVec3>)>,
 }
 
-/// Curves and faces that have been found sound: closed loops that neither cross nor touch, but at shared vertices.
+/// Valid curves and faces: closed loops that neither cross nor touch, except at shared vertices.
 #[derive(Clone, Debug)]
 pub struct Domain {
     /// The curves that faces use.
     pub curves: Vec<DomainCurve>,
-    /// Places of the vertices.
+    /// The vertices in the plane.
     pub vertices: Vec<DVec2>,
     /// The faces, in the order of the case.
     pub faces: Vec<DomainFace>,
     /// Larger side of the bounding box.
     pub size: f64,
-    /// What the domain is in space, where its faces lie on surfaces.
+    /// The geometry in space, if the faces lie on surfaces.
     pub spatial: Option<Arc<Spatial>>,
     lower: DVec2,
     upper: DVec2,
@@ -81,12 +82,12 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// Puts curves and faces together; curves that no face uses are left out.
+    /// Builds a domain of curves and faces; curves that no face uses are dropped.
     ///
     /// # Errors
-    /// Names that are unknown, given twice, or used wrongly; curves that are no curves; loops that are open or of no
-    /// area; curves that cross or touch but at shared end points; holes, cracks and repeated lines outside of their
-    /// face; faces that overlap.
+    /// Names that are unknown, given twice, or used wrongly; invalid curves; loops that are open or enclose no area;
+    /// curves that cross or touch except at shared end points; holes, cracks and repeated lines outside their face;
+    /// faces that overlap.
     pub fn build(curves: Vec<CurveSpec>, faces: Vec<FaceSpec>) -> Result<Domain, Fault> {
         let (mut curves, lists) = resolve(&curves, &faces)?;
         let extent = Extent::of(&curves)?;
@@ -99,10 +100,10 @@ impl Domain {
             }
             chains.push(chain);
         }
-        Domain::assemble(curves, vertices, chains, &faces, extent, Borders::Given)
+        Domain::assemble(curves, vertices, chains, &faces, extent, Borders::Unchecked)
     }
 
-    /// A domain of curves that meet at `vertices`, chained to the loops of each face.
+    /// Builds a domain of curves that meet at `vertices` and are chained into the loops of each face.
     pub(super) fn assemble(
         mut curves: Vec<DomainCurve>,
         vertices: Vec<DVec2>,
@@ -117,7 +118,7 @@ impl Domain {
             let curve = &curves[id.index()];
             crossing::bulge(curve, curve.fine[i as usize], curve.fine[i as usize + 1]) + tolerance
         });
-        if borders == Borders::Given {
+        if borders == Borders::Unchecked {
             let face_of = |curve: CurveId| {
                 let of = |chain: &&Vec<Vec<DirectedCurve>>| chain.iter().flatten().any(|step| step.curve == curve);
                 chains.iter().position(|chain| of(&chain)).map(|face| names[face].as_str())
@@ -127,7 +128,7 @@ impl Domain {
         for (f, (spec, chain)) in faces.iter().zip(&mut chains).enumerate() {
             for (i, steps) in chain.iter_mut().enumerate() {
                 let area = loops::doubled_area(&loops::polygon(&curves, steps));
-                if borders == Borders::Given && area.abs() <= tolerance * tolerance {
+                if borders == Borders::Unchecked && area.abs() <= tolerance * tolerance {
                     return Err(placed(
                         Fault::new(format!("The {} encloses no area", loop_name(spec, i))),
                         &spec.place,
@@ -146,7 +147,7 @@ impl Domain {
                                 "The faces \"{}\" and \"{}\" lie on the same side of the curve \"{}\"",
                                 names[other as usize], spec.name, curve.name
                             ))
-                            .remedy("Faces may share curves and not area"),
+                            .remedy("Faces may share curves, but must not overlap"),
                             &spec.place,
                         ));
                     }
@@ -159,7 +160,7 @@ impl Domain {
             .zip(chains)
             .map(|(name, loops)| DomainFace { name: name.clone(), loops, walks: Vec::new() })
             .collect();
-        if borders == Borders::Given {
+        if borders == Borders::Unchecked {
             domain.check_nesting(faces)?;
         }
         let walks = loops::walks(&domain.curves, &names, &domain.vertices)?;
@@ -169,9 +170,10 @@ impl Domain {
         Ok(domain)
     }
 
-    /// Holes lie inside the outer loop and outside each other, internal lines in their face, no face in another.
+    /// Checks that holes lie inside the outer loop and outside each other, internal lines in their face, and no face in
+    /// another.
     fn check_nesting(&self, specs: &[FaceSpec]) -> Result<(), Fault> {
-        // Which loops of which face each curve belongs to.
+        // The faces and loops that each curve belongs to.
         let mut loops_of = vec![Vec::new(); self.curves.len()];
         for (f, face) in self.faces.iter().enumerate() {
             for (i, steps) in face.loops.iter().enumerate() {
@@ -181,7 +183,7 @@ impl Domain {
         for (c, curve) in self.curves.iter().enumerate() {
             let middle = curve.fine.len() / 2;
             let p = if curve.fine.len() > 2 { curve.fine[middle].1 } else { curve.first().midpoint(curve.last()) };
-            // Loops around the point: those crossed an odd number of times.
+            // The loops around the point are those that a ray crosses an odd number of times.
             let mut around: Vec<(usize, usize)> = self
                 .crossed(p)
                 .filter(|id| id.index() != c)
@@ -192,22 +194,22 @@ impl Domain {
                 around.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1).map(|g| g[0]).collect();
             let holds = |f: usize| around.contains(&(f, 0)) && !around.iter().any(|&(g, i)| g == f && i > 0);
             let refuse = |f: usize, what: String, remedy: &str| {
-                Err(placed(Fault::new(what).at(format!("at {}", told(p))).remedy(remedy), &specs[f].place))
+                Err(placed(Fault::new(what).at(format!("at {}", point_text(p))).remedy(remedy), &specs[f].place))
             };
             for &(f, i) in &loops_of[c] {
                 let name = &self.faces[f].name;
                 if i > 0 && !around.contains(&(f, 0)) {
                     let what = format!(
-                        "The curve \"{}\" of {} lies outside of the outer loop",
+                        "The curve \"{}\" of {} lies outside the outer loop",
                         curve.name,
                         loop_name(&specs[f], i)
                     );
-                    return refuse(f, what, "Move the hole inside, or take it out");
+                    return refuse(f, what, "Move the hole inside, or remove it");
                 }
                 if let Some(&(_, j)) = around.iter().find(|&&(g, j)| g == f && j > 0 && j != i) {
                     let what =
                         format!("The curve \"{}\" of \"{name}\" lies within {}", curve.name, loop_name(&specs[f], j));
-                    return refuse(f, what, "A part inside a hole is a face of its own");
+                    return refuse(f, what, "Make the part inside the hole a separate face");
                 }
             }
             let inner = curve.kind != CurveKind::Boundary;
@@ -215,8 +217,8 @@ impl Domain {
                 && !holds(f as usize)
             {
                 let what =
-                    format!("The line \"{}\" lies outside of its face \"{}\"", curve.name, self.faces[f as usize].name);
-                return refuse(f as usize, what, "Move it inside, or take it out");
+                    format!("The line \"{}\" lies outside its face \"{}\"", curve.name, self.faces[f as usize].name);
+                return refuse(f as usize, what, "Move it inside, or remove it");
             }
             let own = |f: usize| curve.sides.contains(&Some(f as u32));
             let other = around.iter().map(|&(f, _)| f).find(|&f| !own(f) && holds(f));
@@ -232,19 +234,19 @@ impl Domain {
         Ok(())
     }
 
-    /// The curves that a ray from `p` towards -x crosses, one entry for each crossing.
+    /// The curves that a ray from `p` towards -x crosses, once for each crossing.
     fn crossed(&self, p: DVec2) -> impl Iterator<Item = CurveId> {
         let crossings = inside::crossings(&self.chords, &self.curves, p.y, [self.lower.x - self.size, p.x]);
         crossings.into_iter().filter(move |c| c.left_of(p)).map(|c| c.curve)
     }
 
-    /// The face that holds the point, judged by the fine polylines; `None` outside and in holes.
+    /// The face that contains a point, by the fine polylines; `None` outside and in holes.
     pub fn inside(&self, p: DVec2) -> Option<u32> {
         self.face_beyond(self.crossed(p))
     }
 
-    /// The face that holds a point from which a ray to infinity crosses these curves: one whose curves it crosses an odd
-    /// number of times.
+    /// The face that contains a point from which a ray to infinity crosses these curves: the one whose boundary it
+    /// crosses an odd number of times.
     fn face_beyond(&self, crossed: impl Iterator<Item = CurveId>) -> Option<u32> {
         let mut odd: smallvec::SmallVec<[u32; 16]> = smallvec::SmallVec::new();
         for curve in crossed.map(|id| &self.curves[id.index()]).filter(|c| c.kind == CurveKind::Boundary) {
@@ -258,7 +260,7 @@ impl Domain {
         odd.into_iter().min()
     }
 
-    /// About `n` points that cover the domain: a square grid of points inside, and points of all curves as dense.
+    /// About `n` points that cover the domain: a square grid inside, and points with the same spacing on all curves.
     pub fn sample_points(&self, n: usize) -> Vec<DVec2> {
         let area: f64 = self
             .faces
@@ -267,7 +269,7 @@ impl Domain {
             .map(|l| 0.5 * loops::doubled_area(&loops::polygon(&self.curves, l)))
             .sum();
         let extent = self.upper - self.lower;
-        // A thin slanting domain fills little of its box: the grid is never more than 16 n points.
+        // A thin slanting domain fills little of its box: the grid is limited to 16 n points.
         let n = n.max(1) as f64;
         let spacing = (area / n).max(extent.x * extent.y / (16.0 * n)).sqrt().max(extent.max_element() / (16.0 * n));
         let mut points = Vec::new();
@@ -300,7 +302,7 @@ impl Domain {
         self.curves.iter().find(|c| c.name == name)
     }
 
-    /// Points of a fine polyline of the curve of this name.
+    /// The fine polyline of the curve of this name.
     pub fn curve_polyline(&self, name: &str) -> Option<Line> {
         match &self.spatial {
             Some(spatial) => {
@@ -310,7 +312,7 @@ impl Domain {
         }
     }
 
-    /// Whether a curve ends where it begins: in space, where its faces lie there.
+    /// Whether a curve is closed; on surfaces, whether it is closed in space.
     pub fn is_closed(&self, id: CurveId) -> bool {
         let ends = self.curves[id.index()].ends;
         match &self.spatial {
@@ -319,24 +321,24 @@ impl Domain {
         }
     }
 
-    /// The images of the curve of which this is the first one, itself included.
+    /// All images of the space curve whose first image is `first`, including that one.
     pub fn images(&self, first: CurveId) -> Vec<&DomainCurve> {
-        // They stand together, the first one first.
+        // They are consecutive, beginning with the first.
         self.curves[first.index()..].iter().take_while(|curve| curve.first == first).collect()
     }
 }
 
-/// What is known of the borders of faces.
+/// What is known about the boundaries of faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Borders {
-    /// Nothing: they are looked at.
-    Given,
-    /// They bound charts of triangles that were found to lie one to one in the plane, by exact predicates: they neither
-    /// cross nor touch, however near they come.
+    /// Nothing: they must be checked.
+    Unchecked,
+    /// They bound triangulated charts that exact predicates have shown to be embedded in the plane: they neither cross
+    /// nor touch, however close they are.
     Embedded,
 }
 
-/// How large a domain is, and which lengths are nothing in it.
+/// The bounding box, size and length tolerance of a domain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     pub lower: DVec2,
@@ -347,7 +349,7 @@ pub(super) struct Extent {
 
 impl Extent {
     /// # Errors
-    /// A domain that is too small for double precision where it lies.
+    /// A domain that is too small for double precision at its distance from the origin.
     pub fn of(curves: &[DomainCurve]) -> Result<Extent, Fault> {
         let (lower, upper) = curves
             .iter()
@@ -356,8 +358,8 @@ impl Extent {
         let size = (upper - lower).max_element();
         let largest = lower.abs().max(upper.abs()).max_element();
         if size < 1e-90 || size < 1e-9 * largest {
-            return Err(Fault::new(format!("The whole domain is only {size:e} across, at {}", told(lower)))
-                .remedy("Scale it up, and move it towards the origin"));
+            return Err(Fault::new(format!("The whole domain is only {size:e} across, at {}", point_text(lower)))
+                .remedy("Scale it up, or move it towards the origin"));
         }
         let tolerance = (1e-9 * size).max(8.0 * f64::EPSILON * largest);
         Ok(Extent { lower, upper, size, tolerance })

@@ -1,4 +1,4 @@
-//! A curve in its place in a domain: its course, its vertices, the faces on its sides.
+//! A curve of a domain: its course, its vertices, the faces on its sides.
 
 use glam::DVec2;
 
@@ -9,25 +9,25 @@ use super::course::Course;
 pub struct CurveId(pub u32);
 
 impl CurveId {
-    /// The place of this id in the arrays.
+    /// The index of this curve in the arrays.
     pub fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A curve run from its start to its end, or back.
+/// A curve traversed from its start to its end, or backwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DirectedCurve {
     /// The curve.
     pub curve: CurveId,
-    /// Whether from start to end.
+    /// Whether it is traversed from start to end.
     pub forward: bool,
 }
 
-/// What a curve is to its faces.
+/// The role of a curve in its faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveKind {
-    /// A side of outer loops or holes.
+    /// Part of outer loops or holes.
     Boundary,
     /// A crack line.
     Crack,
@@ -35,26 +35,27 @@ pub enum CurveKind {
     Repeated,
 }
 
-/// A curve in its place in the domain.
+/// A curve of a domain.
 #[derive(Clone, Debug)]
 pub struct DomainCurve {
     /// Its name.
     pub name: String,
-    /// Its course; at 0 and 1 the vertices hold, which may differ from it by the tolerance.
+    /// Its course; its ends may differ from its vertices by the tolerance, and then the vertices count.
     pub curve: Course,
-    /// Number of segments where the case fixes it.
+    /// The number of segments, if the case fixes it.
     pub segments: Option<u32>,
-    /// Where the case has it, for messages.
+    /// Its place in the case, for messages.
     pub place: String,
     /// Vertices at its start and end.
     pub ends: [u32; 2],
     /// Faces on its left and right.
     pub sides: [Option<u32>; 2],
-    /// What it is.
+    /// Its role in its faces.
     pub kind: CurveKind,
     /// Points of a fine polyline with their parameters, from vertex to vertex.
     pub fine: Vec<(f64, DVec2)>,
-    /// The first image of the same curve in space: that one rules how all are divided. In the plane the curve itself.
+    /// The first image of the same space curve, which determines the subdivision of all images; in planar domains the
+    /// curve itself.
     pub first: CurveId,
 }
 
@@ -69,7 +70,8 @@ impl DomainCurve {
         self.fine[self.fine.len() - 1].1
     }
 
-    /// The direction in which it leaves its start (or, `backwards`, its end): towards where it first is `radius` away.
+    /// The direction in which it leaves its start (or, `backwards`, its end): towards the first point at distance
+    /// `radius`.
     pub fn leaves(&self, backwards: bool, radius: f64) -> DVec2 {
         let n = self.fine.len() - 1;
         let (origin, next) = if backwards { (self.fine[n], self.fine[n - 1]) } else { (self.fine[0], self.fine[1]) };

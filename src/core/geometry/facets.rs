@@ -1,5 +1,5 @@
-//! A chart of triangles as a surface: the ground of faces without CAD (spec 4). Within a triangle places in the plane and in space
-//! go together linearly, so that the derivatives are those of the triangle.
+//! A triangulated surface in its chart: the surface of faces without CAD geometry (docs/algorithm.md, "Flattening").
+//! The map from the plane to space is linear in each triangle, so that the derivatives are constant there.
 
 use glam::{DVec2, DVec3};
 
@@ -7,18 +7,18 @@ use super::chart::ChartPoint;
 use crate::core::fault::Fault;
 use crate::core::kernel::plane_triangles::PlaneTriangles;
 
-/// Triangles in the plane and in space.
+/// A piecewise linear surface: triangles in the plane and in space.
 #[derive(Clone, Debug)]
 pub struct Facets {
     plane: PlaneTriangles,
     xyz: Vec<DVec3>,
-    /// Derivatives of each triangle by the coordinates of the plane.
+    /// The derivatives in each triangle by the coordinates of the plane.
     j: Vec<[DVec3; 2]>,
     size: f64,
 }
 
 impl Facets {
-    /// Triangles that lie anticlockwise in the plane, by the places of their nodes there and in space.
+    /// Triangles that are positively oriented in the plane; `uv` and `xyz` are the nodes there and in space.
     ///
     /// # Errors
     /// What [`PlaneTriangles::new`] refuses.
@@ -36,12 +36,12 @@ impl Facets {
         Ok(Facets { plane: PlaneTriangles::new(uv, triangles)?, size: (high - low).max_element(), xyz, j })
     }
 
-    /// Largest side of the box around it.
+    /// The largest side of its bounding box.
     pub fn size(&self) -> f64 {
         self.size
     }
 
-    /// The point at a place of the plane; beyond the border that of the nearest place within.
+    /// The point of the surface at a point of the plane; outside the chart, that at the nearest point of the chart.
     pub fn at(&self, p: DVec2) -> ChartPoint {
         match self.plane.find(p) {
             Some(found) => {

@@ -64,7 +64,7 @@ pub fn square_with_hole() -> Specs {
     (curves, vec![face("plate", SQUARE, &["hole"], "", "")])
 }
 
-/// A disc of three arcs, run in different directions.
+/// A disc of three arcs with different directions.
 pub fn disc() -> Specs {
     let third = TAU / 3.0;
     let curves = vec![
@@ -133,7 +133,7 @@ pub fn square_cut_in_two() -> Specs {
     (curves, vec![face("plate", "left right", &[], "cut", "")])
 }
 
-/// All of the above, with names.
+/// All of the domains above, with names.
 pub fn all() -> Vec<(&'static str, Specs)> {
     vec![
         ("square", square()),
@@ -149,7 +149,7 @@ pub fn all() -> Vec<(&'static str, Specs)> {
     ]
 }
 
-/// The domain of a case that is known to be sound.
+/// The domain of a valid case.
 pub fn built((curves, faces): Specs) -> Domain {
     Domain::build(curves, faces).unwrap()
 }

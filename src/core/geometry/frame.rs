@@ -1,39 +1,39 @@
-//! The frame of what turns about an axis, and angles in degrees that are exact at quarter turns.
+//! Frames about an axis of rotation, and angles in degrees that are exact at quarter turns.
 
 use glam::DVec3;
 
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::point_text;
 
-/// The directions of something that turns: angles are measured from `start` towards `axis x start`.
+/// A frame about an axis of rotation: angles are measured from `start` towards `axis x start`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct AxisFrame {
     /// A point on the axis.
     pub centre: DVec3,
     /// Unit vector along the axis.
     pub axis: DVec3,
-    /// Unit vector across it, where the angle is 0.
+    /// Unit vector perpendicular to the axis, at the angle 0.
     pub start: DVec3,
 }
 
-impl Frame {
-    /// A frame about an axis; without `start` the angle 0 is towards x, or y where the axis is x.
+impl AxisFrame {
+    /// A frame about an axis; without `start` the angle 0 is towards x, or towards y if the axis is x.
     ///
     /// # Errors
     /// Directions that are zero, not finite, or parallel.
-    pub fn new(centre: DVec3, axis: DVec3, start: Option<DVec3>) -> Result<Frame, Fault> {
-        let told = |p: DVec3| format!("({}, {}, {})", p.x, p.y, p.z);
+    pub fn new(centre: DVec3, axis: DVec3, start: Option<DVec3>) -> Result<AxisFrame, Fault> {
         let axis_unit = axis.normalize_or_zero();
         if axis_unit == DVec3::ZERO || !centre.is_finite() {
-            return Err(Fault::new(format!("The axis {} is no direction", told(axis))));
+            return Err(Fault::new(format!("The axis {} is not a direction", point_text(axis))));
         }
         let given = start.unwrap_or(if axis_unit.cross(DVec3::X).length() > 1e-6 { DVec3::X } else { DVec3::Y });
         let across = given.normalize_or_zero();
         let across = across - axis_unit * across.dot(axis_unit);
         if across.length() < 1e-6 {
-            return Err(Fault::new(format!("start = {} is no direction across the axis", told(given)))
+            return Err(Fault::new(format!("start = {} is parallel to the axis, or zero", point_text(given)))
                 .remedy("Give a direction that is not along the axis"));
         }
-        Ok(Frame { centre, axis: axis_unit, start: across.normalize() })
+        Ok(AxisFrame { centre, axis: axis_unit, start: across.normalize() })
     }
 
     /// The unit vector at an angle in degrees, exact at multiples of 90.

@@ -1,4 +1,4 @@
-//! Which face holds a point: crossings of a ray with the fine polygons, found by a tree of boxes.
+//! Point-in-face tests: crossings of a ray with the fine polygons, found by a tree of boxes.
 
 use glam::DVec2;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -8,10 +8,10 @@ use smallvec::SmallVec;
 use super::domain_curve::{CurveId, DomainCurve};
 use crate::core::kernel::predicates::orient;
 
-/// A chord of a curve's fine polyline: the curve and the number of the chord.
+/// A chord of a curve's fine polyline: the curve and the index of the chord.
 pub type Chord = GeomWithData<Rectangle<[f64; 2]>, (CurveId, u32)>;
 
-/// Boxes of all chords, each grown by `margin(curve, chord)`, so that the curve's arc lies in it too.
+/// The tree of boxes of all chords, each grown by `margin(curve, chord)` so that it contains the arc of the curve too.
 pub fn chord_tree(curves: &[DomainCurve], margin: impl Fn(CurveId, u32) -> f64) -> RTree<Chord> {
     let mut boxes = Vec::new();
     for (c, curve) in curves.iter().enumerate() {
@@ -25,7 +25,7 @@ pub fn chord_tree(curves: &[DomainCurve], margin: impl Fn(CurveId, u32) -> f64) 
     RTree::bulk_load(boxes)
 }
 
-/// A chord that crosses a horizontal line, and the curve that it is of.
+/// A chord that crosses a horizontal line, and its curve.
 #[derive(Clone, Copy, Debug)]
 pub struct Crossing {
     low: DVec2,
@@ -35,14 +35,14 @@ pub struct Crossing {
 }
 
 impl Crossing {
-    /// Whether a ray from `p`, which lies on the line, towards -x meets the chord.
+    /// Whether a ray towards -x from `p`, a point of the line, meets the chord.
     #[inline]
     pub fn left_of(&self, p: DVec2) -> bool {
         orient(self.low, self.high, p) < 0.0
     }
 }
 
-/// The chords that the horizontal line at `y` crosses between the two abscissas, and perhaps some beyond the second.
+/// The chords that the horizontal line at `y` crosses between the two abscissas, and possibly some beyond the second.
 pub fn crossings(tree: &RTree<Chord>, curves: &[DomainCurve], y: f64, [left, right]: [f64; 2]) -> Crossings {
     let mut crossings = Crossings::new();
     if right < left {
@@ -52,7 +52,7 @@ pub fn crossings(tree: &RTree<Chord>, curves: &[DomainCurve], y: f64, [left, rig
         let (id, i) = chord.data;
         let fine = &curves[id.index()].fine;
         let (a, b) = (fine[i as usize].1, fine[i as usize + 1].1);
-        // Half-open, so that a line through a corner counts it once.
+        // Half-open intervals, so that a line through a corner counts once.
         let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };
         if low.y <= y && y < high.y {
             crossings.push(Crossing { low, high, curve: id });
@@ -61,5 +61,5 @@ pub fn crossings(tree: &RTree<Chord>, curves: &[DomainCurve], y: f64, [left, rig
     crossings
 }
 
-/// What [`crossings`] finds.
+/// The result of [`crossings`].
 pub type Crossings = SmallVec<[Crossing; 8]>;

@@ -1,5 +1,6 @@
-//! Loops of curves in space lifted into a face's chart: on a surface that closes, a curve has an image on every sheet, and a
-//! loop is a chain of images that closes in the chart itself. A seam stands in its loop twice, once from either side.
+//! Lifting of loops of space curves into the chart of a face. On a closed surface, a curve has an image on every sheet,
+//! and a loop is a chain of images that closes in the chart itself. A seam occurs twice in its loop, once from either
+//! side.
 
 use std::sync::Arc;
 
@@ -9,23 +10,23 @@ use rustc_hash::FxHashMap;
 use super::chart::Chart;
 use super::image::Image;
 use super::named_curve::{NamedCurve, image_on};
-use super::space_curve::{told_uv, told_xyz};
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::{number, point_text};
 
-/// Ends of images nearer than this part of the surface's size meet.
+/// Ends of images closer than this fraction of the surface's size coincide.
 const MEET: f64 = 1e-6;
 
-/// How many chains of images are tried before a loop is given up.
+/// The number of chains of images that are tried for a loop.
 const PATIENCE: usize = 20_000;
 
 /// An image in a loop.
 #[derive(Clone, Debug)]
 pub struct Piece {
-    /// The curve by number.
+    /// The index of the curve.
     pub curve: usize,
     /// Its image.
     pub image: Image,
-    /// Whether the loop runs from its start to its end.
+    /// Whether the loop traverses it from start to end.
     pub forward: bool,
 }
 
@@ -36,19 +37,24 @@ pub(super) struct Lift<'a> {
     face: &'a str,
     /// By curve and sheet.
     images: FxHashMap<(usize, usize), Result<Image, Fault>>,
-    /// What may be added to u and v without changing the point.
+    /// The translations of (u, v) by whole periods, which do not change the point.
     moves: Vec<DVec2>,
 }
 
-/// A chain as far as it has come.
+/// A partial chain.
 struct Chain<'a> {
     list: &'a [usize],
     used: Vec<bool>,
-    /// Place in the list, sheet, direction.
+    /// Index in the list, sheet, and whether forward.
     steps: Vec<(usize, usize, bool)>,
-    /// The longest chain that was found.
+    /// The length and end of the longest chain found.
     longest: (usize, DVec2),
     patience: usize,
+}
+
+/// Surface parameters for messages.
+fn uv_text(uv: DVec2) -> String {
+    format!("u = {}, v = {}", number(uv.x), number(uv.y))
 }
 
 impl<'a> Lift<'a> {
@@ -56,7 +62,7 @@ impl<'a> Lift<'a> {
         let surface = chart.surface();
         let period = [0, 1].map(|axis| surface.period(axis));
         let mut moves = vec![DVec2::ZERO];
-        // A disc has no seam, whatever its surface has.
+        // A disc has no seam, even if its surface has one.
         if !chart.is_disc() {
             for a in [0.0, -1.0, 1.0, -2.0, 2.0] {
                 for b in [0.0, -1.0, 1.0, -2.0, 2.0] {
@@ -77,7 +83,7 @@ impl<'a> Lift<'a> {
         }
         let by = self.moves[sheet];
         let made = if sheet > 0 && self.chart.keeps_lines() {
-            // The sheets of the parametric plane are moved copies of each other.
+            // The sheets of the parametric plane are translated copies of each other.
             let shift = self.chart.of_uv(by) - self.chart.of_uv(DVec2::ZERO);
             self.image(curve, 0).map(|image| image.moved(shift))
         } else {
@@ -88,11 +94,11 @@ impl<'a> Lift<'a> {
         made
     }
 
-    /// Refuses an image that leaves the surface's knots.
+    /// Refuses an image that leaves the surface's parameter range.
     fn within(&self, curve: usize, image: Image) -> Result<Image, Fault> {
         let surface = self.chart.surface();
         let domain = surface.domain();
-        // A sector ends at its seam; the parametric plane and a disc go on round.
+        // A sector ends at its seam; the parametric plane and a disc continue across it.
         let goes_round = self.chart.keeps_lines() || self.chart.is_disc();
         let outside = image.uvs().find(|uv| {
             (0..2).any(|axis| {
@@ -111,30 +117,31 @@ impl<'a> Lift<'a> {
                     "The curve \"{}\" leaves the surface of the face \"{}\"",
                     named.name, self.face
                 ))
-                .at(format!("at {}", told_uv(uv)))
-                .remedy(format!("The surface goes from {u0} to {u1} in u and from {v0} to {v1} in v")))
+                .at(format!("at {}", uv_text(uv)))
+                .remedy(format!("Keep it within the surface: u from {u0} to {u1}, v from {v0} to {v1}")))
             }
         }
     }
 
-    /// A curve by itself.
+    /// A single curve, not in a loop.
     pub fn single(&mut self, curve: usize) -> Result<Piece, Fault> {
         Ok(Piece { curve, image: self.image(curve, 0)?, forward: true })
     }
 
-    /// Chains curves, in any order and direction, into one loop that closes in the chart. `what` is the loop's name.
+    /// Chains curves, given in any order and direction, into one loop that closes in the chart. `what` is the loop's
+    /// name.
     pub fn chain(&mut self, list: &[usize], what: &str) -> Result<Vec<Piece>, Fault> {
         if list.is_empty() {
             return Err(Fault::new(format!("The {what} has no curves")).remedy("Name the curves of a closed loop"));
         }
         for (i, c) in list.iter().enumerate() {
-            // What is wrong with a curve itself is told before what is wrong with the loop.
+            // Report a fault of a curve before a fault of the loop.
             let any = (1..self.moves.len()).fold(self.image(*c, 0), |found, sheet| found.or(self.image(*c, sheet)));
             any.or_else(|_| self.image(*c, 0))?;
             if list[..i].iter().filter(|d| *d == c).count() > 1 {
                 let name = &self.curves[*c].name;
                 return Err(Fault::new(format!("The {what} names the curve \"{name}\" three times"))
-                    .remedy("A seam stands in its loop twice"));
+                    .remedy("Name a curve once, or a seam twice"));
             }
         }
         let mut longest = (0, DVec2::ZERO);
@@ -155,7 +162,7 @@ impl<'a> Lift<'a> {
                 return chain.steps.iter().map(piece).collect();
             }
             longest = chain.longest;
-            // On the other sheets of the parametric plane it would be the same.
+            // The other sheets of the parametric plane give the same result.
             if self.chart.keeps_lines() {
                 break;
             }
@@ -164,16 +171,16 @@ impl<'a> Lift<'a> {
         let on = self.chart.at(longest.1).xyz;
         let names: Vec<String> = list.iter().map(|c| format!("\"{}\"", self.curves[*c].name)).collect();
         let fault =
-            Fault::new(format!("The {what} does not close on its surface: no chain of all of {}", names.join(", ")))
-                .at(format!("it breaks off at {} ({})", told_xyz(on), told_uv(uv)));
+            Fault::new(format!("The {what} does not close on its surface: {} do not form a chain", names.join(", ")))
+                .at(format!("the chain breaks off at {} ({})", point_text(on), uv_text(uv)));
         Err(fault.remedy(if self.moves.len() > 1 {
-            "Let the ends meet; a loop that goes round a closed surface needs a seam, which it names twice"
+            "Make the ends meet; a loop around a closed surface needs a seam, named twice"
         } else {
-            "Let the ends meet, or name the curve that is missing"
+            "Make the ends meet, or name the missing curve"
         }))
     }
 
-    /// Goes on from `at` until all curves are in the chain and it is back at `start`.
+    /// Extends the chain from `at` by backtracking until it contains all curves and returns to `start`.
     fn extend(&mut self, chain: &mut Chain<'_>, start: DVec2, at: DVec2) -> bool {
         let tolerance = MEET * self.chart.surface().size();
         if chain.steps.len() == chain.list.len() {
@@ -188,13 +195,13 @@ impl<'a> Lift<'a> {
         chain.patience -= 1;
         for i in 0..chain.list.len() {
             let curve = chain.list[i];
-            // Of two equal names the first is taken first.
+            // A curve that is listed twice is used in the order of the list.
             if chain.used[i] || (0..i).any(|j| !chain.used[j] && chain.list[j] == curve) {
                 continue;
             }
             for forward in [true, false] {
                 for sheet in 0..self.moves.len() {
-                    // A curve does not turn back on itself on the same sheet.
+                    // A curve is not traversed twice on the same sheet.
                     if chain.steps.iter().any(|&(j, s, _)| chain.list[j] == curve && s == sheet) {
                         continue;
                     }
@@ -217,15 +224,15 @@ impl<'a> Lift<'a> {
         false
     }
 
-    /// The pieces moved by whole periods to where the polygon holds them, if it does anywhere.
+    /// The pieces, translated by whole periods into the polygon `around` if that is possible.
     pub fn brought_inside(&self, pieces: Vec<Piece>, around: &[DVec2]) -> Vec<Piece> {
         if !self.chart.keeps_lines() {
             return pieces;
         }
-        let probe: Vec<DVec2> = pieces.iter().flat_map(|piece| piece.image.places()).collect();
+        let probe: Vec<DVec2> = pieces.iter().flat_map(|piece| piece.image.points()).collect();
         let shift = |by: &DVec2| self.chart.of_uv(*by) - self.chart.of_uv(DVec2::ZERO);
         let inside = |by: &&DVec2| probe.iter().filter(|p| Self::holds(around, **p + shift(by))).count();
-        // All of it where that can be; the first of the best.
+        // The translation with the most points inside, the first among equals.
         let best = self.moves.iter().rev().max_by_key(inside).map_or(DVec2::ZERO, shift);
         pieces.into_iter().map(|piece| Piece { image: piece.image.moved(best), ..piece }).collect()
     }
@@ -234,17 +241,17 @@ impl<'a> Lift<'a> {
     pub fn polygon(pieces: &[Piece]) -> Vec<DVec2> {
         let mut points = Vec::new();
         for piece in pieces {
-            let mut places: Vec<DVec2> = piece.image.places().collect();
+            let mut own: Vec<DVec2> = piece.image.points().collect();
             if !piece.forward {
-                places.reverse();
+                own.reverse();
             }
-            places.pop();
-            points.extend(places);
+            own.pop();
+            points.extend(own);
         }
         points
     }
 
-    /// Whether a polygon holds a point, by crossings of a ray; on the border either.
+    /// Whether a polygon contains a point, by ray crossings; on the boundary the answer is arbitrary.
     pub fn holds(polygon: &[DVec2], p: DVec2) -> bool {
         let mut inside = false;
         for (i, a) in polygon.iter().enumerate() {

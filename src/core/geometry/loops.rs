@@ -1,24 +1,25 @@
-//! Loops: curves of a list chained end to end, and the boundary walks of a face with everything that hangs on its loops.
+//! Loops: curves of a list chained end to end, and the boundary walks of a face, including the lines attached to its
+//! loops.
 
 use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::{number, told};
+use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::orient;
 
 /// Chains curves, given in any order and direction, into one closed loop that begins with the first of them.
 ///
 /// # Errors
-/// A list that is empty, names a curve twice, leaves ends loose, meets itself at a vertex, or makes several loops;
+/// A list that is empty, names a curve twice, leaves loose ends, touches itself at a vertex, or makes several loops;
 /// `what` is the loop's name for the message ("outer loop of \"plate\"").
 pub fn chain(curves: &[DomainCurve], list: &[CurveId], what: &str) -> Result<Vec<DirectedCurve>, Fault> {
     let Some(&first) = list.first() else {
         return Err(Fault::new(format!("The {what} has no curves")).remedy("Name at least one closed curve"));
     };
     let named = |id: CurveId| &curves[id.index()].name;
-    // The ends of the curves, sorted by vertex: (vertex, place in the list, whether the curve ends there).
+    // The ends of the curves, sorted by vertex: (vertex, index in the list, whether the curve ends there).
     let mut ends: Vec<(u32, usize, bool)> = Vec::with_capacity(2 * list.len());
     for (i, id) in list.iter().enumerate() {
         if list[..i].contains(id) {
@@ -46,23 +47,23 @@ pub fn chain(curves: &[DomainCurve], list: &[CurveId], what: &str) -> Result<Vec
                 group.len(),
                 names.join(", ")
             ))
-            .at(format!("at {}", told(spot(&group[0]))))
+            .at(format!("at {}", point_text(spot(&group[0]))))
             .remedy(if what.starts_with("outer") {
-                "Make a face of each part that closes by itself, or keep the parts apart"
+                "Make a face of each closed part, or move the parts apart"
             } else {
-                "Give each part that closes by itself a list of its own among the holes, or keep the parts apart"
+                "List each closed part as a separate hole, or move the parts apart"
             }));
         }
     }
     if let Some(a) = loose.first() {
         let nearest = loose[1..].iter().min_by(|x, y| spot(a).distance(spot(x)).total_cmp(&spot(a).distance(spot(y))));
         let end = |e: &(u32, usize, bool)| {
-            format!("\"{}\" {} at {}", named(list[e.1]), if e.2 { "ends" } else { "begins" }, told(spot(e)))
+            format!("\"{}\" {} at {}", named(list[e.1]), if e.2 { "ends" } else { "begins" }, point_text(spot(e)))
         };
         let other =
             nearest.map_or(String::new(), |b| format!(" and {}, {} apart", end(b), number(spot(a).distance(spot(b)))));
         return Err(Fault::new(format!("The {what} is open: {}{other}", end(a)))
-            .remedy("Let these ends meet, or name the curve that joins them"));
+            .remedy("Make these ends meet, or name the curve that joins them"));
     }
     let mut found = vec![DirectedCurve { curve: first, forward: true }];
     let (mut at, mut by) = (curves[first.index()].ends[1], 0);
@@ -75,16 +76,16 @@ pub fn chain(curves: &[DomainCurve], list: &[CurveId], what: &str) -> Result<Vec
     }
     if let Some(id) = list.iter().find(|id| !found.iter().any(|f| f.curve == **id)) {
         return Err(Fault::new(format!(
-            "The {what} falls into several closed loops: \"{}\" is not joined to \"{}\"",
+            "The {what} consists of several closed loops: \"{}\" is not connected to \"{}\"",
             named(*id),
             named(first)
         ))
-        .remedy("Give each hole a list of its own"));
+        .remedy("List each hole separately"));
     }
     Ok(found)
 }
 
-/// Points of a loop's fine polygon in its order, the first one not repeated.
+/// Points of a loop's fine polygon in order, without repeating the first.
 pub fn polygon(curves: &[DomainCurve], chain: &[DirectedCurve]) -> Vec<DVec2> {
     let mut points = Vec::new();
     for step in chain {
@@ -103,17 +104,18 @@ pub fn doubled_area(points: &[DVec2]) -> f64 {
 
 /// The boundary walks of every face: each runs with the face on its left and turns at each vertex into the first curve
 /// clockwise, so that what hangs on a loop (cracks, repeated lines, loops that touch at a vertex) belongs to the same
-/// walk, an internal line twice. These are the topological loops that have to be even (spec 2.9).
+/// walk, an internal line twice. These are the topological loops that have to be even (docs/algorithm.md, "Even
+/// loops").
 ///
 /// # Errors
-/// Faces whose curves do not bound them: a curve that runs into another face at a vertex.
+/// Faces that their curves do not bound: a curve that enters another face at a vertex.
 pub fn walks(
     curves: &[DomainCurve],
     faces: &[String],
     vertices: &[DVec2],
 ) -> Result<Vec<Vec<Vec<DirectedCurve>>>, Fault> {
     let around = rotations(curves, vertices.len());
-    // The place of each end in the rotation of its vertex.
+    // The index of each end in the rotation of its vertex.
     let mut place = vec![[0_usize; 2]; curves.len()];
     for ring in &around {
         for (i, &(id, at_end)) in ring.iter().enumerate() {
@@ -143,17 +145,14 @@ pub fn walks(
                 let spot = vertices[vertex as usize];
                 let fault = Fault::new(match other.kind {
                     CurveKind::Boundary => format!(
-                        "The faces overlap: the curve \"{}\" runs into the face \"{}\"",
+                        "The faces overlap: the curve \"{}\" enters the face \"{}\"",
                         other.name, faces[face as usize]
                     ),
-                    _ => format!(
-                        "The line \"{}\" runs outside of its face, into \"{}\"",
-                        other.name, faces[face as usize]
-                    ),
+                    _ => format!("The line \"{}\" leaves its face and enters \"{}\"", other.name, faces[face as usize]),
                 });
                 return Err(fault
-                    .at(format!("at {}", told(spot)))
-                    .remedy("Faces may share curves and vertices only; holes lie inside the outer loop"));
+                    .at(format!("at {}", point_text(spot)))
+                    .remedy("Faces may share only curves and vertices; holes must lie inside the outer loop"));
             }
             if seen[curve.index()][usize::from(!next.forward)] {
                 debug_assert_eq!(next, start, "turning clockwise is a permutation");
@@ -168,7 +167,7 @@ pub fn walks(
 
 type Ring = SmallVec<[(CurveId, bool); 4]>;
 
-/// The curve ends at each vertex in anticlockwise order; of a curve that begins and ends there, both.
+/// The curve ends at each vertex in anticlockwise order; a closed curve has both its ends there.
 fn rotations(curves: &[DomainCurve], vertices: usize) -> Vec<Ring> {
     let mut around = vec![Ring::new(); vertices];
     for (i, curve) in curves.iter().enumerate() {
@@ -176,8 +175,8 @@ fn rotations(curves: &[DomainCurve], vertices: usize) -> Vec<Ring> {
         around[curve.ends[1] as usize].push((CurveId(i as u32), true));
     }
     for ring in around.iter_mut().filter(|ring| ring.len() > 2) {
-        // Curves may be tangent: they are compared where they cross a small circle about the vertex, no larger than
-        // half the shortest first chord.
+        // Curves may be tangent: compare them where they cross a small circle about the vertex, whose radius is half
+        // the shortest first chord.
         let second = |(id, at_end): (CurveId, bool)| {
             let fine = &curves[id.index()].fine;
             let n = fine.len() - 1;

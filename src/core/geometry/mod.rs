@@ -1,4 +1,5 @@
-//! Curves, surfaces and the domains on them: what a case says of them (`spec`), and what is built of that.
+//! Curves, surfaces, and the domains that they bound: their description in a case (`spec`), and the geometry built from
+//! it.
 
 pub mod frame;
 pub mod spec;
@@ -10,7 +11,7 @@ pub mod space_curve;
 pub mod swept;
 pub mod chart;
 pub mod facets;
-pub mod ground;
+pub mod face_surface;
 pub mod atlas;
 pub mod image;
 pub mod course;

@@ -1,4 +1,4 @@
-//! A named curve in space, and its image in a chart.
+//! A named space curve, and its image in a chart.
 
 use std::sync::Arc;
 
@@ -7,11 +7,11 @@ use glam::{DVec2, DVec3};
 use super::assembly::placed;
 use super::chart::Chart;
 use super::image::{Image, ON_SURFACE};
-use super::space_curve::{SpaceCurve, told_xyz};
+use super::space_curve::SpaceCurve;
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::number;
+use crate::core::kernel::decimal::{number, point_text};
 
-/// A named curve in space.
+/// A named space curve.
 pub(in crate::core) struct NamedCurve {
     pub name: String,
     pub curve: Arc<SpaceCurve>,
@@ -21,7 +21,7 @@ pub(in crate::core) struct NamedCurve {
     pub ends: [u32; 2],
 }
 
-/// An image of a curve in a chart on some sheet; see [`Lift`](super::lifting::Lift).
+/// The image of a curve in a chart, on the sheet that `move_by` selects; see [`Lift`](super::lifting::Lift).
 pub(super) fn image_on(chart: &Arc<Chart>, named: &NamedCurve, move_by: DVec2, face: &str) -> Result<Image, Fault> {
     if let Some((surface, trim)) = named.curve.trim()
         && Arc::ptr_eq(surface, chart.surface())
@@ -32,8 +32,8 @@ pub(super) fn image_on(chart: &Arc<Chart>, named: &NamedCurve, move_by: DVec2, f
     let refuse = |distance: f64, at: DVec3| {
         let what = format!("The curve \"{}\" does not lie on the surface of the face \"{face}\"", named.name);
         let fault = Fault::new(format!("{what}: it is {} away", number(distance)))
-            .at(format!("at {}", told_xyz(at)))
-            .remedy("Mend the curve, or name another one");
+            .at(format!("at {}", point_text(at)))
+            .remedy("Correct the curve, or name another one");
         placed(fault, &named.place)
     };
     if off > ON_SURFACE * chart.surface().size() {

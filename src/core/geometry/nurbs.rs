@@ -1,5 +1,5 @@
-//! Rational B-splines after Piegl & Tiller, "The NURBS Book": the basis with its derivatives (A2.1, A2.3) and curves on it
-//! (A4.2), in the plane and in space. The basis stands alone, so that surfaces can be made from two of it.
+//! Rational B-splines after Piegl & Tiller, "The NURBS Book": the basis with its derivatives (A2.1, A2.3), which
+//! surfaces use too, and curves (A4.2) in the plane and in space.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
@@ -9,10 +9,10 @@ use smallvec::SmallVec;
 
 use crate::core::fault::Fault;
 
-/// Values of the basis functions that live on one span: `degree + 1` of them.
+/// Values of the `degree + 1` basis functions that do not vanish on a span.
 pub type BasisValues = SmallVec<[f64; 8]>;
 
-/// A B-spline basis: its degree and its knots.
+/// A B-spline basis: degree and knots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basis {
     degree: usize,
@@ -24,10 +24,10 @@ impl Basis {
     ///
     /// # Errors
     /// Degree 0, too few functions, a wrong number of knots, knots that are not finite or decrease, an empty domain,
-    /// and a knot repeated so often that the curve would fall apart there.
+    /// and a knot repeated so often that the curve would be discontinuous there.
     pub fn new(degree: usize, knots: Vec<f64>, count: usize) -> Result<Self, Fault> {
         if degree == 0 {
-            return Err(Fault::new("A NURBS of degree 0 is no curve").remedy("Give a degree of at least 1"));
+            return Err(Fault::new("The degree of a NURBS is 0").remedy("Give a degree of at least 1"));
         }
         if count <= degree {
             return Err(Fault::new(format!(
@@ -42,7 +42,7 @@ impl Basis {
                 "A NURBS with {count} control points of degree {degree} needs {wanted} knots and has {}",
                 knots.len()
             ))
-            .remedy("Give as many knots as control points plus the degree plus 1"));
+            .remedy("The number of knots must be that of the control points plus the degree plus 1"));
         }
         if let Some(i) = knots.iter().position(|k| !k.is_finite()) {
             return Err(Fault::new(format!("Knot {} is not a finite number", i + 1)));
@@ -59,7 +59,7 @@ impl Basis {
         let (first, last) = (knots[degree], knots[count]);
         if last <= first || !(last - first).is_finite() {
             return Err(Fault::new(format!(
-                "The knots leave the NURBS no length: it would run from {first} to {last}"
+                "The knots give the NURBS an empty parameter range, from {first} to {last}"
             )));
         }
         let mut start = 0;
@@ -71,9 +71,9 @@ impl Basis {
             let most = if knot > first && knot < last { degree } else { degree + 1 };
             if times > most {
                 return Err(Fault::new(format!(
-                    "The knot {knot} is repeated {times} times; {most} is the most at degree {degree} there"
+                    "The knot {knot} occurs {times} times; at degree {degree} it may occur {most} times there"
                 ))
-                .remedy("Take knots out, or divide the curve there"));
+                .remedy("Remove knots, or divide the curve there"));
             }
             start = end;
         }
@@ -95,7 +95,7 @@ impl Basis {
         (self.knots[self.degree], self.knots[self.knots.len() - 1 - self.degree])
     }
 
-    /// The knots strictly inside the domain, ascending, each with how often it stands there.
+    /// The inner knots of the domain, ascending, each with its multiplicity.
     pub fn inner_knots(&self) -> Vec<(f64, usize)> {
         let (first, last) = self.domain();
         let mut found: Vec<(f64, usize)> = Vec::new();
@@ -108,15 +108,21 @@ impl Basis {
         found
     }
 
+    /// The inner knots, ascending, as parameters in [0, 1] relative to the domain.
+    pub fn unit_knots(&self) -> impl Iterator<Item = f64> {
+        let (first, last) = self.domain();
+        self.inner_knots().into_iter().map(move |(knot, _)| (knot - first) / (last - first))
+    }
+
     /// The span `i` with `knots[i] <= t < knots[i+1]`, the last one at the end of the domain (A2.1).
     pub fn span(&self, t: f64) -> usize {
         let (low, high) = (self.degree, self.knots.len() - 1 - self.degree);
         let span = self.knots.partition_point(|&k| k <= t).saturating_sub(1).clamp(low, high - 1);
-        // At the end of the domain (and where the last knots are repeated) the last span that has a length.
+        // At the end of the domain (and where the last knots are repeated), the last span that is not empty.
         (low..=span).rev().find(|&i| self.knots[i + 1] > self.knots[i]).unwrap_or(low)
     }
 
-    /// Basis functions and their derivatives up to `order` at `t` in the span (A2.3): `[derivative][function]`,
+    /// Basis functions and their derivatives up to `order` at `t` in the span (A2.3): `[derivative][function]` for the
     /// functions `span - degree ..= span`.
     pub fn derivatives(&self, span: usize, t: f64, order: usize) -> SmallVec<[BasisValues; 3]> {
         let p = self.degree;
@@ -178,7 +184,7 @@ impl Basis {
     }
 }
 
-/// What control points are: vectors of the plane or of space.
+/// Vectors of the plane or of space, as control points.
 pub trait Vector:
     Copy
     + Debug
@@ -190,7 +196,7 @@ pub trait Vector:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
-    /// Whether all its components are finite.
+    /// Whether all components are finite.
     fn is_finite(self) -> bool;
 }
 
@@ -206,11 +212,11 @@ impl Vector for DVec3 {
     }
 }
 
-/// Control points times their weights, and the weights; only ratios of weights count: scaled so that the largest is 1, no
-/// product overflows.
+/// Control points times their weights, and the weights. Only ratios of weights matter, so the largest is scaled to 1
+/// and no product overflows.
 ///
 /// # Errors
-/// Points that are not finite; weights that are not positive and finite or not as many as the points.
+/// Points that are not finite; weights that are not positive and finite, or differ in number from the points.
 pub fn weighted<P: Vector>(points: &[P], weights: &[f64]) -> Result<Vec<(P, f64)>, Fault> {
     if !weights.is_empty() && weights.len() != points.len() {
         return Err(Fault::new(format!("A NURBS with {} control points has {} weights", points.len(), weights.len()))
@@ -227,12 +233,12 @@ pub fn weighted<P: Vector>(points: &[P], weights: &[f64]) -> Result<Vec<(P, f64)
     let largest = weights.iter().copied().fold(0.0, f64::max);
     let weight = |i: usize| weights.get(i).map_or(1.0, |w| w / largest);
     if let Some(i) = (0..points.len()).find(|&i| weight(i) < 1e-100) {
-        return Err(Fault::new(format!("Weight {} is vanishingly small beside the largest", i + 1)));
+        return Err(Fault::new(format!("Weight {} is negligible compared with the largest", i + 1)));
     }
     Ok(points.iter().enumerate().map(|(i, &p)| (p * weight(i), weight(i))).collect())
 }
 
-/// A rational B-spline curve, in the plane unless said otherwise.
+/// A rational B-spline curve, by default in the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NurbsCurve<P = DVec2> {
     basis: Basis,
@@ -241,7 +247,7 @@ pub struct NurbsCurve<P = DVec2> {
 }
 
 impl<P: Vector> NurbsCurve<P> {
-    /// A curve; no weights at all means that all are 1.
+    /// A curve; an empty list of weights means that all are 1.
     ///
     /// # Errors
     /// What [`Basis::new`] and [`weighted`] refuse.
@@ -271,8 +277,8 @@ impl<P: Vector> NurbsCurve<P> {
         self.at_in(self.basis.span(t), t)
     }
 
-    /// Point and first derivative at `t`, with the polynomial piece of the given span: at a knot this tells the
-    /// derivative on the left from the one on the right.
+    /// Point and first derivative at `t`, with the polynomial piece of the given span: at a knot, this selects the
+    /// left-hand or the right-hand derivative.
     pub fn at_in(&self, span: usize, t: f64) -> (P, P) {
         let ders = self.basis.derivatives(span, t, 1);
         let first = span - self.basis.degree;
@@ -286,13 +292,31 @@ impl<P: Vector> NurbsCurve<P> {
         let p = a / w;
         (p, (da - p * dw) / w)
     }
+
+    /// Point and derivative by `t` at the parameter `t` in [0, 1], relative to the domain.
+    pub fn at_unit(&self, t: f64) -> (P, P) {
+        let (first, last) = self.basis.domain();
+        let (p, d) = self.at(if t >= 1.0 { last } else { (first + t * (last - first)).min(last) });
+        (p, d * (last - first))
+    }
+
+    /// The inner knots, as parameters in [0, 1], at which the derivatives before and after make `is_sharp` true.
+    pub fn sharp_knots(&self, is_sharp: impl Fn(P, P) -> bool) -> Vec<f64> {
+        // A knot of multiplicity below the degree leaves the curve smooth.
+        let sharp = |&(knot, times): &(f64, usize)| {
+            times >= self.basis.degree
+                && is_sharp(self.at_in(self.basis.span(knot.next_down()), knot).1, self.at(knot).1)
+        };
+        let knots = self.basis.inner_knots();
+        knots.iter().zip(self.basis.unit_knots()).filter(|(knot, _)| sharp(knot)).map(|(_, t)| t).collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The unit circle as a rational quadratic of nine points.
+    /// The unit circle as a rational quadratic with nine control points.
     fn circle() -> NurbsCurve {
         let h = 0.5_f64.sqrt();
         let points = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
@@ -318,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn a_basis_of_any_degree_sums_to_one_and_its_derivatives_to_nothing() {
+    fn a_basis_of_any_degree_sums_to_one_and_its_derivatives_to_zero() {
         for degree in 1..=12 {
             let count = degree + 5;
             let mut knots = vec![0.0; degree + 1];
@@ -369,21 +393,21 @@ mod tests {
     }
 
     #[test]
-    fn bad_curves_are_refused_with_what_is_wrong() {
+    fn invalid_curves_are_refused_with_the_reason() {
         let points = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
         let refusal = |degree, knots: &[f64], weights: &[f64]| {
             NurbsCurve::new(degree, knots.to_vec(), weights, &points).unwrap_err().to_string()
         };
         let good = [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0];
-        assert!(refusal(0, &good, &[]).contains("degree 0"));
+        assert!(refusal(0, &good, &[]).contains("degree of a NURBS is 0"));
         assert!(refusal(4, &good, &[]).contains("at least 5 control points"));
         assert!(refusal(usize::MAX, &good, &[]).contains("control points"));
         assert!(refusal(2, &good[1..], &[]).contains("needs 7 knots and has 6"));
         assert!(refusal(2, &[0.0, 0.0, 0.0, 0.5, 0.4, 1.0, 1.0], &[]).contains("Knot 5 (0.4) is less"));
         assert!(refusal(2, &[0.0, 0.0, 0.0, f64::NAN, 1.0, 1.0, 1.0], &[]).contains("Knot 4"));
-        assert!(refusal(2, &[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &[]).contains("repeated 4 times"));
-        assert!(refusal(1, &[0.0, 0.0, 0.5, 0.5, 1.0, 1.0], &[]).contains("repeated 2 times"));
-        assert!(refusal(2, &[1.0; 7], &[]).contains("no length"));
+        assert!(refusal(2, &[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &[]).contains("occurs 4 times"));
+        assert!(refusal(1, &[0.0, 0.0, 0.5, 0.5, 1.0, 1.0], &[]).contains("occurs 2 times"));
+        assert!(refusal(2, &[1.0; 7], &[]).contains("empty parameter range"));
         assert!(refusal(2, &good, &[1.0, 1.0]).contains("has 2 weights"));
         assert!(refusal(2, &good, &[1.0, 0.0, 1.0, 1.0]).contains("Weight 2 is 0"));
         assert!(refusal(2, &good, &[1.0, -1.0, 1.0, 1.0]).contains("Weight 2 is -1"));

@@ -1,21 +1,20 @@
-//! Exact NURBS of the surfaces and curves that people name: planes, what turns about an axis (A8.1 of "The NURBS Book":
-//! cylinder, cone, sphere, torus, revolution), extrusions, Bezier patches.
+//! Exact NURBS of the usual surfaces and curves: planes, surfaces of revolution (A8.1 of "The NURBS Book": cylinder,
+//! cone, sphere, torus), extrusions.
 //!
-//! The parameter of what turns is the angle in degrees: exact at the ends and at the ends of its equal arcs of at most 90
-//! degrees, and near it (within 1.1 degrees) between.
+//! The parameter of a revolution is the angle in degrees: exact at the ends of its equal arcs of at most 90 degrees,
+//! and within 1.1 degrees between them.
 
 use glam::DVec3;
 
-use super::frame::{Frame, sin_cos};
+use super::frame::{AxisFrame, sin_cos};
 use super::nurbs::NurbsCurve;
 use super::surface::NurbsSurface;
 use crate::core::fault::Fault;
 
-/// Angles of the control points of an arc: ends and joints at even places, and between them the poles, with the weight
-/// of those and the knots.
+/// The control points of an arc of several pieces: the ends of the pieces at even indices, the poles between them.
 struct Arcs {
     angles: Vec<f64>,
-    /// Weight of the points between the joints; their distance is the radius over it.
+    /// Weight of the poles; their distance from the centre is the radius divided by it.
     weight: f64,
     knots: Vec<f64>,
 }
@@ -24,8 +23,8 @@ impl Arcs {
     fn new([from, to]: [f64; 2]) -> Result<Arcs, Fault> {
         let turn = to - from;
         if !(turn.is_finite() && turn > 0.0 && turn <= 360.0) {
-            return Err(Fault::new(format!("The angles {from} and {to} are no turn of up to 360 degrees"))
-                .remedy("Write to_angle greater than from_angle, by 360 at most"));
+            return Err(Fault::new(format!("The angles {from} and {to} do not span between 0 and 360 degrees"))
+                .remedy("Make to_angle greater than from_angle, by at most 360"));
         }
         let count = (turn / 90.0 - 1e-9).ceil().max(1.0) as usize;
         let joint = |i: usize| if i == count { to } else { from + turn * i as f64 / count as f64 };
@@ -42,16 +41,35 @@ impl Arcs {
     fn weight_at(&self, i: usize) -> f64 {
         if i.is_multiple_of(2) { 1.0 } else { self.weight }
     }
+
+    fn weights(&self) -> Vec<f64> {
+        (0..self.angles.len()).map(|i| self.weight_at(i)).collect()
+    }
+
+    /// The arc of a radius in the half plane of a frame at angle 0, about a point at a distance from the axis.
+    fn profile(self, frame: &AxisFrame, distance: f64, radius: f64) -> Result<NurbsCurve<DVec3>, Fault> {
+        let weights = self.weights();
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        for (&angle, w) in self.angles.iter().zip(&weights) {
+            let (sin, cos) = sin_cos(angle);
+            points.push([distance + cos * radius / w, sin * radius / w]);
+        }
+        let last = points.len() - 1;
+        if self.angles[last] - self.angles[0] == 360.0 {
+            points[last] = points[0];
+        }
+        profile(frame, 2, self.knots, &weights, &points)
+    }
 }
 
-/// A circular arc as a rational quadratic, its parameter about the angle in degrees.
+/// A circular arc as a rational quadratic; its parameter is about the angle in degrees.
 ///
 /// # Errors
-/// A radius that is not positive, angles that are no turn.
-pub fn arc(frame: &Frame, radius: f64, angles: [f64; 2]) -> Result<NurbsCurve<DVec3>, Fault> {
+/// A radius that is not positive, angles that do not span between 0 and 360 degrees.
+pub fn arc(frame: &AxisFrame, radius: f64, angles: [f64; 2]) -> Result<NurbsCurve<DVec3>, Fault> {
     positive("radius", radius)?;
     let arcs = Arcs::new(angles)?;
-    let weights: Vec<f64> = (0..arcs.angles.len()).map(|i| arcs.weight_at(i)).collect();
+    let weights = arcs.weights();
     let mut points: Vec<DVec3> = arcs
         .angles
         .iter()
@@ -62,7 +80,7 @@ pub fn arc(frame: &Frame, radius: f64, angles: [f64; 2]) -> Result<NurbsCurve<DV
     NurbsCurve::new(2, arcs.knots, &weights, &points)
 }
 
-/// After a full turn the last points are the first ones, to the last bit.
+/// Makes the last points of a full turn equal to the first ones, to the last bit.
 fn close_full(points: &mut [DVec3], [from, to]: [f64; 2], columns: usize) {
     if to - from == 360.0 {
         let last = points.len() - columns;
@@ -78,11 +96,11 @@ fn positive(name: &str, value: f64) -> Result<(), Fault> {
     }
 }
 
-/// The surface that a profile sweeps about an axis (A8.1): u is the angle in degrees, v the profile's parameter.
+/// The surface of revolution of a profile (A8.1): u is the angle in degrees, v the profile's parameter.
 ///
 /// # Errors
-/// Angles that are no turn, and what [`NurbsSurface::new`] refuses.
-pub fn revolution(profile: &NurbsCurve<DVec3>, frame: &Frame, angles: [f64; 2]) -> Result<NurbsSurface, Fault> {
+/// Angles that do not span between 0 and 360 degrees, and what [`NurbsSurface::new`] refuses.
+pub fn revolution(profile: &NurbsCurve<DVec3>, frame: &AxisFrame, angles: [f64; 2]) -> Result<NurbsSurface, Fault> {
     let arcs = Arcs::new(angles)?;
     let columns = profile.weighted_points().len();
     let (mut points, mut weights) = (Vec::new(), Vec::new());
@@ -91,7 +109,7 @@ pub fn revolution(profile: &NurbsCurve<DVec3>, frame: &Frame, angles: [f64; 2]) 
         let towards = frame.towards(angle);
         let across = frame.axis.cross(towards);
         for &(p, weight) in profile.weighted_points() {
-            // In the frame of the profile: along the axis, and across it towards start and beside it.
+            // In the frame of the profile: along the axis, and across it in two directions.
             let p = p / weight - frame.centre;
             let (height, x, y) = (p.dot(frame.axis), p.dot(frame.start), p.dot(frame.axis.cross(frame.start)));
             points.push(frame.centre + frame.axis * height + (towards * x + across * y) / w);
@@ -103,9 +121,9 @@ pub fn revolution(profile: &NurbsCurve<DVec3>, frame: &Frame, angles: [f64; 2]) 
     NurbsSurface::new([2, profile.basis().degree()], knots, &weights, &points, columns)
 }
 
-/// A profile in the half plane of a frame at angle 0, from points (across, along the axis).
+/// A profile in the half plane of a frame at angle 0; its points are (distance from the axis, height along it).
 fn profile(
-    frame: &Frame,
+    frame: &AxisFrame,
     degree: usize,
     knots: Vec<f64>,
     weights: &[f64],
@@ -115,12 +133,12 @@ fn profile(
     NurbsCurve::new(degree, knots, weights, &points)
 }
 
-/// A cone about an axis, of the radii at its foot and its top (0: its apex); equal radii make a cylinder. v is the distance
-/// from the foot along its generator.
+/// A cone about an axis, with the radii at its foot and at its top (0: the apex); equal radii make a cylinder. v is the
+/// distance from the foot along a generator.
 ///
 /// # Errors
-/// Radii that are negative or both 0, a height that is not positive, angles that are no turn.
-pub fn cone(frame: &Frame, radii: [f64; 2], height: f64, angles: [f64; 2]) -> Result<NurbsSurface, Fault> {
+/// Radii that are negative or both 0, a height that is not positive, angles that do not span between 0 and 360 degrees.
+pub fn cone(frame: &AxisFrame, radii: [f64; 2], height: f64, angles: [f64; 2]) -> Result<NurbsSurface, Fault> {
     positive("height", height)?;
     if let Some(r) = radii.iter().find(|r| !(r.is_finite() && **r >= 0.0)) {
         return Err(Fault::new(format!("The radius {r} is negative or not finite")));
@@ -134,33 +152,23 @@ pub fn cone(frame: &Frame, radii: [f64; 2], height: f64, angles: [f64; 2]) -> Re
 /// A sphere: u is the longitude, v the latitude, both in degrees.
 ///
 /// # Errors
-/// A radius that is not positive, angles that are no turn, latitudes beyond -90 and 90.
-pub fn sphere(frame: &Frame, radius: f64, angles: [f64; 2], latitudes: [f64; 2]) -> Result<NurbsSurface, Fault> {
+/// A radius that is not positive, angles that do not span between 0 and 360 degrees, latitudes beyond -90 and 90.
+pub fn sphere(frame: &AxisFrame, radius: f64, angles: [f64; 2], latitudes: [f64; 2]) -> Result<NurbsSurface, Fault> {
     positive("radius", radius)?;
     if !(-90.0..=90.0).contains(&latitudes[0]) || !(-90.0..=90.0).contains(&latitudes[1]) {
         return Err(Fault::new(format!("The latitudes {} and {} are beyond the poles", latitudes[0], latitudes[1]))
-            .remedy("Write them between -90 and 90"));
+            .remedy("Give latitudes between -90 and 90"));
     }
-    let meridian = Arcs::new(latitudes)?;
-    let weights: Vec<f64> = (0..meridian.angles.len()).map(|i| meridian.weight_at(i)).collect();
-    let points: Vec<[f64; 2]> = meridian
-        .angles
-        .iter()
-        .zip(&weights)
-        .map(|(&latitude, w)| {
-            let (sin, cos) = sin_cos(latitude);
-            [cos * radius / w, sin * radius / w]
-        })
-        .collect();
-    revolution(&profile(frame, 2, meridian.knots, &weights, &points)?, frame, angles)
+    revolution(&Arcs::new(latitudes)?.profile(frame, 0.0, radius)?, frame, angles)
 }
 
-/// A torus: u is the angle about the axis, v that about its tube from the outermost circle upwards, both in degrees.
+/// A torus: u is the angle about the axis, v that about the tube from the outermost circle upwards, both in degrees.
 ///
 /// # Errors
-/// Radii that are not positive, a tube that is not thinner than its circle, angles that are no turn.
+/// Radii that are not positive, a tube radius not less than the ring radius, angles that do not span between 0 and 360
+/// degrees.
 pub fn torus(
-    frame: &Frame,
+    frame: &AxisFrame,
     radius: f64,
     tube: f64,
     angles: [f64; 2],
@@ -169,28 +177,15 @@ pub fn torus(
     positive("radius", radius)?;
     positive("tube", tube)?;
     if tube >= radius {
-        return Err(Fault::new(format!("The tube's radius {tube} is not less than {radius}: the torus meets itself"))
-            .remedy("Give a thinner tube, or a larger radius"));
+        return Err(Fault::new(format!(
+            "The radius of the tube, {tube}, is not less than {radius}: the torus intersects itself"
+        ))
+        .remedy("Give a thinner tube, or a larger radius"));
     }
-    let ring = Arcs::new(tube_angles)?;
-    let weights: Vec<f64> = (0..ring.angles.len()).map(|i| ring.weight_at(i)).collect();
-    let mut points: Vec<[f64; 2]> = ring
-        .angles
-        .iter()
-        .zip(&weights)
-        .map(|(&angle, w)| {
-            let (sin, cos) = sin_cos(angle);
-            [radius + cos * tube / w, sin * tube / w]
-        })
-        .collect();
-    if tube_angles[1] - tube_angles[0] == 360.0 {
-        let last = points.len() - 1;
-        points[last] = points[0];
-    }
-    revolution(&profile(frame, 2, ring.knots, &weights, &points)?, frame, angles)
+    revolution(&Arcs::new(tube_angles)?.profile(frame, radius, tube)?, frame, angles)
 }
 
-/// A part of a plane: the parallelogram of two sides from a corner. u and v are lengths along the sides.
+/// A parallelogram in a plane, given by a corner and two sides. u and v are lengths along the sides.
 ///
 /// # Errors
 /// Sides that are zero or parallel.
@@ -199,17 +194,17 @@ pub fn plane(corner: DVec3, sides: [DVec3; 2]) -> Result<NurbsSurface, Fault> {
     let spanned = sides[0].cross(sides[1]).length();
     if spanned <= 1e-9 * lengths[0] * lengths[1] || spanned.is_nan() {
         return Err(Fault::new("The sides u and v of the plane are zero or parallel")
-            .remedy("Give two directions that span the plane, as long as it is to reach"));
+            .remedy("Give two sides that span the plane, with their lengths"));
     }
     let knots = lengths.map(|l| vec![0.0, 0.0, l, l]);
     let points = [corner, corner + sides[1], corner + sides[0], corner + sides[0] + sides[1]];
     NurbsSurface::new([1, 1], knots, &[], &points, 2)
 }
 
-/// What a curve sweeps along a straight line: u is the curve's parameter, v the length along the line.
+/// The surface that a curve sweeps along a straight line: u is the curve's parameter, v the length along the line.
 ///
 /// # Errors
-/// A direction without length, and what [`NurbsSurface::new`] refuses.
+/// A direction of zero length, and what [`NurbsSurface::new`] refuses.
 pub fn extrusion(curve: &NurbsCurve<DVec3>, along: DVec3) -> Result<NurbsSurface, Fault> {
     positive("the length of direction", along.length())?;
     let (mut points, mut weights) = (Vec::new(), Vec::new());

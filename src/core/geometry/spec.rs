@@ -1,10 +1,10 @@
-//! What a case says of curves, surfaces and faces, as plain data; other modules build geometry of it.
+//! Specifications of curves, surfaces and faces in a case, as plain data; other modules build the geometry.
 
 use glam::{DVec2, DVec3};
 
-use super::frame::Frame;
+use super::frame::AxisFrame;
 
-/// The shape of a curve as a case gives it; angles in radians.
+/// The shape of a planar curve in a case; angles in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveShape {
     /// A straight line.
@@ -14,7 +14,7 @@ pub enum CurveShape {
         /// End.
         to: DVec2,
     },
-    /// A circular arc, anticlockwise where `to_angle > from_angle`; a full turn makes a closed curve.
+    /// A circular arc, anticlockwise if `to_angle > from_angle`; a full turn makes a closed curve.
     Arc {
         /// Centre.
         centre: DVec2,
@@ -25,7 +25,7 @@ pub enum CurveShape {
         /// Angle of the end.
         to_angle: f64,
     },
-    /// Straight lines through points, whose corners are kept as nodes.
+    /// Straight lines through points; the corners become nodes.
     Polyline {
         /// Corners.
         points: Vec<DVec2>,
@@ -36,9 +36,9 @@ pub enum CurveShape {
     Nurbs {
         /// Degree.
         degree: usize,
-        /// Knots, `points.len() + degree + 1` of them, not decreasing.
+        /// `points.len() + degree + 1` knots in ascending order.
         knots: Vec<f64>,
-        /// Positive weights, one a point; empty means all 1.
+        /// Positive weights, one for each point; empty: all are 1.
         weights: Vec<f64>,
         /// Control points.
         points: Vec<DVec2>,
@@ -52,13 +52,13 @@ pub struct CurveSpec {
     pub name: String,
     /// Its shape.
     pub shape: CurveShape,
-    /// Number of segments where the case fixes it (for each straight piece of a polyline taken together).
+    /// The number of segments, if the case fixes it (for all pieces of a polyline together).
     pub segments: Option<u32>,
-    /// Where it stands, for messages ("plate.toml, line 14").
+    /// Its place in the case, for messages ("plate.toml, line 14").
     pub place: String,
 }
 
-/// A face of a case: names of curves. Order and direction within a loop are found, not demanded.
+/// A face of a case, by the names of its curves. The curves of a loop may have any order and direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceSpec {
     /// Its name, unique in the case.
@@ -67,15 +67,15 @@ pub struct FaceSpec {
     pub outer: Vec<String>,
     /// Curves of each hole.
     pub holes: Vec<Vec<String>>,
-    /// Crack lines: the two sides are apart in the mesh, but for the tips inside the face.
+    /// Crack lines: the mesh has separate nodes on their two sides, except at tips inside the face.
     pub cracks: Vec<String>,
-    /// Repeated lines: internal lines meshed on both sides with the same nodes.
+    /// Repeated lines: internal lines that are edges of the mesh, with the same nodes on both sides.
     pub repeated: Vec<String>,
-    /// Where it stands, for messages.
+    /// Its place in the case, for messages.
     pub place: String,
 }
 
-/// The shape of a curve as a case with surfaces gives it; angles in degrees.
+/// The shape of a curve in a case with surfaces; angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpaceShape {
     /// A straight line.
@@ -87,14 +87,14 @@ pub enum SpaceShape {
     },
     /// A circular arc about an axis; a full turn makes a closed curve.
     Arc {
-        /// Centre, axis, and where the angle is 0.
-        frame: Frame,
+        /// Centre, axis, and direction of the angle 0.
+        frame: AxisFrame,
         /// Radius, positive.
         radius: f64,
         /// Angles of start and end.
         angles: [f64; 2],
     },
-    /// Straight lines through points, whose corners are kept as nodes.
+    /// Straight lines through points; the corners become nodes.
     Polyline {
         /// Corners.
         points: Vec<DVec3>,
@@ -107,7 +107,7 @@ pub enum SpaceShape {
         degree: usize,
         /// Knots.
         knots: Vec<f64>,
-        /// Positive weights, one a point; empty means all 1.
+        /// Positive weights, one for each point; empty: all are 1.
         weights: Vec<f64>,
         /// Control points.
         points: Vec<DVec3>,
@@ -116,12 +116,12 @@ pub enum SpaceShape {
     On {
         /// Name of the surface.
         surface: String,
-        /// Its course in u and v.
+        /// Its shape in u and v.
         shape: CurveShape,
     },
 }
 
-/// A surface as a case gives it.
+/// The shape of a surface in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SurfaceShape {
     /// See [`plane`](super::primitive::plane).
@@ -131,10 +131,10 @@ pub enum SurfaceShape {
         /// Two sides from it.
         sides: [DVec3; 2],
     },
-    /// See [`cone`](super::primitive::cone); a cylinder where both radii are equal.
+    /// See [`cone`](super::primitive::cone); a cylinder if both radii are equal.
     Cone {
-        /// Foot, axis and where the angle is 0.
-        frame: Frame,
+        /// Foot, axis and direction of the angle 0.
+        frame: AxisFrame,
         /// Radius at the foot and at the top.
         radii: [f64; 2],
         /// Height.
@@ -144,8 +144,8 @@ pub enum SurfaceShape {
     },
     /// See [`sphere`](super::primitive::sphere).
     Sphere {
-        /// Centre, axis and where the angle is 0.
-        frame: Frame,
+        /// Centre, axis and direction of the angle 0.
+        frame: AxisFrame,
         /// Radius.
         radius: f64,
         /// First and last longitude, degrees.
@@ -155,9 +155,9 @@ pub enum SurfaceShape {
     },
     /// See [`torus`](super::primitive::torus).
     Torus {
-        /// Centre, axis and where the angle is 0.
-        frame: Frame,
-        /// Radius of the circle in the middle of the tube.
+        /// Centre, axis and direction of the angle 0.
+        frame: AxisFrame,
+        /// Radius of the centre line of the tube.
         radius: f64,
         /// Radius of the tube.
         tube: f64,
@@ -178,21 +178,21 @@ pub enum SurfaceShape {
         /// The name of a curve.
         curve: String,
         /// The axis.
-        frame: Frame,
+        frame: AxisFrame,
         /// First and last angle, degrees.
         angles: [f64; 2],
     },
-    /// Control points and knots; a Bezier patch where the knots are only at the ends.
+    /// Control points and knots; a Bezier patch if all knots are at the ends.
     Nurbs {
         /// Degrees along u and v.
         degrees: [usize; 2],
         /// Knots along u and v.
         knots: [Vec<f64>; 2],
-        /// One a point, or none.
+        /// One for each point; empty: all are 1.
         weights: Vec<f64>,
-        /// Rows along v, one for each place along u.
+        /// Rows of points along v, one after another along u.
         points: Vec<DVec3>,
-        /// Points in a row.
+        /// The number of points in a row.
         columns: usize,
     },
 }
@@ -204,7 +204,7 @@ pub struct SurfaceSpec {
     pub name: String,
     /// Its shape.
     pub shape: SurfaceShape,
-    /// Where it stands, for messages.
+    /// Its place in the case, for messages.
     pub place: String,
 }
 
@@ -215,13 +215,13 @@ pub struct SpaceCurveSpec {
     pub name: String,
     /// Its shape.
     pub shape: SpaceShape,
-    /// Number of segments where the case fixes it.
+    /// The number of segments, if the case fixes it.
     pub segments: Option<u32>,
-    /// Where it stands, for messages.
+    /// Its place in the case, for messages.
     pub place: String,
 }
 
-/// A face of a case with surfaces; without an outer loop it is all of its surface, but for the holes.
+/// A face of a case with surfaces; without an outer loop it is its whole surface, except the holes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceFaceSpec {
     /// Its surface.
@@ -230,7 +230,7 @@ pub struct SurfaceFaceSpec {
     pub face: FaceSpec,
 }
 
-/// What [`build`](super::complex::build) makes a domain of.
+/// The surfaces, curves and faces from which [`build`](super::complex::build) makes a domain.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ComplexSpec {
     /// All surfaces.

@@ -1,25 +1,23 @@
 //! NURBS surfaces (eq. 1) after Piegl & Tiller, "The NURBS Book": points with first and second derivatives (A3.6 on
-//! homogeneous control points, A4.4 for the quotient), the normal, the first fundamental form and the principal curvatures.
+//! homogeneous control points, A4.4 for the quotient), the normal, the first fundamental form and the principal
+//! curvatures.
 //!
-//! Where a metric is asked for, a surface is evaluated, so that most of the time on surfaces goes here. Of low degrees, which
-//! nearly all have, each polynomial piece is therefore kept as its Taylor series about its middle, taken by A3.6 once: exact but
-//! for rounding, and several times as quick.
+//! Every evaluation of the metric evaluates the surface, so that most of the time on surfaces is spent here. For the
+//! usual low degrees, the surface therefore keeps the Taylor series of each polynomial piece about its middle, computed
+//! once by A3.6: exact up to rounding, and several times as fast.
 //!
-//! Deliberately absent: how a surface is laid out in the plane in which it is meshed (see `chart`), and where it ends (see
-//! `complex`).
+//! `chart` maps a surface to the plane in which it is meshed; `complex` bounds it by curves.
 
 use glam::{DVec2, DVec3, DVec4};
 
+use super::curve::check_coordinates;
 use super::nurbs::{Basis, BasisValues, weighted};
 use crate::core::fault::Fault;
 
-/// Control points beyond this are refused, so that no square of one overflows.
-const LARGEST: f64 = 1e100;
-
-/// Control points nearer than this part of the surface's size are at one place.
+/// Control points closer than this fraction of the surface's size coincide.
 const SAME: f64 = 1e-12;
 
-/// The highest degree of which the pieces are kept as series: beyond it, they would lose digits.
+/// The highest degree with Taylor series; those of higher degrees would lose digits.
 const SERIES: usize = 5;
 
 /// A point of a surface with its derivatives.
@@ -29,7 +27,7 @@ pub struct SurfacePoint {
     pub p: DVec3,
     /// First derivatives by u and v.
     pub d: [DVec3; 2],
-    /// Second derivatives by uu, uv, vv; zero where they were not asked for.
+    /// Second derivatives by uu, uv, vv; zero if not requested.
     pub dd: [DVec3; 3],
 }
 
@@ -38,8 +36,15 @@ pub struct SurfacePoint {
 pub struct Edge {
     /// The parameter that is constant on it: 0 for u, 1 for v.
     pub axis: usize,
-    /// Whether it is that parameter's last value, not its first.
+    /// Whether that parameter has its last value there, not its first.
     pub last: bool,
+}
+
+impl Edge {
+    /// (u, v) of the parameter along the edge and the parameter across it.
+    pub fn uv(self, along: f64, across: f64) -> DVec2 {
+        if self.axis == 0 { DVec2::new(across, along) } else { DVec2::new(along, across) }
+    }
 }
 
 /// The four edges of a parametric rectangle.
@@ -54,11 +59,11 @@ pub const EDGES: [Edge; 4] = [
 #[derive(Clone, Debug, PartialEq)]
 pub struct NurbsSurface {
     bases: [Basis; 2],
-    /// Control points times their weights, with the weights: those of one row of v after another, `i * count_v + j`.
+    /// Control points times their weights, and the weights, in rows along v: `i * columns + j`.
     weighted: Vec<DVec4>,
     /// Number of control points along v.
     columns: usize,
-    /// Whether all weights are equal, so that there is nothing to divide by.
+    /// Whether all weights are equal, so that no division is needed.
     polynomial: bool,
     size: f64,
     domain: [[f64; 2]; 2],
@@ -67,12 +72,12 @@ pub struct NurbsSurface {
     series: Option<Series>,
 }
 
-/// The polynomial pieces as series about their middles, in coordinates that run from -1 to 1 over each.
+/// The Taylor series of the polynomial pieces about their middles, in local coordinates from -1 to 1.
 #[derive(Clone, Debug, PartialEq)]
 struct Series {
-    /// Where the pieces begin and end, along u and v.
+    /// The parameters between the pieces, along u and v.
     breaks: [Vec<f64>; 2],
-    /// Coefficients of `s^k t^l` at `k * (q + 1) + l`, piece after piece, those of one piece of u together.
+    /// Coefficients of `s^k t^l` at `k * (q + 1) + l`, piece by piece in rows along v.
     coefficients: Vec<DVec4>,
     /// Degrees.
     degrees: [usize; 2],
@@ -87,7 +92,7 @@ impl Series {
         let breaks = [0, 1].map(|axis| surface.breaks(axis));
         let [p, q] = degrees;
         let mut coefficients = Vec::new();
-        // Basis functions and their derivatives at the middle of a piece, over the factorials and by half its width.
+        // Derivatives of the basis functions at the middle of a piece, times powers of its half width over factorials.
         let expanded = |axis: usize, w: &[f64]| {
             let (middle, half) = (0.5 * (w[0] + w[1]), 0.5 * (w[1] - w[0]));
             let span = surface.bases[axis].span(middle);
@@ -120,7 +125,7 @@ impl Series {
         Some(Series { breaks, coefficients, degrees })
     }
 
-    /// The piece that holds a parameter, the local coordinate there and its derivative by the parameter.
+    /// The piece that contains a parameter, the local coordinate there and its derivative by the parameter.
     #[inline]
     fn piece(&self, axis: usize, t: f64) -> (usize, f64, f64) {
         let breaks = &self.breaks[axis];
@@ -141,7 +146,7 @@ impl Series {
         let ((i, s, rate_u), (j, t, rate_v)) = (self.piece(0, u), self.piece(1, v));
         let start = (i * (self.breaks[1].len() - 1) + j) * (p + 1) * (q + 1);
         let coefficients = &self.coefficients[start..start + (p + 1) * (q + 1)];
-        // Horner along v inside, along u outside; each with its derivatives.
+        // Horner's scheme with derivatives, along v inside and along u outside.
         let (mut f, mut f_s, mut f_ss) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
         let (mut f_t, mut f_st, mut f_tt) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
         for row in coefficients.rchunks_exact(q + 1) {
@@ -172,11 +177,12 @@ impl Series {
 }
 
 impl NurbsSurface {
-    /// A surface of control points `points[i * columns + j]`, i along u and j along v; no weights at all means that all are 1.
+    /// A surface of control points `points[i * columns + j]`, i along u and j along v; an empty list of weights means
+    /// that all are 1.
     ///
     /// # Errors
-    /// What [`Basis::new`] refuses of either direction, points that are not finite or beyond 1e100 or all at one place,
-    /// weights that are not positive and finite or not as many as the points.
+    /// What [`Basis::new`] refuses in either direction, points that are not finite, beyond 1e100 or all equal, weights
+    /// that are not positive and finite or differ in number from the points.
     pub fn new(
         degrees: [usize; 2],
         knots: [Vec<f64>; 2],
@@ -195,18 +201,13 @@ impl NurbsSurface {
             Basis::new(degrees[0], knots_u, rows).map_err(about("u"))?,
             Basis::new(degrees[1], knots_v, columns).map_err(about("v"))?,
         ];
-        if let Some(p) = points.iter().find(|p| !(p.is_finite() && p.abs().max_element() <= LARGEST)) {
-            return Err(Fault::new(format!(
-                "The control point ({}, {}, {}) is not finite or beyond 1e100",
-                p.x, p.y, p.z
-            )));
-        }
+        check_coordinates(points)?;
         let weighted: Vec<DVec4> = weighted(points, weights)?.into_iter().map(|(p, w)| p.extend(w)).collect();
         let low = points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
         let high = points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
         let size = (high - low).max_element();
         if size <= 0.0 {
-            return Err(Fault::new("The surface has no size: all its control points are at one place"));
+            return Err(Fault::new("The surface has zero size: all its control points are equal"));
         }
         let polynomial = weighted.iter().all(|p| p.w == 1.0);
         let mut surface = NurbsSurface {
@@ -229,8 +230,8 @@ impl NurbsSurface {
         if surface.degenerate[0] && surface.degenerate[2] && surface.edges_agree(1)
             || surface.degenerate[1] && surface.degenerate[3] && surface.edges_agree(0)
         {
-            return Err(Fault::new("The surface begins and ends in the same point")
-                .remedy("Divide it, so that each part has one singular point at most at either end"));
+            return Err(Fault::new("Two opposite edges of the surface are the same point")
+                .remedy("Divide it, so that the singular points of each part are different"));
         }
         surface.series = Series::of(&surface);
         Ok(surface)
@@ -247,18 +248,18 @@ impl NurbsSurface {
         self.domain
     }
 
-    /// Whether it closes in u, and in v: last and first edge are the same.
+    /// Whether it is closed in u, and in v: the last edge is the first.
     pub fn closed(&self) -> [bool; 2] {
         self.closed
     }
 
-    /// How far u (or v) goes until the surface repeats itself; `None` where it does not close.
+    /// The period of u (axis 0) or v (axis 1); `None` if the surface is not closed along it.
     pub fn period(&self, axis: usize) -> Option<f64> {
         let [first, last] = self.domain()[axis];
         self.closed[axis].then_some(last - first)
     }
 
-    /// Which of [`EDGES`] are one point in space: singular points.
+    /// Which of [`EDGES`] degenerate to a singular point.
     pub fn degenerate(&self) -> [bool; 4] {
         self.degenerate
     }
@@ -272,7 +273,7 @@ impl NurbsSurface {
         breaks
     }
 
-    /// Control points, each divided by its weight.
+    /// A control point, divided by its weight.
     fn control(&self, i: usize, j: usize) -> DVec3 {
         let p = self.weighted[i * self.columns + j];
         p.truncate() / p.w
@@ -293,8 +294,8 @@ impl NurbsSurface {
         (0..if edge.axis == 0 { self.columns } else { rows }).map(at).collect()
     }
 
-    /// Whether the first and the last edge of an axis are the same curve. The ends of the knots must be clamped, else the
-    /// edges are not what the outer control points say.
+    /// Whether the first and the last edge of an axis are the same curve. The knots must be clamped, since only then do
+    /// the outer control points determine the edges.
     fn edges_agree(&self, axis: usize) -> bool {
         let [first, last] = [false, true].map(|last| self.along(Edge { axis, last }));
         let near = |(a, b): (&DVec4, &DVec4)| {
@@ -316,8 +317,8 @@ impl NurbsSurface {
             && points.iter().all(|p| (p.truncate() - points[0].truncate()).length() <= SAME * self.size)
     }
 
-    /// Point and derivatives up to `order` (1 or 2). Beyond the edges it goes on: periodically where it is closed, else
-    /// straight ahead.
+    /// Point and derivatives up to `order` (1 or 2). Beyond its edges, the surface continues periodically if it is
+    /// closed, and linearly otherwise.
     pub fn at(&self, uv: DVec2, order: usize) -> SurfacePoint {
         let domain = self.domain();
         let mut inside = [uv.x, uv.y];
@@ -342,7 +343,7 @@ impl NurbsSurface {
         point
     }
 
-    /// Point and derivatives inside the knots.
+    /// Point and derivatives inside the parameter range.
     #[inline]
     fn within(&self, uv: [f64; 2], order: usize) -> SurfacePoint {
         match &self.series {
@@ -351,14 +352,14 @@ impl NurbsSurface {
         }
     }
 
-    /// Homogeneous point and derivatives by the basis functions.
+    /// Homogeneous point and derivatives from the basis functions.
     fn by_basis(&self, [u, v]: [f64; 2], order: usize) -> [[DVec4; 3]; 3] {
         let spans = [self.bases[0].span(u), self.bases[1].span(v)];
         let n_u = self.bases[0].derivatives(spans[0], u, order);
         let n_v = self.bases[1].derivatives(spans[1], v, order);
         let [p, q] = [self.bases[0].degree(), self.bases[1].degree()];
         let (first_i, first_j) = (spans[0] - p, spans[1] - q);
-        // A3.6 on homogeneous points: derivative k along u of each column, then l along v of those.
+        // A3.6 on homogeneous points: derivatives along u of each column, then along v of the results.
         let mut sums = [[DVec4::ZERO; 3]; 3];
         for j in 0..=q {
             let mut column = [DVec4::ZERO; 3];
@@ -373,7 +374,7 @@ impl NurbsSurface {
         sums
     }
 
-    /// The point and derivatives of the quotient (A4.4).
+    /// Point and derivatives of the quotient (A4.4).
     #[inline]
     fn divided(&self, sums: &[[DVec4; 3]; 3], order: usize) -> SurfacePoint {
         let at = |k: usize, l: usize| (sums[k][l].truncate(), sums[k][l].w);
@@ -414,7 +415,7 @@ pub struct Bend {
     pub normal: DVec3,
     /// Unit tangents in the principal directions.
     pub directions: [DVec3; 2],
-    /// The principal curvatures in those, the one of greater size first; units 1 / length.
+    /// The principal curvatures in those directions, the one of larger magnitude first; units 1 / length.
     pub curvatures: [f64; 2],
 }
 
@@ -446,7 +447,7 @@ impl SurfacePoint {
         let (high, low) = (mean + radius, mean - radius);
         let first = if high.abs() >= low.abs() { high } else { low };
         let second = high + low - first;
-        // The direction of the greater one: the longer of the two rows of S - second I.
+        // The direction of the first curvature: the longer of the two rows of S - second I.
         let (x, y) = ((s_11 - second, s_12), (s_12, s_22 - second));
         let along = if libm::hypot(x.0, x.1) >= libm::hypot(y.0, y.1) { x } else { y };
         let length = libm::hypot(along.0, along.1);

@@ -1,4 +1,4 @@
-//! The surface of a shape that a case gives.
+//! The surface of a shape in a case.
 
 use super::primitive::{cone, extrusion, plane, revolution, sphere, torus};
 use super::space_curve::SpaceCurve;
@@ -7,16 +7,16 @@ use super::surface::NurbsSurface;
 use crate::core::fault::Fault;
 
 impl SurfaceShape {
-    /// The surface; `curve` gives the curve of a name.
+    /// The surface; `curve` looks up a curve by name.
     ///
     /// # Errors
-    /// What its maker refuses, and a curve that is not there or is not of space.
+    /// What its constructor refuses, an unknown curve, and a curve that is given on a surface.
     pub fn surface(&self, curve: &dyn Fn(&str) -> Option<SpaceCurve>) -> Result<NurbsSurface, Fault> {
         let profile = |name: &str| {
             let curve = curve(name).ok_or_else(|| Fault::new(format!("There is no curve \"{name}\"")))?;
             curve.nurbs().ok_or_else(|| {
                 Fault::new(format!("The curve \"{name}\" lies on a surface and cannot be swept"))
-                    .remedy("Give it by points in space")
+                    .remedy("Define it in space")
             })
         };
         match self {

@@ -1,4 +1,4 @@
-//! A surface as a face, without a loop: its own edges bound it, seams and singular points are seen to.
+//! A whole surface as a face without loops: its own edges bound it, with special care of seams and singular points.
 
 use std::sync::Arc;
 
@@ -11,28 +11,29 @@ use super::space_curve::SpaceCurve;
 use super::spec::{CurveShape, FaceSpec};
 use super::surface::{EDGES, Edge, NurbsSurface};
 
-/// What the names of the parts of a face end in that is divided between its poles.
+/// The suffixes of the names of the parts of a face that is divided between its poles.
 const LOWER_HALF: &str = ", lower half";
 const UPPER_HALF: &str = ", upper half";
 
-/// A face, or a part of one that is too much for one chart.
+/// A face, or a part of a face that does not fit in one chart.
 pub(super) struct FacePart {
     pub spec: FaceSpec,
     pub surface: Arc<NurbsSurface>,
-    /// The singular edge about which its chart is to be drawn; `None`: that is to be found.
+    /// The singular edge at the centre of its chart; `None` if that is not yet known.
     pub about: Option<Edge>,
-    /// Whether it is the surface as a whole: the outer loop is the surface's own edge.
+    /// Whether its outer loop is the edge of the surface itself.
     pub whole: bool,
-    /// Of one of two halves between poles: the axis between them, and the range of this half along it.
+    /// For one of the two halves between poles: the axis between them, and the range of this half along it.
     pub half: Option<(usize, [f64; 2])>,
 }
 
-/// A part of a surface: the ranges of u and v, what its name ends in, and about which singular edge its chart is drawn.
-type Covered = ([[f64; 2]; 2], &'static str, Option<Edge>);
+/// A part of a surface: the ranges of u and v, the suffix of its name, and the singular edge at the centre of its
+/// chart.
+type SurfacePart = ([[f64; 2]; 2], &'static str, Option<Edge>);
 
-/// The whole of a surface as a face: its own edges as curves (called "face: v0" and so on by the edge's parameter), seams
-/// twice in the loop. Between two poles it is divided in the middle; from an apex that is no pole run two more lines besides the
-/// seam, since fewer than three edges at a node inside a mesh are too few.
+/// Makes a face of a whole surface: its edges become curves (named "face: v0" and so on, by the parameter of the edge),
+/// and seams occur twice in the loop. A surface with two poles is divided in the middle. An apex that is not a pole
+/// gets two lines besides the seam, since an inner node of a mesh needs at least three edges.
 pub(super) fn whole(
     face: &FaceSpec,
     surface: &Arc<NurbsSurface>,
@@ -56,13 +57,9 @@ pub(super) fn whole(
         name
     };
     let singular = |edge: Edge| EDGES.iter().zip(degenerate).any(|(e, is)| *e == edge && is);
-    let place = |axis: usize, value: f64, along: f64| {
-        if axis == 0 { DVec2::new(value, along) } else { DVec2::new(along, value) }
-    };
     // The axis whose two edges are both singular, if there is one: the surface is divided in its middle.
     let poles = [0, 1].into_iter().find(|&axis| [false, true].into_iter().all(|last| singular(Edge { axis, last })));
-    // Each part: what it covers, its name, and about which singular edge its chart is drawn.
-    let halves: Vec<Covered> = match poles {
+    let halves: Vec<SurfacePart> = match poles {
         None => vec![(domain, "", singular_edges(surface).first().copied())],
         Some(axis) => {
             let [first, last] = domain[axis];
@@ -82,36 +79,36 @@ pub(super) fn whole(
         let disc = about.is_some_and(|edge| Chart::about(Arc::clone(surface), edge).is_disc());
         let mut spec = face.clone();
         spec.name = format!("{}{suffix}", face.name);
-        // From an apex that is no pole lines run at the thirds of what closes around it.
+        // Lines from an apex that is not a pole divide the angle around it into thirds.
         let thirds = about.filter(|about| closed[1 - about.axis] && !disc).map(|about| about.axis);
         for edge in EDGES {
             let Edge { axis, last } = edge;
             let letter = ["u", "v"][axis];
             let value = half[axis][usize::from(last)];
             let outermost = value == domain[axis][usize::from(last)];
-            // The sides of a disc are one another.
+            // The two sides of a disc coincide.
             if (outermost && singular(edge)) || (disc && about.is_some_and(|about| about.axis != axis)) {
                 continue;
             }
             let (name, value) = match (outermost, closed[axis]) {
                 (false, _) => (format!("{letter} middle"), value),
-                // The last edge of a closed axis is its first: the seam, which stands twice in the loop.
+                // The last edge of a closed axis is its first: the seam, which occurs twice in the loop.
                 (true, true) => (format!("{letter}0{suffix}"), domain[axis][0]),
                 (true, false) => (format!("{letter}{}{suffix}", u8::from(last)), value),
             };
             let [a, b] = half[1 - axis];
             if thirds != Some(axis) {
-                spec.outer.push(add(name, place(axis, value, a), place(axis, value, b)));
+                spec.outer.push(add(name, edge.uv(a, value), edge.uv(b, value)));
                 continue;
             }
             let at = |third: u8| if third == 3 { b } else { a + (b - a) * f64::from(third) / 3.0 };
             for third in 1..=3 {
-                let (from, to) = (place(axis, value, at(third - 1)), place(axis, value, at(third)));
+                let (from, to) = (edge.uv(at(third - 1), value), edge.uv(at(third), value));
                 spec.outer.push(add(format!("{name}, {third}/3"), from, to));
             }
             for third in 1..=2 {
                 let [a, b] = half[axis];
-                let (from, to) = (place(axis, a, at(third)), place(axis, b, at(third)));
+                let (from, to) = (edge.uv(at(third), a), edge.uv(at(third), b));
                 spec.repeated.push(add(format!("{} {third}/3{suffix}", ["u", "v"][1 - axis]), from, to));
             }
         }

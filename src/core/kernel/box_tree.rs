@@ -1,13 +1,14 @@
-//! Nearest of many small things in the plane or in space, by a tree of their boxes.
+//! Nearest-neighbour search in the plane or in space by a tree of bounding boxes.
 //!
-//! What a field needs and a general index does not promise: the answer is a pure function of the query (equal distances go
-//! to the lowest number, whatever was asked before), nothing is allocated, and strongly graded sets cost no more than even ones.
+//! It promises what a size field needs and a general index does not: the answer is a pure function of the query (ties
+//! go to the lowest number, whatever was asked before), a query allocates nothing, and strongly graded sets cost no
+//! more than uniform ones.
 
 use std::ops::{Add, Mul, Sub};
 
 use glam::{DVec2, DVec3};
 
-/// A point of the plane or of space, as the tree needs it.
+/// A point of the plane or of space: the operations that the tree needs.
 pub(in crate::core) trait Spot:
     Copy + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
@@ -17,9 +18,9 @@ pub(in crate::core) trait Spot:
     fn inner(self, other: Self) -> f64;
     fn is_somewhere(self) -> bool;
     fn between(self, other: Self, share: f64) -> Self;
-    /// How far it is from a box, squared.
+    /// The squared distance to a box.
     fn outside2(self, low: Self, high: Self) -> f64;
-    /// The axis along which an extent is longest, the first among equals.
+    /// The axis of the largest component, the first among equals.
     fn longest_axis(self) -> usize;
     fn along(self, axis: usize) -> f64;
     fn distance2(self, other: Self) -> f64;
@@ -71,25 +72,25 @@ macro_rules! spot {
 spot!(DVec2);
 spot!(DVec3);
 
-/// Things in one leaf at most.
+/// The largest number of items in a leaf.
 const LEAF: usize = 4;
 
-/// A tree over things that are known by their boxes. It renumbers them so that those of one leaf are together.
+/// A tree over items given by their bounding boxes. It renumbers them so that the items of a leaf are consecutive.
 #[derive(Clone, Debug)]
 pub(in crate::core) struct BoxTree<P> {
     root: Branch<P>,
-    /// Both branches of an inner node side by side: choosing between them takes one look at memory.
+    /// Both branches of an inner node side by side: choosing between them takes one memory access.
     nodes: Vec<[Branch<P>; 2]>,
 }
 
-/// A box with what is in it.
+/// A box and its contents.
 #[derive(Clone, Copy, Debug)]
 struct Branch<P> {
     low: P,
     high: P,
-    /// A leaf's first thing; the place in `nodes` otherwise.
+    /// In a leaf the first item, otherwise the index into `nodes`.
     at: u32,
-    /// Things of a leaf; 0: an inner node.
+    /// The number of items in a leaf; 0 for an inner node.
     count: u32,
 }
 
@@ -101,17 +102,17 @@ impl<P: Spot> Branch<P> {
 }
 
 impl<P: Spot> BoxTree<P> {
-    /// Builds the tree over boxes (lowest and highest corner, finite), at least one. With it comes the order that its numbers
-    /// mean: its thing `k` is the box `order[k]`. Cost O(n log n).
+    /// Builds the tree over at least one box (lowest and highest corner, finite). Also returns the numbering: item `k`
+    /// of the tree is the box `order[k]`. Cost O(n log n).
     pub fn new(boxes: &[(P, P)]) -> (BoxTree<P>, Vec<u32>) {
-        assert!(!boxes.is_empty(), "a tree stands over something");
+        assert!(!boxes.is_empty(), "a box tree needs at least one box");
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = Vec::new();
         let root = branch(&mut nodes, boxes, &mut order, 0);
         (BoxTree { root, nodes }, order)
     }
 
-    /// Some thing not far from `p`: the first of the leaf that is met by always taking the nearer branch. `None` when `p` is
+    /// An item close to `p`: the first one of the leaf reached by always taking the nearer branch. `None` when `p` is
     /// not finite.
     #[inline]
     pub fn descend(&self, p: P) -> Option<u32> {
@@ -123,14 +124,14 @@ impl<P: Spot> BoxTree<P> {
         p.is_somewhere().then_some(branch.at)
     }
 
-    /// The thing with the least `distance2` from `p` (squared; its box must not be farther), the lowest number among equals,
-    /// and that squared distance. `None` when `p` is not finite.
+    /// The item with the least `distance2` from `p` (squared, and at least the distance of its box), the lowest number
+    /// among equals, and that squared distance. `None` when `p` is not finite.
     #[inline]
     pub fn nearest(&self, p: P, distance2: impl Fn(u32) -> f64) -> Option<(u32, f64)> {
         if !p.is_somewhere() {
             return None;
         }
-        // Halving 2^32 things ends after 32 levels, and each leaves one branch waiting.
+        // Halving 2^32 items ends after 32 levels, and each level leaves one branch waiting.
         let mut waiting = [(0u32, 0u32, 0.0f64); 40];
         waiting[0] = (self.root.at, self.root.count, 0.0);
         let mut waiting_count = 1;
@@ -164,7 +165,7 @@ impl<P: Spot> BoxTree<P> {
     }
 }
 
-/// The branch over the things `order`, whose first number is `first`.
+/// The branch over the items `order`, which are numbered from `first`.
 fn branch<P: Spot>(nodes: &mut Vec<[Branch<P>; 2]>, boxes: &[(P, P)], order: &mut [u32], first: u32) -> Branch<P> {
     let whole = |(low, high): (P, P), &i: &u32| {
         let b = boxes[i as usize];
@@ -175,7 +176,7 @@ fn branch<P: Spot>(nodes: &mut Vec<[Branch<P>; 2]>, boxes: &[(P, P)], order: &mu
     if order.len() <= LEAF {
         return Branch { low, high, at: first, count: order.len() as u32 };
     }
-    // The median of the doubled centres along the longest side; ids break ties, so that the tree is one only.
+    // The median of the doubled centres along the longest side; ids break ties, so that the tree is unique.
     let axis = (high - low).longest_axis();
     let centre = |i: u32| {
         let (low, high) = boxes[i as usize];
@@ -191,7 +192,7 @@ fn branch<P: Spot>(nodes: &mut Vec<[Branch<P>; 2]>, boxes: &[(P, P)], order: &mu
     Branch { low, high, at: here as u32, count: 0 }
 }
 
-/// The share of the way from `a` to `b`, in [0, 1], of the point of that segment that is nearest to `p`.
+/// The parameter in [0, 1] of the point nearest to `p` on the segment from `a` (0) to `b` (1).
 #[inline]
 pub(in crate::core) fn share_along<P: Spot>(p: P, a: P, b: P) -> f64 {
     let d = b - a;
@@ -204,7 +205,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_is_that_of_a_search_through_all_and_ties_go_to_the_lowest_id() {
+    fn the_nearest_item_is_that_of_a_linear_search_and_ties_go_to_the_lowest_id() {
         // A lattice graded by 1e6, each point twice, and queries on and between the points.
         let at = |i: usize| if i < 20 { 1e-6 * i as f64 } else { 0.05 * (i - 19) as f64 };
         let mut points = Vec::new();
@@ -229,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_nearest_to_no_place() {
+    fn nothing_is_nearest_to_a_point_that_is_not_finite() {
         let (one, _) = BoxTree::new(&[(DVec2::ZERO, DVec2::ONE)]);
         assert_eq!(one.nearest(DVec2::NAN, |_| f64::NAN), None);
         assert_eq!(one.nearest(DVec2::new(0.0, f64::INFINITY), |_| f64::INFINITY), None);

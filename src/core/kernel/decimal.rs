@@ -1,10 +1,8 @@
-//! Numbers as decimal text: for files to the last bit, for messages to six significant digits.
+//! Numbers as decimal text: exact in files, six significant digits in messages.
 
 use std::fmt;
 
-use glam::DVec2;
-
-/// A number in the shortest form that reads back to the same bits, with an exponent where digits would be wasted.
+/// A number in the shortest form that reads back to the same bits, with an exponent where that is shorter.
 #[derive(Clone, Copy, Debug)]
 pub struct Shortest(pub f64);
 
@@ -19,12 +17,12 @@ impl fmt::Display for Shortest {
     }
 }
 
-/// A point as messages show it, to six significant digits: `(0.25, -1.5e-8)`.
-pub fn told(p: DVec2) -> String {
-    format!("({}, {})", number(p.x), number(p.y))
+/// A point of the plane or of space for messages, with six significant digits: `(0.25, -1.5e-8)`.
+pub fn point_text<const N: usize>(p: impl Into<[f64; N]>) -> String {
+    format!("({})", p.into().map(number).join(", "))
 }
 
-/// A number as messages show it, to six significant digits.
+/// A number for messages, with six significant digits.
 pub fn number(x: f64) -> String {
     let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
     if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
@@ -37,6 +35,7 @@ pub fn number(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{DVec2, DVec3};
 
     #[test]
     fn numbers_are_written_in_the_shortest_form_that_reads_back() {
@@ -48,9 +47,9 @@ mod tests {
     }
 
     #[test]
-    fn places_are_told_with_six_digits() {
-        assert_eq!(told(DVec2::new(0.1 + 0.2, -1.0)), "(0.3, -1)");
-        assert_eq!(told(DVec2::new(-0.0, 1.234_567_89e-9)), "(0, 1.23457e-9)");
-        assert_eq!(told(DVec2::new(1e300, 250.0)), "(1e300, 250)");
+    fn points_are_written_with_six_digits() {
+        assert_eq!(point_text(DVec2::new(0.1 + 0.2, -1.0)), "(0.3, -1)");
+        assert_eq!(point_text(DVec2::new(-0.0, 1.234_567_89e-9)), "(0, 1.23457e-9)");
+        assert_eq!(point_text(DVec3::new(1e300, 250.0, 1e-3)), "(1e300, 250, 0.001)");
     }
 }

@@ -1,6 +1,6 @@
-//! Disjoint sets (union-find) with path halving; the least number stands for its set.
+//! Disjoint sets (union-find) with path halving; the lowest number represents its set.
 
-/// Disjoint sets of what is numbered from 0.
+/// Disjoint sets of the numbers from 0 to n - 1.
 pub struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
@@ -18,7 +18,7 @@ impl DisjointSets {
         x
     }
 
-    /// Makes one set of the sets of `a` and `b`.
+    /// Unites the sets of `a` and `b`.
     pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         self.0[a.max(b) as usize] = a.min(b);

@@ -1,10 +1,9 @@
-//! Fingerprints of files and states: FNV-1a in 128 bits. They tell what is the same from what is not; they do not protect
-//! against somebody who wants to deceive.
+//! Fingerprints of files and states: 128-bit FNV-1a. They detect differences; they are not cryptographic.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The fingerprint of some bytes; written as 32 hexadecimal digits.
+/// The fingerprint of a sequence of bytes; written as 32 hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Fingerprint(u128);
 

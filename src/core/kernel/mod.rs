@@ -1,5 +1,5 @@
-//! Small algorithms and values that know nothing of meshes: exact predicates, metric tensors and their spectra, searching
-//! boxes, disjoint sets, parity over GF(2), fingerprints, numbers as text.
+//! Small algorithms and values that know nothing of meshes: exact predicates, metric tensors and their spectra, box
+//! trees, point location, disjoint sets, parity over GF(2), fingerprints, numbers as text, spelling suggestions.
 
 pub mod predicates;
 pub mod tensor;

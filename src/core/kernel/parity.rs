@@ -1,16 +1,15 @@
-//! Even loops (spec 2.9): which curves get one segment more or fewer, so that every topological loop is even. A linear
-//! system over GF(2) with a row for each loop and a column for each curve.
+//! Even loops (docs/algorithm.md, "Even loops"): which curves get one segment more or fewer, so that every topological
+//! loop is even. A linear system over GF(2) with a row for each loop and a column for each curve.
 
 use rustc_hash::FxHashMap;
 
-/// Solves `A x = b` over GF(2): `x[c]` tells whether column `c` is toggled. Row `r` of `A` has ones in the columns
-/// `rows[r]` (each at most once; a curve that a loop runs twice is dropped by the caller), and `odd[r]` is its `b`.
-/// Columns without a cost cannot be toggled. Cheap columns become pivots first and columns that are no pivots stay as
-/// they are, so that toggles fall on the cheap ones (ties by column).
+/// Solves `A x = b` over GF(2): `x[c]` says whether to toggle column `c`. Row `r` of `A` has ones in the columns
+/// `rows[r]` (each at most once: the caller drops a curve that a loop traverses twice), and `odd[r]` is its right-hand
+/// side. Columns without a cost are fixed. Cheap columns become pivots first and the other columns stay unchanged, so
+/// that the toggles fall on cheap ones (ties by column).
 ///
 /// # Errors
-/// The rows whose sum cannot be made even: all their columns that may be toggled cancel, and an odd number of `odd`
-/// remains.
+/// A set of rows without a solution: their free columns cancel, and the sum of their right-hand sides is odd.
 pub fn toggles(rows: &[Vec<u32>], odd: &[bool], cost: &[Option<f64>]) -> Result<Vec<bool>, Vec<u32>> {
     let mut order: Vec<(f64, u32)> = cost.iter().zip(0..).filter_map(|(c, i)| c.map(|c| (c, i))).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -18,8 +17,8 @@ pub fn toggles(rows: &[Vec<u32>], odd: &[bool], cost: &[Option<f64>]) -> Result<
     for (r, &(_, column)) in order.iter().enumerate() {
         rank[column as usize] = Some(r as u32);
     }
-    // Each row as its columns by rank, its right side, and the given rows that it is the sum of. Reduced to echelon
-    // form, the leading column of each is the cheapest it has.
+    // Each row holds its columns by rank, its right-hand side, and the given rows that it is the sum of. In echelon
+    // form the leading column of each row is its cheapest.
     struct Row {
         columns: Vec<u32>,
         odd: bool,
@@ -49,14 +48,14 @@ pub fn toggles(rows: &[Vec<u32>], odd: &[bool], cost: &[Option<f64>]) -> Result<
     reduced.sort_by_key(|row| std::cmp::Reverse(row.columns[0]));
     let mut toggled = vec![false; cost.len()];
     for row in &reduced {
-        // All other columns of the row are dearer: decided already, or no pivots and left alone.
+        // All other columns of the row cost more: they are decided already, or are no pivots and stay unchanged.
         let rest = row.columns[1..].iter().fold(row.odd, |sum, &c| sum ^ toggled[order[c as usize].1 as usize]);
         toggled[order[row.columns[0] as usize].1 as usize] = rest;
     }
     Ok(toggled)
 }
 
-/// What is in one of two ascending lists and not in both.
+/// The symmetric difference of two ascending lists.
 fn symmetric_difference(a: &[u32], b: &[u32]) -> Vec<u32> {
     let mut out = Vec::with_capacity(a.len() + b.len());
     let (mut i, mut j) = (0, 0);

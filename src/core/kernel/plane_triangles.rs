@@ -1,38 +1,39 @@
-//! Triangles of the plane, and which of them holds a place: by a tree of boxes, then by a walk.
+//! Point location in a triangulation of the plane: a tree of boxes finds a triangle close by, and a walk goes on from
+//! there.
 
 use glam::DVec2;
 
 use super::box_tree::{BoxTree, share_along};
 use crate::core::fault::Fault;
 
-/// A slanting needle is known to the tree by so many boxes at the most: its whole box would overlap with those of all needles
-/// beside it.
+/// The largest number of boxes that represent a slanting needle in the tree: one box around it would overlap those of
+/// all needles beside it.
 const MOST_STRIPS: f64 = 64.0;
-/// A walk from triangle to triangle is given up after so many; then the tree searches.
+/// The largest number of triangles on a walk; beyond it, the tree searches.
 const LONGEST_WALK: usize = 400;
 
-/// The mesh, and what finds a triangle.
+/// A triangulation with its search tree.
 #[derive(Clone, Debug)]
 pub struct PlaneTriangles {
     tree: BoxTree<DVec2>,
-    /// The triangle of each of the tree's things.
+    /// The triangle of each item of the tree.
     triangle: Vec<u32>,
     /// Corners of the triangles, anticlockwise.
     corners: Vec<[DVec2; 3]>,
     /// Their nodes.
     nodes: Vec<[u32; 3]>,
-    /// The triangles beyond the sides from each corner to the next; `NONE` on the boundary.
+    /// The neighbours across the sides from each corner to the next; `NONE` on the boundary.
     beyond: Vec<[u32; 3]>,
 }
 
-/// Where a place lies in the triangles.
+/// The location of a point in the triangulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// The triangle.
     pub triangle: u32,
     /// Its nodes, anticlockwise.
     pub nodes: [u32; 3],
-    /// The share of each of them.
+    /// Their barycentric weights.
     pub weights: [f64; 3],
 }
 
@@ -40,17 +41,17 @@ pub struct Found {
 const NONE: u32 = u32::MAX;
 
 impl PlaneTriangles {
-    /// Triangles either way round.
+    /// Builds the triangulation; the triangles may have either orientation.
     ///
     /// # Errors
-    /// No triangle, an index out of range, a triangle without area, a node that is not finite.
+    /// No triangles, an index out of range, a triangle without area, a node that is not finite.
     pub fn new(points: &[DVec2], triangles: &[[u32; 3]]) -> Result<PlaneTriangles, Fault> {
         if triangles.is_empty() {
             return Err(Fault::new("The table of metrics has no triangles to interpolate in"));
         }
         for (i, p) in points.iter().enumerate() {
             if !p.is_finite() {
-                return Err(Fault::new(format!("Node {} of the table of metrics is not at a finite place", i + 1)));
+                return Err(Fault::new(format!("Node {} of the table of metrics is not finite", i + 1)));
             }
         }
         let mut nodes = Vec::with_capacity(triangles.len());
@@ -58,7 +59,7 @@ impl PlaneTriangles {
         for (i, &[a, b, c]) in triangles.iter().enumerate() {
             if [a, b, c].iter().any(|&k| k as usize >= points.len()) {
                 return Err(Fault::new(format!(
-                    "Triangle {} of the table of metrics names a node that is not there",
+                    "Triangle {} of the table of metrics refers to a node that does not exist",
                     i + 1
                 )));
             }
@@ -79,15 +80,15 @@ impl PlaneTriangles {
         Ok(PlaneTriangles { tree, triangle, corners, nodes, beyond })
     }
 
-    /// The triangle that holds `p`; outside the mesh, that of the nearest point of the mesh, with the shares of that point. `None`
-    /// when `p` is not finite.
+    /// The triangle that contains `p`; outside the mesh, the triangle and weights of the nearest point of the mesh.
+    /// `None` when `p` is not finite.
     #[inline]
     pub fn find(&self, p: DVec2) -> Option<Found> {
         let near = self.triangle[self.tree.descend(p)? as usize];
         let triangle = match self.walk(near, p) {
             Some(triangle) => triangle,
             None => {
-                let distance2 = |thing: u32| in_triangle(&self.corners[self.triangle[thing as usize] as usize], p).1;
+                let distance2 = |item: u32| in_triangle(&self.corners[self.triangle[item as usize] as usize], p).1;
                 self.triangle[self.tree.nearest(p, distance2)?.0 as usize]
             }
         };
@@ -95,20 +96,20 @@ impl PlaneTriangles {
         Some(Found { triangle, nodes: self.nodes[triangle as usize], weights })
     }
 
-    /// In how many boxes the triangles stand.
+    /// The number of boxes in the tree.
     #[cfg(test)]
     pub fn boxes(&self) -> usize {
         self.triangle.len()
     }
 
-    /// The triangle that holds `p`, by crossing from triangle to triangle the sides that it lies beyond. `None` where the
-    /// walk meets the boundary or becomes long: that says nothing of `p`.
+    /// The triangle that contains `p`, by a visibility walk from the triangle `from`. `None` where the walk meets the
+    /// boundary or becomes too long: then `p` may still be inside.
     fn walk(&self, from: u32, p: DVec2) -> Option<u32> {
         let (mut at, mut came_from) = (from, NONE);
         for _ in 0..LONGEST_WALK {
             let [a, b, c] = self.corners[at as usize].map(|corner| corner - p);
             let beyond = self.beyond[at as usize];
-            // Beyond the side on which `p` lies farthest outside, but never straight back.
+            // Cross the side that `p` lies farthest beyond, but never straight back.
             let sides = [a.perp_dot(b), b.perp_dot(c), c.perp_dot(a)];
             let mut worst = None;
             for k in 0..3 {
@@ -126,7 +127,7 @@ impl PlaneTriangles {
     }
 }
 
-/// The triangles beyond each triangle's sides. A side of three or more is a boundary.
+/// The neighbours across each triangle's sides. A side of three or more triangles counts as a boundary.
 fn beyond(nodes: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut sides: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * nodes.len());
     for (t, n) in (0..).zip(nodes) {
@@ -143,7 +144,8 @@ fn beyond(nodes: &[[u32; 3]]) -> Vec<[u32; 3]> {
     beyond
 }
 
-/// Adds the boxes of the strips across its longest side that a triangle is cut into, the more the less of its box it fills.
+/// Cuts a triangle into strips across its longest side and adds their boxes: the less of its own box it fills, the more
+/// strips.
 fn strips(corners: [DVec2; 3], boxes: &mut Vec<(DVec2, DVec2)>) {
     let [p, q, r] = corners;
     let extent = p.max(q).max(r) - p.min(q).min(r);

@@ -1,4 +1,5 @@
-//! Exact orientation in the parametric plane (spec 5). The sign is exact for given f64 input; there is no epsilon.
+//! Exact orientation in the parametric plane (docs/algorithm.md, "Exact predicates"). The sign is exact for given f64
+//! input; there is no epsilon.
 
 use glam::DVec2;
 
@@ -33,7 +34,8 @@ fn coord(p: DVec2) -> robust::Coord<f64> {
 }
 
 /// Whether a triangle is strictly positive and not so flat that a template of the last resort could be inverted by
-/// rounding (spec 2.10): altitude over longest edge at least 1e-7, altitude at least 256 ulp of the largest coordinate.
+/// rounding (docs/algorithm.md, "Rounding"): altitude over longest edge at least 1e-7, altitude at least 256 ulp of the
+/// largest coordinate.
 #[inline]
 pub fn firm(a: DVec2, b: DVec2, c: DVec2) -> bool {
     let twice_area = orient(a, b, c);

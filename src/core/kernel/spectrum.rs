@@ -1,14 +1,14 @@
-//! What needs the eigenvalues of a tensor: sizes, roots, logarithms, log-Euclidean means, and intersection (spec 3.6).
+//! What needs the eigenvalues of a tensor: sizes, roots, logarithms, log-Euclidean means, and intersection
+//! (docs/algorithm.md, "Fields and their intersection").
 //!
-//! Both dimensions stand on Jacobi's rotation: in the plane one is enough, in space sweeps of three. It keeps small
-//! eigenvalues accurate where the tensor is nearly diagonal, however stretched it is, and its operations are the same on
-//! every machine.
+//! Both dimensions use Jacobi rotations: one in the plane, sweeps of three in space. They keep small eigenvalues of
+//! nearly diagonal tensors accurate at any anisotropy, and give the same bits on every machine.
 
 use glam::{DVec2, DVec3};
 
 use super::tensor::{Metric2, Metric3};
 
-/// Tangent of Jacobi's rotation that takes the entry `pq` out of a symmetric matrix.
+/// Tangent of the Jacobi rotation that eliminates the entry `pq` of a symmetric matrix.
 #[inline]
 fn jacobi_tangent(pp: f64, pq: f64, qq: f64) -> f64 {
     let theta = (qq - pp) / (2.0 * pq);
@@ -16,8 +16,8 @@ fn jacobi_tangent(pp: f64, pq: f64, qq: f64) -> f64 {
     if theta < 0.0 { -t } else { t }
 }
 
-/// Eigenvalues, ascending, and unit eigenvectors (the second is the first turned anticlockwise by a right angle) of
-/// `[[uu, uv], [uv, vv]]`.
+/// Eigenvalues in ascending order and unit eigenvectors of `[[uu, uv], [uv, vv]]`; the second eigenvector is the first
+/// one rotated anticlockwise by a right angle.
 #[inline]
 fn eigen2(uu: f64, uv: f64, vv: f64) -> ([f64; 2], [DVec2; 2]) {
     let (mut values, mut first) = ([uu, vv], DVec2::X);
@@ -34,7 +34,7 @@ fn eigen2(uu: f64, uv: f64, vv: f64) -> ([f64; 2], [DVec2; 2]) {
     }
 }
 
-/// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix `[xx, xy, xz, yy, yz, zz]`.
+/// Eigenvalues in ascending order and orthonormal eigenvectors of a symmetric matrix `[xx, xy, xz, yy, yz, zz]`.
 #[inline]
 fn eigen3(m: [f64; 6]) -> ([f64; 3], [DVec3; 3]) {
     const SWEEPS: usize = 16;
@@ -44,7 +44,7 @@ fn eigen3(m: [f64; 6]) -> ([f64; 3], [DVec3; 3]) {
         let mut turned = false;
         for (p, q, r) in [(0, 1, 2), (0, 2, 1), (1, 2, 0)] {
             let pq = a[p][q];
-            // Relative to the diagonal, so that small eigenvalues of stretched tensors come out right.
+            // Relative to the diagonal, so that small eigenvalues of anisotropic tensors are accurate.
             if pq == 0.0 || pq * pq <= 1e-34 * (a[p][p] * a[q][q]).abs() {
                 continue;
             }
@@ -77,11 +77,11 @@ fn eigen3(m: [f64; 6]) -> ([f64; 3], [DVec3; 3]) {
     (pairs.map(|p| p.0), pairs.map(|p| p.1))
 }
 
-/// The logarithm of a metric of the plane: a symmetric matrix, `[uu, uv, vv]`, that may be added and multiplied.
+/// The logarithm of a metric of the plane: a symmetric matrix `[uu, uv, vv]`, which may be added and scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogMetric2(pub [f64; 3]);
 
-/// The logarithm of a metric of space: a symmetric matrix, `[xx, xy, xz, yy, yz, zz]`, that may be added and multiplied.
+/// The logarithm of a metric of space: a symmetric matrix `[xx, xy, xz, yy, yz, zz]`, which may be added and scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogMetric3(pub [f64; 6]);
 
@@ -124,11 +124,12 @@ impl LogMetric3 {
 }
 
 impl Metric2 {
-    /// Eigenvalues `1/h^2`, ascending, and unit eigenvectors, the second a right angle anticlockwise from the first.
+    /// Eigenvalues `1/h^2` in ascending order and unit eigenvectors, the second a right angle anticlockwise from the
+    /// first.
     #[inline]
     pub fn eigen(&self) -> ([f64; 2], [DVec2; 2]) {
         let (mut values, g) = eigen2(self.uu, self.uv, self.vv);
-        // Rounding may have eaten the smaller one of a very stretched tensor.
+        // Rounding may have lost the smaller one of a very anisotropic tensor.
         values[0] = values[0].max(values[1] * f64::EPSILON);
         (values, g)
     }
@@ -141,8 +142,8 @@ impl Metric2 {
         1.0 / largest.sqrt()
     }
 
-    /// The smallest size that it asks for in any direction of a surface whose first fundamental form is `g`: by the largest
-    /// eigenvalue of the pair (M, g), which does not depend on the parametrisation.
+    /// The smallest size that it asks for in any direction of a surface with the first fundamental form `g`: `1 / sqrt`
+    /// of the largest eigenvalue of the pair (M, g), which does not depend on the parametrisation.
     #[inline]
     pub fn min_size_against(&self, g: &Metric2) -> f64 {
         let det = g.det();
@@ -155,7 +156,7 @@ impl Metric2 {
     #[inline]
     #[must_use]
     pub fn sqrt(&self) -> Metric2 {
-        // Cayley and Hamilton: M + sqrt(det) I = (trace of the root) * root.
+        // By Cayley-Hamilton, M + sqrt(det) I = (trace of the root) * root.
         let root_det = self.det().max(0.0).sqrt();
         let trace = (self.uu + self.vv + 2.0 * root_det).sqrt();
         Metric2 { uu: (self.uu + root_det) / trace, uv: self.uv / trace, vv: (self.vv + root_det) / trace }
@@ -169,7 +170,8 @@ impl Metric2 {
         LogMetric2([m.uu, m.uv, m.vv])
     }
 
-    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (spec 3.6); the weights should add to one.
+    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (docs/algorithm.md, "Metric at new places"); the weights should
+    /// add to one.
     ///
     /// # Panics
     /// In debug builds, when the lengths differ.
@@ -178,11 +180,12 @@ impl Metric2 {
         weights.iter().zip(tensors).fold(LogMetric2::ZERO, |sum, (&w, m)| sum.plus(w, &m.ln())).exp()
     }
 
-    /// The intersection of two metrics (spec 3.6): the largest unit ball, by simultaneous reduction, that lies in both.
+    /// The intersection of two metrics (docs/algorithm.md, "Fields and their intersection"): the largest unit ball, by
+    /// simultaneous reduction, that lies in both.
     ///
-    /// With `a = L L^T` the reduction diagonalises `S = L^-1 b L^-T`; equal and proportional metrics need no care then, since
-    /// any basis diagonalises a multiple of the unit tensor. Where one contains the other that one is given back, bit for
-    /// bit. Where rounding has left `a` not positive definite, `b` is given.
+    /// With `a = L L^T` the reduction diagonalises `S = L^-1 b L^-T`. Equal and proportional metrics are no special
+    /// case, since any basis diagonalises a multiple of the unit tensor. If one unit ball lies in the other, its metric
+    /// is returned bit for bit. If rounding has left `a` not positive definite, the result is `b`.
     #[inline]
     #[must_use]
     pub fn intersect(a: &Metric2, b: &Metric2) -> Metric2 {
@@ -203,7 +206,7 @@ impl Metric2 {
         if s[0] >= 1.0 {
             return *b;
         }
-        // L max(1, s) L^T differs from a by the one direction in which b asks for more.
+        // L max(1, s) L^T differs from `a` only in the direction in which `b` asks for smaller sizes.
         let w = DVec2::new(l_uu * q[1].x, l_vu * q[1].x + l_vv * q[1].y);
         let more = s[1] - 1.0;
         Metric2 { uu: a.uu + more * w.x * w.x, uv: a.uv + more * w.x * w.y, vv: a.vv + more * w.y * w.y }
@@ -216,7 +219,7 @@ impl Metric3 {
         [self.xx, self.xy, self.xz, self.yy, self.yz, self.zz]
     }
 
-    /// Eigenvalues `1/h^2`, ascending, and orthonormal eigenvectors.
+    /// Eigenvalues `1/h^2` in ascending order and orthonormal eigenvectors.
     #[inline]
     pub fn eigen(&self) -> ([f64; 3], [DVec3; 3]) {
         let (values, g) = eigen3(self.entries());
@@ -244,7 +247,8 @@ impl Metric3 {
         LogMetric3(Metric3::from_eigen(values.map(libm::log), g).entries())
     }
 
-    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (spec 3.6); the weights should add to one.
+    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (docs/algorithm.md, "Metric at new places"); the weights should
+    /// add to one.
     ///
     /// # Panics
     /// In debug builds, when the lengths differ.
@@ -286,9 +290,11 @@ impl Metric3 {
         m
     }
 
-    /// The intersection with a slab: the size along the unit vector `n` is at most `h`, and nothing is asked of the others.
+    /// The intersection with a slab: the size along the unit vector `n` becomes at most `h`; other directions are not
+    /// constrained.
     ///
-    /// The unit ball reaches `sqrt(n^T M^-1 n)` along n; a multiple of `n n^T` cuts it back to `h` and touches nothing else.
+    /// The unit ball reaches `sqrt(n^T M^-1 n)` along n; adding a multiple of `n n^T` cuts it back to `h` and changes
+    /// nothing else.
     #[inline]
     #[must_use]
     pub fn intersect_slab(&self, n: DVec3, h: f64) -> Metric3 {

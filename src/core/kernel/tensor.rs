@@ -1,15 +1,15 @@
 //! Symmetric positive definite tensors: the metric of the plane (eq. 3) and of space (eqs. 2, 11).
 //!
-//! Here: the types, how they are made, and their products. What needs eigenvalues (logarithms, intersection) is in
-//! [`super::spectrum`].
+//! This module has the types, their constructors and products; [`super::spectrum`] has what needs eigenvalues
+//! (logarithms, intersection).
 
 use glam::{DVec2, DVec3};
 
-/// Largest ratio of two sizes in one tensor. Beyond it, the squares of the sizes differ by more than double precision can
-/// hold in one tensor whose axes are askew.
+/// Largest ratio of two sizes in one tensor. Beyond it, a rotated tensor in double precision loses the larger size,
+/// since the squares of the sizes differ too much.
 pub const LARGEST_ANISOTROPY: f64 = 1e7;
 
-/// Sizes beyond these bounds would leave the range of numbers when squared and multiplied.
+/// Sizes beyond these bounds would overflow or underflow when squared and multiplied.
 const SIZE_RANGE: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
 /// A metric in the parametric plane: `M = [[uu, uv], [uv, vv]]` of eq. (3), units 1 / parametric length squared.
@@ -40,7 +40,7 @@ pub struct Metric3 {
     pub zz: f64,
 }
 
-/// Refuses sizes that are not positive and finite, or too far apart; the names are those of eq. (11).
+/// Refuses sizes that are not positive and finite, or whose ratio is too large; the names are those of eq. (11).
 #[inline]
 pub(in crate::core) fn check_sizes(h: &[f64]) -> Result<(), String> {
     let (mut smallest, mut largest) = (f64::INFINITY, 0.0f64);
@@ -67,7 +67,7 @@ pub(in crate::core) fn check_sizes(h: &[f64]) -> Result<(), String> {
     Ok(())
 }
 
-/// Orthonormal directions by Gram-Schmidt: the first keeps its direction, the second its plane with the first.
+/// Orthonormal directions by Gram-Schmidt: the first direction is kept, and so is the plane of the first two.
 ///
 /// # Errors
 /// A direction that is zero, not finite, or lies in the span of those before it; the names are those of eq. (11).
@@ -77,7 +77,7 @@ pub fn orthonormal(g: [DVec3; 3]) -> Result<[DVec3; 3], String> {
     for i in 0..3 {
         let length = g[i].length();
         if !(length > 0.0 && length.is_finite()) {
-            return Err(format!("g{} = ({}, {}, {}) is no direction", i + 1, g[i].x, g[i].y, g[i].z));
+            return Err(format!("g{} = ({}, {}, {}) is not a direction", i + 1, g[i].x, g[i].y, g[i].z));
         }
         let mut rest = g[i] / length;
         for e in &frame[..i] {
@@ -90,7 +90,7 @@ pub fn orthonormal(g: [DVec3; 3]) -> Result<[DVec3; 3], String> {
         }
         rest /= left;
         if left < 0.1 {
-            // Once more: what the subtraction left was mostly rounding.
+            // Orthogonalise again: the remainder was mostly rounding error.
             for e in &frame[..i] {
                 rest -= rest.dot(*e) * *e;
             }
@@ -112,14 +112,14 @@ impl Metric2 {
     /// Eq. (11) in the plane: size `h[0]` in the direction `g1`, which need not be a unit vector, `h[1]` across it.
     ///
     /// # Errors
-    /// Sizes that are not positive and finite or more than [`LARGEST_ANISOTROPY`] apart; a direction that is zero or not
-    /// finite.
+    /// Sizes that are not positive and finite or whose ratio exceeds [`LARGEST_ANISOTROPY`]; a direction that is zero
+    /// or not finite.
     #[inline]
     pub fn from_sizes(h: [f64; 2], g1: DVec2) -> Result<Metric2, String> {
         check_sizes(&h)?;
         let length = g1.length();
         if !(length > 0.0 && length.is_finite()) {
-            return Err(format!("g1 = ({}, {}) is no direction", g1.x, g1.y));
+            return Err(format!("g1 = ({}, {}) is not a direction", g1.x, g1.y));
         }
         Ok(Metric2::from_eigen([1.0 / (h[0] * h[0]), 1.0 / (h[1] * h[1])], [g1 / length, (g1 / length).perp()]))
     }
@@ -147,7 +147,8 @@ impl Metric2 {
         self.uu > 0.0 && self.vv > 0.0 && det > 0.0 && det.is_finite()
     }
 
-    /// A metric of space that is this one in the plane; across it the geometric mean of the two sizes.
+    /// The metric of space that agrees with this one in the plane and has the geometric mean of its sizes across the
+    /// plane.
     pub fn in_space(&self) -> Metric3 {
         Metric3 { xx: self.uu, xy: self.uv, xz: 0.0, yy: self.vv, yz: 0.0, zz: self.det().sqrt() }
     }
@@ -190,8 +191,8 @@ impl Metric3 {
     /// Eq. (11): size `h[k]` in the direction `g[k]`; the directions are made orthonormal by [`orthonormal`].
     ///
     /// # Errors
-    /// Sizes that are not positive and finite or more than [`LARGEST_ANISOTROPY`] apart; directions that are zero, not finite,
-    /// parallel or in one plane.
+    /// Sizes that are not positive and finite or whose ratio exceeds [`LARGEST_ANISOTROPY`]; directions that are zero,
+    /// not finite, parallel or coplanar.
     #[inline]
     pub fn from_sizes(h: [f64; 3], g: [DVec3; 3]) -> Result<Metric3, String> {
         check_sizes(&h)?;
@@ -225,13 +226,13 @@ impl Metric3 {
         self.cholesky().is_some()
     }
 
-    /// Whether z is an axis of the tensor, as it is in planar domains.
+    /// Whether z is a principal axis, as it is in planar domains.
     #[inline]
     pub fn is_planar(&self) -> bool {
         self.xz == 0.0 && self.yz == 0.0
     }
 
-    /// The lower triangular L of `M = L L^T`; `None` where M is not positive definite and finite.
+    /// The lower triangular factor L of `M = L L^T`; `None` if M is not positive definite and finite.
     #[inline]
     pub(in crate::core) fn cholesky(&self) -> Option<Lower3> {
         let xx = self.xx.sqrt();
@@ -239,7 +240,8 @@ impl Metric3 {
         let yy = (self.yy - yx * yx).sqrt();
         let zy = (self.yz - zx * yx) / yy;
         let zz = (self.zz - zx * zx - zy * zy).sqrt();
-        // The roots of what is not positive are NaN or zero, and what is not finite ends in the last pivot or is one.
+        // The square root of a pivot that is not positive is NaN or zero, and an entry that is not finite reaches a
+        // pivot.
         let positive = xx > 0.0 && yy > 0.0 && zz > 0.0;
         (positive && xx.is_finite() && yy.is_finite() && zz.is_finite()).then_some(Lower3 { xx, yx, yy, zx, zy, zz })
     }
@@ -374,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_that_are_no_sizes_are_refused_by_name_and_value() {
+    fn invalid_sizes_are_refused_by_name_and_value() {
         for (h, message) in [
             (0.0, "h2 = 0 is not positive"),
             (-0.5, "h2 = -0.5 is not positive"),
@@ -392,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_positive_definite_is_told() {
+    fn tensors_that_are_not_positive_definite_are_recognised() {
         let m = Metric2 { uu: 1.0, uv: 0.5, vv: 1.0 };
         assert!(m.is_spd());
         for bad in [

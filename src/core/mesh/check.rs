@@ -1,4 +1,5 @@
-//! Structural and exact geometric checks of the half-edge mesh (spec 5): what must hold after every operation.
+//! Structural and exact geometric checks of the half-edge mesh (docs/algorithm.md, "Checks"): the invariants after
+//! every operation.
 
 use super::half_edge::Mesh;
 use super::ids::{ElementId, HalfEdgeId, NodeId};
@@ -8,7 +9,7 @@ impl Mesh {
     /// Checks the whole mesh: twins, walks, anchors, free lists, repeated nodes, exact positivity, metrics.
     ///
     /// # Errors
-    /// Says the first thing that does not hold, with ids and places. It is a bug of an operator.
+    /// The first invariant that is violated, with ids and coordinates. That is a bug of an operator.
     pub fn check(&self) -> Result<(), String> {
         let mut sides_at = vec![0_u32; self.node_slots()];
         for e in self.elements() {
@@ -29,8 +30,8 @@ impl Mesh {
         Ok(())
     }
 
-    /// Checks what may be wrong after a change of these nodes and elements, by the rules of [`check`](Mesh::check): the elements,
-    /// those around the nodes, and the nodes of all of them. Where the mesh was sound before, it is sound now.
+    /// Checks the invariants of [`check`](Mesh::check) around changed nodes and elements: these elements, those around
+    /// the nodes, and the nodes of all of them. If the mesh was valid before the change, it is valid now.
     ///
     /// # Errors
     /// As [`check`](Mesh::check).
@@ -50,7 +51,7 @@ impl Mesh {
         at.sort_unstable();
         at.dedup();
         at.into_iter().try_for_each(|node| self.check_node(node, None))?;
-        // The walk around a node meets every element that has it.
+        // The fan of a node must contain every element that has the node.
         let meets = |n: NodeId, e: ElementId| self.fan(n).any(|h| h.element() == e);
         for &e in &around {
             if let Some(n) = self.corners(e).find(|n| !meets(*n, e)) {
@@ -60,10 +61,10 @@ impl Mesh {
         Ok(())
     }
 
-    /// Checks one element: its half-edges and twins agree, its nodes differ, it is strictly positive.
+    /// Checks one element: its half-edges and twins agree, its nodes are distinct, it is strictly positive.
     ///
     /// # Errors
-    /// Says what does not hold.
+    /// The first invariant that is violated.
     pub fn check_element(&self, e: ElementId) -> Result<(), String> {
         let nodes: Vec<NodeId> = self.corners(e).collect();
         for (k, &n) in nodes.iter().enumerate() {
@@ -100,7 +101,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// `sides_at`: the elements that have the node, where that is known.
+    /// `sides_at` is the number of elements that have the node, if known.
     fn check_node(&self, node: NodeId, sides_at: Option<u32>) -> Result<(), String> {
         let most = sides_at.unwrap_or(self.element_slots() as u32);
         let mut seen = 0;

@@ -1,23 +1,25 @@
-//! The mesh: triangles and quadrilaterals in one half-edge structure of plain arrays (spec 6).
+//! The mesh: triangles and quadrilaterals in one half-edge structure of plain arrays (docs/algorithm.md, "Half-edge
+//! structure").
 //!
-//! A half-edge is slot `4 * element + corner`; `next` and `previous` are arithmetic, only `origin` and `twin` are stored.
-//! Every node has one fan of elements (pinched nodes come in copies that share a `PointId`), and the fan of a node on a
-//! boundary is walked from its boundary half-edge, so that one turn anticlockwise sees all of it.
+//! A half-edge is slot `4 * element + corner`; `next` and `previous` are arithmetic, only `origin` and `twin` are
+//! stored. Every node has one fan of elements (pinched nodes have copies that share a `PointId`). The fan of a boundary
+//! node starts at its boundary half-edge, so that one anticlockwise turn visits all of it.
 //!
-//! All changes go through the setters (`half_edge/setters.rs`), which write the old value into the journal;
-//! `half_edge/taking_back.rs` puts it back. Public ways to change are the operators only (`operators.rs`).
+//! All changes go through the setters (`half_edge/setters.rs`), which record the old value in the journal;
+//! `half_edge/taking_back.rs` restores it. The public ways to change a mesh are the operators (`operators.rs`).
 
 mod copies;
 mod difference;
 mod faces;
 mod ground;
 mod setters;
+mod slots;
 mod permission;
 mod taking_back;
 pub mod touched;
 
 pub use difference::{Difference, FreeLists};
-pub use faces::Part;
+pub use faces::FaceMesh;
 pub use ground::Ground;
 pub use taking_back::Undone;
 
@@ -31,7 +33,7 @@ use super::triangle_set::TriangleSet;
 use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::journal::Journal;
 
-/// Absence in the arrays; outside of them absence is `Option`.
+/// Absence in the arrays; elsewhere absence is `Option`.
 const NONE: u32 = u32::MAX;
 
 /// Triangles and quadrilaterals with their nodes.
@@ -39,9 +41,9 @@ const NONE: u32 = u32::MAX;
 pub struct Mesh {
     uv: Vec<DVec2>,
     metric: Vec<Metric2>,
-    /// Where the walk around a node starts; `NONE` for a tombstone.
+    /// The half-edge at which the fan of a node starts; `NONE` for a tombstone.
     anchor: Vec<u32>,
-    /// Output point of a node that may not move; `NONE` for a free one.
+    /// The output point of a fixed node; `NONE` for a free one.
     point: Vec<u32>,
     origin: Vec<u32>,
     twin: Vec<u32>,
@@ -50,21 +52,21 @@ pub struct Mesh {
     region: Vec<u32>,
     /// Row of a quadrilateral, counted from the boundary (0 for a triangle).
     level: Vec<u16>,
-    /// Whether the front segment in this slot is put off.
+    /// Whether the front segment in this slot is deferred.
     deferred: Vec<bool>,
-    /// Level of the boundary segments that start at a node; 0 where nothing is said. Given once, before the first change.
+    /// The level of the boundary segment that starts at a node, by default 0. Set before the first change.
     first_level: Vec<u16>,
     free_nodes: Vec<NodeId>,
     free_elements: Vec<ElementId>,
-    /// So many of the first free nodes and elements are not taken into use any more.
+    /// The numbers of the first free nodes and elements that are not reused.
     closed: [u32; 2],
     journal: Journal,
     pub(super) refusals: Option<Refusals>,
-    /// The surfaces on which it lies; none in the plane.
+    /// The surfaces on which it lies; `None` in the plane.
     ground: Option<Arc<Ground>>,
 }
 
-/// An element to be made: its nodes anticlockwise (three or four) and its region.
+/// An element to be created: its nodes anticlockwise (three or four) and its region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewElement {
     nodes: [NodeId; 4],
@@ -94,7 +96,7 @@ impl NewElement {
     }
 }
 
-/// Walks the half-edges that leave a node, anticlockwise; see [`Mesh::fan`].
+/// Iterator over the half-edges that leave a node, anticlockwise; see [`Mesh::fan`].
 pub struct Fan<'a> {
     mesh: &'a Mesh,
     start: HalfEdgeId,
@@ -116,7 +118,7 @@ impl Mesh {
     /// The mesh of a set of triangles, with the metric of each node. Nodes on a boundary become fixed.
     ///
     /// # Panics
-    /// Where the set breaks its promises (a side used twice in one direction, a node with two fans).
+    /// If the set is invalid (a side is used twice in one direction, a node has two fans).
     pub fn from_triangles(set: &TriangleSet, metric: Vec<Metric2>) -> Self {
         assert_eq!(set.uv.len(), metric.len(), "one metric a node");
         assert!(set.triangles.len() < (NONE / 4) as usize, "half-edge ids are 32 bits");
@@ -215,10 +217,10 @@ impl Mesh {
         (0..self.sides.len() as u32).filter(|&e| self.sides[e as usize] != 0).map(ElementId)
     }
 
-    /// One half-edge of every edge, by id: that of the smaller id, or the only one.
+    /// One half-edge of every edge, by id: the one with the smaller id, or the only one.
     pub fn edges(&self) -> impl Iterator<Item = HalfEdgeId> + '_ {
         let slots = (0..4 * self.sides.len() as u32).map(HalfEdgeId);
-        // Absence is the largest number: one comparison takes sides without twin too.
+        // Absence is the largest number, so this comparison also accepts sides without a twin.
         slots.filter(|h| h.corner() < u32::from(self.sides[h.element().index()]) && h.0 < self.twin[h.index()])
     }
 
@@ -228,7 +230,7 @@ impl Mesh {
         (0..u32::from(self.sides[e.index()])).map(move |corner| e.half_edge(corner))
     }
 
-    /// The half-edges that leave a node, anticlockwise; of a node on a boundary all of them, from boundary to boundary.
+    /// The half-edges that leave a node, anticlockwise; for a boundary node from boundary to boundary.
     #[inline]
     pub fn fan(&self, node: NodeId) -> Fan<'_> {
         let start = HalfEdgeId(self.anchor[node.index()]);
@@ -236,7 +238,7 @@ impl Mesh {
         Fan { mesh: self, start, next: Some(start) }
     }
 
-    /// The neighbours of a node along edges, anticlockwise; of a node on a boundary from boundary to boundary.
+    /// The neighbours of a node along edges, anticlockwise; for a boundary node from boundary to boundary.
     #[inline]
     pub fn neighbours(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
         let mut last = None;
@@ -293,7 +295,7 @@ impl Mesh {
         self.level[e.index()]
     }
 
-    /// Whether the front segment is put off until something near it changes.
+    /// Whether the front segment is deferred until something near it changes.
     #[inline]
     pub fn is_deferred(&self, h: HalfEdgeId) -> bool {
         self.deferred[h.index()]
@@ -331,7 +333,7 @@ impl Mesh {
         }
     }
 
-    /// The same edge seen from the other element; none on a boundary.
+    /// The half-edge of the same edge in the other element; `None` on a boundary.
     #[inline]
     pub fn twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
         let t = self.twin[h.index()];
@@ -365,24 +367,24 @@ impl Mesh {
         ]
     }
 
-    /// The half-edge from one node to another, where they are joined.
+    /// The half-edge from one node to another, if there is one.
     pub fn half_edge_between(&self, from: NodeId, to: NodeId) -> Option<HalfEdgeId> {
         self.fan(from).find(|&h| self.target(h) == to)
     }
 
-    /// Whether the two nodes are joined by an edge (seen from either side).
+    /// Whether an edge connects the two nodes.
     pub fn are_joined(&self, a: NodeId, b: NodeId) -> bool {
         self.neighbours(a).any(|n| n == b)
     }
 
     // ---- nodes ----
 
-    /// Whether the slot holds a node (and not a tombstone).
+    /// Whether the slot contains a node (and not a tombstone).
     pub fn has_node(&self, node: NodeId) -> bool {
         self.anchor.get(node.index()).is_some_and(|&h| h != NONE)
     }
 
-    /// Whether the slot holds an element (and not a tombstone).
+    /// Whether the slot contains an element (and not a tombstone).
     pub fn has_element(&self, e: ElementId) -> bool {
         self.sides.get(e.index()).is_some_and(|&s| s != 0)
     }
@@ -399,13 +401,13 @@ impl Mesh {
         self.metric[node.index()]
     }
 
-    /// Metric of a node (eq. 3), in place.
+    /// Metric of a node (eq. 3), by reference.
     #[inline]
     pub fn metric_ref(&self, node: NodeId) -> &Metric2 {
         &self.metric[node.index()]
     }
 
-    /// Whether the node lies on a boundary: it may not move or go.
+    /// Whether the node lies on a boundary: it must not be moved or removed.
     #[inline]
     pub fn is_fixed(&self, node: NodeId) -> bool {
         self.point[node.index()] != NONE
@@ -425,7 +427,7 @@ mod tests {
     use crate::core::mesh::journal::Mark;
 
     #[test]
-    fn a_mesh_put_in_order_records_where_it_did_before() {
+    fn a_reordered_mesh_records_if_the_original_did() {
         let set = TriangleSet {
             uv: vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y],
             point: (0..4).map(PointId).collect(),

@@ -1,5 +1,4 @@
-//! Typed ids: no bare `usize` crosses a function. A half-edge is `4 * element + corner`; a triangle uses three of its
-//! element's four slots.
+//! Typed ids. A half-edge is `4 * element + corner`; a triangle uses three of the four slots of its element.
 
 use std::fmt;
 
@@ -13,7 +12,7 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            /// The place of this id in the arrays.
+            /// The index of this id in the arrays.
             #[inline]
             pub fn index(self) -> usize {
                 self.0 as usize
@@ -37,11 +36,11 @@ id! {
     ElementId
 }
 id! {
-    /// A side of an element, run anticlockwise: slot `corner` of its element starts at that corner's node.
+    /// A side of an element, directed anticlockwise: slot `corner` of its element starts at the node of that corner.
     HalfEdgeId
 }
 id! {
-    /// A point of the geometry or of the output: nodes on both sides of a repeated line share one.
+    /// A point of the geometry or of the output: the nodes on both sides of a repeated line share one.
     PointId
 }
 
@@ -54,7 +53,7 @@ impl ElementId {
 }
 
 impl HalfEdgeId {
-    /// The element that this is a side of.
+    /// The element of this side.
     #[inline]
     pub fn element(self) -> ElementId {
         ElementId(self.0 >> 2)

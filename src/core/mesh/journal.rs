@@ -1,14 +1,14 @@
-//! The journal: what the operators replaced, so that it can be taken back exactly.
+//! The journal: the values that the operators replaced, so that changes can be undone exactly.
 //!
-//! Trying and taking back inside a step, and a person stepping back, are the same mechanism: `let mark = journal.mark();
-//! ... mesh.take_back(mark)`. Nothing here knows what a mesh is: an entry names the array, the place and the old value.
+//! Rollback inside a step and stepping back in a run are the same mechanism: `let mark = journal.mark(); ...
+//! mesh.take_back(mark)`. The journal does not know the mesh: an entry names the array, the id and the old value.
 
 use glam::DVec2;
 
 use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
-/// One change of the mesh's arrays, with what stood there before. `u32::MAX` stands for absence, as in the arrays.
+/// One change of an array of the mesh, with the old value. `u32::MAX` means absence, as in the arrays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Entry {
     /// The start of a half-edge.
@@ -21,32 +21,32 @@ pub enum Entry {
     Region(ElementId, u32),
     /// The level of an element.
     Level(ElementId, u16),
-    /// Whether a front segment is put off.
+    /// Whether a front segment is deferred.
     Deferred(HalfEdgeId, bool),
     /// Coordinates of a node.
     Uv(NodeId, DVec2),
     /// Metric of a node.
     Metric(NodeId, Metric2),
-    /// The half-edge from which the fan of a node is walked.
+    /// The half-edge at which the fan of a node starts.
     Anchor(NodeId, u32),
     /// A node was appended.
     NodeAppended,
     /// An element was appended.
     ElementAppended,
-    /// The last free node was taken into use.
+    /// The last free node was reused.
     NodeTaken(NodeId),
-    /// The last free element was taken into use.
+    /// The last free element was reused.
     ElementTaken(ElementId),
     /// A node became a tombstone.
     NodeFreed,
     /// An element became a tombstone.
     ElementFreed,
-    /// How much of the free lists is closed: of the nodes', of the elements'.
+    /// The lengths of the closed parts of the free lists: nodes, elements.
     Closed([u32; 2]),
 }
 
-/// A place in the journal to which everything later can be taken back. Places are counted from the journal's beginning, also
-/// where part of it is forgotten.
+/// A position in the journal to which later changes can be undone, counted from the beginning even if older entries
+/// have been forgotten.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Mark(usize);
 
@@ -54,7 +54,7 @@ pub struct Mark(usize);
 #[derive(Clone, Debug)]
 pub struct Journal {
     entries: Vec<Entry>,
-    /// Number of entries that stood before those and are forgotten.
+    /// Number of older entries that have been forgotten.
     forgotten: usize,
     recording: bool,
 }
@@ -66,7 +66,7 @@ impl Default for Journal {
 }
 
 impl Journal {
-    /// The present place.
+    /// The current position.
     pub fn mark(&self) -> Mark {
         Mark(self.forgotten + self.entries.len())
     }
@@ -76,17 +76,17 @@ impl Journal {
         self.forgotten + self.entries.len() - mark.0
     }
 
-    /// Bytes that the entries take.
+    /// The memory of the entries, bytes.
     pub fn bytes(&self) -> usize {
         self.entries.capacity() * size_of::<Entry>()
     }
 
-    /// Whether changes are written down.
+    /// Whether changes are recorded.
     pub fn is_recording(&self) -> bool {
         self.recording
     }
 
-    /// Starts or stops writing changes down; stopping forgets what stands, since gaps cannot be taken back.
+    /// Starts or stops recording; stopping forgets all entries, since changes across a gap cannot be undone.
     pub fn set_recording(&mut self, recording: bool) {
         self.recording = recording;
         if !recording {
@@ -94,13 +94,13 @@ impl Journal {
         }
     }
 
-    /// Forgets everything: what was done stays done. Where nobody keeps a history, this is the commit.
+    /// Forgets all entries: the changes become final. Without a history of the run, this is the commit.
     pub fn forget(&mut self) {
         self.forgotten += self.entries.len();
         self.entries.clear();
     }
 
-    /// Forgets everything before a mark: what was done until then stays done.
+    /// Forgets all entries before a mark: those changes become final.
     pub(crate) fn forget_before(&mut self, mark: Mark) {
         let count = mark.0.saturating_sub(self.forgotten).min(self.entries.len());
         self.entries.drain(..count);
@@ -108,12 +108,12 @@ impl Journal {
         self.forgotten += count;
     }
 
-    /// The entries after a mark that are not forgotten, oldest first.
+    /// The entries after a mark that have not been forgotten, oldest first.
     pub(crate) fn since(&self, mark: Mark) -> &[Entry] {
         self.entries.get(mark.0.saturating_sub(self.forgotten)..).unwrap_or_default()
     }
 
-    /// Writes an entry down.
+    /// Records an entry.
     #[inline]
     pub(crate) fn note(&mut self, entry: Entry) {
         if self.recording {

@@ -1,4 +1,5 @@
-//! Triangles and quadrilaterals in one half-edge structure (spec 6), changed only by its operators.
+//! The mesh: triangles and quadrilaterals in one half-edge structure (docs/algorithm.md, "Half-edge structure"),
+//! changed only by its operators.
 
 pub mod ids;
 pub mod journal;

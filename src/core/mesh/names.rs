@@ -1,20 +1,20 @@
-//! What the parts of a mesh are called: its faces, and the lines along which sides lie that nothing changes.
+//! The names of the faces of a mesh, and of the lines on which its fixed sides lie.
 
 use super::ids::PointId;
 
-/// A name, with the tag that a file gave it.
+/// A name with its tag in a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Named {
     /// The name.
     pub name: String,
-    /// The tag; files that are written have the same.
+    /// The tag, which is kept in written files.
     pub tag: Option<u32>,
 }
 
 /// Names of faces and lines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Names {
-    /// The name of each face by its number; several faces may have the same.
+    /// The name of each face by its number; several faces may have the same name.
     pub faces: Vec<Named>,
     /// The name of each line by its number.
     pub lines: Vec<Named>,
@@ -28,20 +28,20 @@ impl Named {
         Named { name: name.into(), tag: None }
     }
 
-    /// A group of a file: 0 is no tag.
+    /// A group of a file; 0 means no tag.
     pub fn tagged(name: impl Into<String>, tag: u32) -> Named {
         Named { name: name.into(), tag: (tag > 0).then_some(tag) }
     }
 }
 
 impl Names {
-    /// Names of faces, and of no line.
+    /// Names of faces, without lines.
     pub fn of_faces(faces: Vec<Named>) -> Names {
         Names { faces, ..Names::default() }
     }
 
-    /// The same with lines, and the sides on them: the points at their ends in either order, the number of the line. A side on two
-    /// lines is on the first.
+    /// The same names with lines, and the sides on them: the end points in either order and the number of the line. A
+    /// side on two lines belongs to the first.
     #[must_use]
     pub fn with_lines(mut self, lines: Vec<Named>, mut sides: Vec<([PointId; 2], u32)>) -> Names {
         sides.iter_mut().for_each(|side| side.0.sort_unstable());

@@ -1,7 +1,7 @@
-//! The elementary operations (paper 4.2, figs. 5-8) and the general replacement that the others are made of.
+//! The elementary operations (paper 4.2, figs. 5-8) and the general replacement on which others are built.
 //!
-//! Judge, then change: `can_…` says by exact predicates whether an operation keeps the mesh valid and changes nothing;
-//! the operation itself asserts nothing about geometry and writes what it replaces into the journal. Boundary edges are
+//! Judge, then change: `can_…` decides by exact predicates whether an operation keeps the mesh valid, without changing
+//! it; the operation itself does not check the geometry and records what it replaces in the journal. Boundary edges are
 //! never changed and fixed nodes never move.
 
 use glam::DVec2;
@@ -16,11 +16,10 @@ use crate::core::kernel::tensor::Metric2;
 impl Mesh {
     // ---- edge swapping (paper 4.2.1, fig. 5) ----
 
-    /// Whether [`swap`](Mesh::swap) of the edge would give two positive triangles (both new angles below 180 degrees,
-    /// exactly, and no needle).
+    /// Whether a [`swap`](Mesh::swap) of the edge gives two positive triangles (exactly, and neither a needle).
     ///
     /// # Errors
-    /// The refusal.
+    /// The reason of the refusal.
     pub fn can_swap(&self, h_ab: HalfEdgeId) -> Result<(), Refusal> {
         let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
         if !self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()) {
@@ -31,7 +30,7 @@ impl Mesh {
         if firm(a, d, c) && firm(d, b, c) { self.permit(Operation::Swap, &nodes) } else { Err(Refusal::NotPositive) }
     }
 
-    /// Replaces the edge shared by two triangles by the one that links the opposite nodes.
+    /// Replaces the common edge of two triangles by the edge between the opposite nodes.
     ///
     /// ```text
     ///          c                     c
@@ -74,10 +73,10 @@ impl Mesh {
 
     // ---- edge collapsing (paper 4.2.2, fig. 6) ----
 
-    /// Whether [`collapse`](Mesh::collapse) of a onto b, at the place `at`, would keep everything valid.
+    /// Whether the [`collapse`](Mesh::collapse) of a into b at the position `at` keeps the mesh valid.
     ///
     /// # Errors
-    /// The refusal.
+    /// The reason of the refusal.
     pub fn can_collapse(&self, h_ab: HalfEdgeId, at: DVec2) -> Result<(), Refusal> {
         let (a, b) = (self.origin(h_ab), self.target(h_ab));
         let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
@@ -111,7 +110,7 @@ impl Mesh {
         self.permit(Operation::Collapse, &[a, b])
     }
 
-    /// Merges node a into node b at the place `at`; the two triangles at the edge go.
+    /// Merges node a into node b at the position `at` and removes the two triangles at the edge.
     ///
     /// ```text
     ///     \     c     /          \   c   /
@@ -121,7 +120,8 @@ impl Mesh {
     ///     /     d     \            / | \
     ///                             /  d  \
     /// ```
-    /// [`can_collapse`](Mesh::can_collapse) must hold. The ids of a, T and U become tombstones; `metric` is that of `at`.
+    /// [`can_collapse`](Mesh::can_collapse) must hold. The ids of a, T and U become tombstones; `metric` is that of
+    /// `at`.
     pub fn collapse(&mut self, h_ab: HalfEdgeId, at: DVec2, metric: Metric2) {
         // Gather.
         let h_ba = self.twin(h_ab).expect("an edge that can be collapsed has two sides");
@@ -149,16 +149,16 @@ impl Mesh {
         self.free_element(h_ab.element());
         self.free_element(h_ba.element());
         self.free_node(a);
-        // Written down also where b stays: to all that were joined to a their neighbour has moved.
+        // Recorded even if b does not move: a neighbour of all nodes that were connected to a has moved.
         self.set_place(b, at, if at == self.uv(b) { self.metric(b) } else { metric });
     }
 
     // ---- edge division (paper 4.2.3, fig. 7) ----
 
-    /// Whether [`divide`](Mesh::divide) of the edge at `uv` would give four positive triangles.
+    /// Whether [`divide`](Mesh::divide) of the edge at `uv` gives four positive triangles.
     ///
     /// # Errors
-    /// The refusal.
+    /// The reason of the refusal.
     pub fn can_divide(&self, h_ab: HalfEdgeId, uv: DVec2) -> Result<(), Refusal> {
         let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
         if !self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()) {
@@ -222,11 +222,12 @@ impl Mesh {
 
     // ---- node deletion (paper 4.2.4, fig. 8) ----
 
-    /// What [`delete_node`](Mesh::delete_node) would put in place: one triangle, or two with the diagonal that is
-    /// shorter in the metric of the node, else with the other one.
+    /// The elements that [`delete_node`](Mesh::delete_node) would insert: one triangle, or two with the diagonal that
+    /// is shorter in the metric of the node, or else with the other one.
     ///
     /// # Errors
-    /// Refused unless the node is free and surrounded by exactly three or four triangles, with positive results.
+    /// Refused unless the node is free, has exactly three or four triangles around it, and the new triangles are
+    /// positive.
     pub fn can_delete_node(&self, node: NodeId) -> Result<SmallVec<[NewElement; 2]>, Refusal> {
         if self.is_fixed(node) {
             return Err(Refusal::FixedNode);
@@ -241,10 +242,10 @@ impl Mesh {
         self.permit(Operation::DeleteNode, &[node])?;
         let region = self.region(spokes[0].element());
         let ring: SmallVec<[NodeId; 4]> = spokes.iter().map(|&h| self.target(h)).collect();
-        let sound = |n: [NodeId; 3]| firm(self.uv(n[0]), self.uv(n[1]), self.uv(n[2]));
+        let is_firm = |n: [NodeId; 3]| firm(self.uv(n[0]), self.uv(n[1]), self.uv(n[2]));
         if let [a, b, c] = ring[..] {
             let whole = [a, b, c];
-            return if sound(whole) {
+            return if is_firm(whole) {
                 Ok(SmallVec::from_iter([NewElement::triangle(whole, region)]))
             } else {
                 Err(Refusal::NotPositive)
@@ -254,7 +255,7 @@ impl Mesh {
         let first = if length2(0, 2) <= length2(1, 3) { 0 } else { 1 };
         for start in [first, 1 - first] {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| ring[(start + k) % 4]);
-            if sound([a, b, c]) && sound([a, c, d]) {
+            if is_firm([a, b, c]) && is_firm([a, c, d]) {
                 if self.are_joined(a, c) {
                     continue;
                 }
@@ -289,17 +290,17 @@ impl Mesh {
 
     /// Replaces elements by others that cover the same part of the plane.
     ///
-    /// Every side on the outside of the old elements must be a side of exactly one new one; sides between new elements
-    /// find each other. Ids of the old elements are reused in the order of the free list. Nodes that no element uses
-    /// afterwards must be released by [`release_node`](Mesh::release_node). Returns the new elements in their order.
+    /// Every outer side of the old elements must be a side of exactly one new element; inner sides of the new elements
+    /// become twins. The ids of the old elements are reused in the order of the free list. The caller must release
+    /// nodes without elements by [`release_node`](Mesh::release_node). Returns the new elements in their order.
     ///
     /// # Panics
-    /// Where the new elements do not fit into the hole of the old ones: a bug of the caller.
+    /// If the new elements do not fill the hole of the old ones: a bug of the caller.
     pub fn replace(&mut self, old: &[ElementId], new: &[NewElement]) -> SmallVec<[ElementId; 8]> {
         type Side = (NodeId, NodeId, Option<HalfEdgeId>);
         let mut sorted: SmallVec<[ElementId; 16]> = SmallVec::from_slice(old);
         sorted.sort_unstable();
-        // Gather the sides seen from inside, with what lies beyond.
+        // Gather the outer sides with their twins.
         let mut outer: SmallVec<[Side; 32]> = SmallVec::new();
         for &e in old {
             for h in self.half_edges(e) {
@@ -349,22 +350,22 @@ impl Mesh {
         made
     }
 
-    /// Makes a free node for [`replace`](Mesh::replace) to use.
+    /// Creates a free node for use in [`replace`](Mesh::replace).
     pub fn add_node(&mut self, uv: DVec2, metric: Metric2) -> NodeId {
         self.new_node(uv, metric)
     }
 
-    /// Makes a tombstone of a free node that no element uses any more.
+    /// Turns a free node without elements into a tombstone.
     pub fn release_node(&mut self, node: NodeId) {
         self.free_node(node);
     }
 
     // ---- moving ----
 
-    /// Whether every element around a free node stays positive and convex when the node moves to `uv`.
+    /// Whether every element around a free node remains positive and convex when the node moves to `uv`.
     ///
     /// # Errors
-    /// The refusal.
+    /// The reason of the refusal.
     pub fn can_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
         if self.is_fixed(node) {
             return Err(Refusal::FixedNode);
@@ -376,13 +377,14 @@ impl Mesh {
         }
     }
 
-    /// Moves a free node; [`can_move`](Mesh::can_move) must hold. `metric` is that of the new place.
+    /// Moves a free node; [`can_move`](Mesh::can_move) must hold. `metric` is that at `uv`.
     pub fn move_node(&mut self, node: NodeId, uv: DVec2, metric: Metric2) {
         debug_assert!(!self.is_fixed(node));
         self.set_place(node, uv, metric);
     }
 
-    /// Whether an element stays positive (a triangle firm, a quadrilateral strictly convex) with one corner elsewhere.
+    /// Whether an element remains positive (a triangle firm, a quadrilateral strictly convex) when `node` moves to
+    /// `uv`.
     pub fn stays_positive(&self, e: ElementId, node: NodeId, uv: DVec2) -> bool {
         let place = |n: NodeId| if n == node { uv } else { self.uv(n) };
         if self.is_triangle(e) {

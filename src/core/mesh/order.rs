@@ -1,11 +1,11 @@
-//! Orders in linear time: along a Hilbert curve, and by small numbers.
+//! Sorting in linear time: along a Hilbert curve, and by small integers.
 
 use glam::DVec2;
 
-/// Cells along each side of the Hilbert curve's square, as a power of two.
+/// The order of the Hilbert curve: its square has 2^BITS cells along each side.
 const BITS: u32 = 26;
 
-/// The ids sorted along a Hilbert curve through the bounding box of the places; equal cells are sorted by id.
+/// The ids sorted along a Hilbert curve through the bounding box of the points; ids in the same cell are sorted.
 pub fn hilbert_order(places: &[(u32, DVec2)]) -> Vec<u32> {
     let low = places.iter().fold(DVec2::INFINITY, |low, (_, p)| low.min(*p));
     let high = places.iter().fold(DVec2::NEG_INFINITY, |high, (_, p)| high.max(*p));
@@ -15,7 +15,7 @@ pub fn hilbert_order(places: &[(u32, DVec2)]) -> Vec<u32> {
         let cell = (p - low) * scale;
         (hilbert_distance(BITS, cell.x as u32, cell.y as u32), id)
     });
-    // As many groups as places, so that each is small unless the places crowd together.
+    // About one group per point, so that groups are small unless the points are clustered.
     let bits = (usize::BITS - places.len().leading_zeros()).min(2 * BITS);
     let group = |&(key, _): &(u64, u32)| (key >> (2 * BITS - bits)) as u32;
     let mut sorted = grouped(1 << bits, &keyed.collect::<Vec<_>>(), group);
@@ -23,38 +23,40 @@ pub fn hilbert_order(places: &[(u32, DVec2)]) -> Vec<u32> {
     sorted.into_iter().map(|(_, id)| id).collect()
 }
 
-/// Things sorted by a number below `groups` that each has; equal ones keep their order.
-pub fn grouped<T: Copy + Default>(groups: usize, things: &[T], group: impl Fn(&T) -> u32) -> Vec<T> {
+/// Items sorted by a group number below `groups`: a stable counting sort.
+pub fn grouped<T: Copy + Default>(groups: usize, items: &[T], group: impl Fn(&T) -> u32) -> Vec<T> {
     let mut start = vec![0_u32; groups + 1];
-    for thing in things {
-        start[group(thing) as usize + 1] += 1;
+    for item in items {
+        start[group(item) as usize + 1] += 1;
     }
     for i in 0..groups {
         start[i + 1] += start[i];
     }
-    let mut sorted = vec![T::default(); things.len()];
-    for thing in things {
-        let slot = &mut start[group(thing) as usize];
-        sorted[*slot as usize] = *thing;
+    let mut sorted = vec![T::default(); items.len()];
+    for item in items {
+        let slot = &mut start[group(item) as usize];
+        sorted[*slot as usize] = *item;
         *slot += 1;
     }
     sorted
 }
 
-/// The Hilbert curve as four ways to run through a square: for a way (0: from the lower left corner to the lower right, 1:
-/// its mirror at the diagonal, 2: 0 turned by 180 degrees, 3: 1 turned by 180 degrees) and a quadrant (`2 * right + up`), the
-/// place of the quadrant on the way (two lower bits) and the way through it (upper bits). A table has no branches to guess.
+/// The Hilbert curve as four ways to traverse a square: for a way (0: from the lower left corner to the lower right, 1:
+/// its mirror image at the diagonal, 2: 0 rotated by 180 degrees, 3: 1 rotated by 180 degrees) and a quadrant (`2 *
+/// right + up`), the position of the quadrant on the way (two lower bits) and the way through it (upper bits). A table
+/// avoids branches.
 const HILBERT: [[u8; 4]; 4] = {
     let mut table = [[0; 4]; 4];
     let mut way = 0;
     while way < 4 {
         let mut quadrant = 0;
         while quadrant < 4 {
-            // Turned and mirrored to way 0, which takes lower left, upper left, upper right, lower right.
+            // Rotated and mirrored to way 0, which visits lower left, upper left, upper right, lower right.
             let turned = if way >= 2 { 3 - quadrant } else { quadrant };
             let (right, up) = if way % 2 == 1 { (turned & 1, turned >> 1) } else { (turned >> 1, turned & 1) };
             let place = (3 * right) ^ up;
-            // Way 0 enters the lower left quadrant by its mirror, and the lower right one by that turned.
+            // Way 0 traverses the lower left quadrant by its mirror image, and the lower right one by that image
+            // rotated.
             let through = match (right, up) {
                 (0, 0) => way ^ 1,
                 (1, 0) => way ^ 3,
@@ -68,7 +70,7 @@ const HILBERT: [[u8; 4]; 4] = {
     table
 };
 
-/// Distance along the Hilbert curve of order `bits` at which the cell (x, y) comes.
+/// The index of the cell (x, y) along the Hilbert curve of order `bits`.
 fn hilbert_distance(bits: u32, x: u32, y: u32) -> u64 {
     let (mut distance, mut way) = (0, 0);
     for level in (0..bits).rev() {
@@ -90,7 +92,7 @@ mod tests {
 
     #[test]
     fn the_order_steps_from_cell_to_neighbouring_cell() {
-        // A grid of 32 x 32 places, given row by row.
+        // A grid of 32 x 32 points, given row by row.
         let place = |id: u32| DVec2::new(f64::from(id % 32), f64::from(id / 32));
         let mut ids = order(0..1024, place);
         for w in ids.windows(2) {
@@ -101,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_places_and_crowds_are_in_the_order_of_their_ids() {
+    fn equal_points_and_clusters_are_in_the_order_of_their_ids() {
         assert_eq!(order(0..5, |_| DVec2::ONE), [0, 1, 2, 3, 4]);
         let place = |id: u32| if id == 7 { DVec2::ONE } else { DVec2::splat(1e-12) };
         assert_eq!(order(3..9, place), [3, 4, 5, 6, 8, 7]);
@@ -109,9 +111,9 @@ mod tests {
     }
 
     #[test]
-    fn groups_come_in_order_and_keep_their_own() {
-        let things = [(2, 'a'), (0, 'b'), (2, 'c'), (1, 'd'), (0, 'e')];
-        let sorted = grouped(4, &things, |thing| thing.0);
+    fn groups_are_sorted_and_keep_their_order() {
+        let items = [(2, 'a'), (0, 'b'), (2, 'c'), (1, 'd'), (0, 'e')];
+        let sorted = grouped(4, &items, |item| item.0);
         assert!(sorted.into_iter().map(|(_, name)| name).eq("bedac".chars()));
     }
 }

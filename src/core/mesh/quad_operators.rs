@@ -1,8 +1,8 @@
-//! Operations on quadrilaterals that change their structure (spec 2.11, 10): diamond collapse, edge rotation, vertex
-//! opening and its inverse, and the removal of doublets.
+//! Operations on quadrilaterals that change their structure (docs/algorithm.md, "Clean-up"): diamond collapse, edge
+//! rotation, vertex opening and its inverse, and the removal of doublets.
 //!
-//! These judge the topology only: what comes out is conforming and manifold, but its elements may be inverted until the
-//! nodes around are relaxed. They are for use inside a transaction that ends with an exact check, or is taken back.
+//! These check only the topology: the result is conforming and manifold, but its elements may be inverted until the
+//! nodes around are relaxed. They are for use inside a transaction that ends with an exact check, or is rolled back.
 
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -14,12 +14,12 @@ use super::refusals::Refusal;
 use crate::core::kernel::tensor::Metric2;
 
 impl Mesh {
-    /// Whether the node has more edges than the least that a structure allows: three inside, two on a boundary.
+    /// Whether the node has more edges than the minimum: three inside, two on a boundary.
     fn can_lose_an_edge(&self, node: NodeId) -> bool {
         self.valence(node) > if self.is_fixed(node) { 2 } else { 3 }
     }
 
-    /// Merges the corner a of a quadrilateral into the opposite corner c; the quadrilateral goes.
+    /// Merges the corner a of a quadrilateral into the opposite corner c and removes the quadrilateral.
     ///
     /// ```text
     ///        d                 d
@@ -28,10 +28,10 @@ impl Mesh {
     ///      \   /               |
     ///        b                 b
     /// ```
-    /// `h_ab` starts at a, which must be free. Node a becomes a tombstone; c stays where it is.
+    /// `h_ab` starts at a, which must be free. Node a becomes a tombstone; c does not move.
     ///
     /// # Errors
-    /// Refused where a is fixed, where a and c meet elsewhere too, or where b or d would keep too few edges.
+    /// Refused if a is fixed, if a and c have other connections, or if b or d would keep too few edges.
     pub fn collapse_diamond(&mut self, h_ab: HalfEdgeId) -> Result<(), Refusal> {
         let q = h_ab.element();
         if !self.is_quad(q) {
@@ -61,8 +61,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// The six nodes around an edge between two quadrilaterals, anticlockwise from the origin of `h_ab`'s element side:
-    /// the edge runs from the first to the fourth.
+    /// The six nodes around an edge between two quadrilaterals, anticlockwise; `h` runs from the fourth to the first.
     ///
     /// ```text
     ///     n2---n1                 n2---n1
@@ -73,13 +72,13 @@ impl Mesh {
     /// ```
     ///
     /// # Errors
-    /// Refused on a boundary and where an element is no quadrilateral.
+    /// Refused on a boundary and if an element is not a quadrilateral.
     pub fn hexagon(&self, h: HalfEdgeId) -> Result<[NodeId; 6], Refusal> {
         let t = self.twin(h).ok_or(Refusal::OnBoundary)?;
         if !self.is_quad(h.element()) || !self.is_quad(t.element()) {
             return Err(Refusal::NotTriangles);
         }
-        // The element left of the edge n3 -> n0 holds n1 and n2.
+        // The element left of the edge n3 -> n0 has the nodes n1 and n2.
         let n0 = self.origin(t);
         let n1 = self.target(self.next(h));
         let n2 = self.origin(self.previous(h));
@@ -89,11 +88,12 @@ impl Mesh {
         Ok([n0, n1, n2, n3, n4, n5])
     }
 
-    /// Rotates the edge between two quadrilaterals by one or two nodes of their hexagon; see [`hexagon`](Mesh::hexagon).
+    /// Rotates the edge between two quadrilaterals by one or two nodes of their hexagon; see
+    /// [`hexagon`](Mesh::hexagon).
     ///
     /// # Errors
-    /// Refused on a boundary, where the new ends are joined already, where the hexagon has fewer than six nodes, and
-    /// where an end of the old edge would keep too few edges.
+    /// Refused on a boundary, if the new ends are already connected, if the hexagon has fewer than six nodes, and if an
+    /// end of the old edge would keep too few edges.
     pub fn rotate_edge(&mut self, h: HalfEdgeId, by: usize) -> Result<(), Refusal> {
         let n = self.hexagon(h)?;
         if (1..6).any(|k| n[..k].contains(&n[k])) {
@@ -115,8 +115,8 @@ impl Mesh {
         Ok(())
     }
 
-    /// Opens a node along two of its edges into a new quadrilateral: the elements met anticlockwise from `h_vp` to
-    /// `h_vq` go to a new node w.
+    /// Opens a node along two of its edges into a new quadrilateral: the elements from `h_vp` anticlockwise to `h_vq`
+    /// are connected to a new node w.
     ///
     /// ```text
     ///      \   p   /            \    p    /
@@ -125,11 +125,11 @@ impl Mesh {
     ///       /  |  \              /  \ /  \
     ///      /   q   \            /    q    \
     /// ```
-    /// The new quadrilateral is (v, p, w, q). Returns w, which stands at `uv`.
+    /// The new quadrilateral is (v, p, w, q). Returns w, which lies at `uv`.
     ///
     /// # Errors
-    /// Refused where an edge lies on a boundary, where a fixed v would hand over a boundary edge, and where either node
-    /// would have fewer than three edges.
+    /// Refused if an edge lies on a boundary, if a fixed v would lose a boundary edge, and if either node would have
+    /// fewer than three edges.
     pub fn open_vertex(
         &mut self,
         h_vp: HalfEdgeId,
@@ -150,7 +150,7 @@ impl Mesh {
             h = self.twin(self.previous(h)).ok_or(Refusal::OnBoundary)?;
         }
         let kept = self.fan(v).count() - handed.len();
-        // A node of n elements inside has n edges, and one more of the new quadrilateral's.
+        // An inner node of n elements has n edges, and the new quadrilateral adds one.
         if p == q || handed.len() < 2 || (!self.is_fixed(v) && kept < 2) {
             return Err(Refusal::Valence);
         }
@@ -159,12 +159,12 @@ impl Mesh {
         let w = self.add_node(uv, metric);
         let mut new: SmallVec<[NewElement; 8]> = handed.iter().map(|&e| self.with_node_replaced(e, v, w)).collect();
         new.push(NewElement::quad([v, p, w, q], region));
-        // The sides v-p and q-v of the handed sector lie outside of it: the new quadrilateral takes them up.
+        // The new quadrilateral fills the gap at the sides v-p and q-v of the sector.
         self.replace(&handed, &new);
         Ok(w)
     }
 
-    /// Merges the two quadrilaterals at a free node that has no other element.
+    /// Merges the two quadrilaterals at a free node that has no other elements.
     ///
     /// ```text
     ///        c                 c
@@ -175,7 +175,7 @@ impl Mesh {
     /// ```
     ///
     /// # Errors
-    /// Refused where the node is fixed or is no doublet of two quadrilaterals.
+    /// Refused if the node is fixed or not a doublet of two quadrilaterals.
     pub fn remove_doublet(&mut self, v: NodeId) -> Result<ElementId, Refusal> {
         if self.is_fixed(v) {
             return Err(Refusal::FixedNode);
@@ -197,7 +197,7 @@ impl Mesh {
         Ok(made[0])
     }
 
-    /// An element like `e` with one corner exchanged.
+    /// The element `e` with one corner replaced.
     fn with_node_replaced(&self, e: ElementId, from: NodeId, to: NodeId) -> NewElement {
         let swap = |n: NodeId| if n == from { to } else { n };
         if self.is_triangle(e) {

@@ -1,5 +1,5 @@
-//! Lengths and qualities of the mesh's own edges and elements, from the metrics of their nodes: these rank, they never
-//! decide about validity.
+//! Lengths and qualities of edges and elements from the metrics of their nodes: for ranking, not for decisions about
+//! validity.
 
 use glam::DVec2;
 
@@ -8,9 +8,9 @@ use super::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::kernel::tensor::Metric2;
 use crate::core::metric::measure::{quad_quality, triangle_quality};
 
-/// Length of `d` over two metrics: the logarithmic mean of the lengths in each (spec 2.1), by the approximation
-/// (4 sqrt(la lb) + la + lb) / 6, which is within 0.2 % of it where one is up to four times the other and costs no
-/// logarithm.
+/// Length of `d` over two metrics: the logarithmic mean of the lengths in each (docs/algorithm.md, "Lengths and
+/// angles"), by the approximation (4 sqrt(la lb) + la + lb) / 6, which needs no logarithm and is within 0.2 % of it if
+/// the lengths differ by a factor of at most four.
 #[inline]
 pub fn length_over(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
     let (l2_a, l2_b) = (m_a.norm2(d), m_b.norm2(d));
@@ -18,8 +18,8 @@ pub fn length_over(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
     (4.0 * (l_a * l_b).sqrt() + l_a + l_b) / 6.0
 }
 
-/// Quality of a triangle in the mean of its nodes' metrics (quality does not depend on the size that a metric asks for,
-/// so that the sum serves).
+/// Quality of a triangle in the mean of the metrics of its nodes (the quality does not depend on the scale of the
+/// metric, so that the sum suffices).
 #[inline]
 pub fn quality_over(p: [DVec2; 3], m: [&Metric2; 3]) -> f64 {
     let sum =
@@ -28,7 +28,7 @@ pub fn quality_over(p: [DVec2; 3], m: [&Metric2; 3]) -> f64 {
 }
 
 impl Mesh {
-    /// Metric length of an edge over the metrics of its two ends.
+    /// Metric length of an edge over the metrics of its ends.
     #[inline]
     pub fn length(&self, h: HalfEdgeId) -> f64 {
         self.distance(self.origin(h), self.target(h))
@@ -51,7 +51,7 @@ impl Mesh {
         }
     }
 
-    /// Quality that a triangle of these nodes has or would have.
+    /// Quality of a triangle of these nodes, whether or not it exists.
     #[inline]
     pub fn triangle_quality(&self, n: [NodeId; 3]) -> f64 {
         quality_over(n.map(|n| self.uv(n)), n.map(|n| self.metric_ref(n)))
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn length_over_is_the_integral_for_geometric_sizes_but_for_0_2_percent() {
+    fn length_over_is_the_integral_for_geometric_sizes_within_0_2_percent() {
         // h = h0 exp(a x) from 0 to 1: the integral of 1/h is (1 - exp(-a)) / (a h0).
         for a in [-1.38, -0.5, 0.1, 1.38] {
             let ends = [Metric2::isotropic(0.3), Metric2::isotropic(0.3 * libm::exp(a))];

@@ -1,35 +1,35 @@
-//! Failure injection: operations refused at random although nothing speaks against them. Whatever is refused, the result
-//! must be right; tests say so (spec 5).
+//! Failure injection: operations refused at random although they are possible. Whatever is refused, the result must be
+//! right; tests say so (docs/algorithm.md, "Failure injection").
 //!
-//! Whether an operation is refused is a pure function of the seed, the operation and where it is to happen: judging twice
-//! gives the same answer, a step taken back and done again meets the same refusals, and nothing must be remembered. A
-//! node that moves by the least bit is another place.
+//! Whether an operation is refused is a pure function of the seed, the operation and its location: a repeated check
+//! gives the same answer, a step that is undone and redone meets the same refusals, and no state is needed. A node that
+//! moves by one bit is a different location.
 //!
-//! The templates of the last resort ask nobody: the guarantee rests on them.
+//! The templates of the last resort are never refused: the guarantee rests on them.
 
-/// Why an operation cannot be done.
+/// The reason why an operation cannot be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// The edge lies on a boundary.
     OnBoundary,
     /// The node is fixed.
     FixedNode,
-    /// The operation is for triangles, and an element is none.
+    /// An element has the wrong shape for the operation.
     NotTriangles,
     /// An element would be inverted, flat, or not convex.
     NotPositive,
-    /// The ends have a common neighbour besides the two opposite nodes, or an element holds both: merging them would
-    /// glue what is apart.
+    /// The ends have a common neighbour besides the two opposite nodes, or a common element: merging them would join
+    /// separate parts.
     Link,
-    /// The nodes of the new edge are joined already.
+    /// The nodes of the new edge are already connected.
     Joined,
-    /// The node has not three or four triangles around it.
+    /// A node has the wrong number of edges or elements.
     Valence,
-    /// Nothing speaks against it, but a test wants it to fail; see [`Refusals`].
+    /// The operation is possible, but a test makes it fail; see [`Refusals`].
     Injected,
 }
 
-/// What can be refused.
+/// The operations that can be refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Operation {
     /// Swapping an edge.
@@ -60,11 +60,12 @@ pub enum Operation {
     Merge,
     /// Matching two triangles that cannot be merged, in the last resort.
     Match,
-    /// Cutting pairs of triangles anew, in the last resort.
+    /// Re-cutting pairs of triangles, in the last resort.
     Recut,
 }
 
-/// Which operations a mesh refuses, at random but always the same; see [`Mesh::set_refusals`](super::half_edge::Mesh::set_refusals).
+/// Which operations a mesh refuses, at random but reproducibly; see
+/// [`Mesh::set_refusals`](super::half_edge::Mesh::set_refusals).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refusals {
     seed: u64,
@@ -72,12 +73,12 @@ pub struct Refusals {
 }
 
 impl Refusals {
-    /// Refuses a share (from 0 to 1) of all operations.
+    /// Refuses a fraction (from 0 to 1) of all operations.
     pub fn new(seed: u64, share: f64) -> Self {
         Refusals { seed, share }
     }
 
-    /// Whether the operation is refused at a place, which the words name.
+    /// Whether the operation is refused at a location, which the words identify.
     pub(super) fn refuses(&self, operation: Operation, place: impl IntoIterator<Item = u64>) -> bool {
         // The mixing function of splitmix64, word by word.
         let mix = |hash: u64, word: u64| {
@@ -96,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_share_that_is_refused_is_the_share_that_was_asked_for() {
+    fn the_refused_fraction_is_the_requested_one() {
         for share in [0.0, 0.05, 0.8, 1.0] {
             let refusals = Refusals::new(7, share);
             let refused = (0..10_000).filter(|&n| refusals.refuses(Operation::Swap, [n, n + 1])).count();

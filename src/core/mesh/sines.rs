@@ -1,4 +1,5 @@
-//! Elements between straight sides in space: the sines of their corners against the surface, which tell where they fold over it.
+//! Corner sines of elements with straight sides in space, relative to the surface normal: they show where elements fold
+//! over.
 
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
@@ -14,14 +15,14 @@ pub struct Corners {
 }
 
 impl Corners {
-    /// Puts a corner elsewhere.
+    /// Moves a corner.
     pub fn put(&mut self, corner: usize, uv: DVec2, xyz: DVec3) {
         (self.uv[corner], self.xyz[corner]) = (uv, xyz);
     }
 
-    /// Their least sine, seen along the normal of the surface there, and on triangles, whose normals jump, along the element's own too;
-    /// 0 at most where a side is no longer than `near`. Without a ground, where exact predicates say more, along z. Where it is not
-    /// above `floor` it may be told as any number that is not.
+    /// The least corner sine relative to the surface normal at the corner and, on triangulated surfaces, whose normals
+    /// jump, also to the element's own normal; at most 0 if a side is no longer than `near`. In the plane the normal is
+    /// z. A result that is not above `floor` may be any number not above `floor`.
     pub fn least_sine(&self, ground: Option<&Ground>, near: f64, floor: f64) -> f64 {
         let count = self.xyz.len();
         if (0..count).any(|k| self.xyz[k].distance(self.xyz[(k + 1) % count]) <= near) {
@@ -29,7 +30,7 @@ impl Corners {
         }
         let mut least = f64::INFINITY;
         if ground.is_some_and(|ground| ground.atlas.is_of_facets(self.uv[0])) {
-            // Twice the mean area of a quadrilateral as a vector; of a triangle too.
+            // The area vector of the element, times two.
             let own = (self.xyz[2] - self.xyz[0]).cross(self.xyz[count - 1] - self.xyz[1]).normalize_or_zero();
             least = (0..count).map(|k| self.corner(k).dot(own)).fold(least, f64::min);
         }
@@ -42,17 +43,17 @@ impl Corners {
         least
     }
 
-    /// The sine of each corner as seen along the normal of the surface there.
+    /// The sine of each corner relative to the surface normal there.
     fn surface_sines(&self, ground: Option<&Ground>) -> impl Iterator<Item = f64> {
         let middle = self.uv.iter().sum::<DVec2>() / self.uv.len() as f64;
         (0..self.uv.len()).map(move |k| {
-            // At an apex there are many normals: that from a little within the element is meant.
+            // The normal is not unique at an apex: take that of a point slightly inside the element.
             let within = self.uv[k].lerp(middle, 1e-3);
             self.corner(k).dot(ground.map_or(DVec3::Z, |ground| ground.atlas.at(within).normal()))
         })
     }
 
-    /// The vector product of the unit sides at a corner.
+    /// The cross product of the unit sides at a corner.
     fn corner(&self, k: usize) -> DVec3 {
         let (count, at) = (self.xyz.len(), self.xyz[k]);
         let (next, previous) = (self.xyz[(k + 1) % count] - at, self.xyz[(k + count - 1) % count] - at);
@@ -67,8 +68,8 @@ impl Mesh {
         Corners { uv: nodes.iter().map(|&n| self.uv(n)).collect(), xyz: nodes.iter().map(|&n| self.xyz(n)).collect() }
     }
 
-    /// The elements on surfaces that have a corner, between straight sides in space, whose normal does not agree with that of
-    /// the surface there: they fold over it, which a mesh too coarse for its curvature does. None in the plane.
+    /// The elements on surfaces with a corner, between straight sides in space, that is inverted relative to the
+    /// surface normal: they fold over, as in a mesh too coarse for the curvature. None in the plane.
     pub fn folded(&self) -> Vec<ElementId> {
         let Some(ground) = self.ground() else { return Vec::new() };
         let folds = |sine: f64| sine.is_nan() || sine <= 0.0;

@@ -1,5 +1,5 @@
-//! Fields about named curves: boundary layers, small across the curves, and sizes that grow in all directions with the
-//! distance from them.
+//! Fields by the distance from named curves: boundary layers, with small sizes across the curves, and isotropic sizes
+//! that grow with the distance.
 
 use glam::{DVec2, DVec3};
 
@@ -8,20 +8,20 @@ use crate::core::geometry::domain::Line;
 use crate::core::kernel::box_tree::{BoxTree, Spot, share_along};
 use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric3};
 
-/// The size of a field that asks for nothing, as a multiple of the extent of its curves. It matters only where no other
-/// field bounds the sizes.
+/// The size where a field sets no limit, as a multiple of the extent of its curves. It matters only if no other field
+/// bounds the sizes.
 const UNBOUNDED: f64 = 1e3;
 
-/// Nearer to a curve than this part of its extent, rounding would turn the direction towards it.
+/// Closer to a curve than this fraction of its extent, the direction towards it is lost in rounding errors.
 const ON_CURVE: f64 = 1e-9;
 
-/// Segments of curves, and which of them is nearest.
+/// Segments of curves, with a search for the nearest.
 #[derive(Clone, Debug)]
 struct Near<P> {
     tree: BoxTree<P>,
-    /// In the tree's order.
+    /// In the order of the tree.
     segments: Vec<[P; 2]>,
-    /// Diagonal of the box about all curves.
+    /// The diagonal of the bounding box of all curves.
     extent: f64,
 }
 
@@ -37,14 +37,14 @@ impl<P: Spot> Near<P> {
             boxes.iter().fold((nowhere, everywhere), |(low, high), b| (low.least(b.0), high.greatest(b.1)));
         let extent = (high - low).inner(high - low).sqrt();
         if !(extent > 0.0 && extent.is_finite()) {
-            return Err(Fault::new("The curves have no length"));
+            return Err(Fault::new("The curves have zero length"));
         }
         let (tree, order) = BoxTree::new(&boxes);
         let segments = order.into_iter().map(|i| segments[i as usize]).collect();
         Ok(Near { tree, segments, extent })
     }
 
-    /// The nearest segment, the point of it, and the distance; `None` when `p` is not finite.
+    /// The nearest segment, its nearest point, and the distance; `None` when `p` is not finite.
     #[inline]
     fn find(&self, p: P) -> Option<([P; 2], P, f64)> {
         let foot = |[a, b]: [P; 2]| a.between(b, share_along(p, a, b));
@@ -54,7 +54,7 @@ impl<P: Spot> Near<P> {
     }
 }
 
-/// Curves in a planar domain, or in space.
+/// Curves in the plane or in space.
 #[derive(Clone, Debug)]
 enum Curves {
     Plane(Near<DVec2>),
@@ -78,7 +78,7 @@ impl Curves {
         }
     }
 
-    /// The distance of a point.
+    /// The distance of a point; `None` when it is not finite.
     #[inline]
     fn distance(&self, uv: DVec2, xyz: DVec3) -> Option<f64> {
         Some(match self {
@@ -88,44 +88,51 @@ impl Curves {
     }
 }
 
-/// Refuses sizes that are none, and a growth below 1.
-fn check(sizes: &[(&str, Option<f64>)], growth: f64) -> Result<(), Fault> {
+/// Refuses sizes outside 1e-60 to 1e60.
+pub(super) fn check_named_sizes(sizes: &[(&str, Option<f64>)]) -> Result<(), Fault> {
     for (name, size) in sizes {
         if let Some(size) = size
             && !(1e-60..=1e60).contains(size)
         {
-            return Err(Fault::new(format!("{name} = {size} is no size")).remedy("Give a positive finite number"));
+            return Err(
+                Fault::new(format!("{name} = {size} is not a valid size")).remedy("Give a positive finite number")
+            );
         }
     }
+    Ok(())
+}
+
+fn check_growth(growth: f64) -> Result<(), Fault> {
     if growth >= 1.0 && growth.is_finite() {
         return Ok(());
     }
     Err(Fault::new(format!("growth = {growth} is less than 1 or not finite"))
-        .remedy("Give the ratio of a row's height to that of the row before, such as 1.2"))
+        .remedy("Give the height ratio of successive rows, such as 1.2"))
 }
 
-/// A size that grows with the distance from curves, the same in all directions.
+/// An isotropic size that grows with the distance from curves.
 #[derive(Clone, Debug)]
 pub(super) struct Distance {
     curves: Curves,
     first: f64,
-    /// Growth of the size with the distance.
+    /// Derivative of the size by the distance.
     slope: f64,
     far: f64,
 }
 
 impl Distance {
     /// # Errors
-    /// Sizes that are not positive and finite, a growth below 1, curves without length.
+    /// Sizes that are not positive and finite, a growth below 1, curves of zero length.
     pub fn new(lines: &[Line], first: f64, growth: f64, far: f64) -> Result<Distance, Fault> {
-        check(&[("first", Some(first)), ("far", Some(far))], growth)?;
+        check_named_sizes(&[("first", Some(first)), ("far", Some(far))])?;
+        check_growth(growth)?;
         if far < first {
-            return Err(Fault::new("far is smaller than first").remedy("far is the largest size that is asked for"));
+            return Err(Fault::new("far is smaller than first").remedy("far is the largest size of this field"));
         }
         Ok(Distance { curves: Curves::new(lines)?, first, slope: growth - 1.0, far })
     }
 
-    /// The metric at a place; `None` where it is not finite.
+    /// The metric at a point; `None` when the point is not finite.
     #[inline]
     pub fn metric(&self, uv: DVec2, xyz: DVec3) -> Option<Metric3> {
         let distance = self.curves.distance(uv, xyz)?;
@@ -133,12 +140,12 @@ impl Distance {
     }
 }
 
-/// The curves and the sizes about them.
+/// Small sizes across curves, growing with the distance.
 #[derive(Clone, Debug)]
 pub(super) struct BoundaryLayer {
     curves: Curves,
     first: f64,
-    /// Growth of the size with the distance.
+    /// Derivative of the size by the distance.
     slope: f64,
     along: Option<f64>,
     far: f64,
@@ -146,7 +153,7 @@ pub(super) struct BoundaryLayer {
 
 impl BoundaryLayer {
     /// # Errors
-    /// Sizes that are not positive and finite, a growth below 1, no curve, curves without length.
+    /// Sizes that are not positive and finite, a growth below 1, no curves, curves of zero length.
     pub fn new(
         lines: &[Line],
         first: f64,
@@ -154,10 +161,11 @@ impl BoundaryLayer {
         along: Option<f64>,
         far: Option<f64>,
     ) -> Result<BoundaryLayer, Fault> {
-        check(&[("first", Some(first)), ("along", along), ("far", far)], growth)?;
+        check_named_sizes(&[("first", Some(first)), ("along", along), ("far", far)])?;
+        check_growth(growth)?;
         if far.is_some_and(|far| far < first) {
             return Err(Fault::new("far is smaller than first")
-                .remedy("far is the largest size that is asked for across the curves"));
+                .remedy("far is the largest size of this field across the curves"));
         }
         if let Some(along) = along
             && (along > LARGEST_ANISOTROPY * first || first > LARGEST_ANISOTROPY * along)
@@ -171,16 +179,17 @@ impl BoundaryLayer {
         Ok(BoundaryLayer { curves, first, slope: growth - 1.0, along, far })
     }
 
-    /// Whether it gives a tensor of itself; if not, it only cuts back those of others.
+    /// Whether it defines a tensor by itself; if not, it only limits the tensors of other fields.
     pub fn is_tensor(&self) -> bool {
         self.along.is_some()
     }
 
-    /// The direction across the curves and the size along it; `None` where the place is not finite. On a curve in space
-    /// all directions across it are meant, and the curve's own is given second.
+    /// A unit vector across the curves and the size along it; `None` when the point is not finite. On a curve in space,
+    /// the size holds in all directions across it, and the second value is the direction of the curve.
     ///
-    /// The size is `min(first + (growth - 1) distance, far)`: rows that each are `growth` times the one before lie at distances
-    /// that make it so. The direction is the gradient of the distance; on a curve of the plane it is the normal of its segment.
+    /// The size is `min(first + (growth - 1) distance, far)`, which is the height of the row at that distance if each
+    /// row is `growth` times as high as the one before. The direction is the gradient of the distance; on a curve of
+    /// the plane it is the normal of its segment.
     #[inline]
     fn across(&self, uv: DVec2, xyz: DVec3) -> Option<(DVec3, Option<DVec3>, f64)> {
         let size = |distance: f64| (self.first + self.slope * distance).min(self.far);
@@ -202,12 +211,12 @@ impl BoundaryLayer {
         }
     }
 
-    /// The field at a place intersected with what other fields ask for there; `None` where the place is not finite.
+    /// The field at a point, intersected with the metric of other fields there; `None` when the point is not finite.
     #[inline]
     pub fn intersect(&self, others: Option<Metric3>, uv: DVec2, xyz: DVec3) -> Option<Metric3> {
         let (n, on, h) = self.across(uv, xyz)?;
         let Some(along) = self.along else {
-            // Alone, it must be bounded somehow, and no further than the tensor can hold.
+            // Without other fields, bound the sizes within the anisotropy that a tensor can represent.
             let others = others.unwrap_or_else(|| {
                 Metric3::isotropic((UNBOUNDED * self.curves.extent()).min(0.1 * LARGEST_ANISOTROPY * h))
             });

@@ -1,5 +1,5 @@
-//! Metric fields: what gives a tensor at a place (formula, uniform, table, about curves, by curvature, intersection), and on
-//! surfaces its pull-back (eq. 3).
+//! Metric fields: a tensor at each point (uniform, by formulas, by a table, by the distance from curves, by curvature),
+//! their intersection, and on surfaces the pull-back (eq. 3).
 
 mod by_formula;
 
@@ -12,12 +12,13 @@ use super::curvature::Curvature;
 use super::place::MetricPlace;
 use super::table::Table;
 use crate::core::fault::{Fault, FaultKind};
+use crate::core::geometry::assembly::placed;
 use crate::core::geometry::atlas::Atlas;
 use crate::core::geometry::domain::Line;
 use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric2, Metric3, check_sizes};
 use by_formula::FormulaField;
 
-/// A field that yields no metric at some place: what is wrong and where.
+/// The failure of a field at a point: what is wrong and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BadMetric {
     /// What is wrong ("h1 = -0.02 is not positive").
@@ -39,12 +40,12 @@ impl From<Box<BadMetric>> for Fault {
     }
 }
 
-/// What the mesher and the converter ask: the metric of eq. (3) at parametric coordinates.
+/// The metric of eq. (3) at parametric coordinates, as the mesher and the converter use it.
 pub trait MetricSource {
-    /// The metric at `uv`. A pure function: the same place gives the same bits.
+    /// The metric at `uv`. A pure function: the same point gives the same bits.
     ///
     /// # Errors
-    /// Where the field is not positive definite and finite there (boxed: the happy path is hot).
+    /// If the field is not positive definite and finite there (boxed to keep the common result small).
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>>;
 }
 
@@ -62,7 +63,7 @@ impl<T: MetricSource + ?Sized> MetricSource for Arc<T> {
     }
 }
 
-/// One field as a case gives it; several are intersected.
+/// The specification of a field in a case; several fields are intersected.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a case has a handful of them")]
 #[non_exhaustive]
@@ -74,57 +75,58 @@ pub enum FieldSpec {
     },
     /// Formulas in x, y, z, u, v.
     Formula {
-        /// Named helper expressions, each may use those before it.
+        /// Helper expressions (name, text); each may use those before it.
         helpers: Vec<(String, String)>,
-        /// h1, h2, h3; one alone (the others `None`) is isotropic.
+        /// h1, h2, h3; h1 alone (the others `None`) is isotropic.
         sizes: [Option<String>; 3],
-        /// g1, g2, g3, three components each; what is not given is completed (in the plane g3 = z).
+        /// g1, g2, g3, three components each; missing ones are completed (in the plane g3 = z).
         directions: [Option<[String; 3]>; 3],
-        /// Where it stands, for messages.
+        /// Its place in the case, for messages.
         place: String,
     },
-    /// Distance to named curves: size `first` across them, growing by `growth` from row to row.
+    /// A boundary layer: size `first` across named curves, growing by `growth` from row to row.
     BoundaryLayer {
         /// Names of curves.
         curves: Vec<String>,
         /// First height.
         first: f64,
-        /// Ratio of a row's height to the one before, at least 1.
+        /// Height ratio of successive rows, at least 1.
         growth: f64,
-        /// Size along the curves; `None`: as large as the other fields allow.
+        /// Size along the curves; `None`: limited only by the other fields.
         along: Option<f64>,
-        /// Largest size that this field asks for across; `None`: as large as the other fields allow.
+        /// Largest size of this field across the curves; `None`: limited only by the other fields.
         far: Option<f64>,
-        /// Where it stands, for messages.
+        /// Its place in the case, for messages.
         place: String,
     },
-    /// The same size in all directions: `first` on named curves, growing by `growth` from row to row up to `far`.
+    /// An isotropic size: `first` on named curves, growing by `growth` from row to row up to `far`.
     Distance {
         /// Names of curves.
         curves: Vec<String>,
         /// Size on the curves.
         first: f64,
-        /// Ratio of a row's height to the one before, at least 1.
+        /// Height ratio of successive rows, at least 1.
         growth: f64,
         /// Largest size.
         far: f64,
-        /// Where it stands, for messages.
+        /// Its place in the case, for messages.
         place: String,
     },
-    /// Sizes by the curvature of the surface: chords stay within a part of the radius from it (see `curvature`).
+    /// Sizes by the curvature of the surface: the distance of chords from it is a fraction of the radius (see
+    /// `curvature`).
     Curvature {
-        /// Distance of a chord from its arc, as a part of the radius.
+        /// Distance of a chord from its arc, as a fraction of the radius.
         chord: f64,
-        /// Smallest size that it asks for.
+        /// Smallest size of this field.
         least: f64,
         /// Size where the surface is flat.
         far: f64,
-        /// Where it stands, for messages.
+        /// Its place in the case, for messages.
         place: String,
     },
 }
 
-/// One compiled field.
+/// A compiled field.
 #[derive(Clone, Debug)]
 pub struct Field(Kind);
 
@@ -139,14 +141,15 @@ enum Kind {
 }
 
 impl Field {
-    /// Compiles a field; `curves` gives a fine polyline of a named curve.
+    /// Compiles a field; `curves` looks up the fine polyline of a named curve.
     ///
-    /// Of a formula's directions, one of g1 and g2 alone is completed in the plane (g3 = z), two by their cross product, none by
-    /// the coordinate axes; without h3 it is the larger of h1 and h2, which in the plane has no effect.
+    /// Missing directions of a formula are completed: g1 or g2 alone in the plane (g3 = z), two directions by their
+    /// cross product, none by the coordinate axes. A missing h3 is the larger of h1 and h2, which has no effect in the
+    /// plane.
     ///
     /// # Errors
-    /// A size that is no size, a formula that does not compile or leaves too much open, an unknown curve; the place of
-    /// the specification goes into the fault.
+    /// An invalid size, a formula that does not compile or is incomplete, an unknown curve; the fault carries the place
+    /// of the specification.
     pub fn compile(spec: &FieldSpec, curves: &dyn Fn(&str) -> Option<Line>) -> Result<Field, Fault> {
         Field::kind(spec, curves).map(Field).map_err(|fault| fault.of_kind(FaultKind::Metric))
     }
@@ -155,7 +158,7 @@ impl Field {
         let lines = |names: &[String], field: &str, place: &String| -> Result<Vec<Line>, Fault> {
             let line = |name: &String| {
                 curves(name).ok_or_else(|| {
-                    at(Fault::new(format!("The {field} names a curve \"{name}\" that is not there")), place)
+                    placed(Fault::new(format!("The {field} names a curve \"{name}\" that does not exist")), place)
                 })
             };
             names.iter().map(line).collect()
@@ -167,40 +170,41 @@ impl Field {
             }
             FieldSpec::Formula { helpers, sizes, directions, place } => {
                 let field = FormulaField::compile(helpers, sizes, directions, place);
-                Kind::Formula(Box::new(field.map_err(|fault| at(fault, place))?))
+                Kind::Formula(Box::new(field.map_err(|fault| placed(fault, place))?))
             }
             FieldSpec::BoundaryLayer { curves: names, first, growth, along, far, place } => {
                 let lines = lines(names, "boundary layer", place)?;
                 let layer = BoundaryLayer::new(&lines, *first, *growth, *along, *far);
-                Kind::BoundaryLayer(Box::new(layer.map_err(|fault| at(fault, place))?), place.clone())
+                Kind::BoundaryLayer(Box::new(layer.map_err(|fault| placed(fault, place))?), place.clone())
             }
             FieldSpec::Distance { curves: names, first, growth, far, place } => {
                 let field = Distance::new(&lines(names, "distance", place)?, *first, *growth, *far);
-                Kind::Distance(Box::new(field.map_err(|fault| at(fault, place))?), place.clone())
+                Kind::Distance(Box::new(field.map_err(|fault| placed(fault, place))?), place.clone())
             }
             FieldSpec::Curvature { chord, least, far, place } => {
                 let field = Curvature::new(*chord, *least, *far);
-                Kind::Curvature(field.map_err(|fault| at(fault, place))?)
+                Kind::Curvature(field.map_err(|fault| placed(fault, place))?)
             }
         })
     }
 
-    /// A field by a table at the nodes of a triangle mesh in the parametric plane, log-Euclidean between them (spec 2.1.1);
-    /// outside the mesh, the value at its nearest point.
+    /// A field by a table at the nodes of a triangle mesh in the parametric plane, log-Euclidean between them
+    /// (docs/algorithm.md, "Metric at new places"); outside the mesh, the value at its nearest point.
     ///
     /// # Errors
-    /// Lengths that differ, indices out of range, a triangle without area, a metric that is not positive definite.
+    /// Different lengths, indices out of range, a triangle without area, a metric that is not positive definite.
     pub fn table(points: &[DVec2], triangles: &[[u32; 3]], metrics: Vec<Metric3>) -> Result<Field, Fault> {
         let table = Table::new(points, triangles, &metrics).map_err(|fault| fault.of_kind(FaultKind::Metric))?;
         Ok(Field(Kind::Table(Box::new(table))))
     }
 
-    /// Whether it gives a tensor of itself; a boundary layer without a size along its curves only cuts back others.
+    /// Whether it defines a tensor by itself; a boundary layer without a size along its curves only limits other
+    /// fields.
     fn is_tensor(&self) -> bool {
         !matches!(&self.0, Kind::BoundaryLayer(layer, _) if !layer.is_tensor())
     }
 
-    /// The field's metric at a place, intersected with that of the fields before it.
+    /// The field's metric at a point, intersected with that of the fields before it.
     #[inline]
     fn intersect(&self, others: Option<Metric3>, place: &MetricPlace) -> Result<Metric3, Box<BadMetric>> {
         let m = match &self.0 {
@@ -217,12 +221,7 @@ impl Field {
     }
 }
 
-/// A fault at a place that may be unknown.
-fn at(fault: Fault, place: &str) -> Fault {
-    if place.is_empty() { fault } else { fault.at(place) }
-}
-
-/// What is wrong with a metric and where; `origin` is where its field stands.
+/// The failure of a field at a point; `origin` is the place of the field in the case.
 #[cold]
 fn bad(what: String, origin: &str, place: &MetricPlace) -> Box<BadMetric> {
     let what = if origin.is_empty() { what } else { format!("{what} ({origin})") };
@@ -231,30 +230,30 @@ fn bad(what: String, origin: &str, place: &MetricPlace) -> Box<BadMetric> {
 
 #[cold]
 fn nowhere(place: &MetricPlace, origin: &str) -> Box<BadMetric> {
-    bad("a metric is asked for where the coordinates are not finite".into(), origin, place)
+    bad("the metric is evaluated at coordinates that are not finite".into(), origin, place)
 }
 
-/// The metric of a case: the intersection of its fields with all sizes multiplied by one factor; on surfaces the pull-back of
-/// that to the plane in which they are meshed.
+/// The metric of a case: the intersection of its fields, with all sizes multiplied by one factor; on surfaces, its
+/// pull-back to the plane in which they are meshed.
 #[derive(Clone, Debug)]
 pub struct Sizing {
     fields: Vec<Field>,
     size_scale: f64,
-    /// The surfaces; none in a planar domain.
+    /// The surfaces; `None` in a planar domain.
     atlas: Option<Arc<Atlas>>,
-    /// Whether a field asks for the curvature.
+    /// Whether a field needs the curvature.
     bends: bool,
 }
 
 impl Sizing {
-    /// Fields to intersect, in any order, and the factor on all sizes.
+    /// The intersection of fields, given in any order, with a factor on all sizes.
     ///
     /// # Panics
-    /// Without fields, or with a factor that is not positive and finite (the reader of cases refuses both).
+    /// Without fields, or if the factor is not positive and finite (the reader of cases refuses both).
     pub fn new(mut fields: Vec<Field>, size_scale: f64) -> Sizing {
         assert!(!fields.is_empty(), "a sizing has at least one field");
         assert!(size_scale > 0.0 && size_scale.is_finite(), "size_scale is positive");
-        // Fields that only cut back others come after them; the sort is stable.
+        // Fields that only limit others come last; the sort is stable.
         fields.sort_by_key(|field| !field.is_tensor());
         let bends = fields.iter().any(|field| matches!(field.0, Kind::Curvature(..)));
         Sizing { fields, size_scale, atlas: None, bends }
@@ -266,29 +265,29 @@ impl Sizing {
         Sizing { atlas, ..self }
     }
 
-    /// The surfaces; none in a planar domain.
+    /// The surfaces; `None` in a planar domain.
     pub fn atlas(&self) -> Option<&Arc<Atlas>> {
         self.atlas.as_ref()
     }
 
-    /// The metric M3D of eq. (2) at a place. A pure function: the same place gives the same bits.
+    /// The metric M3D of eq. (2) at a point. A pure function: the same point gives the same bits.
     ///
     /// # Errors
-    /// Where a field gives no positive finite tensor: which size, its value, the place.
+    /// If a field gives no positive finite tensor: which size, its value, the point.
     #[inline]
     pub fn metric3(&self, place: &MetricPlace) -> Result<Metric3, Box<BadMetric>> {
         let mut m = self.fields[0].intersect(None, place)?;
         for field in &self.fields[1..] {
             m = field.intersect(Some(m), place)?;
         }
-        if self.fields.len() > 1 && !is_held_well(&m) {
-            let what = format!("the fields together stretch the metric by more than {LARGEST_ANISOTROPY:e}");
+        if self.fields.len() > 1 && !is_representable(&m) {
+            let what = format!("the anisotropy of all fields together exceeds {LARGEST_ANISOTROPY:e}");
             return Err(bad(what, "", place));
         }
         Ok(if self.size_scale == 1.0 { m } else { m.scaled(self.size_scale) })
     }
 
-    /// The metric M3D at a place of the plane in which it is meshed.
+    /// The metric M3D at a point of the plane that is meshed.
     ///
     /// # Errors
     /// As [`Sizing::metric3`].
@@ -320,11 +319,11 @@ impl Sizing {
     }
 }
 
-/// Whether double precision still holds all sizes of an intersection.
+/// Whether double precision can represent all sizes of an intersection.
 #[inline]
-fn is_held_well(m: &Metric3) -> bool {
+fn is_representable(m: &Metric3) -> bool {
     let (det, trace) = (m.plane().det(), m.xx + m.yy);
-    // det / trace^2 is the ratio of the eigenvalues where it is small.
+    // If det / trace^2 is small, it is the ratio of the eigenvalues.
     let plane = det * LARGEST_ANISOTROPY * LARGEST_ANISOTROPY > trace * trace && trace.is_finite();
     if m.is_planar() { plane && m.zz > 0.0 && m.zz.is_finite() } else { m.is_spd() }
 }

@@ -1,12 +1,13 @@
-//! Formulas over x, y, z, u, v: text compiled once to straight-line code over a small file of numbers.
+//! Formulas over x, y, z, u, v: text compiled once to straight-line code over a small register file.
 //!
-//! Grammar, loosest first: `+ -`, `* /` (both from left to right), sign, `^` (from right to left, its exponent may carry a
-//! sign), then numbers, names, calls and parentheses. So `-x^2` is `-(x^2)`, `2^-1` is a half and `2^3^2` is 2^9, as in
-//! mathematics. Helpers are named expressions that later ones may use; what several expressions share is computed once.
+//! Operators by increasing precedence: `+ -`, `* /` (both left-associative), sign, `^` (right-associative, its exponent
+//! may have a sign), then numbers, names, calls and parentheses. So `-x^2` is `-(x^2)`, `2^-1` is a half and `2^3^2` is
+//! 2^9, as in mathematics. Helpers are named expressions that later ones may use; common subexpressions are computed
+//! once.
 //!
-//! Every function is `libm`'s: the standard library's differ between systems. The crate `exmex` was tried first and
-//! dropped: in it `exp(-3^2)` is `exp(9)`, `min(1, max(2, 3))` is a syntax error and `1e-3` needs a parser of one's own.
-//! Deliberately absent: conditions, assignment, implied multiplication (`2x`), user functions.
+//! All functions come from `libm`, since those of the standard library differ between systems. The crate `exmex` does
+//! not suffice: in it `exp(-3^2)` is `exp(9)`, and `min(1, max(2, 3))` is a syntax error. There are no conditions,
+//! assignments, implied multiplications (`2x`) or user-defined functions.
 
 mod parser;
 
@@ -16,16 +17,16 @@ use super::place::MetricPlace;
 use crate::core::fault::Fault;
 use parser::Parser;
 
-/// What a formula may depend on, in the order of [`Program::eval`].
+/// The variables of a formula, in the order of [`Program::eval`].
 pub const VARIABLES: [&str; 5] = ["x", "y", "z", "u", "v"];
 
-/// Levels of parentheses, signs and exponents within each other that are read before a formula is refused.
+/// The largest nesting depth of parentheses, signs and exponents.
 const DEEPEST: usize = 200;
 
-/// Numbers that an evaluation keeps on the stack; longer programs take a heap allocation a call.
+/// The number of registers on the stack; longer programs allocate on the heap in each call.
 const FILE_ON_STACK: usize = 32;
 
-/// An operation of two operands; those of one ignore the second.
+/// An operation on two operands; unary ones ignore the second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Op {
     Add,
@@ -53,7 +54,7 @@ enum Op {
     Sign,
 }
 
-/// Functions by name, with how many arguments they take (`min` and `max`: at least two).
+/// Functions by name, with their number of arguments (`min` and `max`: at least two).
 const FUNCTIONS: [(&str, Op, usize); 18] = [
     ("abs", Op::Abs, 1),
     ("acos", Op::Acos, 1),
@@ -86,7 +87,7 @@ impl Op {
             Op::Mul => a * b,
             Op::Div => a / b,
             Op::Pow => libm::pow(a, b),
-            // Unlike f64::min and max these hand a NaN on, so that it is refused and not hidden.
+            // Unlike f64::min and max these propagate NaN, so that it is refused and not hidden.
             Op::Min => {
                 if a.is_nan() || a < b {
                     a
@@ -140,7 +141,7 @@ struct Instruction {
 /// Compiled formulas: several outputs over the same variables and helpers.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// Length of the file: variables, then constants, then intermediate results.
+    /// Length of the register file: variables, then constants, then intermediate results.
     slots: usize,
     constants: Vec<f64>,
     code: Vec<Instruction>,
@@ -148,10 +149,10 @@ pub struct Program {
 }
 
 impl Program {
-    /// Compiles `outputs` (name and expression each) with the `helpers` that they may use; a helper may use those before it.
+    /// Compiles `outputs` (name, expression) with the `helpers` that they may use; a helper may use those before it.
     ///
     /// # Errors
-    /// A syntax error with the expression and the column; an unknown name with the nearest known one; a helper whose name is
+    /// A syntax error with the expression and the column; an unknown name with a suggestion; a helper whose name is
     /// taken. The fault has no place yet.
     pub fn compile(helpers: &[(String, String)], outputs: &[(&str, &str)]) -> Result<Program, Fault> {
         let mut graph = Graph::default();
@@ -173,18 +174,18 @@ impl Program {
         Ok(graph.emit(&values))
     }
 
-    /// How many outputs there are.
+    /// The number of outputs.
     pub fn outputs(&self) -> usize {
         self.outputs.len()
     }
 
-    /// The value of an output that depends on no variable.
+    /// The value of an output that does not depend on variables.
     pub fn constant(&self, output: usize) -> Option<f64> {
         let slot = *self.outputs.get(output)? as usize;
         self.constants.get(slot.checked_sub(VARIABLES.len())?).copied()
     }
 
-    /// Evaluates all outputs at a place, in their order, into the first places of `out`. Values may be NaN or infinite.
+    /// Evaluates all outputs at a point, in order, into the first elements of `out`. Values may be NaN or infinite.
     ///
     /// # Panics
     /// When `out` is shorter than [`Program::outputs`].
@@ -210,17 +211,17 @@ impl Program {
     }
 }
 
-/// A helper's name is an identifier that means nothing yet.
+/// Checks that the name of a helper is an identifier without another meaning.
 fn check_helper_name(name: &str, names: &[(&str, u32)]) -> Result<(), Fault> {
     let mut letters = name.chars();
     let starts_well = letters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
     if !starts_well || !letters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return Err(Fault::new(format!("\"{name}\" cannot name a helper expression"))
-            .remedy("Use letters, digits and underscores, a letter first"));
+            .remedy("Use letters, digits and underscores, beginning with a letter"));
     }
     let of_the_language = FUNCTIONS.iter().any(|f| f.0 == name) || CONSTANTS.iter().any(|c| c.0 == name);
     if of_the_language || VARIABLES.contains(&name) {
-        return Err(Fault::new(format!("A helper expression is named \"{name}\", which has a meaning already"))
+        return Err(Fault::new(format!("A helper expression is named \"{name}\", which already has a meaning"))
             .remedy("Give it another name"));
     }
     if names.iter().any(|n| n.0 == name) {
@@ -231,7 +232,7 @@ fn check_helper_name(name: &str, names: &[(&str, u32)]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A value of the graph; ids are positions, operands come before their uses.
+/// A node of the graph; ids are indices, and operands come before their uses.
 #[derive(Clone, Copy)]
 enum Node {
     Variable,
@@ -239,7 +240,7 @@ enum Node {
     Result(Op, u32, u32),
 }
 
-/// The expressions as a graph in which equal subexpressions are one node and constants are folded.
+/// The expressions as a graph with common subexpressions merged and constants folded.
 #[derive(Default)]
 struct Graph {
     nodes: Vec<Node>,
@@ -262,7 +263,8 @@ impl Graph {
             return self.constant(op.apply(va, vb));
         }
         if let (Op::Pow, Node::Constant(exponent)) = (op, node_b) {
-            // Squares and cubes are most powers in sizes, and a product is ten times as quick as a general power.
+            // Most powers in size formulas are squares and cubes, and a product is ten times as fast as a general
+            // power.
             if exponent == 2.0 {
                 return self.result(Op::Mul, a, a);
             }
@@ -278,10 +280,10 @@ impl Graph {
         })
     }
 
-    /// Code for what `outputs` need, slots being given back after their last use.
+    /// The code that computes `outputs`; registers are reused after their last use.
     fn emit(&self, outputs: &[u32]) -> Program {
         const KEPT: u32 = u32::MAX;
-        // The last node that reads each node; None: nothing needs it.
+        // The last node that reads each node; None if no output needs it.
         let mut last_use: Vec<Option<u32>> = vec![None; self.nodes.len()];
         for &o in outputs {
             last_use[o as usize] = Some(KEPT);

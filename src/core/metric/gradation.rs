@@ -1,15 +1,16 @@
-//! Bounding how quickly the sizes of a tabulated metric change (spec 3, item 5; after Alauzet's mixed-space gradation).
+//! Gradation: a bound on the growth of the sizes of a tabulated metric (docs/algorithm.md, "Gradation"; after Alauzet's
+//! mixed-space gradation).
 
 use glam::{DVec2, DVec3};
 
 use crate::core::kernel::tensor::{Metric2, Metric3};
 
-/// A tensor whose sizes can be let grow along an edge.
+/// A tensor whose sizes can grow along an edge.
 pub trait Gradable: Copy {
     /// A point or an edge vector.
     type Point: Copy + std::ops::Sub<Output = Self::Point>;
 
-    /// What the tensor still asks for at the far end of the edge `d`, sizes growing by at most `exp(ln_beta)` per unit length.
+    /// The tensor at the far end of the edge `d`, after its sizes have grown by at most `exp(ln_beta)` per unit length.
     fn spanned(&self, d: Self::Point, ln_beta: f64) -> Self;
 
     /// The intersection of two tensors.
@@ -19,21 +20,23 @@ pub trait Gradable: Copy {
     /// The smallest size.
     fn min_size(&self) -> f64;
 
-    /// Whether `self` differs from `old` by more than rounding.
+    /// Whether `self` differs from `old` by more than rounding errors.
     fn is_news(&self, old: &Self) -> bool;
 }
 
-/// The growth of one size along an edge of length `l_metric` in the metric, and `l_own = |e| / h_k` in that size:
-/// `(1 + l_metric ln beta)^(1-t) (1 + l_own ln beta)^t` with t = 1/8, between growth that keeps the shape (t = 0) and
-/// growth that lets it become round (t = 1).
+/// The eigenvalue `lambda = 1 / h^2` after its size has grown along an edge of length `l_metric` in the metric,
+/// `l_euclid` in the plane and so `l_own = l_euclid / h` in that size. The growth factor is `(1 + l_metric ln
+/// beta)^(1-t) (1 + l_own ln beta)^t` with t = 1/8, between a growth that preserves the shape of the unit ball (t = 0)
+/// and one that makes it round (t = 1).
 #[inline]
-fn growth(l_metric: f64, l_own: f64, ln_beta: f64) -> f64 {
-    let (shape, round) = (1.0 + l_metric * ln_beta, 1.0 + l_own * ln_beta);
-    // The eighth root is three square roots, which are exact to the last bit everywhere.
-    shape * (round / shape).sqrt().sqrt().sqrt()
+fn grown(lambda: f64, l_metric: f64, l_euclid: f64, ln_beta: f64) -> f64 {
+    let (shape, round) = (1.0 + l_metric * ln_beta, 1.0 + lambda.sqrt() * l_euclid * ln_beta);
+    // The eighth root is three square roots, which are the same on all systems.
+    let eta = shape * (round / shape).sqrt().sqrt().sqrt();
+    lambda / (eta * eta)
 }
 
-/// Entries that move by less than this part of the largest are not passed on.
+/// Changes below this fraction of the trace are not propagated.
 const NEWS: f64 = 1e-9;
 
 impl Gradable for Metric2 {
@@ -42,11 +45,7 @@ impl Gradable for Metric2 {
     fn spanned(&self, d: DVec2, ln_beta: f64) -> Metric2 {
         let (l_metric, l_euclid) = (self.norm2(d).max(0.0).sqrt(), d.length());
         let (values, g) = self.eigen();
-        let values = values.map(|lambda| {
-            let eta = growth(l_metric, lambda.sqrt() * l_euclid, ln_beta);
-            lambda / (eta * eta)
-        });
-        Metric2::from_eigen(values, g)
+        Metric2::from_eigen(values.map(|lambda| grown(lambda, l_metric, l_euclid, ln_beta)), g)
     }
 
     fn intersect(&self, other: &Metric2) -> Metric2 {
@@ -69,11 +68,7 @@ impl Gradable for Metric3 {
     fn spanned(&self, d: DVec3, ln_beta: f64) -> Metric3 {
         let (l_metric, l_euclid) = (self.norm2(d).max(0.0).sqrt(), d.length());
         let (values, g) = self.eigen();
-        let values = values.map(|lambda| {
-            let eta = growth(l_metric, lambda.sqrt() * l_euclid, ln_beta);
-            lambda / (eta * eta)
-        });
-        Metric3::from_eigen(values, g)
+        Metric3::from_eigen(values.map(|lambda| grown(lambda, l_metric, l_euclid, ln_beta)), g)
     }
 
     fn intersect(&self, other: &Metric3) -> Metric3 {
@@ -91,16 +86,16 @@ impl Gradable for Metric3 {
     }
 }
 
-/// Bounds the gradation of nodal metrics along edges to `beta` (above 1): each metric is intersected with what its
-/// neighbours still ask for at its place, until nothing changes. Sizes only shrink. Nodes are served in rounds, small sizes
-/// first in the first round, and only what has changed is served again; the result depends on nothing else. Gives the
-/// number of rounds, which is bounded.
+/// Bounds the gradation of nodal metrics along edges to `beta` (greater than 1): intersects each metric with the grown
+/// metrics of its neighbours until nothing changes. Sizes only shrink. Nodes are processed in rounds, in the first
+/// round by increasing size, and later rounds process only nodes that have changed. Returns the number of rounds, which
+/// is bounded.
 ///
 /// # Panics
-/// When an edge names a node that is not there, or lengths differ (a programming error).
+/// If an edge names a node that does not exist, or the lengths differ (a programming error).
 pub fn bound_gradation<M: Gradable>(points: &[M::Point], edges: &[[u32; 2]], metrics: &mut [M], beta: f64) -> usize {
     assert_eq!(points.len(), metrics.len(), "one metric for each node");
-    assert!(beta > 1.0, "a gradation of at most 1 has no bound to keep");
+    assert!(beta > 1.0, "the gradation must exceed 1");
     let ln_beta = libm::log(beta);
     let (starts, neighbours) = neighbours(points.len(), edges);
     let mut served: Vec<u32> = (0..points.len() as u32).collect();
@@ -108,7 +103,7 @@ pub fn bound_gradation<M: Gradable>(points: &[M::Point], edges: &[[u32; 2]], met
     served.sort_by(|&i, &j| sizes[i as usize].total_cmp(&sizes[j as usize]).then(i.cmp(&j)));
     let mut waits = vec![true; points.len()];
     let mut next = Vec::new();
-    // Sizes travel one edge a round at worst; the bound ends what rounding might keep going.
+    // In the worst case sizes propagate by one edge per round; the bound ends changes caused by rounding.
     let most_rounds = 64 + 8 * (points.len() as f64).sqrt() as usize;
     for round in 0..most_rounds {
         if served.is_empty() {
@@ -136,7 +131,7 @@ pub fn bound_gradation<M: Gradable>(points: &[M::Point], edges: &[[u32; 2]], met
     most_rounds
 }
 
-/// For each node the nodes that its edges lead to: `neighbours[starts[i]..starts[i + 1]]`.
+/// The adjacency lists of the nodes: those of node i are `neighbours[starts[i]..starts[i + 1]]`.
 fn neighbours(count: usize, edges: &[[u32; 2]]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; count + 1];
     for &[a, b] in edges {

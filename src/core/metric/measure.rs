@@ -1,4 +1,4 @@
-//! Lengths, angles, areas and shape in a metric (eqs. 4, 5; spec 2.1).
+//! Lengths, angles, areas and shape in a metric (eqs. 4, 5; docs/algorithm.md, "Lengths and angles").
 
 use std::f64::consts::TAU;
 
@@ -15,15 +15,15 @@ pub fn length(m: &Metric2, d: DVec2) -> f64 {
 
 /// Eq. (5): the anticlockwise angle from `du` to `dv` in the metric `m`, in [0, 2 pi).
 ///
-/// The paper takes the arc cosine of the normed inner product and the sign of the cross product. The arc tangent of the same
-/// two, `sqrt(det M) x(du, dv)` and `du^T M dv`, is the same angle (they are its sine and cosine, times both lengths), and
-/// keeps all digits near 0 and pi, where the arc cosine keeps half.
+/// The paper takes the arc cosine of the normalised inner product and the sign of the cross product. The arc tangent of
+/// `sqrt(det M) x(du, dv)` and `du^T M dv` is the same angle (they are its sine and cosine times both lengths) and is
+/// fully accurate near 0 and pi, where the arc cosine loses half of the digits.
 #[inline]
 pub fn angle(m: &Metric2, du: DVec2, dv: DVec2) -> f64 {
     let sine = m.det().max(0.0).sqrt() * du.perp_dot(dv);
     let t = libm::atan2(sine, m.inner(du, dv));
     if t < 0.0 {
-        // A hair clockwise is nearly a full turn, never none: rounding must not reach 2 pi.
+        // A tiny clockwise angle is nearly a full turn: rounding must not reach 2 pi.
         (t + TAU).min(TAU.next_down())
     } else {
         // Turns -0 into 0.
@@ -31,7 +31,7 @@ pub fn angle(m: &Metric2, du: DVec2, dv: DVec2) -> f64 {
     }
 }
 
-/// Nodes in (-1, 1) and weights of the Gauss-Legendre rule of eight points; it is symmetric, so half of it is here.
+/// Positive nodes and weights of the symmetric Gauss-Legendre rule of eight points on (-1, 1).
 const GAUSS_8: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
@@ -39,10 +39,11 @@ const GAUSS_8: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
 ];
 
-/// The length of the straight uv edge from `a` to `b`: the integral of eq. (4) along it, by eight Gauss points.
+/// The length of the straight edge from `a` to `b` in the parametric plane: the integral of eq. (4) along it, by eight
+/// Gauss points.
 ///
 /// # Errors
-/// Where the source has no metric at a point of the edge.
+/// If the source has no metric at a point of the edge.
 pub fn length_exact(source: &dyn MetricSource, a: DVec2, b: DVec2) -> Result<f64, Box<BadMetric>> {
     let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
     let mut sum = 0.0;
@@ -67,9 +68,9 @@ pub fn triangle_quality(m: &Metric2, a: DVec2, b: DVec2, c: DVec2) -> f64 {
     if squares > 0.0 { 4.0 * 3f64.sqrt() * triangle_area(m, a, b, c) / squares } else { 0.0 }
 }
 
-/// Quality of a quadrilateral (spec 2.1.5): the least over its corners of `2 sqrt(det M_k) x(a, b) / (a^T M_k a + b^T M_k b)`
-/// with a and b the sides that leave the corner, anticlockwise, and M_k its metric; 1 for a metric square, at most 0 when a
-/// corner is not convex.
+/// Quality of a quadrilateral (docs/algorithm.md, "Quality"): the least over its corners of
+/// `2 sqrt(det M_k) x(a, b) / (a^T M_k a + b^T M_k b)` with a and b the sides that leave the corner, anticlockwise, and
+/// M_k its metric; 1 for a metric square, at most 0 when a corner is not convex.
 #[inline]
 pub fn quad_quality(metrics: [&Metric2; 4], corners: [DVec2; 4]) -> f64 {
     let mut least = f64::INFINITY;

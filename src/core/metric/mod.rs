@@ -1,4 +1,4 @@
-//! The metric: tensors (eqs. 2, 3, 11), length and angle (eqs. 4, 5), and the fields that give a tensor at a place.
+//! The metric: lengths and angles (eqs. 4, 5), and the fields that give a tensor (eqs. 2, 3, 11) at each point.
 
 pub mod measure;
 pub mod place;

@@ -1,24 +1,24 @@
-//! A place where a metric is asked for.
+//! The point at which a metric field is evaluated.
 
 use glam::{DVec2, DVec3};
 
 use crate::core::geometry::surface::Bend;
 
-/// A place where a metric is asked for: its point in space and its parametric coordinates (equal in the plane).
+/// The point at which a metric field is evaluated, in space, on its surface and in the plane that is meshed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MetricPlace {
-    /// Point in space.
+    /// The point in space.
     pub xyz: DVec3,
-    /// Parametric coordinates of its surface.
+    /// Its parameters on the surface; in planar domains x and y.
     pub uv: DVec2,
-    /// Where it lies in the plane in which it is meshed (in planar domains the same as `uv`).
+    /// The point of the plane that is meshed; in planar domains equal to `uv`.
     pub chart: DVec2,
-    /// The curvature of the surface, where a field asks for it.
+    /// The curvature of the surface, if a field needs it.
     pub bend: Option<Bend>,
 }
 
 impl MetricPlace {
-    /// A place in a planar domain, where the parametric coordinates are x and y.
+    /// A point of a planar domain.
     #[inline]
     pub fn in_plane(uv: DVec2) -> MetricPlace {
         MetricPlace { xyz: uv.extend(0.0), uv, chart: uv, bend: None }

@@ -1,4 +1,4 @@
-//! Looking a metric over before a mesh is made with it: its extremes, and whether it fails anywhere on the domain.
+//! A survey of a metric before meshing: its extreme sizes, and whether it fails anywhere on the domain.
 
 use glam::DVec2;
 
@@ -6,7 +6,7 @@ use super::field::{MetricSource, Sizing};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::tensor::Metric2;
 
-/// What a survey found at its points and near them.
+/// The extremes that a survey found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Survey {
     /// Smallest size, after `size_scale`.
@@ -17,23 +17,23 @@ pub struct Survey {
     pub largest: f64,
     /// Where.
     pub largest_at: DVec2,
-    /// Largest ratio of two sizes at one place.
+    /// Largest ratio of two sizes at one point.
     pub anisotropy: f64,
     /// Where.
     pub anisotropy_at: DVec2,
 }
 
-/// Sizes below this part of the domain's extent, or of its largest coordinate, are a zero that the search came close to.
+/// Sizes below this fraction of the domain's extent, or of its largest coordinate, count as zero.
 const AS_GOOD_AS_ZERO: f64 = 1e-10;
 
-/// Cells along each side of the domain's box; the smallest size of each cell is the start of one search.
+/// Cells along each side of the domain's bounding box; each search starts at the smallest size of a cell.
 const CELLS: usize = 8;
 
-/// A search goes on while the size changes by more than this part over a step: the size that falls to zero within a few
-/// steps does so, even if it falls as the tenth root of the distance.
+/// A search continues while the relative change of the size over a step exceeds this: it does if the size falls to zero
+/// within a few steps, even as the tenth root of the distance.
 const HOPEFUL: f64 = 0.02;
 
-/// Directions of the search, in halves of a right angle and between, so that creases are followed.
+/// The search directions, 22.5 degrees apart, so that the search can follow creases.
 const DIRECTIONS: [DVec2; 16] = {
     let mut d = [DVec2::ZERO; 16];
     let (c1, c2, c3) = (0.923_879_532_511_286_7, 0.707_106_781_186_547_5, 0.382_683_432_365_089_8);
@@ -51,17 +51,16 @@ const DIRECTIONS: [DVec2; 16] = {
 };
 
 impl Sizing {
-    /// Checks the metric of a planar domain at all given points, which should cover it densely, and searches for smaller
-    /// sizes from the smallest ones of each part of the domain, within `inside`. A field that vanishes or turns negative
-    /// between the points is found where its sizes fall towards that place; a dip narrower than the points' spacing that
-    /// nothing leads to is not.
+    /// Checks the metric at all given points, which should cover the domain densely, and searches for smaller sizes
+    /// within `inside`, from the smallest size of each part of the domain. This finds zeros and negative sizes between
+    /// the points if the sizes decrease towards them, but not dips narrower than the spacing of the points.
     ///
     /// # Errors
-    /// Where the metric fails, with the place; where the sizes fall to nothing (below 1e-10 of the points' extent or largest
-    /// coordinate).
+    /// A point at which the metric fails, or at which a size is almost zero (below 1e-10 of the extent or the largest
+    /// coordinate of the points).
     pub fn survey(&self, domain_points: &[DVec2], inside: &dyn Fn(DVec2) -> bool) -> Result<Survey, Fault> {
         let Some(&first) = domain_points.first() else {
-            return Err(Fault::new("There are no points in the domain to look the metric over at"));
+            return Err(Fault::new("The domain has no points at which to evaluate the metric"));
         };
         let mut survey = Survey {
             smallest: f64::INFINITY,
@@ -91,21 +90,21 @@ impl Sizing {
                 break;
             }
         }
-        // Only the smallest one is wanted to the last digit.
+        // Refine only the smallest one to the last digit.
         self.descend((survey.smallest, survey.smallest_at), 2.0 * spacing, None, inside, &mut survey)?;
         if survey.smallest < nothing {
             let p = survey.smallest_at;
-            return Err(Fault::new(format!("The size falls to {:e}, as good as zero", survey.smallest))
+            return Err(Fault::new(format!("The size falls to {:e}, which is practically zero", survey.smallest))
                 .of_kind(FaultKind::Metric)
                 .at(format!("({}, {})", p.x, p.y))
-                .remedy("Bound the size from below, as in max(h, 0.001)"));
+                .remedy("Give the size a lower bound, such as max(h, 0.001)"));
         }
         Ok(survey)
     }
 
-    /// Pattern search for smaller sizes, with steps from `step` down to rounding. One of several searches, whose `starts`
-    /// are given, ends sooner: where no step changes the size by more than a part, so that no zero can be near, and in a
-    /// cell where another one starts lower.
+    /// Pattern search for smaller sizes, with steps from `step` down to rounding errors. With `starts`, the starts of
+    /// several searches, it ends sooner: where no step changes the size much, so that no zero is near, and in a cell
+    /// where another search starts at a smaller size.
     fn descend(
         &self,
         (mut size, mut p): (f64, DVec2),
@@ -147,7 +146,7 @@ impl Sizing {
     }
 }
 
-/// Where the searches start: the smallest size of each cell, with its place.
+/// The starts of the searches: the smallest size of each cell, with its point.
 struct Starts {
     low: DVec2,
     extent: DVec2,
@@ -155,7 +154,7 @@ struct Starts {
 }
 
 impl Starts {
-    /// The start of the cell that holds the place.
+    /// The start in the cell that contains a point.
     fn at(&mut self, p: DVec2) -> &mut Option<(f64, DVec2)> {
         let cell = ((p - self.low) / self.extent.max(DVec2::splat(f64::MIN_POSITIVE)) * CELLS as f64).floor();
         let cell = cell.clamp(DVec2::ZERO, DVec2::splat(CELLS as f64 - 1.0));
@@ -164,7 +163,7 @@ impl Starts {
 }
 
 impl Survey {
-    /// Takes one place's metric into account; gives its smallest size.
+    /// Takes the metric at a point into account; returns its smallest size.
     fn note(&mut self, m: &Metric2, p: DVec2) -> f64 {
         let (lambda, _) = m.eigen();
         let (large, small) = (1.0 / lambda[0].sqrt(), 1.0 / lambda[1].sqrt());
@@ -241,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_zero_outside_the_domain_is_no_fault() {
+    fn a_zero_outside_the_domain_is_not_a_fault() {
         let right = |p: DVec2| in_square(p) && p.x >= 0.51;
         let points: Vec<_> = unit_square().into_iter().filter(|&p| right(p)).collect();
         let survey = sizing("abs(x-0.503)").survey(&points, &right).unwrap();
@@ -250,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn extremes_are_found_with_their_places() {
+    fn extremes_are_found_with_their_points() {
         let survey = sizing("0.1+(x-0.333)^2+2*(y-0.777)^2").survey(&unit_square(), &in_square).unwrap();
         assert!((survey.smallest - 0.1).abs() < 1e-12, "{survey:?}");
         assert!(survey.smallest_at.distance(DVec2::new(0.333, 0.777)) < 1e-6);

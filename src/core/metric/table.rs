@@ -1,13 +1,15 @@
-//! A field given by a table at the nodes of a frozen triangle mesh, between which it is log-Euclidean (spec 2.1.1, 3.6).
+//! A field given by a table at the nodes of a fixed triangle mesh, log-Euclidean between them (docs/algorithm.md,
+//! "Metric at new places").
 
 use glam::DVec2;
 
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::point_text;
 use crate::core::kernel::plane_triangles::PlaneTriangles;
 use crate::core::kernel::spectrum::LogMetric3;
 use crate::core::kernel::tensor::Metric3;
 
-/// The mesh and the logarithms at its nodes.
+/// The mesh and the logarithms of the metric at its nodes.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
     triangles: PlaneTriangles,
@@ -17,8 +19,8 @@ pub(super) struct Table {
 
 impl Table {
     /// # Errors
-    /// Lengths that differ, no triangle, an index out of range, a triangle without area, a node that is not finite or whose
-    /// metric is not positive definite.
+    /// Different lengths, no triangles, an index out of range, a triangle without area, a node that is not finite or
+    /// whose metric is not positive definite.
     pub fn new(points: &[DVec2], triangles: &[[u32; 3]], metrics: &[Metric3]) -> Result<Table, Fault> {
         if points.len() != metrics.len() {
             return Err(Fault::new(format!("The table has {} metrics for {} nodes", metrics.len(), points.len()))
@@ -27,7 +29,7 @@ impl Table {
         for (i, (p, m)) in points.iter().zip(metrics).enumerate() {
             if !m.is_spd() {
                 return Err(Fault::new(format!("The metric at node {} is not positive definite and finite", i + 1))
-                    .at(format!("({}, {})", p.x, p.y)));
+                    .at(point_text(*p)));
             }
         }
         let triangles = PlaneTriangles::new(points, triangles)?;
@@ -72,9 +74,9 @@ mod tests {
     }
 
     #[test]
-    fn slanting_needles_are_found_though_each_stands_in_several_boxes() {
+    fn slanting_needles_with_several_boxes_are_found() {
         let table = needles(40);
-        assert!(table.triangles.boxes() > 4 * 160, "needles stand in several boxes: {}", table.triangles.boxes());
+        assert!(table.triangles.boxes() > 4 * 160, "needles have several boxes: {}", table.triangles.boxes());
         for k in 0..3000 {
             let p = DVec2::new((f64::from(k) * 0.618_034).fract(), f64::from(k) / 2999.0) * 1.2 - DVec2::splat(0.1);
             let m = table.metric(p).unwrap();

@@ -1,5 +1,5 @@
-//! From a case to its background mesh with its metric: which parts of `geometry`, `metric`, `discrete` and `background` make it,
-//! in which order.
+//! From a case to its background mesh with its metric: which parts of `geometry`, `metric`, `discrete` and `background`
+//! make it, in which order.
 
 mod graded;
 pub(in crate::core) mod layers;
@@ -17,6 +17,7 @@ use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::complex;
 use crate::core::geometry::domain::Domain;
 use crate::core::kernel::predicates::firm;
+use crate::core::kernel::spelling::suggestion;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::names::Names;
 use crate::core::metric::field::Sizing;
@@ -66,7 +67,8 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     chosen_faces(made, &case.parameters.faces)
 }
 
-/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for all faces.
+/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for
+/// all faces.
 fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault> {
     if names.is_empty() {
         return Ok(made);
@@ -74,17 +76,17 @@ fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault>
     let mut regions = Vec::new();
     for name in names {
         let faces = || made.names.faces.iter().map(|face| &face.name);
-        let known = || faces().map(|face| (strsim::damerau_levenshtein(name, face), face));
         let own = faces().zip(0..).filter(|(face, _)| *face == name || is_part_of(face, name));
         let before = regions.len();
         regions.extend(own.map(|(_, number)| number));
         if regions.len() == before {
             let fault = Fault::new(format!("There is no face \"{}\"", name.escape_debug()));
             let fault = fault.of_kind(FaultKind::Parameter);
-            return Err(match known().min() {
-                Some((_, near)) => fault.remedy(format!("The nearest known name is \"{near}\"")),
-                None => fault,
-            });
+            let known = faces().map(String::as_str).collect::<Vec<_>>();
+            return Err(fault.remedy(
+                suggestion(name, known.iter().copied())
+                    .unwrap_or_else(|| format!("The faces are {}", known.join(", "))),
+            ));
         }
     }
     let mesh = made.mesh.of_faces(&regions);

@@ -81,7 +81,8 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
     refuse_the_endless(&set, sizing, case.parameters.max_quads)?;
     watch.tell(Stage::Adapt, 0, 0);
-    // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (spec 3).
+    // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (docs/algorithm.md,
+    // "Adaptation to the metric").
     let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
     let mut mesh = Mesh::from_triangles(&set, metric);
     if let Some(spatial) = &domain.spatial {
@@ -92,8 +93,8 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
 }
 
 /// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is the
-/// metric area (spec 3), one place a triangle of the boundary's triangulation: rough, so that only what is beyond doubt is
-/// refused here. The adaptation itself holds the bound.
+/// metric area (docs/algorithm.md, "Adaptation to the metric"), one place a triangle of the boundary's triangulation:
+/// rough, so that only what is beyond doubt is refused here. The adaptation itself holds the bound.
 fn refuse_the_endless(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Result<(), Fault> {
     let mut quads = 0.0;
     for triangle in &set.triangles {

@@ -83,9 +83,10 @@ impl Export {
         export
     }
 
-    /// Gives elements and points what a reader may look at: elements `quality` (in the metric, spec 2.1.5) and `face` (its number from
-    /// 1), and where they come from a run (`births`) `level` and `step`, the step that made them, -1 for triangles; points the
-    /// metric and their place in the parametric plane (of a point on several faces, that in the first).
+    /// Gives elements and points what a reader may look at: elements `quality` (in the metric: docs/algorithm.md,
+    /// "Quality") and `face` (its number from 1), and where they come from a run (`births`) `level` and `step`, the
+    /// step that made them, -1 for triangles; points the metric and their place in the parametric plane (of a point on
+    /// several faces, that in the first).
     ///
     /// # Errors
     /// Where there is no metric at a point.

@@ -13,7 +13,7 @@ impl Export {
         // Both sides of a crack lie at the same place.
         let allow = Allow { triangles: on_the_way, seams: true, branching: mesh.ground().is_some() };
         if let Err(what) = mesh.check() {
-            return Some(Fault::new(format!("The mesh is not sound: {what}")));
+            return Some(Fault::new(format!("The mesh is invalid: {what}")));
         }
         let folded = if allow.triangles { Vec::new() } else { mesh.folded() };
         let Some(first) = folded.first().and_then(|&e| mesh.corners(e).next()) else {

@@ -73,7 +73,7 @@ pub struct CaseTold {
     pub text: String,
 }
 
-/// What the last resort (spec 2.10) made.
+/// What the last resort made (docs/algorithm.md, "The last resort").
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct LastResort {

@@ -58,7 +58,7 @@ pub struct Statistics {
     pub metric_scaled_jacobian: Option<Range>,
     /// Scaled Jacobian of the quadrilaterals, least over the corners, as they are seen; `None` without quadrilaterals.
     pub physical_scaled_jacobian: Option<Range>,
-    /// Shape in the metric (spec 2.1.5, 3): 1 for the square and the equilateral triangle.
+    /// Shape in the metric (docs/algorithm.md, "Quality"): 1 for the square and the equilateral triangle.
     pub quality: Option<Range>,
 }
 

@@ -287,7 +287,7 @@ pub struct ElementTold {
     pub is_live: bool,
     /// Its nodes, anticlockwise.
     pub nodes: Vec<NodeId>,
-    /// Quality, 0 to 1 (spec 2.1.5).
+    /// Quality, 0 to 1 (docs/algorithm.md, "Quality").
     pub quality: f64,
     /// Angles at its nodes in their metrics, in degrees.
     pub angles_metric: Vec<f64>,

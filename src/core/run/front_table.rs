@@ -49,7 +49,7 @@ fn degrees<S: Serializer>(radians: &[f64; 2], serializer: S) -> Result<S::Ok, S:
 /// One closed chain of the front.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Loop {
-    /// Number of its segments: it should be even (spec 2.6).
+    /// Number of its segments: it should be even (docs/algorithm.md, "The parity invariant").
     pub segments: u32,
     /// Its length in the metric.
     pub length_metric: f64,

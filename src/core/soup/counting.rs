@@ -1,23 +1,23 @@
-//! How a file counts its points and elements, so that messages call them as the file does: from 0 or 1, by numbers of its own, kind by
-//! kind or all kinds in one row.
+//! How a file numbers its points and elements, so that messages use the file's numbers: from 0 or 1 or explicit, for
+//! each kind of element or for all kinds together.
 
 use std::sync::Arc;
 
-/// So many things are told by their numbers; of more it is said how many.
-const TOLD: usize = 5;
+/// A message lists this many numbers and counts the rest.
+const LISTED: usize = 5;
 
 /// The numbers of the points, or of the elements of a kind.
 #[derive(Clone, Debug)]
 pub enum Count {
-    /// One after another from this one.
+    /// Consecutive numbers from this one.
     From(u64),
-    /// That of each; whoever tells of elements without their file has the same list.
+    /// Explicit numbers, shared with [`Elements`].
     Listed(Arc<Vec<u64>>),
-    /// The file has no numbers for them.
+    /// The file does not number them.
     Nothing,
 }
 
-/// How a file counts. It is no part of what the mesh is: whatever the numbers, meshes are equal.
+/// How a file numbers its points and elements. Ignored when meshes are compared.
 #[derive(Clone, Debug, Default)]
 pub struct Counting {
     /// Points.
@@ -26,13 +26,13 @@ pub struct Counting {
     pub triangles: Count,
     /// Quadrilaterals.
     pub quads: Count,
-    /// Polygons of five corners and more.
+    /// Polygons with five or more corners.
     pub polygons: Count,
-    /// Whether all kinds of elements are counted in one row.
-    pub in_one_row: bool,
+    /// Whether all kinds of elements share one sequence of numbers.
+    pub shared: bool,
 }
 
-/// The elements of a file as far as it takes to call them by their numbers.
+/// The numbers of a file's elements, for messages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elements {
     triangles: usize,
@@ -41,7 +41,7 @@ pub struct Elements {
     counting: Counting,
 }
 
-/// Triangles of no file, counted from 1.
+/// Triangles numbered from 1, for a mesh without a file.
 impl Default for Elements {
     fn default() -> Self {
         Elements { triangles: usize::MAX, quads: 0, polygons: 0, counting: Counting::default() }
@@ -61,7 +61,7 @@ impl PartialEq for Counting {
 }
 
 impl Count {
-    /// The count of things with these numbers.
+    /// The most compact form of these numbers.
     pub fn of(numbers: &[u64]) -> Count {
         let first = numbers.first().copied().unwrap_or(1);
         let mut row = (0..).map(|i| first.checked_add(i));
@@ -72,7 +72,7 @@ impl Count {
         }
     }
 
-    /// Takes in the number of the next thing, of which there are `before` so far.
+    /// Appends the number of the next item, after `before` items.
     pub fn push(&mut self, before: usize, number: u64) {
         match self {
             Count::From(first) if before == 0 => *first = number,
@@ -95,50 +95,51 @@ impl Count {
 }
 
 impl Counting {
-    /// How a file counts that begins at 0.
+    /// Everything from 0, elements of all kinds in one sequence.
     pub fn from_zero() -> Counting {
         let zero = || Count::From(0);
-        Counting { points: zero(), triangles: zero(), quads: zero(), polygons: zero(), in_one_row: true }
+        Counting { points: zero(), triangles: zero(), quads: zero(), polygons: zero(), shared: true }
     }
 }
 
 impl Elements {
-    /// The elements of a file with so many triangles, quadrilaterals and polygons.
+    /// The elements of a file with the given numbers of triangles, quadrilaterals and polygons.
     pub(super) fn new([triangles, quads, polygons]: [usize; 3], counting: Counting) -> Elements {
         Elements { triangles, quads, polygons, counting }
     }
 
-    /// What elements are called, by their places among triangles, quadrilaterals and polygons: "triangle 7", "triangles 3, 7 and 9",
-    /// "triangles 3, 7, 9, 10, 12 and 40 more"; "element 7" where several kinds are counted in one row.
-    pub fn told(&self, places: &[u32]) -> String {
-        let mut places = places.to_vec();
-        places.sort_unstable();
-        places.dedup();
+    /// Names elements for a message, by index (triangles, then quadrilaterals, then polygons): "triangle 7", "triangles
+    /// 3, 7 and 9", "triangles 3, 7, 9, 10, 12 and 40 more"; "element 7" where several kinds share one sequence.
+    pub fn describe(&self, indices: &[u32]) -> String {
+        let mut indices = indices.to_vec();
+        indices.sort_unstable();
+        indices.dedup();
         let (triangles, quads) = (self.triangles, self.quads);
-        let kind = |place: u32| match place as usize {
-            place if place < triangles => (["triangle", "triangles"], &self.counting.triangles, place),
-            place if place < triangles + quads => {
-                (["quadrilateral", "quadrilaterals"], &self.counting.quads, place - triangles)
+        let kind = |index: u32| match index as usize {
+            index if index < triangles => (["triangle", "triangles"], &self.counting.triangles, index),
+            index if index < triangles + quads => {
+                (["quadrilateral", "quadrilaterals"], &self.counting.quads, index - triangles)
             }
-            place => (["polygon", "polygons"], &self.counting.polygons, place - triangles - quads),
+            index => (["polygon", "polygons"], &self.counting.polygons, index - triangles - quads),
         };
         let alike = |&a: &u32, &b: &u32| kind(a).0 == kind(b).0;
-        let number = |&place: &u32| {
-            let (_, count, index) = kind(place);
-            count.number(index)
+        let number = |&index: &u32| {
+            let (_, count, within) = kind(index);
+            count.number(within)
         };
         let kinds = [triangles, quads, self.polygons].iter().filter(|n| **n > 0).count();
-        if self.counting.in_one_row && kinds > 1 {
-            places.sort_by_key(number);
-            return things_told(["element", "elements"], places.len(), places.iter().filter_map(number));
+        if self.counting.shared && kinds > 1 {
+            indices.sort_by_key(number);
+            return enumerate(["element", "elements"], indices.len(), indices.iter().filter_map(number));
         }
-        let told = places.chunk_by(alike).map(|of| things_told(kind(of[0]).0, of.len(), of.iter().filter_map(number)));
-        told.collect::<Vec<_>>().join(" and ")
+        let kinds = indices.chunk_by(alike).map(|of| enumerate(kind(of[0]).0, of.len(), of.iter().filter_map(number)));
+        kinds.collect::<Vec<_>>().join(" and ")
     }
 }
 
-pub(super) fn things_told([one, several]: [&str; 2], all: usize, numbers: impl Iterator<Item = u64>) -> String {
-    let numbers: Vec<String> = numbers.take(TOLD).map(|n| n.to_string()).collect();
+/// "point 7", "points 3, 7 and 9", "points 1, 2, 3, 4, 5 and 2 more"; without numbers, "a point" or "2 points".
+pub(super) fn enumerate([one, several]: [&str; 2], all: usize, numbers: impl Iterator<Item = u64>) -> String {
+    let numbers: Vec<String> = numbers.take(LISTED).map(|n| n.to_string()).collect();
     match (&numbers[..], all - numbers.len()) {
         ([], 1) => format!("a {one}"),
         ([], n) => format!("{n} {several}"),
@@ -154,7 +155,7 @@ mod tests {
     use crate::core::soup::mesh_file::MeshFile;
 
     #[test]
-    fn elements_are_called_as_the_file_counts_them() {
+    fn messages_name_elements_by_the_numbers_of_the_file() {
         let mut file = MeshFile {
             triangles: vec![[0; 3]; 10],
             quads: vec![[0; 4]; 2],
@@ -162,21 +163,21 @@ mod tests {
             ..MeshFile::default()
         };
         assert_eq!(file.origins()[8..], [8, 9, 10, 10, 11, 11, 12, 12, 12]);
-        assert_eq!(file.elements_told(&[6]), "triangle 7");
-        assert_eq!(file.elements_told(&[4, 2, 2]), "triangles 3 and 5");
-        assert_eq!(file.elements_told(&[0, 1, 2, 3, 4, 5, 6]), "triangles 1, 2, 3, 4, 5 and 2 more");
-        assert_eq!(file.elements_told(&[9, 11, 12]), "triangle 10 and quadrilateral 2 and polygon 1");
-        (file.counting.quads, file.counting.in_one_row) = (Count::From(40), true);
-        assert_eq!(file.elements_told(&[9, 11]), "elements 10 and 41");
+        assert_eq!(file.describe_elements(&[6]), "triangle 7");
+        assert_eq!(file.describe_elements(&[4, 2, 2]), "triangles 3 and 5");
+        assert_eq!(file.describe_elements(&[0, 1, 2, 3, 4, 5, 6]), "triangles 1, 2, 3, 4, 5 and 2 more");
+        assert_eq!(file.describe_elements(&[9, 11, 12]), "triangle 10 and quadrilateral 2 and polygon 1");
+        (file.counting.quads, file.counting.shared) = (Count::From(40), true);
+        assert_eq!(file.describe_elements(&[9, 11]), "elements 10 and 41");
         (file.quads, file.polygons) = (Vec::new(), Vec::new());
         file.counting.triangles = Count::of(&[5, 6, 9]);
-        assert_eq!(file.elements_told(&[0, 2]), "triangles 5 and 9");
+        assert_eq!(file.describe_elements(&[0, 2]), "triangles 5 and 9");
         file.counting.points = Count::Nothing;
-        assert_eq!((file.points_told(&[4]), file.points_told(&[4, 5])), ("a point".into(), "2 points".into()));
+        assert_eq!((file.describe_points(&[4]), file.describe_points(&[4, 5])), ("a point".into(), "2 points".into()));
     }
 
     #[test]
-    fn numbers_in_a_row_take_no_room() {
+    fn consecutive_numbers_are_stored_as_their_first() {
         let mut count = Count::default();
         for (before, number) in [7, 8, 9].into_iter().enumerate() {
             count.push(before, number);

@@ -1,4 +1,4 @@
-//! A mesh as files know it: points and elements by index, with tags, groups and data; no connectivity.
+//! A mesh as stored in a file: points, elements by index, tags, groups and data. Deliberately absent: connectivity.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -6,48 +6,48 @@ use std::collections::BTreeSet;
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use super::counting::{Counting, Elements, things_told};
+use super::counting::{Counting, Elements, enumerate};
 use crate::core::kernel::tensor::Metric3;
 use crate::core::mesh::names::Named;
 
-/// The name of the group of lines that are the merging front of a mesh on the way.
+/// The name of the group of lines that form the merging front of an intermediate mesh.
 pub const FRONT: &str = "front";
-/// The names of the groups of lines that every mesh has: those with elements on one side, and those with elements on both.
+/// The names of the line groups of every exported mesh: lines with elements on one side, and with elements on both.
 pub const BUILT_IN: [&str; 2] = ["boundary", "inside"];
 
 /// A named group of elements (Gmsh's physical group).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// 0 points, 1 lines, 2 surfaces.
+    /// Dimension of its elements: 0 for points, 1 for lines, 2 for faces.
     pub dimension: u8,
-    /// The tag that elements carry.
+    /// The tag of its elements.
     pub tag: u32,
     /// Its name.
     pub name: String,
 }
 
-/// One number for each point or each element, with a name.
+/// A named scalar field: one value for each point or element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Data {
-    /// Name as files show it (`quality`, `live`).
+    /// Name in the file (`quality`, `live`).
     pub name: String,
-    /// One value each: for elements, triangles come first and quadrilaterals after them.
+    /// The values; for elements, triangles come before quadrilaterals.
     pub values: Vec<f64>,
 }
 
-/// Points and elements of a surface mesh; indices are zero-based and have been checked against `points` by whoever
-/// made this.
+/// Points and elements of a surface mesh. Indices are zero-based; whoever builds this has checked them against
+/// `points`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshFile {
     /// Coordinates in space.
     pub points: Vec<DVec3>,
     /// Boundary or curve segments.
     pub lines: Vec<[u32; 2]>,
-    /// Triangles, anticlockwise seen from outside (in the plane: from +z).
+    /// Triangles, anticlockwise seen from outside (in the plane, from +z).
     pub triangles: Vec<[u32; 3]>,
     /// Quadrilaterals, likewise.
     pub quads: Vec<[u32; 4]>,
-    /// Polygons of five corners and more, likewise.
+    /// Polygons with five or more corners, likewise.
     pub polygons: Vec<Vec<u32>>,
     /// Tag of the group of each line; empty, or as long as `lines`.
     pub line_tags: Vec<u32>,
@@ -59,74 +59,74 @@ pub struct MeshFile {
     pub polygon_tags: Vec<u32>,
     /// Names of the groups.
     pub groups: Vec<Group>,
-    /// The metric at each point, where the file has one.
+    /// The metric tensor at each point, if the file has one.
     pub metric: Option<Vec<Metric3>>,
-    /// The place of each point in the parametric plane, where the file has one.
+    /// The position of each point in the parametric plane, if the file has one.
     pub uv: Option<Vec<DVec2>>,
-    /// Numbers at points.
+    /// Scalar fields at points.
     pub point_data: Vec<Data>,
-    /// Numbers at elements (triangles first, then quadrilaterals).
+    /// Scalar fields at elements (triangles first, then quadrilaterals).
     pub element_data: Vec<Data>,
-    /// Texture coordinates, where the file has them.
+    /// Texture coordinates, if the file has them.
     pub texture: Option<Texture>,
-    /// Element types that the file has and that are not read, with their counts ("tetrahedron", 12).
+    /// Element types in the file that are not read, with their counts ("tetrahedron", 12).
     pub skipped: Vec<(String, usize)>,
-    /// How the file counts its points and elements.
+    /// How the file numbers its points and elements.
     pub counting: Counting,
 }
 
-/// Where the corners of elements lie on a texture, by the number of the place: a point may lie at several places, one for each
-/// side of a seam. Numbers may lead nowhere.
+/// Texture coordinates of the corners of elements, as indices into `uv`: a point has one for each side of a seam.
+/// Indices may be out of range.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Texture {
-    /// The places.
-    pub places: Vec<DVec2>,
-    /// For each triangle the places of its corners.
+    /// The texture coordinates.
+    pub uv: Vec<DVec2>,
+    /// For each triangle, those of its corners.
     pub triangles: Vec<[u32; 3]>,
     /// Likewise for each quadrilateral.
     pub quads: Vec<[u32; 4]>,
-    /// And for each polygon.
+    /// Likewise for each polygon.
     pub polygons: Vec<Vec<u32>>,
 }
 
 impl Texture {
-    /// The number of no place.
-    pub const NOWHERE: u32 = u32::MAX;
+    /// The index of a corner without a texture coordinate.
+    pub const NONE: u32 = u32::MAX;
 
-    /// Takes in the places of a triangle's corners; nothing where the file has no places so far.
-    pub(in crate::core) fn place_triangle(&mut self, triangle: usize, places: [u32; 3]) {
-        if !self.places.is_empty() {
-            self.triangles.resize(triangle, [Self::NOWHERE; 3]);
-            self.triangles.push(places);
+    /// Sets the corners of a triangle, unless the file has no texture coordinates so far.
+    pub(in crate::core) fn set_triangle(&mut self, triangle: usize, corners: [u32; 3]) {
+        if !self.uv.is_empty() {
+            self.triangles.resize(triangle, [Self::NONE; 3]);
+            self.triangles.push(corners);
         }
     }
 
-    /// Likewise of a quadrilateral.
-    pub(in crate::core) fn place_quad(&mut self, quad: usize, places: [u32; 4]) {
-        if !self.places.is_empty() {
-            self.quads.resize(quad, [Self::NOWHERE; 4]);
-            self.quads.push(places);
+    /// Likewise for a quadrilateral.
+    pub(in crate::core) fn set_quad(&mut self, quad: usize, corners: [u32; 4]) {
+        if !self.uv.is_empty() {
+            self.quads.resize(quad, [Self::NONE; 4]);
+            self.quads.push(corners);
         }
     }
 
-    /// The texture with something said of every element of a mesh; none where it has no places.
-    pub(in crate::core) fn of_all(mut self, mesh: &MeshFile) -> Option<Texture> {
-        if self.places.is_empty() {
+    /// The texture with an entry for every element of the mesh; `None` if it has no coordinates.
+    pub(in crate::core) fn filled(mut self, mesh: &MeshFile) -> Option<Texture> {
+        if self.uv.is_empty() {
             return None;
         }
-        self.triangles.resize(mesh.triangles.len(), [Self::NOWHERE; 3]);
-        self.quads.resize(mesh.quads.len(), [Self::NOWHERE; 4]);
+        self.triangles.resize(mesh.triangles.len(), [Self::NONE; 3]);
+        self.quads.resize(mesh.quads.len(), [Self::NONE; 4]);
         self.polygons.resize(mesh.polygons.len(), Vec::new());
         Some(self)
     }
 
-    /// Where the corners of a triangle lie, if all lie somewhere.
+    /// The texture coordinates of a triangle's corners, if all three exist and are of usable magnitude.
     pub fn of_triangle(&self, triangle: usize) -> Option<[DVec2; 3]> {
-        let place = |k: usize| {
-            let place = self.triangles.get(triangle)?[k];
-            self.places.get(place as usize).copied().filter(|p| p.is_finite() && p.abs().max_element() < 1e9)
+        let corner = |k: usize| {
+            let index = self.triangles.get(triangle)?[k];
+            self.uv.get(index as usize).copied().filter(|p| p.is_finite() && p.abs().max_element() < 1e9)
         };
-        Some([place(0)?, place(1)?, place(2)?])
+        Some([corner(0)?, corner(1)?, corner(2)?])
     }
 }
 
@@ -136,7 +136,7 @@ impl MeshFile {
         self.points.iter().all(|p| p.z == 0.0)
     }
 
-    /// Whether all points of a mesh that elements have lie in one plane of constant z.
+    /// Whether all points used by elements lie in one plane of constant z.
     pub fn is_plane(&self) -> bool {
         let elements = self.triangles.as_flattened().iter().chain(self.quads.as_flattened());
         let points = elements.chain(self.polygons.iter().flatten()).filter_map(|&k| self.points.get(k as usize));
@@ -145,7 +145,7 @@ impl MeshFile {
             (low, high) = (low.min(*p), high.max(*p));
         }
         let extent = high - low;
-        // Points that are not finite are refused with their numbers later on.
+        // Points that are not finite are refused later, by number.
         let least = 1e-9 * extent.x.max(extent.y).max(high.z.abs());
         extent.z.partial_cmp(&least) != Some(Ordering::Greater)
     }
@@ -158,7 +158,7 @@ impl MeshFile {
             .map(|group| group.name.as_str())
     }
 
-    /// The lines, by their place in `lines`, that are in a group of their own: not those that every mesh has anyway.
+    /// Indices of the lines in named groups other than [`BUILT_IN`].
     pub fn own_lines(&self) -> Vec<usize> {
         let built_in: Vec<u32> = self
             .groups
@@ -170,14 +170,14 @@ impl MeshFile {
         (0..self.lines.len()).filter(is_own).collect()
     }
 
-    /// The lines of the merging front, by their place in `lines`; none in a mesh that is no state of a conversion.
+    /// Indices of the lines of the merging front; none unless the mesh is an intermediate state.
     pub fn front_lines(&self) -> impl Iterator<Item = usize> + '_ {
         let group = self.groups.iter().find(|group| group.dimension == 1 && group.name == FRONT);
         let is_front = move |i: &usize| group.is_some_and(|group| tag_of(&self.line_tags, *i) == group.tag);
         (0..self.lines.len()).filter(is_front)
     }
 
-    /// The groups of elements, and of lines those that some of `lines` are in.
+    /// The groups of faces, and the groups of the given lines.
     pub(in crate::core) fn groups_with(&self, lines: &[usize]) -> impl Iterator<Item = &Group> {
         let tags: BTreeSet<u32> = lines.iter().map(|&i| tag_of(&self.line_tags, i)).collect();
         self.groups.iter().filter(move |group| match group.dimension {
@@ -186,7 +186,8 @@ impl MeshFile {
         })
     }
 
-    /// The first element at each of some lines, triangles before quadrilaterals, and which of its sides it is.
+    /// For each of the given lines, the first element with that side (triangles before quadrilaterals), and which side
+    /// it is.
     pub(in crate::core) fn sides_at(&self, lines: &[usize]) -> Vec<Option<(usize, usize)>> {
         let key = |a: u32, b: u32| [a.min(b), a.max(b)];
         let ends = |&i: &usize| key(self.lines[i][0], self.lines[i][1]);
@@ -205,13 +206,13 @@ impl MeshFile {
         lines.iter().map(|i| first[&ends(i)]).collect()
     }
 
-    /// What the region of a tag is called.
+    /// The region with a tag: the name of its group, or "region" and the tag.
     pub fn region(&self, tag: u32) -> Named {
         Named::tagged(self.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned), tag)
     }
 
-    /// The groups of lines by number, and the number of that of each line: none for lines without a tag, and for the merging front
-    /// of a state, which says nothing about the shape.
+    /// The line groups, and for each line the index of its group: `None` for lines without a tag and for the merging
+    /// front of an intermediate state, which is no feature of the shape.
     pub fn line_groups(&self) -> (Vec<Named>, Vec<Option<u32>>) {
         let tags: Vec<u32> = (0..self.lines.len()).map(|i| tag_of(&self.line_tags, i)).collect();
         let is_group = |tag: &u32| *tag > 0 && self.group_name(1, *tag) != Some(FRONT);
@@ -225,8 +226,8 @@ impl MeshFile {
         )
     }
 
-    /// Where each triangle comes from once quadrilaterals and polygons are cut ([`MeshFile::triangulated`]): the place of its element
-    /// among all triangles, then quadrilaterals, then polygons.
+    /// For each triangle of [`MeshFile::triangulated`], the index of its original element, counting triangles, then
+    /// quadrilaterals, then polygons.
     pub fn origins(&self) -> Vec<u32> {
         let (triangles, quads) = (self.triangles.len() as u32, self.quads.len() as u32);
         let cut = |first: u32, corners: usize| std::iter::repeat_n(first, corners.saturating_sub(2));
@@ -237,33 +238,33 @@ impl MeshFile {
         origins
     }
 
-    /// Its elements, to be called by their numbers where the file is no more.
+    /// The numbering of its elements, for messages after the file is gone.
     pub fn elements(&self) -> Elements {
         let [triangles, quads, polygons] = [self.triangles.len(), self.quads.len(), self.polygons.len()];
         Elements::new([triangles, quads, polygons], self.counting.clone())
     }
 
-    /// What elements are called: see [`Elements::told`].
-    pub fn elements_told(&self, places: &[u32]) -> String {
-        self.elements().told(places)
+    /// Names elements for a message: see [`Elements::describe`].
+    pub fn describe_elements(&self, indices: &[u32]) -> String {
+        self.elements().describe(indices)
     }
 
-    /// What points are called: "point 7", "points 3, 7 and 9".
-    pub fn points_told(&self, points: &[u32]) -> String {
+    /// Names points for a message: "point 7", "points 3, 7 and 9".
+    pub fn describe_points(&self, points: &[u32]) -> String {
         let mut points = points.to_vec();
         points.sort_unstable();
         points.dedup();
         let numbers = points.iter().filter_map(|&point| self.counting.points.number(point as usize));
-        things_told(["point", "points"], points.len(), numbers)
+        enumerate(["point", "points"], points.len(), numbers)
     }
 }
 
-/// The tensor back, if it is finite and positive definite.
+/// The tensor, if it is finite and positive definite.
 pub(in crate::core) fn positive_definite(m: Metric3) -> Option<Metric3> {
     m.is_spd().then_some(m)
 }
 
-/// The tag of element `i`, 0 where there are no tags.
+/// The tag of element `i`; 0 without tags.
 pub(in crate::core) fn tag_of(tags: &[u32], i: usize) -> u32 {
     tags.get(i).copied().unwrap_or(0)
 }

@@ -1,5 +1,5 @@
-//! A mesh as a file has it, a soup of points and polygons without connectivity: how it counts its elements, its polygons cut
-//! into triangles, equal points welded, and whether it is sound.
+//! A mesh as stored in a file: a soup of points and polygons without connectivity. How the file numbers its elements,
+//! triangulation of polygons, welding of equal points, and the validity check.
 
 pub mod mesh_file;
 pub mod counting;

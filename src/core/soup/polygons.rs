@@ -1,7 +1,7 @@
-//! Quadrilaterals and larger polygons of a mesh that is read as triangles (what a conversion starts from).
+//! Triangulates quadrilaterals and polygons, since a conversion starts from triangles.
 //!
-//! A polygon is cut ear by ear in the plane of its mean normal: the ear with the best shape first, so that nearly plane
-//! polygons, convex or not, become triangles that do not turn over.
+//! Ears are clipped in the plane of the polygon's mean normal, the best-shaped ear first, so that nearly planar
+//! polygons, convex or not, give triangles without inversions.
 
 use glam::{DVec2, DVec3};
 
@@ -9,9 +9,9 @@ use super::mesh_file::{MeshFile, Texture};
 use crate::core::kernel::predicates::orient;
 
 impl MeshFile {
-    /// The mesh with every quadrilateral and polygon cut into triangles, which come after the triangles that are there; and how
-    /// many were cut. One that cannot be cut (it crosses itself, or has no area) is fanned from its first corner, for the
-    /// checks after this to find.
+    /// Splits every quadrilateral and polygon into triangles, appended after the existing ones; returns the mesh and
+    /// the number of elements split. One that cannot be triangulated (self-intersecting, or without area) is split as a
+    /// fan, which later checks reject.
     #[must_use]
     pub fn triangulated(mut self) -> (MeshFile, usize) {
         let cut = self.quads.len() + self.polygons.len();
@@ -24,7 +24,7 @@ impl MeshFile {
         let quad_tags = std::mem::take(&mut self.quad_tags);
         let polygons = std::mem::take(&mut self.polygons);
         let polygon_tags = std::mem::take(&mut self.polygon_tags);
-        // Data belongs to the elements as they were.
+        // The data belongs to the original elements.
         self.element_data.clear();
         let all = quads
             .iter()
@@ -32,18 +32,18 @@ impl MeshFile {
             .zip(tags(&quad_tags))
             .chain(polygons.iter().map(|p| &p[..]).zip(tags(&polygon_tags)));
         let mut texture = self.texture.take();
-        let (quads_there, polygons_there) = texture
+        let (quads_uv, polygons_uv) = texture
             .as_mut()
             .map_or_else(Default::default, |t| (std::mem::take(&mut t.quads), std::mem::take(&mut t.polygons)));
-        let mut there = quads_there.iter().map(|q| &q[..]).chain(polygons_there.iter().map(|p| &p[..]));
+        let mut uv = quads_uv.iter().map(|q| &q[..]).chain(polygons_uv.iter().map(|p| &p[..]));
         for (polygon, tag) in all {
             let triangles = ears(&self.points, polygon);
             if tagged {
                 self.triangle_tags.extend(std::iter::repeat_n(tag, triangles.len()));
             }
-            if let (Some(texture), Some(corners)) = (&mut texture, there.next()) {
-                let place = |k: usize| corners.get(k).copied().unwrap_or(Texture::NOWHERE);
-                texture.triangles.extend(triangles.iter().map(|t| t.map(place)));
+            if let (Some(texture), Some(corners)) = (&mut texture, uv.next()) {
+                let corner = |k: usize| corners.get(k).copied().unwrap_or(Texture::NONE);
+                texture.triangles.extend(triangles.iter().map(|t| t.map(corner)));
             }
             self.triangles.extend(triangles.iter().map(|t| t.map(|k| polygon[k])));
         }
@@ -56,7 +56,7 @@ fn tags(tags: &[u32]) -> impl Iterator<Item = u32> + '_ {
     tags.iter().copied().chain(std::iter::repeat(0))
 }
 
-/// The triangles of one polygon, by the places of their corners in it.
+/// The triangles of one polygon, as positions in `polygon`.
 fn ears(points: &[DVec3], polygon: &[u32]) -> Vec<[usize; 3]> {
     let p = |k: usize| points[polygon[k] as usize];
     let n = polygon.len();
@@ -85,7 +85,7 @@ fn ears(points: &[DVec3], polygon: &[u32]) -> Vec<[usize; 3]> {
             if doubled <= 0.0 || left.iter().any(|o| free(&o)) {
                 continue;
             }
-            // Of a quadrilateral both ears at one diagonal have to be good.
+            // In a quadrilateral, both triangles at a diagonal count.
             let rest = if m == 4 { triangle_quality(c, flat[left[(k + 2) % m]], a) } else { 1.0 };
             let quality = triangle_quality(a, b, c).min(rest);
             if best.is_none_or(|(q, _)| quality > q) {
@@ -100,7 +100,7 @@ fn ears(points: &[DVec3], polygon: &[u32]) -> Vec<[usize; 3]> {
     triangles
 }
 
-/// 1 for an equilateral triangle, 0 for a flat one, negative for one turned over.
+/// 1 for an equilateral triangle, 0 for a degenerate one, negative for an inverted one.
 fn triangle_quality(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let sides = a.distance_squared(b) + b.distance_squared(c) + c.distance_squared(a);
     2.0 * 3.0_f64.sqrt() * orient(a, b, c) / sides.max(f64::MIN_POSITIVE)
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quadrilateral_that_is_not_convex_is_cut_at_its_dent() {
+    fn a_concave_quadrilateral_is_split_at_its_reflex_corner() {
         let mut file = mesh(&[[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]], &[]);
         file.polygons.clear();
         file.polygon_tags.clear();
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comb_is_cut_into_triangles_that_cover_it_and_carry_its_tag() {
+    fn a_comb_is_split_into_triangles_that_cover_it_and_carry_its_tag() {
         let points = [[0.0, 0.0], [5.0, 0.0], [5.0, 3.0], [4.0, 1.0], [3.0, 3.0], [2.0, 1.0], [1.0, 3.0], [0.0, 1.0]];
         let (file, _) = mesh(&points, &[0, 1, 2, 3, 4, 5, 6, 7]).triangulated();
         let areas = doubled_areas(&file);
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_polygon_of_one_point_is_fanned_and_not_looked_at_further() {
+    fn a_polygon_of_one_repeated_point_is_split_as_a_fan() {
         let (file, _) = mesh(&[[1.0, 1.0]], &[0, 0, 0, 0, 0]).triangulated();
         assert_eq!(file.triangles.len(), 3);
     }

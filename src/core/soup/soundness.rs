@@ -1,8 +1,8 @@
-//! Whether a mesh of quadrilaterals is sound (spec 5), for any mesh file, in the plane or on a surface, from its plain
-//! arrays alone: nothing of the converter's own structures is trusted here.
+//! Whether a mesh of quadrilaterals is sound (docs/algorithm.md, "Checks"), for any mesh file, in the plane or on a
+//! surface, from its plain arrays alone: nothing of the converter's own structures is trusted here.
 //!
-//! In the plane convexity is exact, and so is the proof that nothing overlaps (see `overlap`). On a surface every corner
-//! is measured against the normal of its own element.
+//! In the plane, the tests for convexity and for overlaps (see `overlap`) are exact. On a surface, every corner is
+//! measured against the normal of its own element.
 
 mod faces;
 mod nodes;
@@ -18,85 +18,85 @@ use crate::core::kernel::decimal::Shortest;
 use crate::core::soup::mesh_file::MeshFile;
 use faces::Faces;
 
-/// Everything that can be wrong with a mesh, in the order in which it is told.
+/// Everything that can be wrong with a mesh, in the order of the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Defect {
-    /// There is neither a triangle nor a quadrilateral.
+    /// No triangles and no quadrilaterals.
     NoElements,
-    /// An element (or line) whose node does not exist.
+    /// An element or line that refers to a missing node.
     BadNode,
-    /// A node with a coordinate that is infinite or not a number.
+    /// A node with an infinite or NaN coordinate.
     NotFinite,
-    /// Elements that are neither triangles nor quadrilaterals.
+    /// An element that is neither a triangle nor a quadrilateral.
     OtherElements,
-    /// Triangles; allowed where [`Allow::triangles`] says so.
+    /// A triangle; accepted with [`Allow::triangles`].
     Triangles,
-    /// An element that has a node twice.
+    /// An element with a repeated node.
     RepeatedNode,
     /// An element with the same nodes as another.
     DuplicateElement,
-    /// A node that no element has.
+    /// A node of no element.
     OrphanNode,
-    /// An edge of three elements or more; allowed where [`Allow::branching`] says so.
+    /// An edge of three or more elements; accepted with [`Allow::branching`].
     BranchingEdge,
-    /// An edge that its two elements run through in the same direction.
+    /// An edge whose two elements traverse it in the same direction.
     OrientationConflict,
-    /// A node around which the elements are not one fan or ring.
+    /// A node whose elements form several fans or rings (non-manifold).
     PinchedNode,
-    /// A node at which the boundary begins or ends.
+    /// A node where an open boundary chain begins or ends.
     OpenBoundary,
-    /// A node inside the mesh at the place of another.
+    /// An interior node that coincides with another node.
     CoincidentNode,
-    /// A node of the boundary at the place of another; allowed where [`Allow::seams`] says so.
+    /// A boundary node that coincides with another node; accepted with [`Allow::seams`].
     SeamNode,
-    /// A node of the boundary within another edge of the boundary (a T-junction).
+    /// A boundary node in the interior of another boundary edge (a T-junction).
     HangingNode,
-    /// An element with (nearly) no area.
+    /// An element with (almost) zero area.
     ZeroArea,
-    /// An element that runs against the others, in the plane.
+    /// An element oriented against the others, in the plane.
     Inverted,
     /// A quadrilateral that is not strictly convex.
     NotConvex,
-    /// A node inside the mesh with two edges only.
+    /// An interior node with only two edges.
     Doublet,
-    /// An edge of the boundary, in the plane, that another part of the mesh covers or crosses.
+    /// A boundary edge, in the plane, that another part of the mesh covers or crosses.
     Overlap,
 }
 
-/// A place where a mesh is not sound.
+/// A node or element with a defect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Offender {
-    /// Node, or element (triangles come first, quadrilaterals after them), numbered from 1; for an edge, its first node.
+    /// Number from 1 of the node or element (triangles before quadrilaterals); for an edge, of its first node.
     pub number: u64,
-    /// A point at it: the node, the first corner of the element, the first end of the edge.
+    /// Its position: that of the node, of the element's first corner, or of the edge's first node.
     pub at: [f64; 3],
 }
 
 /// One kind of defect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// What is wrong.
+    /// The kind.
     pub defect: Defect,
-    /// How many times.
+    /// Number of occurrences.
     pub count: u64,
-    /// The first few.
+    /// The first few occurrences.
     pub first: Vec<Offender>,
 }
 
-/// What may be in a mesh all the same.
+/// Defects to accept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Allow {
     /// Triangles (an intermediate state, a background mesh).
     pub triangles: bool,
-    /// Nodes at the same place on the boundary (cracks, surfaces cut open).
+    /// Coincident nodes on the boundary (cracks, surfaces cut open).
     pub seams: bool,
     /// Edges of three or more elements (surfaces that meet in a curve).
     pub branching: bool,
 }
 
-/// What a mesh is and what is wrong with it.
+/// Counts, measures and defects of a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Soundness {
     /// Number of nodes.
@@ -109,26 +109,26 @@ pub struct Soundness {
     pub edges: u64,
     /// Number of edges with one element.
     pub boundary_edges: u64,
-    /// Number of closed chains of them.
+    /// Number of closed chains of boundary edges.
     pub boundary_loops: u64,
-    /// Their length.
+    /// Total length of the boundary edges.
     pub boundary_length: f64,
-    /// Nodes that are in use - edges + elements.
+    /// Euler characteristic: nodes in use - edges + elements.
     pub euler: i64,
-    /// Number of pieces that hang together by nodes.
+    /// Number of components, connected through nodes.
     pub components: u64,
-    /// Whether all nodes that are in use have the same z.
+    /// Whether all nodes in use have the same z.
     pub planar: bool,
-    /// Area; of a curved quadrilateral, half its diagonals' cross product.
+    /// Area; for a curved quadrilateral, half the length of its diagonals' cross product.
     pub area: f64,
-    /// What is wrong, by kind.
+    /// The defects, by kind.
     pub findings: Vec<Finding>,
 }
 
-/// Examines a mesh. O(n log n), about half a second for a million quadrilaterals; more only where they are many separate
-/// pieces in rows, between which `overlap` looks far.
+/// Examines a mesh in O(n log n): about half a second for a million quadrilaterals, more only for many separate
+/// components side by side, where the rays of `overlap` are long.
 ///
-/// Where nodes do not exist or are not finite, nothing else is examined.
+/// With missing or non-finite nodes, nothing else is examined.
 pub fn examine(mesh: &MeshFile) -> Soundness {
     let mut found = Found::default();
     let mut soundness = Soundness {
@@ -159,7 +159,7 @@ pub fn examine(mesh: &MeshFile) -> Soundness {
     soundness
 }
 
-/// What needs no connectivity.
+/// The checks without connectivity.
 fn basics(mesh: &MeshFile, faces: &Faces, found: &mut Found) {
     if faces.len() == 0 {
         found.note(Defect::NoElements, 0, DVec3::ZERO);
@@ -187,10 +187,10 @@ fn basics(mesh: &MeshFile, faces: &Faces, found: &mut Found) {
     found.note_many(Defect::Triangles, mesh.triangles.len() as u64);
 }
 
-/// How many offenders of each kind are kept.
+/// Number of offenders kept for each kind.
 const KEPT: usize = 5;
 
-/// Findings being gathered.
+/// Collects findings.
 #[derive(Default)]
 struct Found {
     list: std::collections::BTreeMap<Defect, (u64, Vec<Offender>)>,
@@ -221,15 +221,15 @@ impl Found {
 }
 
 impl Soundness {
-    /// How often a defect was found.
+    /// Number of occurrences of a defect.
     pub fn count(&self, defect: Defect) -> u64 {
         self.findings.iter().find(|finding| finding.defect == defect).map_or(0, |finding| finding.count)
     }
 
-    /// Whether the mesh is sound, but for what is allowed.
+    /// Checks that the mesh has no defects except the allowed ones.
     ///
     /// # Errors
-    /// One fault that tells every kind of defect with its count, and the first offender with its place.
+    /// One fault with the count of every kind of defect and the position of its first offender.
     pub fn verdict(&self, allow: Allow) -> Result<(), Fault> {
         let allowed = |defect| match defect {
             Defect::Triangles => allow.triangles,
@@ -239,8 +239,8 @@ impl Soundness {
         };
         let bad: Vec<&Finding> = self.findings.iter().filter(|finding| !allowed(finding.defect)).collect();
         let Some(first) = bad.first() else { return Ok(()) };
-        let told: Vec<String> = bad.iter().map(|finding| finding.to_string()).collect();
-        Err(Fault::new(format!("The mesh is not sound: {}", told.join("; "))).remedy(first.defect.remedy()))
+        let list: Vec<String> = bad.iter().map(|finding| finding.to_string()).collect();
+        Err(Fault::new(format!("The mesh is invalid: {}", list.join("; "))).remedy(first.defect.remedy()))
     }
 }
 
@@ -261,38 +261,42 @@ impl std::fmt::Display for Finding {
 }
 
 impl Defect {
-    /// The defect in words, once and many times.
+    /// The defect in words, singular and plural.
     fn words(self) -> (&'static str, &'static str) {
         match self {
             Defect::NoElements => ("it has neither triangles nor quadrilaterals", ""),
-            Defect::BadNode => ("element has a node that does not exist", "elements have nodes that do not exist"),
-            Defect::NotFinite => ("node is not at a finite place", "nodes are not at finite places"),
+            Defect::BadNode => ("element refers to a missing node", "elements refer to missing nodes"),
+            Defect::NotFinite => ("node has a non-finite coordinate", "nodes have non-finite coordinates"),
             Defect::OtherElements => {
                 ("element is neither triangle nor quadrilateral", "elements are neither triangles nor quadrilaterals")
             }
             Defect::Triangles => ("element is a triangle", "elements are triangles"),
-            Defect::RepeatedNode => ("element has a node twice", "elements have a node twice"),
-            Defect::DuplicateElement => ("element is there twice", "elements are there twice"),
+            Defect::RepeatedNode => ("element has a repeated node", "elements have a repeated node"),
+            Defect::DuplicateElement => ("element is a duplicate", "elements are duplicates"),
             Defect::OrphanNode => ("node belongs to no element", "nodes belong to no element"),
-            Defect::BranchingEdge => ("edge has three elements or more", "edges have three elements or more"),
+            Defect::BranchingEdge => ("edge has three or more elements", "edges have three or more elements"),
             Defect::OrientationConflict => (
                 "edge lies between elements of opposite orientation",
                 "edges lie between elements of opposite orientation",
             ),
-            Defect::PinchedNode => ("node holds several fans of elements", "nodes hold several fans of elements"),
+            Defect::PinchedNode => ("node joins several fans of elements", "nodes join several fans of elements"),
             Defect::OpenBoundary => ("node is an end of an open boundary", "nodes are ends of open boundaries"),
-            Defect::CoincidentNode => ("inner node lies on another node", "inner nodes lie on other nodes"),
-            Defect::SeamNode => ("boundary node lies on another node", "boundary nodes lie on other nodes"),
-            Defect::HangingNode => ("node hangs in an edge", "nodes hang in edges"),
-            Defect::ZeroArea => ("element has no area", "elements have no area"),
+            Defect::CoincidentNode => {
+                ("interior node coincides with another node", "interior nodes coincide with other nodes")
+            }
+            Defect::SeamNode => {
+                ("boundary node coincides with another node", "boundary nodes coincide with other nodes")
+            }
+            Defect::HangingNode => ("node hangs on an edge", "nodes hang on edges"),
+            Defect::ZeroArea => ("element has zero area", "elements have zero area"),
             Defect::Inverted => ("element is inverted", "elements are inverted"),
             Defect::NotConvex => ("quadrilateral is not strictly convex", "quadrilaterals are not strictly convex"),
-            Defect::Doublet => ("inner node has two edges only", "inner nodes have two edges only"),
-            Defect::Overlap => ("boundary edge is overlapped", "boundary edges are overlapped"),
+            Defect::Doublet => ("interior node has only two edges", "interior nodes have only two edges"),
+            Defect::Overlap => ("boundary edge overlaps the mesh", "boundary edges overlap the mesh"),
         }
     }
 
-    /// What an offender's number counts.
+    /// What an offender's number refers to.
     fn thing(self) -> &'static str {
         match self {
             Defect::NotFinite
@@ -311,9 +315,9 @@ impl Defect {
     fn remedy(self) -> &'static str {
         match self {
             Defect::Triangles => "Convert them, or allow triangles",
-            Defect::BranchingEdge => "Take the surfaces apart, or allow branching edges",
+            Defect::BranchingEdge => "Separate the surfaces, or allow branching edges",
             Defect::SeamNode => "Weld them, or allow seams",
-            Defect::OrphanNode => "Leave out the nodes that are not in use",
+            Defect::OrphanNode => "Remove the unused nodes",
             _ => "",
         }
     }

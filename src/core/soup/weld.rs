@@ -1,5 +1,5 @@
-//! Points at one place made one: for formats that say a mesh triangle by triangle (STL), or that give a point more than
-//! once where its normal or texture differs (glTF).
+//! Merges coincident points: for formats that store each triangle with its own corners (STL), or that repeat a point
+//! where its normal or texture coordinate differs (glTF).
 
 use std::hash::BuildHasher;
 
@@ -8,33 +8,34 @@ use rustc_hash::FxBuildHasher;
 
 use crate::core::progress::Cancel;
 
-/// For formats in single precision: some rounding errors of the largest coordinate.
+/// Relative tolerance for formats in single precision: a few rounding errors of the largest coordinate.
 pub const SINGLE: f64 = 4.0 * f32::EPSILON as f64;
 
-/// So many points are welded between two looks at whether to go on.
-const AT_A_TIME: usize = 1 << 14;
+/// Points welded between two checks for cancellation.
+const BATCH: usize = 1 << 14;
 
-/// Joins points that lie within some distance of each other; the first of them stays. A chain of points is not drawn together: each is
-/// compared with the ones that stay. Those lie with whoever welds, and are found here by their number: eight to twelve bytes for each.
+/// Merges points closer than a tolerance into the first of them. Each point is compared with the kept points only, so
+/// that a chain of close points does not collapse. The caller owns the kept points; the welder stores 8 to 12 bytes for
+/// each.
 pub struct Welder {
-    near: f64,
-    /// How many of the cells by which points are found go into a unit. They are larger than the distance, so that a point seldom has to
-    /// look beyond its own, but no more than a few hundred points that stay have room in one.
+    tolerance: f64,
+    /// Grid cells per unit length. A cell is wider than the tolerance, so that a search seldom leaves it, and small
+    /// enough to hold at most a few hundred kept points.
     cells: f64,
-    /// The last point of each drawer, into which cells are laid by their hash; their number is a power of two. And for each point the
-    /// one before it in its drawer.
+    /// Heads of the hash buckets, a power of two of them: the last point of each, `u32::MAX` for none.
     last: Vec<u32>,
+    /// For each kept point, the previous one in its bucket.
     before: Vec<u32>,
 }
 
 impl Welder {
-    /// A welder within `relative` times the largest coordinate, whichever sign it has.
+    /// A welder with the tolerance `relative` times the largest absolute coordinate.
     pub fn new(relative: f64, largest: f64) -> Welder {
-        let near = (relative * largest).max(f64::MIN_POSITIVE);
-        Welder { near, cells: 1.0 / (8.0 * near), last: vec![u32::MAX], before: Vec::new() }
+        let tolerance = (relative * largest).max(f64::MIN_POSITIVE);
+        Welder { tolerance, cells: 1.0 / (8.0 * tolerance), last: vec![u32::MAX], before: Vec::new() }
     }
 
-    /// The place of the point that stands for `p` among those that are kept: an earlier one, or itself, the last.
+    /// The index in `kept` of the point that represents `p`: an earlier point, or `p` itself, appended.
     pub fn weld(&mut self, kept: &mut Vec<DVec3>, p: DVec3) -> u32 {
         self.find(kept, p).unwrap_or_else(|| {
             kept.push(p);
@@ -42,20 +43,21 @@ impl Welder {
         })
     }
 
-    /// The first of the points kept that lies near `p`.
+    /// The first kept point within the tolerance of `p`.
     fn find(&self, kept: &[DVec3], p: DVec3) -> Option<u32> {
-        // Beside the largest number of all lies infinity, and no cell.
-        let (low, high) = (self.cell((p - self.near).max(DVec3::MIN)), self.cell((p + self.near).min(DVec3::MAX)));
+        // Clamped, since the largest finite number plus the tolerance may be infinite, which has no cell.
+        let ends = [p - self.tolerance, p + self.tolerance];
+        let [low, high] = ends.map(|q| self.cell(q.clamp(DVec3::MIN, DVec3::MAX)));
         let mut found: Option<u32> = None;
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
                     let cell = [x, y, z];
-                    let mut at = self.last[self.drawer(cell)];
+                    let mut at = self.last[self.bucket(cell)];
                     while at != u32::MAX {
                         let q = kept[at as usize];
-                        // A drawer has points of other cells too.
-                        if q.distance(p) <= self.near && found.is_none_or(|f| at < f) && self.cell(q) == cell {
+                        // A bucket may hold points of other cells.
+                        if q.distance(p) <= self.tolerance && found.is_none_or(|f| at < f) && self.cell(q) == cell {
                             found = Some(at);
                         }
                         at = self.before[at as usize];
@@ -66,17 +68,17 @@ impl Welder {
         found
     }
 
-    /// Takes in the last of the points kept; its place.
+    /// Registers the last kept point; returns its index.
     fn keep(&mut self, kept: &[DVec3]) -> u32 {
         let new = self.before.len();
         if new == self.last.len() {
-            // More drawers, and all points into them again.
+            // Rehash into twice as many buckets.
             self.last = vec![u32::MAX; 2 * new];
             self.before.clear();
         }
         for at in self.before.len()..=new {
-            let drawer = self.drawer(self.cell(kept[at]));
-            self.before.push(std::mem::replace(&mut self.last[drawer], at as u32));
+            let bucket = self.bucket(self.cell(kept[at]));
+            self.before.push(std::mem::replace(&mut self.last[bucket], at as u32));
         }
         new as u32
     }
@@ -85,24 +87,25 @@ impl Welder {
         (p * self.cells).floor().to_array().map(|x| x as i64)
     }
 
-    fn drawer(&self, cell: [i64; 3]) -> usize {
+    fn bucket(&self, cell: [i64; 3]) -> usize {
         FxBuildHasher.hash_one(cell) as usize & (self.last.len() - 1)
     }
 }
 
-/// Joins points within `relative` times the largest coordinate: `points` becomes those that stay. Returns for each point given the place
-/// of the one that stands for it. Told to end, it returns nothing, and `points` are of no use.
+/// Merges points within `relative` times the largest coordinate. Leaves the kept ones in `points`, and returns for each
+/// original point the index of the kept one that represents it. When cancelled, returns an empty list and leaves
+/// `points` in an unspecified state.
 pub fn weld(points: &mut Vec<DVec3>, relative: f64, cancel: &Cancel) -> Vec<u32> {
     let mut welder = Welder::new(relative, points.iter().fold(0.0, |largest, p| p.abs().max_element().max(largest)));
-    let mut standing = Vec::with_capacity(points.len());
-    // Those that stay move to the front: no room is needed beside that of the points.
+    let mut representative = Vec::with_capacity(points.len());
+    // Kept points move to the front: no second array is needed.
     let mut kept = 0;
     for k in 0..points.len() {
-        if k % AT_A_TIME == 0 && cancel.is_asked() {
+        if k % BATCH == 0 && cancel.is_asked() {
             return Vec::new();
         }
         let p = points[k];
-        standing.push(welder.find(&points[..kept], p).unwrap_or_else(|| {
+        representative.push(welder.find(&points[..kept], p).unwrap_or_else(|| {
             points[kept] = p;
             kept += 1;
             welder.keep(&points[..kept])
@@ -111,7 +114,7 @@ pub fn weld(points: &mut Vec<DVec3>, relative: f64, cancel: &Cancel) -> Vec<u32>
     drop(welder);
     points.truncate(kept);
     points.shrink_to_fit();
-    standing
+    representative
 }
 
 #[cfg(test)]
@@ -119,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_within_rounding_become_the_first_of_them_and_others_stay_apart() {
+    fn points_within_the_tolerance_merge_into_the_first_and_others_stay_apart() {
         let near = 1000.0 * SINGLE;
         let p = DVec3::new(1000.0, -3.0, 0.5);
         let mut points =
@@ -130,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_finds_its_like_across_the_border_of_a_cell() {
+    fn a_point_merges_across_the_border_of_a_cell() {
         let cell = 8.0 * SINGLE;
         for offset in [0.0, 1.0, -1.0, 7.0] {
             let border = DVec3::new(offset * cell, 0.0, 0.0);
@@ -140,28 +143,28 @@ mod tests {
     }
 
     #[test]
-    fn many_points_that_barely_stay_apart_beside_one_far_away_take_no_square_of_their_number() {
-        // A coordinate gone astray sets the distance by which points are told apart.
+    fn many_points_just_beyond_the_tolerance_beside_one_outlier_do_not_take_quadratic_time() {
+        // The outlier sets the tolerance.
         let near = SINGLE * 1e4;
         let mut points = vec![DVec3::new(1e4, 0.0, 0.0)];
         points.extend((0..70 * 70 * 40).map(|k| {
             let at = [k % 70, k / 70 % 70, k / 4900].map(f64::from);
             DVec3::from_array(at) * (1.1 * near)
         }));
-        // With the square of their number this would not end in minutes.
+        // In quadratic time, this would run for minutes.
         let number = points.len();
         weld(&mut points, SINGLE, &Cancel::default());
         assert_eq!(points.len(), number);
     }
 
     #[test]
-    fn points_at_the_largest_number_of_all_end_in_no_search_without_end() {
+    fn points_at_the_largest_finite_number_do_not_cause_an_endless_search() {
         let mut points = vec![DVec3::MAX, DVec3::MIN, DVec3::MAX];
         assert_eq!(weld(&mut points, SINGLE, &Cancel::default()), [0, 1, 0]);
     }
 
     #[test]
-    fn points_all_at_zero_are_one_and_none_are_none() {
+    fn points_all_at_zero_merge_and_an_empty_list_stays_empty() {
         assert_eq!(weld(&mut vec![DVec3::ZERO; 3], SINGLE, &Cancel::default()), [0, 0, 0]);
         assert!(weld(&mut Vec::new(), SINGLE, &Cancel::default()).is_empty());
     }

@@ -1,5 +1,6 @@
-//! Clean-up of the structure around irregular nodes (spec 10, 2.11): diamond collapse, edge rotation, vertex opening and
-//! the removal of doublets, each tried as a transaction and kept when the energy of all that it moves falls.
+//! Clean-up of the structure around irregular nodes (docs/algorithm.md, "Clean-up"): diamond collapse, edge rotation,
+//! vertex opening and the removal of doublets, each tried as a transaction and kept when the energy of all that it
+//! moves falls.
 //!
 //! A worklist, not sweeps: the nodes whose valence is not ideal, and again the neighbours of whatever changed. Single
 //! changes come first, everywhere. Most irregular nodes that are then left are ends of columns that no single change moves

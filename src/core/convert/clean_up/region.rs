@@ -5,8 +5,8 @@ use crate::core::convert::energy;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;
 
-/// Weight of a squared excess against the shape of a corner and the length of an edge. 1 in the spec's energy: with a little
-/// more, sequences of changes find as good angles and fewer irregular nodes.
+/// Weight of a squared excess against the shape of a corner and the length of an edge. With a little more than 1
+/// sequences of changes find as good angles and fewer irregular nodes.
 const VALENCE_WEIGHT: f64 = 1.5;
 
 /// Nodes, each once.

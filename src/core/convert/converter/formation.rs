@@ -10,7 +10,8 @@ use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
 
 impl Converter<'_> {
-    /// Takes an attempt back; the next one follows, or where there is none the segment is put off (spec 2.4 d).
+    /// Takes an attempt back; the next one follows, or where there is none the segment is put off (docs/algorithm.md,
+    /// "Rescue").
     pub(super) fn fail(&mut self, base: Base, attempt: Attempt, why: Why) -> (Phase, Event) {
         if self.keeps_history() {
             // What this very step did is not part of the state before it.
@@ -116,8 +117,8 @@ impl Converter<'_> {
         }
     }
 
-    /// Closes the loop of a segment from which no quadrilateral can be formed, where it is a small one (spec 2.7); else puts
-    /// the segment off until something near it changes.
+    /// Closes the loop of a segment from which no quadrilateral can be formed, where it is a small one
+    /// (docs/algorithm.md, "Small loops"); else puts the segment off until something near it changes.
     pub(super) fn step_defer(&mut self, base: Base) -> (Phase, Event) {
         let segment = self.base_half_edge(&base);
         let mark = self.mesh.mark();

@@ -73,8 +73,9 @@ struct Run {
     step: u64,
 }
 
-/// Reads nodes and elements; sets of elements become regions (of several that an element is in, the smallest), surfaces of edges
-/// groups of lines. Sets of nodes, parts and everything else are passed over. Nodes and elements come in the order of their numbers.
+/// Reads nodes and elements; sets of elements become regions (of several that an element is in, the smallest), surfaces
+/// of edges groups of lines. Sets of nodes, parts and everything else are passed over. Nodes and elements come in the
+/// order of their numbers.
 ///
 /// # Errors
 /// A fault with the line for a malformed node or element, an element of higher order, and numbers that come twice.
@@ -179,7 +180,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     }
     sort_by_number(&mut triangle_numbers, &mut mesh.triangles, &mut []);
     sort_by_number(&mut quad_numbers, &mut mesh.quads, &mut []);
-    mesh.counting.in_one_row = true;
+    mesh.counting.shared = true;
     mesh.counting.points = Count::of(&node_numbers);
     (mesh.counting.triangles, mesh.counting.quads) = (Count::of(&triangle_numbers), Count::of(&quad_numbers));
     sets.into_groups(&mut mesh, &triangle_numbers, &quad_numbers);

@@ -354,7 +354,7 @@ impl Reader<'_> {
         sort_by_number(lines, &mut file.lines, &mut file.line_tags);
         sort_by_number(triangles, &mut file.triangles, &mut file.triangle_tags);
         sort_by_number(quads, &mut file.quads, &mut file.quad_tags);
-        file.counting.in_one_row = true;
+        file.counting.shared = true;
         (file.counting.triangles, file.counting.quads) = (Count::of(triangles), Count::of(quads));
         for tags in [&mut file.line_tags, &mut file.triangle_tags, &mut file.quad_tags] {
             if tags.iter().all(|&tag| tag == 0) {

@@ -16,7 +16,7 @@ fn with(more: Vec<CurveSpec>, outer: &str, holes: &[&str], cracks: &str) -> Spec
 }
 
 #[test]
-fn all_sound_domains_are_built() {
+fn all_valid_domains_are_built() {
     for (name, specs) in all() {
         if let Err(fault) = Domain::build(specs.0, specs.1) {
             panic!("{name}: {fault}");
@@ -37,7 +37,7 @@ fn outer_loops_run_anticlockwise_and_holes_clockwise() {
 }
 
 #[test]
-fn walks_join_what_hangs_together() {
+fn walks_include_all_connected_lines() {
     let walks = |specs: Specs| -> Vec<Vec<usize>> {
         built(specs).faces.iter().map(|f| f.walks.iter().map(Vec::len).collect()).collect()
     };
@@ -68,7 +68,7 @@ fn tangent_curves_are_told_apart_by_their_curvature() {
 }
 
 #[test]
-fn inside_tells_the_face_and_nothing_in_holes() {
+fn inside_finds_the_face_and_nothing_in_holes() {
     let plate = built(square_with_hole());
     assert_eq!(plate.inside(DVec2::new(0.1, 0.1)), Some(0));
     assert_eq!(plate.inside(DVec2::new(0.5, 0.5)), None);
@@ -141,9 +141,9 @@ fn a_quarter_disc_joins_arcs_and_segments() {
 }
 
 #[test]
-fn unknown_names_are_refused_with_the_nearest() {
+fn unknown_names_are_refused_with_a_suggestion() {
     let says = refusal(with(vec![], "south eest north west", &[], ""));
-    assert!(says.contains("\"eest\"") && says.contains("nearest known name is \"east\""), "{says}");
+    assert!(says.contains("\"eest\"") && says.contains("Did you mean \"east\"?"), "{says}");
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn open_loops_are_refused_with_their_loose_ends() {
 #[test]
 fn loops_in_pieces_are_refused() {
     let says = refusal(with(vec![circle("c", (3.0, 3.0), 1.0)], "south east north west c", &[], ""));
-    assert!(says.contains("several closed loops") && says.contains("\"c\" is not joined"), "{says}");
+    assert!(says.contains("several closed loops") && says.contains("\"c\" is not connected"), "{says}");
 }
 
 #[test]
@@ -210,13 +210,16 @@ fn shallow_crossings_of_curves_are_found_though_their_chords_miss() {
 #[test]
 fn touching_is_refused_with_its_remedy() {
     let says = refusal(with(vec![segment("c", (0.5, 0.5), (1.0, 0.5))], SQUARE, &[], "c"));
-    assert!(says.contains("end of \"c\" touches \"east\" inside") && says.contains("Divide \"east\""), "{says}");
+    assert!(
+        says.contains("end of \"c\" touches the interior of \"east\"") && says.contains("Divide \"east\""),
+        "{says}"
+    );
     let says = refusal(with(vec![circle("h", (0.5, 0.3), 0.3)], SQUARE, &["h"], ""));
     assert!(says.contains("\"south\" and \"h\" touch") && says.contains("(0.5, 0)"), "{says}");
     // A crack that ends on the inside of an arc.
     let round = vec![circle("rim", (0.0, 0.0), 1.0), segment("c", (0.0, 0.0), (0.6, 0.8))];
     let says = refusal((round, vec![face("f", "rim", &[], "c", "")]));
-    assert!(says.contains("end of \"c\" touches \"rim\" inside"), "{says}");
+    assert!(says.contains("end of \"c\" touches the interior of \"rim\""), "{says}");
     // A fold and a line that runs along another.
     let fold = polyline("c", &[(0.2, 0.5), (0.8, 0.5), (0.4, 0.5)], false);
     assert!(refusal(with(vec![fold], SQUARE, &[], "c")).contains("\"c\" touches itself"));
@@ -234,7 +237,7 @@ fn touching_is_refused_with_its_remedy() {
         polyline("a", &[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.0)], true),
         polyline("b", &[(0.0, 0.0), (-1.0, 0.0), (-1.0, -1.0), (0.0, 0.0)], true),
     ];
-    assert!(refusal((bow, vec![face("f", "a b", &[], "", "")])).contains("Make a face of each part"));
+    assert!(refusal((bow, vec![face("f", "a b", &[], "", "")])).contains("Make a face of each closed part"));
 }
 
 #[test]
@@ -249,16 +252,16 @@ fn holes_outside_or_in_holes_are_refused() {
 }
 
 #[test]
-fn internal_lines_outside_of_their_face_are_refused() {
+fn internal_lines_outside_their_face_are_refused() {
     assert!(
         refusal(with(vec![segment("c", (2.0, 2.0), (3.0, 2.0))], SQUARE, &[], "c"))
-            .contains("\"c\" lies outside of its face")
+            .contains("\"c\" lies outside its face")
     );
     let in_hole = vec![circle("h", (0.5, 0.5), 0.3), segment("c", (0.4, 0.5), (0.6, 0.5))];
-    assert!(refusal(with(in_hole, SQUARE, &["h"], "c")).contains("\"c\" lies outside of its face"));
+    assert!(refusal(with(in_hole, SQUARE, &["h"], "c")).contains("\"c\" lies outside its face"));
     assert!(
         refusal(with(vec![], SQUARE, &[], "south"))
-            .contains("\"south\" is a crack or a repeated line and something else")
+            .contains("\"south\" is a crack or a repeated line, and is listed a second time")
     );
 }
 
@@ -282,7 +285,7 @@ fn faces_that_overlap_are_refused() {
     let (mut curves, mut faces) = two_faces();
     curves.push(segment("c", (1.2, 0.5), (1.8, 0.5)));
     faces[0].cracks.push("c".to_owned());
-    assert!(refusal((curves, faces)).contains("\"c\" lies outside of its face \"left\""));
+    assert!(refusal((curves, faces)).contains("\"c\" lies outside its face \"left\""));
 }
 
 #[test]

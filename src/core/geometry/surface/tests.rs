@@ -1,19 +1,19 @@
 use super::*;
-use crate::core::geometry::frame::Frame;
+use crate::core::geometry::frame::AxisFrame;
 use crate::core::geometry::primitive::{cone, plane, revolution, sphere, torus};
 use crate::core::geometry::space_curve::SpaceCurve;
 use crate::core::geometry::spec::SpaceShape;
 
-fn upright() -> Frame {
-    Frame::new(DVec3::new(1.0, -2.0, 0.5), DVec3::new(0.0, 0.0, 3.0), None).unwrap()
+fn upright() -> AxisFrame {
+    AxisFrame::new(DVec3::new(1.0, -2.0, 0.5), DVec3::new(0.0, 0.0, 3.0), None).unwrap()
 }
 
 /// A frame with no direction along an axis.
-fn askew() -> Frame {
-    Frame::new(DVec3::new(0.3, 0.1, -0.7), DVec3::new(1.0, 2.0, -0.5), Some(DVec3::new(0.2, 0.1, 1.0))).unwrap()
+fn askew() -> AxisFrame {
+    AxisFrame::new(DVec3::new(0.3, 0.1, -0.7), DVec3::new(1.0, 2.0, -0.5), Some(DVec3::new(0.2, 0.1, 1.0))).unwrap()
 }
 
-/// Places that cover a surface's domain.
+/// Parameters that cover a surface's domain.
 fn places(surface: &NurbsSurface, n: u32) -> Vec<DVec2> {
     let [[u0, u1], [v0, v1]] = surface.domain();
     let mut places = Vec::new();
@@ -27,7 +27,7 @@ fn places(surface: &NurbsSurface, n: u32) -> Vec<DVec2> {
 }
 
 /// Distance from the axis, and height over the centre.
-fn cylindrical(frame: &Frame, p: DVec3) -> (f64, f64) {
+fn cylindrical(frame: &AxisFrame, p: DVec3) -> (f64, f64) {
     let p = p - frame.centre;
     let height = p.dot(frame.axis);
     ((p - frame.axis * height).length(), height)
@@ -110,7 +110,7 @@ fn primitives_agree_with_their_closed_forms_and_their_curvatures() {
 }
 
 #[test]
-fn angles_of_what_turns_are_exact_where_arcs_end_and_near_between() {
+fn angles_of_revolutions_are_exact_at_arc_ends_and_close_between() {
     let frame = upright();
     let cylinder = cone(&frame, [2.0, 2.0], 5.0, [0.0, 270.0]).unwrap();
     for i in 0..=270 {
@@ -123,7 +123,7 @@ fn angles_of_what_turns_are_exact_where_arcs_end_and_near_between() {
 }
 
 #[test]
-fn closed_surfaces_repeat_themselves_and_others_go_on_straight() {
+fn closed_surfaces_continue_periodically_and_others_linearly() {
     let ring = torus(&upright(), 3.0, 0.5, [0.0, 360.0], [0.0, 360.0]).unwrap();
     let (a, b) = (ring.at(DVec2::new(10.0, 20.0), 2), ring.at(DVec2::new(370.0, -340.0), 2));
     assert!(a.p.distance(b.p) < 1e-12 && a.d[0].distance(b.d[0]) < 1e-12);
@@ -134,7 +134,8 @@ fn closed_surfaces_repeat_themselves_and_others_go_on_straight() {
 #[test]
 fn a_revolved_circle_is_a_torus() {
     let frame = upright();
-    let own = Frame::new(frame.centre + frame.start * 3.0, -frame.axis.cross(frame.start), Some(frame.start)).unwrap();
+    let own =
+        AxisFrame::new(frame.centre + frame.start * 3.0, -frame.axis.cross(frame.start), Some(frame.start)).unwrap();
     let shape = SpaceShape::Arc { frame: own, radius: 0.5, angles: [0.0, 360.0] };
     let circle = SpaceCurve::new(&shape, &|_| None).unwrap();
     let swept = revolution(&circle.nurbs().unwrap(), &frame, [0.0, 360.0]).unwrap();
@@ -199,7 +200,7 @@ fn series_agree_with_the_basis_functions_for_all_degrees_that_use_them() {
 }
 
 #[test]
-fn bad_surfaces_are_refused_with_what_is_wrong() {
+fn invalid_surfaces_are_refused_with_the_reason() {
     let square = [DVec3::ZERO, DVec3::Y, DVec3::X, DVec3::new(1.0, 1.0, 0.0)];
     let line = vec![0.0, 0.0, 1.0, 1.0];
     let says = |knots: Vec<f64>, weights: &[f64], points: &[DVec3], columns| {
@@ -209,10 +210,10 @@ fn bad_surfaces_are_refused_with_what_is_wrong() {
     assert!(says(line.clone(), &[1.0, 1.0, 0.0, 1.0], &square, 2).contains("Weight 3 is 0"));
     assert!(says(line.clone(), &[1.0, 1.0, -1.0, 1.0], &square, 2).contains("Weight 3 is -1"));
     assert!(says(line.clone(), &[], &square, 3).contains("same length"));
-    assert!(says(line.clone(), &[], &[DVec3::X; 4], 2).contains("no size"));
+    assert!(says(line.clone(), &[], &[DVec3::X; 4], 2).contains("zero size"));
     assert!(says(vec![0.0, 1.0, 1.0, 1.0, 1.0], &[], &square, 2).contains("needs 4 knots"));
     assert!(torus(&upright(), 1.0, 1.5, [0.0, 360.0], [0.0, 360.0]).is_err());
     assert!(sphere(&upright(), 1.0, [0.0, 400.0], [-90.0, 90.0]).is_err());
-    assert!(Frame::new(DVec3::ZERO, DVec3::ZERO, None).is_err());
-    assert!(Frame::new(DVec3::ZERO, DVec3::Z, Some(DVec3::Z)).is_err());
+    assert!(AxisFrame::new(DVec3::ZERO, DVec3::ZERO, None).is_err());
+    assert!(AxisFrame::new(DVec3::ZERO, DVec3::Z, Some(DVec3::Z)).is_err());
 }

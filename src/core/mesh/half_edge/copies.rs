@@ -1,14 +1,13 @@
-//! The same mesh in another form: along a Hilbert curve, without its journal, as bytes.
+//! Copies of a mesh: along a Hilbert curve, without its journal, as bytes.
 
 use super::{Mesh, NONE};
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::mesh::journal::Journal;
 use crate::core::mesh::order::{grouped, hilbert_order};
 
 impl Mesh {
-    /// The same mesh without tombstones, its nodes and elements along a Hilbert curve: neighbours in the plane become
-    /// neighbours in memory, which is most of the speed of large meshes. The journal starts empty, and records where this
-    /// mesh's does.
+    /// The same mesh without tombstones, its nodes and elements along a Hilbert curve, so that neighbours in the plane
+    /// are neighbours in memory, on which the speed of large meshes depends. The journal is empty, and records if that
+    /// of this mesh does.
     #[must_use]
     pub fn reordered(&self) -> Mesh {
         let nodes = hilbert_order(&self.nodes().map(|n| (n.0, self.uv(n))).collect::<Vec<_>>());
@@ -24,11 +23,18 @@ impl Mesh {
         for (new, &old) in elements.iter().enumerate() {
             new_element[old as usize] = new as u32;
         }
+        let mut mesh = self.extract(&nodes, &elements, &new_node, &new_element);
+        mesh.journal.set_recording(self.journal.is_recording());
+        mesh
+    }
+
+    /// The mesh of some nodes and elements, in this order; `new_node` and `new_element` map old ids to new ones.
+    pub(super) fn extract(&self, nodes: &[u32], elements: &[u32], new_node: &[u32], new_element: &[u32]) -> Mesh {
         let half_edge = |h: u32| if h == NONE { NONE } else { new_element[(h >> 2) as usize] << 2 | (h & 3) };
         let slots = 4 * elements.len();
         let (mut origin, mut twin) = (Vec::with_capacity(slots), Vec::with_capacity(slots));
         let mut deferred = Vec::with_capacity(slots);
-        for &old in &elements {
+        for &old in elements {
             let first = 4 * old as usize;
             let sides = self.sides[old as usize] as usize;
             for slot in first..first + 4 {
@@ -38,8 +44,6 @@ impl Mesh {
             }
             deferred.extend_from_slice(&self.deferred[first..first + 4]);
         }
-        let mut journal = Journal::default();
-        journal.set_recording(self.journal.is_recording());
         Mesh {
             uv: nodes.iter().map(|&n| self.uv[n as usize]).collect(),
             metric: nodes.iter().map(|&n| self.metric[n as usize]).collect(),
@@ -51,47 +55,30 @@ impl Mesh {
             region: elements.iter().map(|&e| self.region[e as usize]).collect(),
             level: elements.iter().map(|&e| self.level[e as usize]).collect(),
             deferred,
-            first_level: self.first_level_in(&nodes),
-            journal,
+            first_level: self.first_level_in(nodes),
             refusals: self.refusals,
             ground: self.ground.clone(),
             ..Mesh::default()
         }
     }
 
-    pub(super) fn first_level_in(&self, nodes: &[u32]) -> Vec<u16> {
+    fn first_level_in(&self, nodes: &[u32]) -> Vec<u16> {
         if self.first_level.is_empty() {
             return Vec::new();
         }
         nodes.iter().map(|&n| self.first_level(NodeId(n))).collect()
     }
 
-    /// A copy for looking at: without the journal, which may be many times as large.
+    /// A copy for display, without the journal, which may be many times as large.
     #[must_use]
     pub fn without_journal(&self) -> Mesh {
-        Mesh {
-            uv: self.uv.clone(),
-            metric: self.metric.clone(),
-            anchor: self.anchor.clone(),
-            point: self.point.clone(),
-            origin: self.origin.clone(),
-            twin: self.twin.clone(),
-            sides: self.sides.clone(),
-            region: self.region.clone(),
-            level: self.level.clone(),
-            deferred: self.deferred.clone(),
-            first_level: self.first_level.clone(),
-            free_nodes: self.free_nodes.clone(),
-            free_elements: self.free_elements.clone(),
-            closed: self.closed,
-            refusals: self.refusals,
-            journal: Journal::default(),
-            ground: self.ground.clone(),
-        }
+        let mut copy = Mesh::default();
+        copy.become_same(self);
+        copy
     }
 
-    /// Appends the canonical serialisation of the state: every array and both free lists, little-endian. Two meshes are
-    /// the same state exactly where these bytes are equal. (The journal is history, not state.)
+    /// Appends the canonical serialisation of the state: all arrays and both free lists, little-endian. Two meshes have
+    /// the same state if and only if these bytes are equal. (The journal is history, not state.)
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         let mut number = |n: u64| bytes.extend_from_slice(&n.to_le_bytes());
         number(self.uv.len() as u64);

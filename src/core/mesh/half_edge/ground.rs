@@ -1,4 +1,4 @@
-//! What a mesh lies on: the surfaces of its faces, and places, normals and sizes in space.
+//! The geometry of a mesh in space: the surfaces of its faces, and the positions, normals and sizes of its nodes.
 
 use std::sync::Arc;
 
@@ -8,27 +8,27 @@ use super::Mesh;
 use crate::core::geometry::atlas::Atlas;
 use crate::core::mesh::ids::NodeId;
 
-/// The surfaces on which a mesh lies, and where its points on curves are in space: the same for all faces that share them.
+/// The surfaces on which a mesh lies, and the positions of its boundary points in space, which all faces share.
 #[derive(Debug)]
 pub struct Ground {
     /// The charts of all faces.
     pub atlas: Arc<Atlas>,
-    /// The place of each point of a fixed node.
+    /// The position of each output point of a fixed node.
     pub points: Vec<DVec3>,
 }
 
 impl Mesh {
-    /// Lays the mesh on surfaces.
+    /// Places the mesh on surfaces.
     pub fn set_ground(&mut self, ground: Arc<Ground>) {
         self.ground = Some(ground);
     }
 
-    /// The surfaces on which it lies; none in the plane.
+    /// The surfaces on which it lies; `None` in the plane.
     pub fn ground(&self) -> Option<&Arc<Ground>> {
         self.ground.as_ref()
     }
 
-    /// The place of a node in space; z is 0 in the plane.
+    /// The position of a node in space; z is 0 in the plane.
     pub fn xyz(&self, node: NodeId) -> DVec3 {
         match (&self.ground, self.point(node)) {
             (None, _) => self.uv(node).extend(0.0),
@@ -43,7 +43,7 @@ impl Mesh {
     }
 
     /// The smallest target size at a node, in units of length: on surfaces that of the intrinsic eigenvalues, of M
-    /// against `J^T J` (spec 1, on eq. 6).
+    /// against `J^T J` (docs/algorithm.md, "The H-value").
     #[inline]
     pub fn smallest_size(&self, node: NodeId) -> f64 {
         match &self.ground {

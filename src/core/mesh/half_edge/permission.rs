@@ -1,4 +1,4 @@
-//! Whether the mesh permits an operation, where refusals are injected.
+//! Permission for operations, which injected refusals may deny.
 
 use glam::DVec2;
 
@@ -7,16 +7,16 @@ use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::refusals::{Operation, Refusal, Refusals};
 
 impl Mesh {
-    /// Lets operations fail from now on as `refusals` says; `None`, as in every new mesh, lets all succeed that can. For
-    /// tests of what depends on operations that may fail.
+    /// Makes operations fail from now on as `refusals` determines; `None`, the default, refuses nothing. For tests of
+    /// code that depends on operations that may fail.
     pub fn set_refusals(&mut self, refusals: Option<Refusals>) {
         self.refusals = refusals;
     }
 
-    /// Asks whether an operation at some nodes may be done.
+    /// Permits an operation at some nodes.
     ///
     /// # Errors
-    /// [`Refusal::Injected`], where refusals are set.
+    /// [`Refusal::Injected`], if refusals are set.
     #[inline]
     pub(in crate::core) fn permit(&self, operation: Operation, nodes: &[NodeId]) -> Result<(), Refusal> {
         match &self.refusals {
@@ -31,10 +31,10 @@ impl Mesh {
         if refusals.refuses(operation, words) { Err(Refusal::Injected) } else { Ok(()) }
     }
 
-    /// Asks whether a node may move to `uv`.
+    /// Permits the move of a node to `uv`.
     ///
     /// # Errors
-    /// [`Refusal::Injected`], where refusals are set.
+    /// [`Refusal::Injected`], if refusals are set.
     #[inline]
     pub(in crate::core) fn permit_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
         match &self.refusals {
@@ -47,7 +47,7 @@ impl Mesh {
         }
     }
 
-    /// Whether an operation on two neighbouring triangles, in either order, may be done.
+    /// Whether an operation on two neighbouring triangles, in either order, is permitted.
     pub(in crate::core) fn permits_pair(&self, operation: Operation, [t, u]: [ElementId; 2]) -> bool {
         let words = [t.min(u), t.max(u)].map(|e| u64::from(e.0));
         !self.refusals.is_some_and(|refusals| refusals.refuses(operation, words))

@@ -1,8 +1,8 @@
-//! The setters: every change of the mesh's arrays passes here and is written down.
+//! The setters: every change of the arrays of the mesh goes through them, and they record it in the journal.
 
 use glam::DVec2;
 
-use super::taking_back::Element;
+use super::slots::Element;
 use super::{Mesh, NONE};
 use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
@@ -21,7 +21,7 @@ impl Mesh {
         self.journal.note(Entry::Twin(h, old));
     }
 
-    /// Makes two half-edges each other's twins, or makes the first a boundary and the anchor of its node.
+    /// Makes two half-edges twins, or makes the first one a boundary and the anchor of its node.
     #[inline]
     pub(in crate::core::mesh) fn hook(&mut self, h: HalfEdgeId, twin: Option<HalfEdgeId>) {
         self.set_twin(h, twin);
@@ -43,7 +43,7 @@ impl Mesh {
         self.journal.note(Entry::Region(e, old));
     }
 
-    /// Gives a quadrilateral its level.
+    /// Sets the level of a quadrilateral.
     #[inline]
     pub(in crate::core) fn set_level(&mut self, e: ElementId, level: u16) {
         if self.level[e.index()] != level {
@@ -58,8 +58,8 @@ impl Mesh {
         self.first_level.get(node.index()).copied().unwrap_or(0)
     }
 
-    /// Gives the boundary segment that starts at a node another level than 0: part of the mesh as it is given, and so not
-    /// of the journal.
+    /// Sets the level of the boundary segment that starts at a node. It belongs to the initial mesh, so the journal
+    /// does not record it.
     pub(in crate::core) fn set_first_level(&mut self, node: NodeId, level: u16) {
         if self.first_level.len() <= node.index() {
             self.first_level.resize(self.uv.len(), 0);
@@ -67,7 +67,7 @@ impl Mesh {
         self.first_level[node.index()] = level;
     }
 
-    /// Puts a front segment off, or takes it up again.
+    /// Defers a front segment, or reactivates it.
     #[inline]
     pub(in crate::core) fn set_deferred(&mut self, h: HalfEdgeId, deferred: bool) {
         if self.deferred[h.index()] != deferred {
@@ -82,7 +82,7 @@ impl Mesh {
         self.journal.note(Entry::Anchor(node, old));
     }
 
-    /// Lets a free node be walked from a half-edge that leaves it; a fixed one keeps its boundary half-edge.
+    /// Starts the fan of a free node at a half-edge that leaves it; a fixed node keeps its boundary half-edge.
     #[inline]
     pub(in crate::core::mesh) fn reanchor(&mut self, h: HalfEdgeId) {
         let node = self.origin(h);
@@ -91,7 +91,7 @@ impl Mesh {
         }
     }
 
-    /// Moves a node and gives it the metric of its new place.
+    /// Sets the position of a node and its metric there.
     #[inline]
     pub(in crate::core::mesh) fn set_place(&mut self, node: NodeId, uv: DVec2, metric: Metric2) {
         let old = std::mem::replace(&mut self.uv[node.index()], uv);
@@ -100,7 +100,7 @@ impl Mesh {
         self.journal.note(Entry::Metric(node, old));
     }
 
-    /// Makes a free node that no element uses yet.
+    /// Creates a free node without elements.
     pub(in crate::core::mesh) fn new_node(&mut self, uv: DVec2, metric: Metric2) -> NodeId {
         if self.free_nodes.len() > self.closed[0] as usize
             && let Some(node) = self.free_nodes.pop()
@@ -113,7 +113,7 @@ impl Mesh {
         NodeId(self.uv.len() as u32 - 1)
     }
 
-    /// Makes a tombstone of a free node that no element uses any more.
+    /// Turns a free node without elements into a tombstone.
     pub(in crate::core::mesh) fn free_node(&mut self, node: NodeId) {
         debug_assert!(!self.is_fixed(node));
         let old = std::mem::replace(&mut self.anchor[node.index()], NONE);
@@ -122,7 +122,7 @@ impl Mesh {
         self.journal.note(Entry::NodeFreed);
     }
 
-    /// Makes an element without nodes or twins yet.
+    /// Creates an element without nodes or twins.
     pub(in crate::core::mesh) fn new_element(&mut self, sides: u8, region: u32) -> ElementId {
         if self.free_elements.len() > self.closed[1] as usize
             && let Some(e) = self.free_elements.pop()
@@ -138,15 +138,15 @@ impl Mesh {
         ElementId(self.sides.len() as u32 - 1)
     }
 
-    /// Makes a tombstone of an element.
+    /// Turns an element into a tombstone.
     pub(in crate::core::mesh) fn free_element(&mut self, e: ElementId) {
         self.set_sides(e, 0);
         self.free_elements.push(e);
         self.journal.note(Entry::ElementFreed);
     }
 
-    /// Lets what is free now stay so: what is made from now on gets slots of its own. So a face that is converted after another has
-    /// the ids that it would have alone, in their order.
+    /// Closes the free lists: slots that are free now are not reused, so that a face converted after another one gets
+    /// the same ids in the same order as it would alone.
     pub(in crate::core) fn close_free_lists(&mut self) {
         let closed = [self.free_nodes.len() as u32, self.free_elements.len() as u32];
         let old = std::mem::replace(&mut self.closed, closed);

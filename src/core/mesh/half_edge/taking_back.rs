@@ -1,35 +1,22 @@
-//! Taking back and doing again: the mesh's side of the journal.
-
-use glam::DVec2;
+//! Undo and redo of the changes in the journal.
 
 use super::Mesh;
-use crate::core::kernel::tensor::Metric2;
+use super::slots::{Element, Node};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::journal::{Entry, Journal, Mark};
 
-/// What stands in the slots of an element.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Element {
-    pub(super) origin: [u32; 4],
-    pub(super) twin: [u32; 4],
-    pub(super) deferred: [bool; 4],
-    pub(super) sides: u8,
-    pub(super) region: u32,
-    pub(super) level: u16,
-}
-
-/// A change that was taken back, with what is needed to do it again.
+/// An undone change, with what is needed to redo it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Undone {
-    /// A value; the entry holds what stood there before it was put back.
+    /// A value; the entry has the value before the undo.
     Changed(Entry),
-    /// A node at the end: place, metric, anchor, point.
-    NodeAppended((DVec2, Metric2, u32, u32)),
+    /// A node at the end: position, metric, anchor, point.
+    NodeAppended(Node),
     /// An element at the end.
     ElementAppended(Element),
-    /// The last free node was taken into use.
+    /// The last free node was reused.
     NodeTaken,
-    /// The last free element was taken into use.
+    /// The last free element was reused.
     ElementTaken,
     /// A node was freed.
     NodeFreed(NodeId),
@@ -38,7 +25,7 @@ pub enum Undone {
 }
 
 impl Mesh {
-    /// The present place of the journal, to take back to.
+    /// The current position of the journal, for a later [`take_back`](Mesh::take_back).
     pub fn mark(&self) -> Mark {
         self.journal.mark()
     }
@@ -53,24 +40,24 @@ impl Mesh {
         self.journal.set_recording(recording);
     }
 
-    /// Keeps what was done and forgets how it was before.
+    /// Makes all changes final by forgetting the journal.
     pub fn commit(&mut self) {
         self.journal.forget();
     }
 
-    /// Keeps what was done before the mark and forgets how it was before.
+    /// Makes all changes before the mark final.
     pub(in crate::core) fn forget_before(&mut self, mark: Mark) {
         self.journal.forget_before(mark);
     }
 
-    /// Takes back everything that was done after the mark, exactly: the arrays are the same to the last byte.
+    /// Undoes all changes after the mark exactly: the arrays are the same to the last byte.
     pub fn take_back(&mut self, mark: Mark) {
         while let Some(entry) = self.journal.pop(mark) {
             self.undo(entry);
         }
     }
 
-    /// Takes back everything that was done after the mark, and returns what [`redo`](Mesh::redo) needs to do it again.
+    /// Undoes all changes after the mark, and returns what [`redo`](Mesh::redo) needs.
     pub fn take_back_to_redo(&mut self, mark: Mark) -> Vec<Undone> {
         let mut undone = Vec::with_capacity(self.journal.len_since(mark));
         while let Some(entry) = self.journal.pop(mark) {
@@ -79,25 +66,25 @@ impl Mesh {
         undone
     }
 
-    /// Does again what was taken back, journal entries included: arrays and journal are the same to the last byte as
-    /// before. Nothing may have changed between the two.
+    /// Redoes undone changes, including their journal entries: arrays and journal are the same to the last byte as
+    /// before. Nothing may have changed in between.
     pub fn redo(&mut self, undone: Vec<Undone>) {
         for change in undone.into_iter().rev() {
             match change {
                 Undone::Changed(entry) => {
                     let Undone::Changed(old) = self.undo(entry) else {
-                        unreachable!("a change of a value is one again")
+                        unreachable!("undoing a changed value changes a value")
                     };
                     self.journal.note(old);
                 }
                 Undone::NodeAppended(node) => self.append_node(node),
                 Undone::ElementAppended(element) => self.append_element(&element),
                 Undone::NodeTaken => {
-                    let node = self.free_nodes.pop().expect("it was put back when it was undone");
+                    let node = self.free_nodes.pop().expect("the undo put it back");
                     self.journal.note(Entry::NodeTaken(node));
                 }
                 Undone::ElementTaken => {
-                    let e = self.free_elements.pop().expect("it was put back when it was undone");
+                    let e = self.free_elements.pop().expect("the undo put it back");
                     self.journal.note(Entry::ElementTaken(e));
                 }
                 Undone::NodeFreed(node) => {
@@ -112,7 +99,7 @@ impl Mesh {
         }
     }
 
-    /// Puts the old value of an entry back; returns what was there instead.
+    /// Restores the old value of an entry; returns the value that it replaces.
     #[inline]
     fn undo(&mut self, entry: Entry) -> Undone {
         use std::mem::replace;
@@ -129,7 +116,7 @@ impl Mesh {
             Entry::Anchor(n, old) => Entry::Anchor(n, replace(&mut self.anchor[n.index()], old)),
             Entry::NodeAppended => {
                 let last = self.uv.len() - 1;
-                let node = (self.uv[last], self.metric[last], self.anchor[last], self.point[last]);
+                let node = self.node_slot(NodeId(last as u32));
                 self.uv.truncate(last);
                 self.metric.truncate(last);
                 self.anchor.truncate(last);
@@ -138,21 +125,10 @@ impl Mesh {
             }
             Entry::ElementAppended => {
                 let last = self.sides.len() - 1;
-                let slots = 4 * last..4 * last + 4;
-                let four = |array: &[u32]| {
-                    [array[slots.start], array[slots.start + 1], array[slots.start + 2], array[slots.start + 3]]
-                };
-                let element = Element {
-                    origin: four(&self.origin),
-                    twin: four(&self.twin),
-                    deferred: std::array::from_fn(|k| self.deferred[slots.start + k]),
-                    sides: self.sides[last],
-                    region: self.region[last],
-                    level: self.level[last],
-                };
-                self.origin.truncate(slots.start);
-                self.twin.truncate(slots.start);
-                self.deferred.truncate(slots.start);
+                let element = self.element_slot(ElementId(last as u32));
+                self.origin.truncate(4 * last);
+                self.twin.truncate(4 * last);
+                self.deferred.truncate(4 * last);
                 self.sides.truncate(last);
                 self.region.truncate(last);
                 self.level.truncate(last);
@@ -177,7 +153,7 @@ impl Mesh {
         })
     }
 
-    pub(super) fn append_node(&mut self, (uv, metric, anchor, point): (DVec2, Metric2, u32, u32)) {
+    pub(super) fn append_node(&mut self, (uv, metric, anchor, point): Node) {
         self.uv.push(uv);
         self.metric.push(metric);
         self.anchor.push(anchor);

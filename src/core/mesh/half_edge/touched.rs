@@ -1,11 +1,11 @@
-//! What was touched: the ids of nodes and elements that entries of the journal name, each once.
+//! The touched nodes and elements: the ids in entries of the journal, each once.
 
 use super::{Mesh, Undone};
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::journal::{Entry, Mark};
 
-/// Nodes and elements that may be other than they were: those whose place, metric or elements changed, those whose sides or
-/// neighbours changed. What came into being or went is among them; a slot that is gone from the end is not.
+/// Nodes and elements that may have changed: nodes with another position, metric or fan, elements with other sides or
+/// neighbours. They include new and removed ones, but not slots removed from the end.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
     nodes: Vec<NodeId>,
@@ -15,12 +15,12 @@ pub struct Touched {
 }
 
 impl Touched {
-    /// The nodes, in the order in which they were touched first.
+    /// The nodes, in the order in which they were first touched.
     pub fn nodes(&self) -> &[NodeId] {
         &self.nodes
     }
 
-    /// The elements, in the order in which they were touched first.
+    /// The elements, in the order in which they were first touched.
     pub fn elements(&self) -> &[ElementId] {
         &self.elements
     }
@@ -30,7 +30,7 @@ impl Touched {
         self.nodes.is_empty() && self.elements.is_empty()
     }
 
-    /// Forgets all.
+    /// Removes all ids.
     pub fn clear(&mut self) {
         for node in self.nodes.drain(..) {
             self.node_seen[node.index()] = false;
@@ -40,20 +40,20 @@ impl Touched {
         }
     }
 
-    /// Notes nodes and elements.
+    /// Adds nodes and elements.
     pub fn note_ids(&mut self, nodes: &[NodeId], elements: &[ElementId]) {
         nodes.iter().for_each(|node| self.node(*node));
         elements.iter().for_each(|element| self.element(*element));
     }
 
-    /// Notes what the mesh's journal holds since a mark.
+    /// Adds what the entries of the mesh's journal after a mark touch.
     pub fn note_since(&mut self, mesh: &Mesh, mark: Mark) {
         for entry in mesh.journal().since(mark) {
             self.note(mesh, entry);
         }
     }
 
-    /// Notes what was taken back.
+    /// Adds what undone changes touch.
     pub fn note_undone(&mut self, mesh: &Mesh, undone: &[Undone]) {
         for change in undone {
             if let Undone::Changed(entry) = change {
@@ -62,7 +62,8 @@ impl Touched {
         }
     }
 
-    /// Notes one change. Nodes of an element whose sides change are touched too, those before the change and those after.
+    /// Adds what one change touches. If the sides of an element change, its nodes before and after the change are
+    /// touched too.
     fn note(&mut self, mesh: &Mesh, entry: &Entry) {
         match *entry {
             Entry::Origin(h, old) => {
@@ -81,7 +82,7 @@ impl Touched {
             Entry::Twin(h, _) | Entry::Deferred(h, _) => self.element(h.element()),
             Entry::Region(e, _) | Entry::Level(e, _) | Entry::ElementTaken(e) => self.element(e),
             Entry::Uv(n, _) | Entry::Metric(n, _) | Entry::Anchor(n, _) | Entry::NodeTaken(n) => self.node(n),
-            // What is appended or freed is named by the entries that fill or empty its slot.
+            // Other entries fill or empty the slots that are appended or freed.
             Entry::NodeAppended
             | Entry::ElementAppended
             | Entry::NodeFreed
@@ -109,7 +110,7 @@ impl Touched {
     }
 }
 
-/// Marks a place; says whether it was not yet.
+/// Marks an index; returns whether it was unmarked.
 fn mark(seen: &mut Vec<bool>, index: usize) -> bool {
     if seen.len() <= index {
         seen.resize((index + 1).next_power_of_two(), false);

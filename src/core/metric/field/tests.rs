@@ -66,7 +66,7 @@ fn example_1_is_eq_12() {
     assert!((m.norm2(h1 * across) - 1.0).abs() < 1e-12);
     assert!((m.norm2(h2 * along) - 1.0).abs() < 1e-12);
     assert!(m.inner(across, along).abs() < 1e-12 * m.norm2(along));
-    // On the diagonal it is stretched along it, 15 to 1.
+    // On the diagonal, the sizes along and across it are as 15 to 1.
     let m = sizing.metric(DVec2::splat(0.3)).unwrap();
     assert!((m.norm2(0.005 * across) - 1.0).abs() < 1e-12);
     assert!((m.norm2(0.075 * along) - 1.0).abs() < 1e-12);
@@ -74,7 +74,8 @@ fn example_1_is_eq_12() {
 
 #[test]
 fn example_1_has_the_metric_area_of_the_specification() {
-    // The unit square less a centred disc of radius 0.2: 265.8 (spec, eq. 12), by the midpoint rule.
+    // The unit square less a centred disc of radius 0.2: 265.8 (docs/algorithm.md, "Examples of the paper"), by the
+    // midpoint rule.
     let sizing = sizing(&[example_1()]);
     let n = 400;
     let mut area = 0.0;
@@ -108,7 +109,7 @@ fn missing_directions_are_completed() {
 }
 
 #[test]
-fn values_that_are_no_sizes_are_refused_with_name_value_and_place() {
+fn invalid_sizes_are_refused_with_name_value_and_place() {
     for (h1, message) in [
         ("x-0.27", "h1 = -0.02"),
         ("x-0.25", "h1 = 0 is not positive"),
@@ -125,19 +126,19 @@ fn values_that_are_no_sizes_are_refused_with_name_value_and_place() {
     assert!(sizing(std::slice::from_ref(&parallel)).metric(DVec2::X).is_ok());
     assert!(bad_at(parallel, 0.5, 0.0).contains("parallel"));
     let zero = formula(&[], &["1", "2"], [Some(["x", "y", "0"]), None, None]);
-    assert!(bad_at(zero, 0.0, 0.0).contains("no direction"));
+    assert!(bad_at(zero, 0.0, 0.0).contains("not a direction"));
     assert!(bad_at(formula(&[], &["1", "x"], [None, None, None]), 1e-9, 0.0).contains("factor"));
 }
 
 #[test]
-fn what_a_formula_leaves_open_is_refused_when_compiled() {
+fn incomplete_formulas_are_refused_when_compiled() {
     let fault = |spec| Field::compile(&spec, &curves).expect_err("a fault").to_string();
     let mut h2_only = formula(&[], &["1"], [None, None, None]);
     if let FieldSpec::Formula { sizes, .. } = &mut h2_only {
         sizes.swap(0, 1);
     }
-    assert!(fault(h2_only).contains("neither h1"));
-    assert!(fault(formula(&[], &[], [None, None, None])).contains("neither h1"));
+    assert!(fault(h2_only).contains("must be h1"));
+    assert!(fault(formula(&[], &[], [None, None, None])).contains("must be h1"));
     assert!(fault(formula(&[], &["1"], [Some(["1", "0", "0"]), None, None])).contains("only size"));
     assert!(fault(formula(&[], &["1", "2"], [None, None, Some(["0", "0", "1"])])).contains("g3 alone"));
     let parallel = formula(&[], &["1", "2"], [Some(["1", "1", "0"]), Some(["2", "2", "0"]), None]);
@@ -168,13 +169,13 @@ fn a_boundary_layer_grows_with_the_distance_across_its_curves() {
     let m = alone.metric(DVec2::new(2.03, 0.04)).unwrap();
     let n = DVec2::new(0.6, 0.8);
     assert!((m.norm2((1e-3 + 0.25 * 0.05) * n) - 1.0).abs() < 1e-9);
-    // Rounding beside the wall does not turn the direction.
+    // Rounding beside the wall does not change the direction.
     let m = alone.metric(DVec2::new(0.3, 1e-17)).unwrap();
     assert!((m.uv / m.vv).abs() < 1e-12);
 }
 
 #[test]
-fn a_boundary_layer_without_size_along_leaves_that_to_the_others_in_any_order() {
+fn a_boundary_layer_without_size_along_takes_that_of_the_other_fields_in_any_order() {
     let uniform = FieldSpec::Uniform { h: 0.2 };
     for specs in [[uniform.clone(), wall(None, None)], [wall(None, None), uniform]] {
         let m = sizing(&specs).metric(DVec2::new(1.0, 0.01)).unwrap();
@@ -202,7 +203,7 @@ fn bad_boundary_layers_are_refused() {
     assert!(fault(|_, growth, _, _| *growth = 0.9).contains("growth = 0.9"));
     assert!(fault(|_, growth, _, _| *growth = f64::NAN).contains("growth"));
     assert!(fault(|_, _, far, _| *far = Some(1e-4)).contains("far is smaller"));
-    assert!(fault(|_, _, _, curves| curves.clear()).contains("no length"));
+    assert!(fault(|_, _, _, curves| curves.clear()).contains("zero length"));
     let unknown = fault(|_, _, _, curves| curves[0] = "wal".into());
     assert!(unknown.starts_with("case.toml, line 9: ") && unknown.contains("\"wal\""), "{unknown}");
 }
@@ -252,7 +253,7 @@ fn a_table_is_log_euclidean_between_its_nodes_and_clamped_outside() {
 }
 
 #[test]
-fn a_table_answers_the_same_bits_whatever_was_asked_before() {
+fn a_table_gives_the_same_bits_whatever_was_evaluated_before() {
     let (points, triangles, metrics) = table(6);
     let sizing = Sizing::new(vec![Field::table(&points, &triangles, metrics).unwrap()], 1.0);
     let places: Vec<DVec2> = (0..200).map(|k| points[(k * 7) % points.len()] * 0.99).collect();

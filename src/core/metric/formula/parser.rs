@@ -1,7 +1,8 @@
-//! From the text of a formula to its graph.
+//! The parser of formulas: from text to the graph.
 
 use super::{CONSTANTS, DEEPEST, FUNCTIONS, Graph, Op};
 use crate::core::fault::Fault;
+use crate::core::kernel::spelling::suggestion;
 
 /// Recursive descent over one expression.
 pub(super) struct Parser<'a> {
@@ -31,20 +32,20 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// A syntax error at the present column.
+    /// A syntax error at the current column.
     fn syntax(&self, what: &str) -> Fault {
         let column = self.text[..self.at].chars().count() + 1;
         Fault::new(format!("{} = \"{}\": {what} at column {column}", self.name, self.text))
     }
 
-    /// The next character that is not white.
+    /// The next character that is not white space.
     fn peek(&mut self) -> Option<char> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();
         self.text[self.at..].chars().next()
     }
 
-    /// Steps over `wanted` if it comes next.
+    /// Skips `wanted` if it comes next.
     fn take(&mut self, wanted: char) -> bool {
         let found = self.peek() == Some(wanted);
         if found {
@@ -85,7 +86,7 @@ impl<'a> Parser<'a> {
     fn signed(&mut self) -> Result<u32, Fault> {
         self.depth += 1;
         if self.depth > DEEPEST {
-            return Err(self.syntax("parentheses, signs or exponents are too deep within each other"));
+            return Err(self.syntax("parentheses, signs or exponents are nested too deeply"));
         }
         let value = if self.take('-') {
             let value = self.signed()?;
@@ -117,7 +118,7 @@ impl<'a> Parser<'a> {
             Some(c) if c.is_alphabetic() || c == '_' => self.named(),
             Some(c) => Err(self.syntax(&format!("a number, a name or a parenthesis is missing before '{c}'"))),
             None if self.text.trim().is_empty() => Err(Fault::new(format!("{} is an empty formula", self.name))),
-            None => Err(self.syntax("something is missing")),
+            None => Err(self.syntax("an operand is missing")),
         }
     }
 
@@ -127,7 +128,7 @@ impl<'a> Parser<'a> {
         }
         let what = match self.peek() {
             None => "a closing parenthesis is missing",
-            Some(',') => "a comma stands where there is no function's list of arguments",
+            Some(',') => "a comma is outside a list of arguments",
             Some(_) => "an operator or a closing parenthesis is missing",
         };
         Err(self.syntax(what))
@@ -181,15 +182,9 @@ impl<'a> Parser<'a> {
         }
         let known = self.names.iter().map(|n| n.0);
         let known = known.chain(FUNCTIONS.iter().map(|f| f.0)).chain(CONSTANTS.iter().map(|c| c.0));
-        let nearest = known
-            .map(|k| (strsim::damerau_levenshtein(&name.to_lowercase(), &k.to_lowercase()), k))
-            .min_by_key(|&(distance, _)| distance);
-        match nearest {
-            Some((distance, k)) if distance <= 2 && distance < name.chars().count() => {
-                fault.remedy(format!("Is \"{k}\" meant?"))
-            }
-            _ => fault.remedy("Known are x, y, z, u, v, pi, e, the functions and the helpers defined before"),
-        }
+        fault.remedy(suggestion(name, known).unwrap_or_else(|| {
+            "Known names are x, y, z, u, v, pi, e, the functions and the helpers defined before".to_owned()
+        }))
     }
 
     fn call(&mut self, name: &str, op: Op, arity: usize) -> Result<u32, Fault> {

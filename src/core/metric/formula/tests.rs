@@ -96,7 +96,7 @@ fn helpers_are_shared_and_computed_once() {
     assert_eq!(program.constant(0), None);
     assert_eq!(program.constant(2), Some(1.0));
     assert_eq!(program.constant(3), None);
-    assert!(program.slots < VARIABLES.len() + program.constants.len() + 5, "slots are given back: {}", program.slots);
+    assert!(program.slots < VARIABLES.len() + program.constants.len() + 5, "registers are reused: {}", program.slots);
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn an_output_may_be_a_variable_or_another_output() {
 }
 
 #[test]
-fn a_program_larger_than_the_stack_file_gives_the_same() {
+fn a_program_with_registers_on_the_heap_gives_the_same() {
     let many: Vec<String> = (0..100).map(|i| format!("{i}.25*x^{i}.5")).collect();
     let expected = (0..100).fold(0.0, |sum, i| {
         let (i, exponent) = (f64::from(i) + 0.25, f64::from(i) + 0.5);
@@ -130,11 +130,11 @@ fn errors_name_the_formula_the_column_and_the_remedy() {
         ("2 3", &["an operator is missing", "column 3"]),
         ("sin x", &["sin is not in parentheses"]),
         ("x(2)", &["\"x\" is not a function"]),
-        ("phy*2", &["\"phy\" is unknown", "Is \"phi\" meant?"]),
-        ("sine(x)", &["\"sine\" is unknown", "Is \"sin\" meant?"]),
-        ("Pi", &["Is \"pi\" meant?"]),
+        ("phy*2", &["\"phy\" is unknown", "Did you mean \"phi\"?"]),
+        ("sine(x)", &["\"sine\" is unknown", "Did you mean \"sin\"?"]),
+        ("Pi", &["Did you mean \"pi\"?"]),
         ("log(x)", &["ln"]),
-        ("zebra", &["\"zebra\" is unknown", "Known are"]),
+        ("zebra", &["\"zebra\" is unknown", "Known names are"]),
         ("atan2(x)", &["atan2 takes 2 arguments, not 1"]),
         ("min(x)", &["min takes 2 arguments, not 1"]),
         ("sin(x, y)", &["sin takes 1 argument, not 2"]),
@@ -162,9 +162,9 @@ fn helpers_with_bad_names_or_out_of_order_are_refused() {
         let helpers: Vec<_> = helpers.iter().map(|h| (h.0.to_string(), h.1.to_string())).collect();
         Program::compile(&helpers, &[("h1", "1")]).expect_err("bad helper").to_string()
     };
-    assert!(fault(&[("x", "1")]).contains("has a meaning already"));
-    assert!(fault(&[("sin", "1")]).contains("has a meaning already"));
-    assert!(fault(&[("e", "1")]).contains("has a meaning already"));
+    assert!(fault(&[("x", "1")]).contains("already has a meaning"));
+    assert!(fault(&[("sin", "1")]).contains("already has a meaning"));
+    assert!(fault(&[("e", "1")]).contains("already has a meaning"));
     assert!(fault(&[("a", "1"), ("a", "2")]).contains("Two helper"));
     assert!(fault(&[("2a", "1")]).contains("cannot name"));
     assert!(fault(&[("", "1")]).contains("cannot name"));

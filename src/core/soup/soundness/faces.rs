@@ -1,11 +1,11 @@
-//! Triangles and quadrilaterals of a mesh file as one list, and their half-edges by number.
+//! Triangles and quadrilaterals of a mesh file as one list, with numbered half-edges.
 
 use glam::DVec3;
 
 use crate::core::soup::mesh_file::MeshFile;
 
-/// All elements: triangles first, quadrilaterals after them. Half-edge `4 * element + corner` runs from that corner to
-/// the next one; those of a triangle end at corner 2.
+/// All elements, triangles before quadrilaterals. Half-edge `4 * element + corner` runs from that corner to the next
+/// one; a triangle has corners 0 to 2.
 pub struct Faces<'a> {
     mesh: &'a MeshFile,
     flat: bool,
@@ -42,7 +42,7 @@ impl<'a> Faces<'a> {
         }
     }
 
-    /// The group of an element; 0 where the file has none.
+    /// The tag of an element's group; 0 without one.
     #[inline]
     pub fn tag(&self, element: usize) -> u32 {
         let triangles = self.mesh.triangles.len();
@@ -58,7 +58,7 @@ impl<'a> Faces<'a> {
         if corner + 1 == sides { 4 * element } else { half_edge + 1 }
     }
 
-    /// The nodes between which a half-edge runs.
+    /// Origin and destination of a half-edge.
     #[inline]
     pub fn ends(&self, half_edge: usize) -> (u32, u32) {
         let corners = self.corners(half_edge / 4);

@@ -1,4 +1,4 @@
-//! Nodes at the place of others, and nodes that hang in edges.
+//! Coincident nodes and hanging nodes.
 
 use glam::DVec3;
 use rstar::primitives::GeomWithData;
@@ -8,19 +8,19 @@ use super::faces::Faces;
 use super::sides::Sides;
 use super::{Defect, Found};
 
-/// Nodes nearer than this part of the mesh's diagonal lie at the same place.
-const SAME_PLACE: f64 = 1e-9;
-/// A node nearer to an edge than this part of the edge's length hangs in it.
-const IN_EDGE: f64 = 1e-7;
+/// Nodes closer than this fraction of the mesh's diagonal coincide.
+const COINCIDENT: f64 = 1e-9;
+/// A node closer to an edge than this fraction of the edge's length hangs on it.
+const ON_EDGE: f64 = 1e-7;
 
-/// For each node the first node at its place (itself, nearly always).
+/// Notes coincident and hanging nodes. Returns for each node the first one at its position (usually itself).
 pub fn examine(faces: &Faces, sides: &Sides, found: &mut Found) -> Vec<u32> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let mut nodes: Vec<u32> = (0..faces.nodes() as u32).filter(|&node| sides.used[node as usize]).collect();
     for &node in &nodes {
         (low, high) = (low.min(faces.point(node)), high.max(faces.point(node)));
     }
-    let tolerance = SAME_PLACE * low.distance(high);
+    let tolerance = COINCIDENT * low.distance(high);
     let mut spot: Vec<u32> = (0..faces.nodes() as u32).collect();
     let mut together = Vec::new();
     group(faces, &mut nodes, 0, 0, tolerance, &mut |group| {
@@ -39,9 +39,9 @@ pub fn examine(faces: &Faces, sides: &Sides, found: &mut Found) -> Vec<u32> {
     spot
 }
 
-/// Hands every group of nodes that lie together to `visit`: sorts along one axis, cuts at gaps, and goes on along the next
-/// axis within each piece, until three axes in a row have not cut. Unlike rounding to a grid, no pair is missed for
-/// lying on two sides of a grid line.
+/// Calls `visit` with every group of coincident nodes. Sorts along one axis, splits at gaps, and recurses along the
+/// next axis within each piece, until three axes in a row have not split it. Unlike rounding to a grid, this misses no
+/// pair on opposite sides of a grid line.
 fn group(
     faces: &Faces,
     nodes: &mut [u32],
@@ -53,7 +53,7 @@ fn group(
     if nodes.len() < 2 {
         return;
     }
-    // Only a staircase in steps of the tolerance, which is no mesh, would go on for long.
+    // Only a staircase in steps of the tolerance, which is no mesh, would recurse this deeply.
     if uncut == 3 || depth == 300 {
         visit(nodes);
         return;
@@ -61,7 +61,7 @@ fn group(
     let axis = depth % 3;
     let at = |node: u32| faces.point(node)[axis];
     if !nodes.is_sorted_by(|&a, &b| at(a) <= at(b)) {
-        // Keys beside the ids: the sort then walks through memory once.
+        // Keys beside the ids, so that the sort reads memory sequentially.
         let mut keyed: Vec<(f64, u32)> = nodes.iter().map(|&node| (at(node), node)).collect();
         keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (node, key) in nodes.iter_mut().zip(keyed) {
@@ -95,7 +95,7 @@ fn hanging(faces: &Faces, sides: &Sides, spot: &[u32], found: &mut Found) {
         let (p_a, p_b) = (faces.point(a), faces.point(b));
         let along = p_b - p_a;
         let length = along.length();
-        let margin = DVec3::splat(IN_EDGE * length);
+        let margin = DVec3::splat(ON_EDGE * length);
         let (low, high) = (p_a.min(p_b) - margin, p_a.max(p_b) + margin);
         for place in tree.locate_in_envelope(AABB::from_corners(low.to_array(), high.to_array())) {
             let node = place.data;
@@ -104,7 +104,7 @@ fn hanging(faces: &Faces, sides: &Sides, spot: &[u32], found: &mut Found) {
             }
             let p = faces.point(node) - p_a;
             let t = p.dot(along) / (length * length);
-            if t > 1e-6 && t < 1.0 - 1e-6 && (p - t * along).length() < IN_EDGE * length {
+            if t > 1e-6 && t < 1.0 - 1e-6 && (p - t * along).length() < ON_EDGE * length {
                 hanging.push(node);
             }
         }

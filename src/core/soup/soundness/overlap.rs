@@ -1,13 +1,14 @@
-//! Whether a planar mesh covers any place twice.
+//! Whether a planar mesh overlaps itself.
 //!
-//! When all elements are positive, the number of elements over a place is the winding number of the mesh's boundary
-//! around it. That changes across the boundary only. So nothing overlaps exactly when no two boundary edges cross and
-//! the winding number is 1 just inside each of them and 0 just outside. This sees what areas cannot: a mesh that winds
-//! over itself, pieces on top of each other, nodes around which the elements turn twice.
+//! When all elements are positively oriented, the number of elements that cover a point is the winding number of the
+//! mesh's boundary around it, which changes only across the boundary. So the mesh has no overlap exactly when no two
+//! boundary edges cross and the winding number is 1 just inside each of them and 0 just outside. Unlike a comparison of
+//! areas, this detects a mesh that winds over itself, stacked components, and nodes around which the elements turn
+//! twice.
 //!
-//! The winding number is not counted but shown to be right: each edge claims 1 inside and 0 outside, and looks along a
-//! ray to the right. The side of the first edge that it sees must claim what its own side there claims, and 0 is right
-//! where it sees none. As edges do not cross, "sees" has no cycles, and all claims follow from the last one.
+//! The winding number is verified, not computed: each edge claims 1 inside and 0 outside, and casts a ray to the right.
+//! The facing side of the first edge hit must make the same claim; a ray that hits nothing must claim 0. As edges do
+//! not cross, "hits" is acyclic, and all claims follow by induction from the rightmost edge.
 
 use glam::DVec2;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -20,7 +21,7 @@ use crate::core::kernel::predicates::orient;
 
 type Tree = RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>;
 
-/// An edge of the boundary with the mesh on its left.
+/// A boundary edge with the mesh on its left.
 #[derive(Clone, Copy)]
 struct Edge {
     a: u32,
@@ -29,8 +30,8 @@ struct Edge {
     p_b: DVec2,
 }
 
-/// Notes boundary edges that are crossed or covered. `spot` names the first node at the place of each: sides that lie on
-/// each other in opposite directions (cracks, seams) are no boundary.
+/// Notes boundary edges that are crossed or covered. `spot` maps each node to the first one at its position, so that
+/// coincident sides in opposite directions (cracks, seams) cancel.
 pub fn examine(faces: &Faces, sides: &Sides, spot: &[u32], anticlockwise: bool, found: &mut Found) {
     let edges = boundary(faces, sides, spot, anticlockwise, found);
     let boxes = edges
@@ -46,9 +47,9 @@ pub fn examine(faces: &Faces, sides: &Sides, spot: &[u32], anticlockwise: bool, 
     }
 }
 
-/// The boundary of the sum of all elements, by place.
+/// The boundary of the sum of all elements (as a chain), with coincident nodes merged.
 fn boundary(faces: &Faces, sides: &Sides, spot: &[u32], anticlockwise: bool, found: &mut Found) -> Vec<Edge> {
-    // Lower end, upper end, and whether it runs from the lower to the upper one.
+    // Lower node, upper node, and 1 if it runs from the lower to the upper one, otherwise -1.
     let mut runs: Vec<(u32, u32, i64)> = Vec::new();
     for &h in sides.boundary.iter().chain(&sides.odd) {
         let (a, b) = faces.ends(h);
@@ -73,7 +74,7 @@ fn boundary(faces: &Faces, sides: &Sides, spot: &[u32], anticlockwise: bool, fou
     edges
 }
 
-/// Whether another edge crosses this one, both strictly within.
+/// Whether another edge crosses this one, strictly inside both.
 fn crossed(tree: &Tree, edges: &[Edge], edge: &Edge) -> bool {
     let around = AABB::from_corners(edge.p_a.to_array(), edge.p_b.to_array());
     tree.locate_in_envelope_intersecting(around).any(|near| {
@@ -87,20 +88,20 @@ fn crossed(tree: &Tree, edges: &[Edge], edge: &Edge) -> bool {
     })
 }
 
-/// Whether what the edge claims on its right-hand side (of the page) agrees with what can be seen from its middle.
+/// Whether the claim of the edge on its +x side agrees with the first edge hit by a ray from its midpoint.
 fn claim_holds(tree: &Tree, edges: &[Edge], i: usize, right: f64) -> bool {
     let edge = &edges[i];
     let middle = 0.5 * edge.p_a + 0.5 * edge.p_b;
-    // The inside is on the right where the edge runs down; from a level edge the ray looks out above it.
+    // The inside is on the right of an edge that runs down; the ray from a horizontal edge passes just above it.
     let claim = match edge.rises_through(middle.y) {
         Some(rises) => !rises,
         None => edge.p_a.x < edge.p_b.x,
     };
-    // The first edge is looked for in boxes that double in length, so that a far side costs nothing where a near one is.
+    // Search boxes double in length, so that a near hit costs little in a large mesh.
     let mut reach = edge.p_a.distance(edge.p_b);
     loop {
         let end = middle.x + reach;
-        // A length may have underflowed, and an end overflowed.
+        // The length may underflow, and the end overflow.
         let all = reach == 0.0 || end.is_nan() || end >= right;
         let ray = AABB::from_corners(middle.to_array(), [if all { right } else { end }, middle.y]);
         let seen = tree.locate_in_envelope_intersecting(ray).filter(|near| near.data != i);
@@ -110,9 +111,9 @@ fn claim_holds(tree: &Tree, edges: &[Edge], i: usize, right: f64) -> bool {
         });
         let first = seen.reduce(|one, other| if other.is_before(one) { other } else { one });
         match first {
-            // Another edge might be met earlier, outside of the box.
+            // Beyond the box, another edge might be hit earlier.
             Some(first) if !all && first.x_at(middle.y) >= end => {}
-            // Its near side is the inside where it rises.
+            // Its facing side is the inside if it rises.
             Some(first) => return claim == (first.rises_through(middle.y) == Some(true)),
             None if all => return !claim,
             None => {}
@@ -122,7 +123,7 @@ fn claim_holds(tree: &Tree, edges: &[Edge], i: usize, right: f64) -> bool {
 }
 
 impl Edge {
-    /// Whether the edge crosses the level just above `y` upwards (or downwards); `None` where it does not reach it.
+    /// Whether the edge crosses the level just above `y` upwards (or downwards); `None` if it does not cross it.
     fn rises_through(&self, y: f64) -> Option<bool> {
         match (self.p_a.y > y, self.p_b.y > y) {
             (false, true) => Some(true),
@@ -136,10 +137,11 @@ impl Edge {
         if self.p_a.y < self.p_b.y { (self.p_a, self.p_b) } else { (self.p_b, self.p_a) }
     }
 
-    /// Whether this edge lies to the left of another that crosses the same level and does not cross it, exactly.
+    /// Whether this edge lies left of another that crosses the same level but not this edge, exactly.
     fn is_before(&self, other: &Edge) -> bool {
         let ((low, high), (other_low, other_high)) = (self.upwards(), other.upwards());
-        // The lower end that is higher is at a level that both reach; on the other edge, the upper end decides.
+        // Both edges reach the level of the higher of their lower ends; if that end lies on the other edge, the upper
+        // one decides.
         if low.y >= other_low.y {
             let turn = orient(other_low, other_high, low);
             if turn == 0.0 { orient(other_low, other_high, high) > 0.0 } else { turn > 0.0 }
@@ -149,7 +151,7 @@ impl Edge {
         }
     }
 
-    /// Where it crosses a level, about.
+    /// Approximate x where it crosses a level.
     fn x_at(&self, y: f64) -> f64 {
         let (low, high) = self.upwards();
         low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x)

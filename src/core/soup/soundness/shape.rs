@@ -1,6 +1,6 @@
-//! The shape of each element: area, orientation, convexity. On a surface the corners are held against the normals of the
-//! surface, which a file does not have: a direction with which all corners around the node agree, within the same group,
-//! stands for it, if there is one. A corner that agrees with its own quadrilateral will do too.
+//! The shape of each element: area, orientation, convexity. On a surface, corners are compared with the surface normal.
+//! A file has none, so a direction with which all corners of one group around the node agree replaces it, if one
+//! exists. A corner that agrees with its own quadrilateral passes as well.
 
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
@@ -10,15 +10,15 @@ use super::faces::Faces;
 use super::{Defect, Found, Soundness};
 use crate::core::kernel::predicates::orient;
 
-/// An element whose area is below this part of its longest side squared has none.
-const NO_AREA: f64 = 1e-9;
-/// A corner of a curved quadrilateral whose sine is below this is not convex.
+/// An element whose area is below this fraction of its longest side squared counts as zero.
+const ZERO_AREA: f64 = 1e-9;
+/// A corner of a curved quadrilateral is convex if its sine exceeds this.
 const FLAT: f64 = 1e-12;
-/// How often the normal at a node is turned before its corners are given up.
+/// Iterations of the search for a normal at a node.
 const PATIENCE: usize = 200;
 
-/// Notes elements without area, inverted ones and quadrilaterals that are not strictly convex; fills in `planar` and
-/// `area`. Gives back the sense of the mesh in the plane: whether it runs anticlockwise as a whole.
+/// Notes elements without area, inverted ones and quadrilaterals that are not strictly convex; sets `planar` and
+/// `area`. Returns whether the mesh as a whole is oriented anticlockwise in the plane.
 pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> bool {
     let mut height = (f64::INFINITY, f64::NEG_INFINITY);
     let mut sum = 0.0;
@@ -38,7 +38,7 @@ pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> b
         let double = normal(faces, corners);
         let area = 0.5 * double.length();
         soundness.area += area;
-        let defect = if area <= NO_AREA * longest_squared(faces, corners) {
+        let defect = if area <= ZERO_AREA * longest_squared(faces, corners) {
             Some(Defect::ZeroArea)
         } else if soundness.planar {
             in_plane(faces, corners, anticlockwise)
@@ -52,7 +52,7 @@ pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> b
     anticlockwise
 }
 
-/// Twice the (mean) area as a vector along the normal.
+/// Twice the (mean) area vector.
 fn normal(faces: &Faces, corners: &[u32]) -> DVec3 {
     let p = |corner: usize| faces.point(corners[corner]);
     if corners.len() == 3 { (p(1) - p(0)).cross(p(2) - p(0)) } else { (p(2) - p(0)).cross(p(3) - p(1)) }
@@ -63,7 +63,7 @@ fn longest_squared(faces: &Faces, corners: &[u32]) -> f64 {
     (0..corners.len()).map(side).fold(0.0, f64::max)
 }
 
-/// By the exact predicate at each corner.
+/// The defect of an element in the plane, by the exact orientation of each corner.
 fn in_plane(faces: &Faces, corners: &[u32], anticlockwise: bool) -> Option<Defect> {
     let count = corners.len();
     let p = |corner: usize| -> DVec2 { faces.point(corners[corner % count]).truncate() };
@@ -77,13 +77,13 @@ fn in_plane(faces: &Faces, corners: &[u32], anticlockwise: bool) -> Option<Defec
     match (left, not_left) {
         (_, 0) => None,
         (0, _) => Some(Defect::Inverted),
-        // A reflex quadrilateral that runs the other way has one left turn; a bow-tie has two.
+        // An inverted quadrilateral with a reflex corner has one left turn; a bow-tie has two.
         (1, 3) => Some(Defect::Inverted),
         _ => Some(Defect::NotConvex),
     }
 }
 
-/// Directions with which the corners agree, by node and group.
+/// A direction with which the corners agree, by node and group.
 type Normals = FxHashMap<(u32, u32), DVec3>;
 
 fn normals(faces: &Faces) -> Normals {
@@ -101,8 +101,8 @@ fn normals(faces: &Faces) -> Normals {
             .map(|&(_, _, h)| corner_normal(faces, faces.corners(h as usize / 4), h as usize % 4).normalize_or_zero())
             .collect();
         let mut normal = corners.iter().sum::<DVec3>().normalize_or_zero();
-        // Where the mean will not do, it is turned towards the corner that agrees least (the perceptron's rule, which finds
-        // a direction where there is one).
+        // If the mean fails, turn it towards the corner that agrees least (the perceptron rule, which converges if a
+        // direction exists).
         for _ in 0..PATIENCE {
             let worst = corners.iter().copied().min_by(|a, b| a.dot(normal).total_cmp(&b.dot(normal)));
             let Some(worst) = worst.filter(|corner| corner.dot(normal) <= 1e-3) else { break };
@@ -113,14 +113,14 @@ fn normals(faces: &Faces) -> Normals {
     normals
 }
 
-/// The normal between the two sides at a corner, as long as their parallelogram is large.
+/// The normal at a corner; its length is the area of the parallelogram of the two sides.
 fn corner_normal(faces: &Faces, corners: &[u32], i: usize) -> DVec3 {
     let count = corners.len();
     let p = |corner: usize| faces.point(corners[corner % count]);
     (p(i + 1) - p(i)).cross(p(i + count - 1) - p(i))
 }
 
-/// By the normal of each corner against that of the surface there, or of the element itself.
+/// The defect of an element on a surface: each corner's normal against that of the surface there, or of the element.
 fn on_surface(faces: &Faces, corners: &[u32], own: DVec3, around: &dyn Fn(u32) -> DVec3) -> Option<Defect> {
     let count = corners.len();
     let p = |corner: usize| faces.point(corners[corner % count]);

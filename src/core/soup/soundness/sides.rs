@@ -1,15 +1,16 @@
-//! Connectivity: which half-edges share an edge, the fans around nodes, the boundary.
+//! Connectivity: half-edges that share an edge, fans around nodes, the boundary.
 
 use super::faces::Faces;
 use super::{Defect, Found};
+use crate::core::kernel::disjoint_sets::DisjointSets;
 
-/// What the sides of the elements make together.
+/// The connectivity of the elements' sides.
 pub struct Sides {
     /// Number of edges.
     pub edges: u64,
-    /// Half-edges with no other beside them.
+    /// Half-edges without a twin.
     pub boundary: Vec<usize>,
-    /// Half-edges at edges that are neither boundary nor between two elements that agree.
+    /// Half-edges at edges that are neither boundary nor between two consistently oriented elements.
     pub odd: Vec<usize>,
     /// Whether a node belongs to an element.
     pub used: Vec<bool>,
@@ -17,12 +18,12 @@ pub struct Sides {
     pub outer: Vec<bool>,
     /// Number of closed chains of the boundary.
     pub loops: u64,
-    /// Number of pieces that hang together by nodes.
+    /// Number of components, connected through nodes.
     pub components: u64,
 }
 
 impl Sides {
-    /// Finds them and notes what is wrong.
+    /// Builds the connectivity and notes its defects.
     pub fn of(faces: &Faces, found: &mut Found) -> Sides {
         let nodes = faces.nodes();
         let mut sides = Sides {
@@ -35,7 +36,7 @@ impl Sides {
             components: 0,
         };
         elements(faces, &mut sides, found);
-        let mut fans = Forest::new(4 * faces.len());
+        let mut fans = DisjointSets::new(4 * faces.len());
         let mut branching = vec![false; nodes];
         let mut valence = vec![0u32; nodes];
         let (start, list) = by_lower_node(faces);
@@ -58,7 +59,7 @@ impl Sides {
             (sides.outer[a as usize], sides.outer[b as usize]) = (true, true);
         }
         for node in 0..nodes {
-            // An inner node of valence 2 lies between the same two elements on both sides.
+            // An interior node of valence 2 has the same two elements on both sides.
             if sides.used[node] && !sides.outer[node] && !branching[node] && valence[node] == 2 {
                 found.note(Defect::Doublet, node, faces.point(node as u32));
             }
@@ -78,31 +79,31 @@ impl Sides {
         &mut self,
         faces: &Faces,
         group: &[(u32, u32)],
-        fans: &mut Forest,
+        fans: &mut DisjointSets,
         branching: &mut [bool],
         found: &mut Found,
     ) {
         match *group {
             [(_, h)] => self.boundary.push(h as usize),
-            [(_, h), (_, g)] => {
-                let (h, g) = (h as usize, g as usize);
-                let (h_next, g_next) = (faces.next(h), faces.next(g));
+            [(_, fan_h), (_, fan_g)] => {
+                let (h, g) = (fan_h as usize, fan_g as usize);
+                let (h_next, g_next) = (faces.next(h) as u32, faces.next(g) as u32);
                 let (a, _) = faces.ends(h);
                 if faces.ends(g).0 == a {
-                    // Faces of different groups in space may each have a normal of their own.
+                    // In space, groups may be oriented independently.
                     if faces.tag(h / 4) == faces.tag(g / 4) || faces.is_flat() {
                         found.note(Defect::OrientationConflict, a as usize, faces.point(a));
                     } else {
-                        // The boundary cannot be followed through there by its direction.
+                        // The boundary's direction is undefined there.
                         let (a, b) = faces.ends(h);
                         (branching[a as usize], branching[b as usize]) = (true, true);
                     }
                     self.odd.extend([h, g]);
-                    fans.join(h, g);
+                    fans.join(fan_h, fan_g);
                     fans.join(h_next, g_next);
                 } else {
-                    fans.join(h, g_next);
-                    fans.join(h_next, g);
+                    fans.join(fan_h, g_next);
+                    fans.join(h_next, fan_g);
                 }
             }
             _ => {
@@ -115,15 +116,16 @@ impl Sides {
     }
 }
 
-/// Half-edges by the lower of their nodes: where each node's begin, and for each its upper node and number, ascending.
-/// Counting by node and sorting a handful each is several times faster than one sort of all.
+/// Half-edges by the lower of their nodes: the offset of each node's list, and for each half-edge its upper node and
+/// number, ascending. A counting sort by node and a small sort within each is several times faster than one sort of
+/// all.
 fn by_lower_node(faces: &Faces) -> (Vec<u32>, Vec<(u32, u32)>) {
     let mut start = vec![0u32; faces.nodes() + 1];
     let each = |visit: &mut dyn FnMut(u32, u32, usize)| {
         for element in 0..faces.len() {
             for corner in 0..faces.corners(element).len() {
                 let (a, b) = faces.ends(4 * element + corner);
-                // A side from a node to itself is no edge; its element has been noted.
+                // A side from a node to itself is no edge; its element is already noted.
                 if a != b {
                     visit(a.min(b), a.max(b), 4 * element + corner);
                 }
@@ -146,7 +148,7 @@ fn by_lower_node(faces: &Faces) -> (Vec<u32>, Vec<(u32, u32)>) {
     (start, list)
 }
 
-/// Repeated nodes, duplicates, orphans.
+/// Notes repeated nodes, duplicate elements and orphan nodes.
 fn elements(faces: &Faces, sides: &mut Sides, found: &mut Found) {
     let mut sorted: Vec<([u32; 4], u32)> = Vec::with_capacity(faces.len());
     for element in 0..faces.len() {
@@ -172,13 +174,13 @@ fn elements(faces: &Faces, sides: &mut Sides, found: &mut Found) {
     }
 }
 
-/// Nodes with several fans; those on branching edges have them by right.
-fn pinched(faces: &Faces, fans: &mut Forest, branching: &[bool], found: &mut Found) {
+/// Notes nodes with several fans, except at branching edges, where they are expected.
+fn pinched(faces: &Faces, fans: &mut DisjointSets, branching: &[bool], found: &mut Found) {
     let mut count = vec![0u8; faces.nodes()];
     for element in 0..faces.len() {
         for (corner, &node) in faces.corners(element).iter().enumerate() {
-            let h = 4 * element + corner;
-            if fans.root(h) == h {
+            let h = (4 * element + corner) as u32;
+            if fans.find(h) == h {
                 count[node as usize] = count[node as usize].saturating_add(1);
             }
         }
@@ -188,7 +190,7 @@ fn pinched(faces: &Faces, fans: &mut Forest, branching: &[bool], found: &mut Fou
     }
 }
 
-/// Follows the boundary, and says how many closed chains it makes.
+/// Follows the boundary; returns the number of its closed chains.
 fn loops(faces: &Faces, boundary: &[usize], branching: &[bool], found: &mut Found) -> u64 {
     let mut out: Vec<(u32, u32)> = boundary.iter().map(|&h| faces.ends(h)).collect();
     out.sort_unstable();
@@ -206,7 +208,7 @@ fn loops(faces: &Faces, boundary: &[usize], branching: &[bool], found: &mut Foun
         }
     }
     let mut taken = vec![false; out.len()];
-    // How many edges from a node have been taken, kept at the first of them.
+    // Number of edges taken from a node, stored at the first of them.
     let mut used_from = vec![0u32; out.len()];
     let mut loops = 0;
     for begin in 0..out.len() {
@@ -237,42 +239,12 @@ fn loops(faces: &Faces, boundary: &[usize], branching: &[bool], found: &mut Foun
 }
 
 fn components(faces: &Faces, used: &[bool]) -> u64 {
-    let mut forest = Forest::new(faces.nodes());
+    let mut sets = DisjointSets::new(faces.nodes());
     for element in 0..faces.len() {
         let corners = faces.corners(element);
         for &node in &corners[1..] {
-            forest.join(corners[0] as usize, node as usize);
+            sets.join(corners[0], node);
         }
     }
-    (0..faces.nodes()).filter(|&node| used[node] && forest.root(node) == node).count() as u64
-}
-
-/// Disjoint sets.
-struct Forest {
-    parent: Vec<u32>,
-}
-
-impl Forest {
-    fn new(count: usize) -> Self {
-        Forest { parent: (0..count as u32).collect() }
-    }
-
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.parent[i] as usize != i {
-            let up = self.parent[self.parent[i] as usize];
-            self.parent[i] = up;
-            i = up as usize;
-        }
-        i
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        // The lower one leads, so that the result does not depend on the order of joining.
-        if a < b {
-            self.parent[b] = a as u32;
-        } else {
-            self.parent[a] = b as u32;
-        }
-    }
+    (0..faces.nodes()).filter(|&node| used[node] && sets.find(node as u32) == node as u32).count() as u64
 }

@@ -1,6 +1,6 @@
 use super::*;
 
-/// `n` by `n` unit squares, moved by `at`.
+/// `n` by `n` unit squares, translated by `at`.
 fn squares(n: u32, at: DVec3) -> MeshFile {
     let mut mesh = MeshFile::default();
     for j in 0..=n {
@@ -25,7 +25,7 @@ fn with(mut mesh: MeshFile, other: &MeshFile) -> MeshFile {
     mesh
 }
 
-/// A ring of `n` quadrilaterals around the origin that turns by `turns`, its ends joined or not.
+/// A strip of `n` quadrilaterals around the origin over `turns` turns, its ends joined or not.
 fn ring(n: u32, turns: f64, joined: bool) -> MeshFile {
     let mut mesh = MeshFile::default();
     let last = if joined { n } else { n + 1 };
@@ -69,7 +69,7 @@ fn a_ring_and_a_grid_that_runs_clockwise_are_sound() {
 }
 
 #[test]
-fn indices_and_coordinates_out_of_bounds_end_the_examination() {
+fn missing_and_non_finite_nodes_end_the_examination() {
     let mut mesh = squares(1, DVec3::ZERO);
     mesh.quads.push([0, 1, 2, 9]);
     mesh.points[0].x = f64::NAN;
@@ -78,7 +78,7 @@ fn indices_and_coordinates_out_of_bounds_end_the_examination() {
 }
 
 #[test]
-fn triangles_and_other_elements_are_told() {
+fn triangles_and_other_elements_are_reported() {
     let mut mesh = squares(1, DVec3::ZERO);
     mesh.quads.clear();
     mesh.triangles = vec![[0, 1, 3], [0, 3, 2]];
@@ -113,7 +113,7 @@ fn an_edge_of_three_elements_is_branching_and_allowed_on_demand() {
 }
 
 #[test]
-fn an_element_that_runs_against_its_neighbours_is_found() {
+fn an_element_oriented_against_its_neighbours_is_found() {
     let mut mesh = squares(2, DVec3::ZERO);
     mesh.quads[0].reverse();
     let soundness = examine(&mesh);
@@ -125,7 +125,7 @@ fn squares_that_touch_in_a_node_are_pinched() {
     let mut mesh = squares(2, DVec3::ZERO);
     mesh.quads = vec![mesh.quads[0], mesh.quads[3]];
     assert_eq!(defects(&mesh), [(Defect::OrphanNode, 2), (Defect::PinchedNode, 1)]);
-    // Two closed surfaces that touch have no boundary at the node.
+    // Two closed surfaces that touch: the node is not on a boundary.
     let cube = |at: DVec3| {
         let corner = |i: u32| at + DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
         let quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -139,7 +139,7 @@ fn squares_that_touch_in_a_node_are_pinched() {
 }
 
 #[test]
-fn nodes_at_one_place_are_seams_on_the_boundary_and_coincident_inside() {
+fn coincident_nodes_are_seams_on_the_boundary_and_defects_inside() {
     let mesh = with(squares(2, DVec3::ZERO), &squares(2, DVec3::new(2.0, 0.0, 0.0)));
     assert_eq!(defects(&mesh), [(Defect::SeamNode, 6)]);
     assert!(examine(&mesh).verdict(Allow::default()).is_err());
@@ -194,7 +194,7 @@ fn an_inner_node_with_two_edges_is_a_doublet() {
 }
 
 #[test]
-fn meshes_that_cover_a_place_twice_overlap_though_their_areas_agree() {
+fn overlapping_meshes_are_found_though_their_areas_agree() {
     // A spiral of one turn and a half; a ring that turns twice; pieces inside, across, and on top of each other.
     assert_eq!(defects(&ring(18, 1.5, false)).last().map(|it| it.0), Some(Defect::Overlap));
     assert_eq!(examine(&ring(18, 0.9, false)).findings, []);
@@ -219,15 +219,15 @@ fn a_piece_in_the_hole_of_another_does_not_overlap() {
 }
 
 #[test]
-fn a_verdict_tells_what_how_often_and_where() {
+fn a_verdict_names_defects_counts_and_positions() {
     let mut mesh = squares(2, DVec3::ZERO);
     mesh.points[4] = DVec3::new(2.5, 1.0, 0.0);
     mesh.points.push(DVec3::new(7.0, 8.0, 0.0));
     let fault = examine(&mesh).verdict(Allow::default()).unwrap_err();
     assert_eq!(
         fault.to_string(),
-        "The mesh is not sound: 1 node belongs to no element (node 10 at 7, 8, 0); 2 quadrilaterals are not \
-         strictly convex (first element 2 at 1, 0, 0). Leave out the nodes that are not in use."
+        "The mesh is invalid: 1 node belongs to no element (node 10 at 7, 8, 0); 2 quadrilaterals are not \
+         strictly convex (first element 2 at 1, 0, 0). Remove the unused nodes."
     );
 }
 
