@@ -8,6 +8,7 @@ use super::fault::Fault;
 
 /// The stages of a conversion, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Stage {
     /// Reading the case or the mesh, in bytes.
     Read,

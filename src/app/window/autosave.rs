@@ -126,10 +126,10 @@ impl Work {
             None => Keeper::new(slot.path.clone(), run)?,
         };
         let kept = self.keeper.insert(keeper).keep(run);
-        kept.map(drop).map_err(|fault| {
-            let remedy = fault.remedy.clone();
-            let told = Fault { what: format!("The run cannot be autosaved: {}", fault.what), ..fault };
-            told.remedy(format!("{remedy}; autosave tries again, and Ctrl+S saves the run elsewhere"))
+        kept.map(drop).map_err(|mut fault| {
+            fault.what = format!("The run cannot be autosaved: {}", fault.what);
+            fault.remedy += "; autosave tries again, and Ctrl+S saves the run elsewhere";
+            fault
         })
     }
 }

@@ -9,7 +9,7 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::predicates::firm;
 use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::half_edge::Mesh;
@@ -41,6 +41,7 @@ const NOT_MUCH_WORSE: f64 = 0.55;
 
 /// The numbers of operations of an adaptation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Adapted {
     /// Edges divided.
     pub divisions: usize,
@@ -228,6 +229,7 @@ impl Adapter<'_> {
         }
         if mesh.element_count() + 2 > self.most_elements {
             return Err(Fault::new(format!("The metric requires more than {} triangles", self.most_elements))
+                .of_kind(FaultKind::Limit)
                 .at(format!("near ({}, {}), where the smallest size is {}", middle.x, middle.y, metric.min_size()))
                 .remedy("Increase the sizes there, or raise max_quads"));
         }

@@ -1,5 +1,8 @@
-//! How the mesh of a case is used: its triangles or its shape, where it is folded, how far its charts may be stretched,
-//! its scale.
+//! Where the mesh of a case is, and how it is used: its triangles or its shape, where it is folded, how far its charts
+//! may be stretched, its scale.
+
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::table::Table;
 use crate::core::discrete::features::ANGLE;
@@ -7,6 +10,21 @@ use crate::core::discrete::planar_map::StretchBound;
 use crate::core::fault::Fault;
 use crate::core::kernel::tensor::Metric3;
 use crate::core::soup::mesh_file::MeshFile;
+
+/// Where a mesh is.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MeshSource {
+    /// In a file.
+    File {
+        /// The mesh.
+        path: PathBuf,
+        /// Its metric at the nodes (Medit `.sol`).
+        sol: Option<PathBuf>,
+    },
+    /// In memory; runs that start from it cannot be saved.
+    Memory(Arc<MeshFile>),
+}
 
 /// What a mesh is used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,12 +12,13 @@ use super::ply;
 use super::save::{load_watched, save};
 use super::stl;
 use super::vtu;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::progress::{Nobody, Pace, Reading, Watch};
 use crate::core::soup::mesh_file::MeshFile;
 
 /// A mesh format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// Gmsh, `.msh`.
     Msh,
@@ -90,6 +91,10 @@ impl Format {
     /// # Errors
     /// An unknown or missing extension: the fault lists the known ones.
     pub fn from_path(path: &Path) -> Result<Format, Fault> {
+        Format::of_extension(path).map_err(|fault| fault.of_kind(FaultKind::Syntax))
+    }
+
+    fn of_extension(path: &Path) -> Result<Format, Fault> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if let Some(&format) = Format::ALL.iter().find(|format| format.extension() == extension) {
             return Ok(format);
@@ -133,8 +138,8 @@ pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch)
     let sol = sol.or_else(|| (format == Format::Medit && beside.is_file()).then_some(beside.as_path()));
     if let Some(sol) = sol {
         let bytes = load_watched(sol, &pace)?;
-        let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace)?;
-        mesh.metric = Some(metric);
+        let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace);
+        mesh.metric = Some(metric.map_err(|fault| fault.of_kind(FaultKind::Syntax))?);
     }
     Ok(mesh)
 }
@@ -156,7 +161,7 @@ fn read_in(
     pace: &dyn Pace,
 ) -> Result<MeshFile, Fault> {
     if bytes.trim_ascii().is_empty() {
-        return Err(Fault::new("The file is empty").at(name).remedy("Export it again"));
+        return Err(Fault::new("The file is empty").of_kind(FaultKind::Syntax).at(name).remedy("Export it again"));
     }
     let read = match format {
         Format::Msh => msh::read(name, bytes, pace),
@@ -169,7 +174,7 @@ fn read_in(
         Format::Gltf | Format::Glb => gltf::read(name, bytes, folder, pace),
     };
     // A cancelled reader saw only part of the file, and may have reported that as a fault.
-    pace.cancel().check().and(read)
+    pace.cancel().check().and(read.map_err(|fault| fault.of_kind(FaultKind::Syntax)))
 }
 
 /// Writes a mesh to a stream. Medit's metric, a separate file, is not written.

@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::progress::{Nobody, Pace, Reading};
 
 /// Bytes read between two reports of progress.
@@ -176,7 +176,7 @@ fn explain(path: &Path, done: &str, error: &io::Error) -> Fault {
         }
         _ => (format!("It cannot be {done}: {error}"), String::new()),
     };
-    Fault::new(what).at(path.display().to_string()).remedy(remedy)
+    Fault::new(what).of_kind(FaultKind::Io).at(path.display().to_string()).remedy(remedy)
 }
 
 #[cfg(test)]

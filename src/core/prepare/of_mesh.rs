@@ -1,6 +1,5 @@
 //! The background mesh of a mesh that was given: its triangles as they are, or its shape meshed anew.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -11,7 +10,7 @@ use super::of_domain::{FileLines, from_domain};
 use crate::core::background::adapt::Adapted;
 use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::import::import;
-use crate::core::case::{Case, MeshUse, Taking};
+use crate::core::case::{Case, MeshSource, MeshUse, Taking};
 use crate::core::discrete::curvature::curvature_sizes;
 use crate::core::discrete::edges::Triangles;
 use crate::core::discrete::own_triangles::implied_metric_in_space;
@@ -30,15 +29,20 @@ use crate::core::soup::mesh_file::MeshFile;
 /// metric is that of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
 pub(super) fn from_mesh(
     case: &Case,
-    path: &Path,
-    sol: Option<&Path>,
+    source: &MeshSource,
     taking: &Taking,
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     watch.tell(Stage::Read, 0, 0);
-    let mut file = read_mesh_watched(path, sol, watch)?;
+    let (mut file, place) = match source {
+        MeshSource::File { path, sol } => (read_mesh_watched(path, sol.as_deref(), watch)?, path.display().to_string()),
+        MeshSource::Memory(mesh) => {
+            let place = format!("the mesh \"{}\"", case.name);
+            mesh.check_lists().map_err(|fault| fault.at(place.clone()))?;
+            (MeshFile::clone(mesh), place)
+        }
+    };
     taking.scale(&mut file);
-    let place = path.display().to_string();
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
         return from_surface(case, &file, &place, taking, watch);
     }
@@ -78,9 +82,8 @@ pub(super) fn from_mesh(
     Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
-/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are
-/// those of the case's fields; where there are none those given at its points, or those that its triangles have.
-/// `place` is the file's name.
+/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
+/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is what messages call it.
 fn from_surface(
     case: &Case,
     file: &MeshFile,
@@ -89,7 +92,7 @@ fn from_surface(
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     // What the case says of sizes has a place of its own.
-    let here = |fault: Fault| if fault.is_stop { fault } else { fault.at(place) };
+    let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
     let Repaired { mesh, copied, regions, lines, mut repairs } = repair(file, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
     let converts = taking.used == Some(MeshUse::Triangles);

@@ -28,6 +28,7 @@ const NONE: u32 = u32::MAX;
 
 /// The arrays of a mesh.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Export {
     /// Coordinates of each node.
     pub uv: Vec<DVec2>,

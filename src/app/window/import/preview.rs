@@ -106,7 +106,7 @@ impl Preview {
             let mut voice = Voice { tell, wake, cancel: reading, last: None };
             let loaded = load(&path, &mut voice).map(Arc::new);
             let read = loaded.as_ref().ok().cloned();
-            if !matches!(&loaded, Err(fault) if fault.is_stop) {
+            if !matches!(&loaded, Err(fault) if fault.is_stop()) {
                 voice.say(PreviewNews::Loaded(loaded));
             }
             if let Some(loaded) = read {
@@ -168,13 +168,13 @@ impl Watch for Voice {
 
 fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
     let file = read_mesh_watched(path, None, voice)?;
-    let place = |fault: Fault| if fault.is_stop { fault } else { fault.at(path.display().to_string()) };
+    let place = |fault: Fault| if fault.is_stop() { fault } else { fault.at(path.display().to_string()) };
     let (is_plane, has_metric) = (file.is_plane(), file.metric.is_some());
     let skipped: Vec<String> =
         file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
     let (mut found, fault) = match repair(&file, voice) {
         Ok(found) => (found, None),
-        Err(fault) if fault.is_stop => return Err(fault),
+        Err(fault) if fault.is_stop() => return Err(fault),
         Err(fault) => {
             let mesh = unrepaired(&file);
             if mesh.triangles.is_empty() {
@@ -216,7 +216,7 @@ impl Work {
             voice.cancel = ask.cancel.clone();
             // A request that was stopped has no picture: there is a later one.
             if let Err(fault) = self.show(&ask, voice)
-                && !fault.is_stop
+                && !fault.is_stop()
             {
                 voice.say(PreviewNews::Refused(fault));
             }

@@ -41,7 +41,7 @@ impl State {
                 SessionNews::Fault(fault, asks) => {
                     let opening = self.run.opening.take();
                     match opening {
-                        _ if fault.is_stop => {}
+                        _ if fault.is_stop() => {}
                         Some((Source::Mesh(path, options), _)) => {
                             // The import shows why, and how the mesh may be imported in another way.
                             if self.run.import.is_none() {
