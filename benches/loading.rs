@@ -12,8 +12,8 @@ use peak_alloc::PeakAlloc;
 use quadfront::core::discrete::chart::charts;
 use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
-use quadfront::core::discrete::flat::Bound;
-use quadfront::core::discrete::sound::sound;
+use quadfront::core::discrete::planar_map::StretchBound;
+use quadfront::core::discrete::repair::repair;
 use quadfront::core::fault::Fault;
 use quadfront::core::formats::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
@@ -59,12 +59,12 @@ fn main() {
         std::fs::write(&path, &bytes).unwrap();
         told(&name, None, &|watch| read_mesh_watched(&path, None, watch).map(drop));
     }
-    told("mending", None, &|watch| sound(&mesh, watch).map(drop));
-    let made = sound(&mesh, &mut Nobody).unwrap().mesh;
+    told("repair", None, &|watch| repair(&mesh, watch).map(drop));
+    let made = repair(&mesh, &mut Nobody).unwrap().mesh;
     // A disc of a million triangles takes minutes to be laid flat; nobody waits for its end here.
     told("charts", Some(8.0), &|watch| {
         let edges = Edges::unless(&made.triangles, &watch.cancel())?;
-        charts(&made, &edges, &features(&made, &edges, ANGLE), Bound::default(), watch).map(drop)
+        charts(&made, &edges, &features(&made, &edges, ANGLE), StretchBound::default(), watch).map(drop)
     });
 }
 

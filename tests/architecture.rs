@@ -343,3 +343,61 @@ fn a_planted_import_upward_and_a_planted_circle_are_seen() {
     texts.insert("core::attic".to_owned(), String::new());
     assert_eq!(upward(&arrows(&texts)), ["core::attic stands on no floor: name its room in FLOORS"]);
 }
+
+/// The modules of `src/app/window` that change the window's state.
+const CHANGE_THE_STATE: [&str; 2] = ["state/apply", "state/hearing"];
+
+/// Lines that take the window's state to change it: by reference, or in a method of the state.
+fn changes_of_the_state(path: &str, text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut is_of_state = false;
+    for (number, line) in code(text) {
+        match line.as_bytes().first() {
+            Some(b'i') => is_of_state = line.starts_with("impl") && mentions(&line, "State"),
+            Some(b'}') => is_of_state = false,
+            _ => {}
+        }
+        if mentions(&line, "mut State") || is_of_state && mentions(&line, "mut self") {
+            found.push(format!("{path}:{number}: only {} change the state", CHANGE_THE_STATE.join(" and ")));
+        }
+    }
+    found
+}
+
+#[test]
+fn only_two_modules_change_the_state_of_the_window() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app/window");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    let (mut found, mut permitted) = (Vec::new(), 0);
+    for file in files {
+        let path = file.strip_prefix(&root).unwrap().with_extension("").display().to_string().replace('\\', "/");
+        let changes = changes_of_the_state(&path, &fs::read_to_string(&file).unwrap());
+        if CHANGE_THE_STATE.iter().any(|name| path == *name || path.starts_with(&format!("{name}/"))) {
+            permitted += changes.len();
+        } else {
+            found.extend(changes);
+        }
+    }
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+    assert!(permitted > 20, "the two modules have methods that change the state");
+}
+
+#[test]
+fn a_panel_that_changes_the_state_is_seen() {
+    for text in [
+        "pub fn show(ui: &mut Ui, state: &mut State) {",
+        "struct Docks<'a> {\n    state: &'a mut State,\n}",
+        "impl State {\n    pub fn hover(&mut self) {\n    }\n}",
+        "impl super::State {\n    fn close(mut self) {\n    }\n}",
+    ] {
+        assert_eq!(changes_of_the_state("panels/a", text).len(), 1, "{text}");
+    }
+    for text in [
+        "pub fn show(ui: &mut Ui, state: &State, local: &mut FrontState) {",
+        "impl State {\n    pub fn run(&self) -> &RunState {\n    }\n}\n\nimpl Views {\n    fn note(&mut self) {\n    }\n}",
+        "// State is not taken as &mut State here.",
+    ] {
+        assert!(changes_of_the_state("panels/a", text).is_empty(), "{text}");
+    }
+}

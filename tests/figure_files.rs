@@ -166,7 +166,7 @@ fn an_external_mesh_is_named_by_path_and_must_be_as_it_was() {
     std::fs::write(here.join("plate.mesh"), mesh).unwrap();
     assert!(refused(&["render", "a.svg", "-o", "b.svg"], here).contains("not what it was"));
     std::fs::remove_file(here.join("plate.mesh")).unwrap();
-    assert!(refused(&["render", "a.svg", "-o", "b.svg"], here).contains("no such file"));
+    assert!(refused(&["render", "a.svg", "-o", "b.svg"], here).contains("No such file"));
 }
 
 #[test]

@@ -1,37 +1,25 @@
 //! Promise: a mesh without CAD is opened by a panel that shows how it is taken and what it is like, and converts it.
 //!
-//! Needs a graphics adapter, as `window.rs`.
+//! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
+
+#[path = "window_harness/pictures.rs"]
+mod pictures;
+mod window_harness;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Key, Modifiers, Vec2};
-use egui_kittest::Harness;
+use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
-use quadfront::app::window::{App, Command, Source};
+use pictures::{difference, picture};
+use quadfront::app::window::{App, Command, Gesture, Source};
+use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
-fn has_adapter() -> bool {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
-        Ok(_) => true,
-        Err(error) => {
-            assert!(std::env::var_os("QUADFRONT_NEEDS_ADAPTER").is_none(), "no graphics adapter: {error}");
-            println!("skipped: there is no graphics adapter ({error})");
-            false
-        }
-    }
-}
-
-/// A window of a small laptop's size on nothing.
-fn window() -> Option<Harness<'static, App>> {
-    has_adapter().then(|| {
-        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-        let mut harness = builder.build_eframe(|cc| App::new(cc, None));
-        harness.run_steps(2);
-        harness
-    })
+/// A window on nothing.
+fn window() -> Option<Window> {
+    has_adapter().then(|| start(LAPTOP, |cc| App::new(cc, None)))
 }
 
 /// A tube with eight sides and a lid: 45° between its sides, 90° at the lid, open below. So many rows of triangles.
@@ -64,63 +52,18 @@ fn stl(folder: &Path, name: &str, triangles: &[[DVec3; 3]]) -> PathBuf {
     path
 }
 
-/// Runs frames until something holds.
-fn until(harness: &mut Harness<'static, App>, what: &str, holds: impl Fn(&App) -> bool) {
-    let begin = Instant::now();
-    while !holds(harness.state()) {
-        harness.run_steps(2);
-        let faults = &harness.state().state.faults;
-        assert!(begin.elapsed() < Duration::from_secs(60), "not {what}: {faults:?}");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    harness.run_steps(2);
-}
-
-fn open(harness: &mut Harness<'static, App>, path: &Path) {
+fn open(harness: &mut Window, path: &Path) {
     harness.state_mut().apply(Command::Open(Source::named(&path.display().to_string())));
     shown(harness);
 }
 
 /// Waits for the picture that the panel asks for.
-fn shown(harness: &mut Harness<'static, App>) {
+fn shown(harness: &mut Window) {
     // A click takes a frame, what it asks for another.
     harness.run_steps(4);
-    until(harness, "shown", |app| app.state.import.as_ref().is_some_and(|import| !import.is_behind()));
-}
-
-fn converted(harness: &mut Harness<'static, App>) {
-    until(harness, "converted", |app| {
-        app.state.import.is_none() && app.state.moment.is_some() && !app.state.is_busy() && app.state.recorded
+    until(harness, "it is shown", |window| {
+        window.state().state.run().import.as_ref().is_some_and(|import| !import.is_behind())
     });
-}
-
-/// Types a number into a field.
-fn enter(harness: &mut Harness<'static, App>, label: &str, text: &str) {
-    harness.get_by_label(label).focus();
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.run_steps(1);
-    harness.get_by_label(label).type_text(text);
-    harness.run_steps(1);
-    harness.key_press(Key::Enter);
-    harness.run_steps(2);
-}
-
-/// The pictures are kept where somebody wants to look at them.
-fn picture(harness: &mut Harness<'static, App>, name: &str) -> Vec<u8> {
-    let image = harness.render().unwrap();
-    if let Some(folder) = std::env::var_os("QUADFRONT_PICTURES") {
-        let file = std::fs::File::create(Path::new(&folder).join(format!("{name}.png"))).unwrap();
-        let mut encoder = png::Encoder::new(file, image.width(), image.height());
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.write_header().unwrap().write_image_data(image.as_raw()).unwrap();
-    }
-    image.into_raw()
-}
-
-fn difference(a: &[u8], b: &[u8]) -> f64 {
-    let apart = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 16);
-    a.chunks(4).zip(b.chunks(4)).filter(|pair| apart(*pair)).count() as f64 / (a.len() / 4) as f64
 }
 
 #[test]
@@ -134,7 +77,7 @@ fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says(
     }
     let before = picture(&mut harness, "tube-40");
     // The sides are folded by 45 degrees: beyond 60 only the lid's edge is left.
-    enter(&mut harness, "Feature angle", "60");
+    type_over(&mut harness, "Feature angle", "60");
     shown(&mut harness);
     harness.get_by_label("8 folded edges");
     assert!(harness.query_by_label("56 folded edges").is_none());
@@ -147,12 +90,12 @@ fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says(
     harness.state_mut().apply(Command::Redo);
     shown(&mut harness);
     harness.get_by_label("8 folded edges");
-    enter(&mut harness, "Scale", "0.1");
+    type_over(&mut harness, "Scale", "0.1");
     harness.get_by_label("2 × 2 × 3");
     harness.get_by_label("Convert").click();
-    converted(&mut harness);
+    settle(&mut harness);
     let state = &harness.state().state;
-    let run = state.run().unwrap();
+    let run = state.current_run().unwrap();
     assert!(
         run.case.text.contains("feature_angle = 60.0") && run.case.text.contains("scale = 0.1"),
         "{}",
@@ -161,17 +104,14 @@ fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says(
     assert!(!run.case.text.contains("chart_stretch"), "what is as it is is not said");
     let height =
         |mesh: &quadfront::core::mesh::half_edge::Mesh| mesh.nodes().map(|n| mesh.xyz(n).z).fold(0.0, f64::max);
-    assert!((height(&state.moment.as_ref().unwrap().mesh) - 3.0).abs() < 1e-6);
+    assert!((height(&state.run().moment.as_ref().unwrap().mesh) - 3.0).abs() < 1e-6);
     // A run that is saved keeps it, and opens without a question.
     let saved = folder.path().join("run.toml");
     quadfront::core::record::run_file::write(&saved, &run).unwrap();
-    harness.state_mut().apply(Command::Open(Source::File(saved)));
-    until(&mut harness, "opened again", |app| {
-        app.state.source.as_ref().is_some_and(|source| source.name().ends_with("run.toml")) && !app.state.is_busy()
-    });
-    let again = harness.state().state.run().unwrap();
+    apply(&mut harness, Command::Open(Source::File(saved)));
+    let again = harness.state().state.current_run().unwrap();
     assert_eq!(again.case.text, run.case.text);
-    assert!(harness.state().state.import.is_none());
+    assert!(harness.state().state.run().import.is_none());
 }
 
 #[test]
@@ -182,18 +122,18 @@ fn triangles_are_converted_as_they_are_and_the_panel_comes_back_as_it_was_left()
     harness.get_by_label("convert its triangles").click();
     harness.run_steps(2);
     harness.get_by_label("Convert").click();
-    converted(&mut harness);
-    let triangles = harness.state().state.opened.as_ref().unwrap().background.mesh.element_count();
+    settle(&mut harness);
+    let triangles = harness.state().state.run().opened.as_ref().unwrap().background.mesh.element_count();
     assert_eq!(triangles, 8 * (2 * 4 + 1));
     harness.state_mut().apply(Command::Import);
     shown(&mut harness);
-    let import = harness.state().state.import.as_ref().unwrap();
+    let import = harness.state().state.run().import.as_ref().unwrap();
     assert_eq!(import.options.used.as_deref(), Some("triangles"));
     // Leaving the panel leaves the run as it is.
     harness.key_press(Key::Escape);
     harness.run_steps(2);
     let state = &harness.state().state;
-    assert!(state.import.is_none() && state.moment.is_some());
+    assert!(state.run().import.is_none() && state.run().moment.is_some());
 }
 
 #[test]
@@ -205,16 +145,16 @@ fn sizes_are_asked_for_in_the_scaled_unit_and_by_curvature() {
     harness.run_steps(2);
     harness.get_by_label("finer where it is curved").click();
     harness.run_steps(2);
-    enter(&mut harness, "Edge length", "4");
-    enter(&mut harness, "Chord error", "0.02");
-    enter(&mut harness, "Scale", "0.5");
+    type_over(&mut harness, "Edge length", "4");
+    type_over(&mut harness, "Chord error", "0.02");
+    type_over(&mut harness, "Scale", "0.5");
     shown(&mut harness);
     picture(&mut harness, "sizes");
-    let options = harness.state().state.import.as_ref().unwrap().options.clone();
+    let options = harness.state().state.run().import.as_ref().unwrap().options.clone();
     assert_eq!((options.mesh_size, options.curvature, options.scale), (Some(2.0), Some(0.02), Some(0.5)));
     harness.get_by_label("Convert").click();
-    converted(&mut harness);
-    let text = harness.state().state.run().unwrap().case.text;
+    settle(&mut harness);
+    let text = harness.state().state.current_run().unwrap().case.text;
     assert!(text.contains("chord = 0.02") && text.contains("far = 2.0"), "{text}");
 }
 
@@ -242,16 +182,20 @@ fn what_is_mended_is_told_and_what_cannot_be_read_names_file_and_line() {
     triangles[3].swap(0, 1);
     triangles.push(triangles[0]);
     open(&mut harness, &stl(folder.path(), "tube.stl", &triangles));
-    harness.get_by_label("1 duplicate triangle was left out");
-    harness.get_by_label("1 triangle was turned to agree with its neighbours");
+    harness.get_by_label("1 duplicate triangle was removed");
+    harness.get_by_label("1 triangle was reversed to match its neighbours");
     picture(&mut harness, "mended");
     let broken = folder.path().join("broken.obj");
     std::fs::write(&broken, "v 0 0 0\nv 1 0 x\n").unwrap();
     harness.state_mut().apply(Command::Open(Source::File(broken)));
-    until(&mut harness, "refused", |app| !app.state.faults.is_empty());
+    until(&mut harness, "it is refused", |window| !window.state().state.view().faults.is_empty());
     let state = &harness.state().state;
-    assert!(state.import.is_none());
-    assert!(state.faults[0].contains("broken.obj, line 2: \"x\" stands where a coordinate"), "{:?}", state.faults);
+    assert!(state.run().import.is_none());
+    assert!(
+        state.view().faults[0].contains("broken.obj, line 2: Expected a coordinate, found \"x\""),
+        "{:?}",
+        state.view().faults
+    );
 }
 
 #[test]
@@ -262,27 +206,33 @@ fn reading_and_converting_are_cancelled_and_the_window_goes_on() {
     let path = stl(folder.path(), "long.stl", &tube(12_000));
     harness.state_mut().apply(Command::Open(Source::File(path.clone())));
     harness.run_steps(2);
-    let import = harness.state().state.import.as_ref().unwrap();
+    let import = harness.state().state.run().import.as_ref().unwrap();
     assert!(import.loaded.is_none(), "it is still being read");
-    harness.get_by_label("How far it is");
+    harness.get_by_label("Progress");
     harness.get_by_label("Cancel").click();
     harness.run_steps(2);
-    assert!(harness.state().state.import.is_none() && harness.state().state.faults.is_empty());
+    assert!(harness.state().state.run().import.is_none() && harness.state().state.view().faults.is_empty());
     harness.state_mut().apply(Command::Open(Source::File(path)));
-    until(&mut harness, "read", |app| app.state.import.as_ref().is_some_and(|import| import.loaded.is_some()));
+    until(&mut harness, "it is read", |window| {
+        window.state().state.run().import.as_ref().is_some_and(|import| import.loaded.is_some())
+    });
     harness.get_by_label("Convert").click();
     harness.run_steps(3);
-    assert!(harness.state().state.is_opening());
+    assert!(harness.state().state.run().is_opening());
     harness.get_by_label("Cancel").click();
     let begin = Instant::now();
-    until(&mut harness, "stopped", |app| !app.state.is_opening());
+    until(&mut harness, "it is stopped", |window| !window.state().state.run().is_opening());
     assert!(begin.elapsed() < Duration::from_secs(5), "{:?}", begin.elapsed());
     let state = &harness.state().state;
-    assert!(state.import.is_some() && state.opened.is_none() && state.faults.is_empty(), "{:?}", state.faults);
-    assert!(!state.is_busy());
+    assert!(
+        state.run().import.is_some() && state.run().opened.is_none() && state.view().faults.is_empty(),
+        "{:?}",
+        state.view().faults
+    );
+    assert!(!state.run().is_busy());
     harness.get_by_label("Cancel").click();
     harness.run_steps(2);
-    assert!(harness.state().state.import.is_none());
+    assert!(harness.state().state.run().import.is_none());
 }
 
 #[test]
@@ -294,24 +244,23 @@ fn how_a_mesh_was_taken_is_kept_and_offered_again() {
     let path = stl(folder.path(), "tube.stl", &tube(4));
     let begin = |folder: &Path| {
         let folder = folder.to_path_buf();
-        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-        let mut harness = builder.build_eframe(|cc| App::new(cc, None).keeping(Some(folder)));
-        harness.run_steps(2);
-        harness
+        start(LAPTOP, |cc| App::new(cc, None).keeping(Some(folder)))
     };
     let mut harness = begin(kept.path());
     open(&mut harness, &path);
-    enter(&mut harness, "Feature angle", "60");
+    type_over(&mut harness, "Feature angle", "60");
     harness.get_by_label("Convert").click();
-    converted(&mut harness);
-    let text = harness.state().state.run().unwrap().case.text;
+    settle(&mut harness);
+    let text = harness.state().state.current_run().unwrap().case.text;
     harness.run_steps(4);
     drop(harness);
     let mut harness = begin(kept.path());
-    until(&mut harness, "offered", |app| app.state.autosave.as_ref().is_some_and(|kept| kept.offer().is_some()));
+    until(&mut harness, "it is offered", |window| {
+        window.state().state.run().autosave.as_ref().is_some_and(|kept| kept.offer().is_some())
+    });
     harness.get_by_label("Open it").click();
-    converted(&mut harness);
-    assert_eq!(harness.state().state.run().unwrap().case.text, text);
+    settle(&mut harness);
+    assert_eq!(harness.state().state.current_run().unwrap().case.text, text);
     assert!(text.contains("feature_angle = 60.0"), "{text}");
 }
 
@@ -321,13 +270,13 @@ fn of_many_settings_the_newest_is_shown() {
     let folder = tempfile::tempdir().unwrap();
     open(&mut harness, &stl(folder.path(), "tube.stl", &tube(400)));
     for degrees in (10..60).step_by(2) {
-        let mut options = harness.state().state.import.as_ref().unwrap().options.clone();
+        let mut options = harness.state().state.run().import.as_ref().unwrap().options.clone();
         options.feature_angle = Some(f64::from(degrees));
-        harness.state_mut().apply(Command::SetImport(Box::new(options), false));
+        harness.state_mut().apply(Command::SetImport(Box::new(options), Gesture::Done));
         harness.run_steps(1);
     }
     shown(&mut harness);
-    let import = harness.state().state.import.as_ref().unwrap();
+    let import = harness.state().state.run().import.as_ref().unwrap();
     assert_eq!(import.shown.as_ref().unwrap().wanted.feature_angle, 58.0_f64.to_radians());
 }
 
@@ -348,17 +297,18 @@ fn a_mesh_with_an_odd_border_is_converted_once_a_side_of_it_may_be_divided() {
             harness.run_steps(2);
         }
         harness.get_by_label("Convert").click();
-        until(&mut harness, "refused", |app| app.state.import.as_ref().is_some_and(|import| import.refused.is_some()));
+        until(&mut harness, "it is refused", |window| {
+            window.state().state.run().import.as_ref().is_some_and(|import| import.refused.is_some())
+        });
         shown(&mut harness);
-        // What to do is said in the words of the panel.
+        // The remedy is in the words of the panel.
         harness.get_by_label_contains(&format!("or allow that (below: {SWITCH})."));
         picture(&mut harness, &format!("odd-{name}"));
         harness.get_by_label(SWITCH).click();
         shown(&mut harness);
         assert!(harness.query_by_label("Refused").is_none());
-        // The leave is taken back, and given again.
-        let is_given =
-            |harness: &Harness<'static, App>| harness.state().state.import.as_ref().unwrap().options.split_odd;
+        // The permission is undone and redone.
+        let is_given = |harness: &Window| harness.state().state.run().import.as_ref().unwrap().options.split_odd;
         let mut after = vec![is_given(&harness)];
         for command in [Command::Undo, Command::Redo] {
             harness.state_mut().apply(command);
@@ -367,20 +317,17 @@ fn a_mesh_with_an_odd_border_is_converted_once_a_side_of_it_may_be_divided() {
         }
         assert_eq!(after, [true, false, true]);
         harness.get_by_label("Convert").click();
-        converted(&mut harness);
+        settle(&mut harness);
         let state = &harness.state().state;
-        let triangles = state.opened.as_ref().unwrap().background.mesh.element_count();
+        let triangles = state.run().opened.as_ref().unwrap().background.mesh.element_count();
         assert_eq!(triangles, 32, "31 and a half of one that was divided");
         // The run keeps it.
-        let run = state.run().unwrap();
+        let run = state.current_run().unwrap();
         assert!(run.case.split_odd && run.case.text.contains("split_odd = true"), "{}", run.case.text);
         let saved = folder.path().join(format!("{name}.toml"));
         quadfront::core::record::run_file::write(&saved, &run).unwrap();
-        harness.state_mut().apply(Command::Open(Source::File(saved)));
-        until(&mut harness, "opened again", |app| {
-            app.state.source.as_ref().is_some_and(|source| source.name().ends_with(".toml")) && !app.state.is_busy()
-        });
-        assert!(harness.state().state.run().unwrap().case.split_odd);
+        apply(&mut harness, Command::Open(Source::File(saved)));
+        assert!(harness.state().state.current_run().unwrap().case.split_odd);
     }
 }
 
@@ -418,10 +365,10 @@ fn a_mesh_that_is_refused_is_shown_with_its_elements_marked_and_looked_at_from_n
     harness.get_by_label("Refused");
     harness.get_by_label("Triangles 861 and 3201 overlap.");
     harness.get_by_label("Take out what is too much: in the plane a place belongs to one triangle.");
-    harness.get_by_label("Mesh of 3201 triangles, as it was given, 2 elements marked");
+    harness.get_by_label("Mesh of 3201 triangles, as imported, 2 elements marked");
     let near = picture(&mut harness, "refused");
     assert!(share_of(&near, BROKEN) > 0.0005, "{}", share_of(&near, BROKEN));
-    let camera = |harness: &Harness<'static, App>| harness.state().state.import.as_ref().unwrap().camera.unwrap();
+    let camera = |harness: &Window| harness.state().state.run().import.as_ref().unwrap().view.camera.unwrap();
     let before = camera(&harness);
     assert!(before.centre.distance(DVec3::new(30.5, 10.5, 0.0)) < 1.0, "{:?}", before.centre);
     // The whole of it is a key away, and there is no way to convert it.
@@ -431,7 +378,7 @@ fn a_mesh_that_is_refused_is_shown_with_its_elements_marked_and_looked_at_from_n
     harness.state_mut().apply(Command::Convert);
     harness.run_steps(3);
     let state = &harness.state().state;
-    assert!(!state.is_opening() && state.faults.is_empty(), "{:?}", state.faults);
+    assert!(!state.run().is_opening() && state.view().faults.is_empty(), "{:?}", state.view().faults);
 }
 
 #[test]
@@ -448,14 +395,16 @@ fn what_a_conversion_is_refused_for_is_marked_until_the_mesh_is_taken_otherwise(
     assert_eq!(share_of(&picture(&mut harness, "hole"), BROKEN), 0.0);
     harness.get_by_label("convert its triangles").click();
     harness.run_steps(2);
-    enter(&mut harness, "Scale", "0.001");
+    type_over(&mut harness, "Scale", "0.001");
     harness.get_by_label("Convert").click();
-    until(&mut harness, "refused", |app| app.state.import.as_ref().is_some_and(|import| import.refused.is_some()));
+    until(&mut harness, "it is refused", |window| {
+        window.state().state.run().import.as_ref().is_some_and(|import| import.refused.is_some())
+    });
     shown(&mut harness);
-    assert!(harness.state().state.faults.is_empty(), "it is told in the panel");
-    harness.get_by_label("Mesh of 49 triangles, as it was given, 3 elements marked");
+    assert!(harness.state().state.view().faults.is_empty(), "it is told in the panel");
+    harness.get_by_label("Mesh of 49 triangles, as imported, 3 elements marked");
     assert!(share_of(&picture(&mut harness, "odd"), BROKEN) > 0.001);
-    let import = harness.state().state.import.as_ref().unwrap();
+    let import = harness.state().state.run().import.as_ref().unwrap();
     // In the unit of the file, whatever it is scaled to.
     let corners: Vec<DVec3> = import.refused.as_ref().unwrap().shapes.concat();
     assert!(corners.iter().all(|p| p.x > 1.9 && p.x < 3.1 && p.y > 1.9 && p.y < 3.1), "{corners:?}");
@@ -466,13 +415,13 @@ fn what_a_conversion_is_refused_for_is_marked_until_the_mesh_is_taken_otherwise(
     harness.get_by_label("remesh its shape").click();
     shown(&mut harness);
     assert!(harness.query_by_label("Refused").is_none());
-    harness.get_by_label("Mesh of 49 triangles, as it was given");
+    harness.get_by_label("Mesh of 49 triangles, as imported");
     // Where nothing was asked before, the panel comes to tell it.
     harness.key_press(Key::Escape);
     harness.run_steps(2);
     harness.state_mut().apply(Command::Open(Source::Mesh(path, options)));
-    until(&mut harness, "refused again", |app| {
-        app.state.import.as_ref().is_some_and(|import| import.refused.is_some() && !import.is_behind())
+    until(&mut harness, "it is refused again", |window| {
+        window.state().state.run().import.as_ref().is_some_and(|import| import.refused.is_some() && !import.is_behind())
     });
     harness.get_by_label("Refused");
 }

@@ -1,68 +1,32 @@
 //! Promise: a crash or a kill loses nothing of what a person did in the window, a figure that is dropped on it opens
 //! what it shows, and a file that goes bad under it is told.
 //!
-//! Needs a graphics adapter, as the window's own tests; without any they are skipped with the reason.
+//! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
+
+mod window_harness;
 
 use std::path::Path;
 use std::process::{Command as Process, Stdio};
 use std::time::{Duration, Instant};
 
-use eframe::egui::Vec2;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use quadfront::app::window::{App, Command, Goal, Source};
+use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
 /// Set for the child that works until it is killed: where runs are kept.
 const CHILD: &str = "QUADFRONT_TEST_KEEPS_IN";
 
-fn has_adapter() -> bool {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
-        Ok(_) => true,
-        Err(error) => {
-            assert!(std::env::var_os("QUADFRONT_NEEDS_ADAPTER").is_none(), "no graphics adapter: {error}");
-            println!("skipped: there is no graphics adapter ({error})");
-            false
-        }
-    }
-}
-
 /// A window on a source that keeps its run in a folder.
-fn window(source: Source, folder: &Path) -> Harness<'static, App> {
+fn window(source: Source, folder: &Path) -> Window {
     let folder = folder.to_path_buf();
-    let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-    let mut harness = builder.build_eframe(|cc| App::new(cc, Some(source)).keeping(Some(folder)));
+    let mut harness = start(LAPTOP, |cc| App::new(cc, Some(source)).keeping(Some(folder)));
     settle(&mut harness);
     harness
 }
 
 fn example() -> Source {
     Source::BuiltIn("example1".to_owned())
-}
-
-/// Runs frames until something holds.
-fn wait(harness: &mut Harness<'static, App>, what: &str, holds: impl Fn(&Harness<'static, App>) -> bool) {
-    let begin = Instant::now();
-    while !holds(harness) {
-        harness.run_steps(1);
-        let faults = &harness.state().state.faults;
-        assert!(begin.elapsed() < Duration::from_secs(60), "{what} does not come: {faults:?}");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    harness.run_steps(2);
-}
-
-fn settle(harness: &mut Harness<'static, App>) {
-    wait(harness, "an answer", |harness| {
-        let state = &harness.state().state;
-        state.moment.is_some() && !state.is_busy() && state.recorded
-    });
-}
-
-fn apply(harness: &mut Harness<'static, App>, command: Command) {
-    harness.state_mut().apply(command);
-    settle(harness);
 }
 
 /// Files of runs in a folder.
@@ -119,12 +83,12 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
     child.wait().unwrap();
 
     let mut harness = window(example(), folder.path());
-    wait(&mut harness, "the offer", |harness| harness.query_by_label("Open it").is_some());
+    until(&mut harness, "the run is offered", |harness| harness.query_by_label("Open it").is_some());
     harness.get_by_label("A run of example1 with 2 edits from a moment ago was not closed.");
     harness.get_by_label("Open it").click();
-    wait(&mut harness, "the run", |harness| harness.state().state.kept.edits.len() == 2);
+    until(&mut harness, "the run is opened", |harness| harness.state().state.document().edits.len() == 2);
     settle(&mut harness);
-    let kept = &harness.state().state.kept;
+    let kept = &harness.state().state.document();
     assert_eq!(kept.bookmarks, [90]);
     assert!(harness.query_by_label("Open it").is_none());
     // It goes on being kept, and is still there when the window is closed without saving.
@@ -134,7 +98,7 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
     drop(harness);
     assert_eq!(runs(folder.path()), 1);
     let mut harness = window(example(), folder.path());
-    wait(&mut harness, "the offer", |harness| harness.query_by_label("Discard").is_some());
+    until(&mut harness, "the run is offered", |harness| harness.query_by_label("Discard").is_some());
     harness.get_by_label("A run of example1 with 3 edits from a moment ago was not closed.");
     harness.get_by_label("Discard").click();
     harness.run_steps(3);
@@ -150,14 +114,14 @@ fn what_is_taken_back_leaves_nothing_to_be_kept() {
     let mut harness = window(example(), folder.path());
     apply(&mut harness, Command::Go(Goal::Step(60)));
     apply(&mut harness, Command::Set("c", "1.5".to_owned()));
-    wait(&mut harness, "the file", |_| runs(folder.path()) == 1);
+    until(&mut harness, "the file is there", |_| runs(folder.path()) == 1);
     apply(&mut harness, Command::Undo);
-    wait(&mut harness, "its end", |_| runs(folder.path()) == 0);
+    until(&mut harness, "the file is gone", |_| runs(folder.path()) == 0);
     apply(&mut harness, Command::Redo);
-    wait(&mut harness, "the file", |_| runs(folder.path()) == 1);
+    until(&mut harness, "the file is there", |_| runs(folder.path()) == 1);
     // Another case takes the place of this one: the run that was not saved is offered at once.
     apply(&mut harness, Command::Open(Source::BuiltIn("uniform".to_owned())));
-    wait(&mut harness, "the offer", |harness| harness.query_by_label("Open it").is_some());
+    until(&mut harness, "the run is offered", |harness| harness.query_by_label("Open it").is_some());
     drop(harness);
     assert_eq!(runs(folder.path()), 1);
 }
@@ -178,14 +142,14 @@ fn a_figure_opens_at_the_state_that_it_shows_and_another_state_is_said() {
     let mut harness = window(example(), &kept);
     apply(&mut harness, Command::Open(Source::File(figure.clone())));
     let state = &harness.state().state;
-    assert_eq!(state.moment.as_ref().unwrap().standing, 40);
-    assert_eq!((state.parameter("c").as_deref(), state.faults.len()), (Some("1.9"), 0));
+    assert_eq!(state.run().moment.as_ref().unwrap().standing, 40);
+    assert_eq!((state.parameter("c").as_deref(), state.view().faults.len()), (Some("1.9"), 0));
     let text = std::fs::read_to_string(&figure).unwrap();
     let at = text.find("fingerprint = \"").unwrap() + 15;
     let old = folder.path().join("old.svg");
     std::fs::write(&old, format!("{}{}{}", &text[..at], "0".repeat(32), &text[at + 32..])).unwrap();
     apply(&mut harness, Command::Open(Source::File(old)));
-    let faults = &harness.state().state.faults;
+    let faults = &harness.state().state.view().faults;
     assert!(faults.len() == 1 && faults[0].contains("another state at step"), "{faults:?}");
 }
 
@@ -201,21 +165,29 @@ fn a_file_that_goes_bad_while_it_is_open_is_told_and_the_window_keeps_what_it_ha
     let mut harness = window(Source::File(path.clone()), &folder.path().join("runs"));
     apply(&mut harness, Command::Go(Goal::Step(30)));
     std::fs::write(&path, "version = 1\ntitel = 3\n").unwrap();
-    wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
     let state = &harness.state().state;
-    assert!(state.faults[0].contains("line 2") && state.faults[0].contains("keeps what it has"), "{:?}", state.faults);
-    assert_eq!(state.moment.as_ref().unwrap().step, 30);
+    assert!(
+        state.view().faults[0].contains("line 2") && state.view().faults[0].contains("keeps the run that is open"),
+        "{:?}",
+        state.view().faults
+    );
+    assert_eq!(state.run().moment.as_ref().unwrap().step, 30);
     // Opened again it is refused, and what is open stays.
-    harness.state_mut().state.faults.clear();
+    harness.state_mut().apply(Command::CloseFault(0));
     harness.state_mut().apply(Command::Reopen);
-    wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
     settle(&mut harness);
     apply(&mut harness, Command::Go(Goal::Steps(1)));
-    assert_eq!(harness.state().state.moment.as_ref().unwrap().step, 31);
-    harness.state_mut().state.faults.clear();
+    assert_eq!(harness.state().state.run().moment.as_ref().unwrap().step, 31);
+    harness.state_mut().apply(Command::CloseFault(0));
     std::fs::remove_file(&path).unwrap();
-    wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
-    assert!(harness.state().state.faults[0].contains("no such file"), "{:?}", harness.state().state.faults);
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
+    assert!(
+        harness.state().state.view().faults[0].contains("No such file"),
+        "{:?}",
+        harness.state().state.view().faults
+    );
 }
 
 #[test]
@@ -243,10 +215,10 @@ fn the_panel_for_figures_saves_what_it_says_and_a_bad_place_is_told() {
     harness.get_by_label("nodes in the figure").click();
     harness.run_steps(2);
     let stem = folder.path().join("mine");
-    harness.state_mut().state.figures.name = stem.display().to_string();
-    harness.state_mut().state.figures.size = "60mm".to_owned();
+    type_over(&mut harness, "Name of the figure", &stem.display().to_string());
+    type_over(&mut harness, "Size of the figure", "60mm");
     harness.get_by_label("Save SVG and PNG").click();
-    wait(&mut harness, "the figure", |_| stem.with_extension("png").is_file());
+    until(&mut harness, "the figure is there", |_| stem.with_extension("png").is_file());
     let render = |from: &Path, to: &Path, options: &[&str]| {
         let mut process = Process::new(env!("CARGO_BIN_EXE_quadfront"));
         assert!(process.arg("render").arg(from).args(options).args(["-q", "-o"]).arg(to).status().unwrap().success());
@@ -258,8 +230,12 @@ fn the_panel_for_figures_saves_what_it_says_and_a_bad_place_is_told() {
     let options = ["--at", "step=100", "--ink", "grey", "--size", "60mm"];
     let plain = render(Path::new("example1"), &again, &options);
     assert_ne!(plain.len(), svg.len(), "the nodes are missing there");
-    harness.state_mut().state.figures.name = folder.path().join("no/where").display().to_string();
+    type_over(&mut harness, "Name of the figure", &folder.path().join("no/where").display().to_string());
     harness.get_by_label("Save SVG").click();
-    wait(&mut harness, "the fault", |harness| !harness.state().state.faults.is_empty());
-    assert!(harness.state().state.faults[0].contains("does not exist"), "{:?}", harness.state().state.faults);
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
+    assert!(
+        harness.state().state.view().faults[0].contains("does not exist"),
+        "{:?}",
+        harness.state().state.view().faults
+    );
 }

@@ -13,8 +13,8 @@ use quadfront::core::convert::conversion::convert;
 use quadfront::core::discrete::chart::charts;
 use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
-use quadfront::core::discrete::flat::Bound;
-use quadfront::core::discrete::sound::sound;
+use quadfront::core::discrete::planar_map::StretchBound;
+use quadfront::core::discrete::repair::repair;
 use quadfront::core::fault::Fault;
 use quadfront::core::formats::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
 use quadfront::core::progress::Nobody;
@@ -193,10 +193,10 @@ fn the_texture_of_a_file_lays_its_charts_where_it_is_one_to_one() {
     let n = 24;
     let vertical = |bytes: &[u8], seam: u32| {
         let given = read_bytes("a.obj", bytes, Format::Obj).unwrap();
-        let laid = sound(&given, &mut Nobody).unwrap();
+        let laid = repair(&given, &mut Nobody).unwrap();
         let edges = Edges::of(&laid.mesh.triangles);
         let features = features(&laid.mesh, &edges, ANGLE);
-        let found = charts(&laid.mesh, &edges, &features, Bound::default(), &mut Nobody).unwrap();
+        let found = charts(&laid.mesh, &edges, &features, StretchBound::default(), &mut Nobody).unwrap();
         assert_eq!(found.len(), 1);
         // Points that are there twice: those of the slit.
         let mut points = found[0].points.clone();

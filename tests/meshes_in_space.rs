@@ -203,7 +203,7 @@ fn what_branches_is_taken_as_it_is_what_is_turned_is_mended_and_what_has_one_sid
     let path = folder.path().join("moebius.ply");
     write_mesh(&path, Format::Ply, &moebius, WriteOptions::default()).unwrap();
     let fault = convert(&Case::of_mesh(path, None), &mut Nobody).unwrap_err();
-    assert!(fault.to_string().contains("has one side only"), "{fault}");
+    assert!(fault.to_string().contains("is one-sided"), "{fault}");
     // The edges across it, from border to border.
     assert_eq!((fault.shapes.len(), fault.shapes[0].len()), (5, 2));
 }

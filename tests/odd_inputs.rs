@@ -30,19 +30,19 @@ use Outcome::{Mended, Refused};
 /// Nothing is odd, or what is odd can be a mesh as it is.
 const FINE: Outcome = Mended(&[]);
 const ODD: &str = "an all-quad mesh needs an even count. Divide one";
-const ORPHAN: &str = "1 point without triangles was left out";
-const SPLIT: &str = "1 node was split where triangles meet in a point only";
-const WELDED: &str = "1 point lay on another and was made one with it";
-const PARTED: &str = "1 point in which parts touched was parted";
-const CRACK: &str = "1 point stands at the place of another: taken as the other side of a crack";
-const FLAT: &str = "1 triangle without area was taken out";
-const DOUBLE: &str = "1 duplicate triangle was left out";
-const DOUBLES: &str = "8 duplicate triangles were left out";
-const CLOCKWISE: &str = "1 clockwise triangle was turned";
-const TURNED: &str = "1 triangle was turned to agree with its neighbours";
-const HUNG: &str = "2 points hung in sides and were taken into them";
-const CUT: &str = "1 quadrilateral or polygon was cut into triangles";
-const CUTS: &str = "4 quadrilaterals and polygons were cut into triangles";
+const ORPHAN: &str = "1 unused point was removed";
+const SPLIT: &str = "1 node was split where triangles share only a point";
+const WELDED: &str = "1 coincident point was merged";
+const PARTED: &str = "1 contact point between parts was split";
+const CRACK: &str = "1 coincident point was kept as the other side of a crack";
+const FLAT: &str = "1 degenerate triangle was removed";
+const DOUBLE: &str = "1 duplicate triangle was removed";
+const DOUBLES: &str = "8 duplicate triangles were removed";
+const CLOCKWISE: &str = "1 clockwise triangle was reversed";
+const TURNED: &str = "1 triangle was reversed to match its neighbours";
+const HUNG: &str = "2 hanging points were inserted into their edges";
+const CUT: &str = "1 quadrilateral or polygon was split into triangles";
+const CUTS: &str = "4 quadrilaterals and polygons were split into triangles";
 const MADE_EVEN: &str = "3 sides of triangles were divided to make counts even";
 
 const FLAT_PLATE: f64 = 0.0;
@@ -277,12 +277,13 @@ fn edges_of_three_faces_turned_and_double_triangles() {
     let fin =
         |p: [f64; 3]| Obj::plate(2, FLAT_PLATE).point(p).face(&[1, 4, 9]).point([0.5, -0.5, 0.4]).face(&[1, 9, 10]);
     let flat_fin = || Obj::plate(2, FLAT_PLATE).point([0.75, 0.2, 0.0]).face(&[1, 4, 9]);
-    let shared = &["at the edge from (0.5, 0) to (0.5, 0.5)", "Triangles 1, 4 and 9 share one edge", "Take out"];
+    let shared =
+        &["at the edge from (0.5, 0) to (0.5, 0.5)", "Triangles 1, 4 and 9 share one edge", "Remove the surplus"];
     let side_by_side = |bend: f64| {
         let other = Obj::plate(3, bend).inside_out();
         Obj::plate(2, bend).and(other, [3.0, 0.0, 0.0])
     };
-    let one_side = || Refused(&["has one side only, as a Moebius strip", "triangles 2, 4, 61 and 63", "Cut a gap"]);
+    let one_side = || Refused(&["is one-sided, like a Moebius strip", "triangles 2, 4, 61 and 63", "Cut a gap"]);
     let back = |obj: Obj| {
         (0..8).fold(obj, |obj, k| {
             let [a, b, c] = [0, 1, 2].map(|corner| obj.faces[k][corner]);
@@ -291,12 +292,12 @@ fn edges_of_three_faces_turned_and_double_triangles() {
     };
     hold(vec![
         ("a fin on a plate", fin([0.5, 0.0, 0.5]), FINE, FINE),
-        ("a fin in the plane", flat_fin(), Refused(shared), Refused(&["Triangles 3, 4 and 9 overlap", "Take out"])),
+        ("a fin in the plane", flat_fin(), Refused(shared), Refused(&["Triangles 3, 4 and 9 overlap", "Remove"])),
         (
             "one of two plates is turned",
             side_by_side(FLAT_PLATE),
-            Mended(&["18 clockwise triangles were turned"]),
-            Mended(&["18 clockwise triangles were turned"]),
+            Mended(&["18 clockwise triangles were reversed"]),
+            Mended(&["18 clockwise triangles were reversed"]),
         ),
         ("the same in space", side_by_side(BENT), FINE, FINE),
         ("a cube inside out", Obj::cube().inside_out(), FINE, FINE),
@@ -327,17 +328,17 @@ fn triangles_without_area_and_slivers() {
     };
     hold_for_all("three points on the border", on_border, &Mended(&[FLAT]));
     let crack = |bend: f64| Obj::plate(2, bend).point([0.5, 0.5, 0.25 * bend]).face(&[0, 4, 9]).face(&[4, 8, 9]);
-    let between = &["Triangles 9 and 10 are too flat: the first is without area", "Mend the mesh there"];
+    let between = &["Triangles 9 and 10 are too flat: the first is without area", "Repair the mesh there"];
     let in_line =
         |z: f64| Obj::plate(2, FLAT_PLATE).moved(|[x, y, _]| [x + 4.0 * y, 2.0 * (x + 4.0 * y), z * (x + 4.0 * y)]);
-    let none = || Refused(&["No triangle of the mesh has an area", "Write it with more digits"]);
+    let none = || Refused(&["No triangle of the mesh has an area", "Export it with more digits"]);
     let one_place = || Refused(&["All points of the mesh are at (1, 2, 3)"]);
     hold(vec![
         (
             "flat triangles in a crack",
             crack(FLAT_PLATE),
             Refused(between),
-            Mended(&[WELDED, "2 triangles without area were taken out"]),
+            Mended(&[WELDED, "2 degenerate triangles were removed"]),
         ),
         ("all points on a line", in_line(0.0), none(), none()),
         ("the same in space", in_line(3.0), none(), none()),
@@ -348,24 +349,24 @@ fn triangles_without_area_and_slivers() {
 #[test]
 fn points_that_are_not_there_or_nowhere_and_meshes_of_nothing() {
     hold_for_all("a point by itself", |obj| obj.point([9.0; 3]), &Mended(&[ORPHAN]));
-    hold_for_all(
-        "a corner that is not there",
-        |obj| obj.face(&[0, 1, 98]),
-        &Refused(&["line 19", "vertex 99, and there are 9"]),
-    );
+    hold_for_all("a corner that is not there", |obj| obj.face(&[0, 1, 98]), &Refused(&["line 19", "vertex 99 of 9"]));
     let zero = |mut obj: Obj| {
         obj.rest = "f 1 2 0\n".to_owned();
         obj
     };
-    hold_for_all("a corner 0", zero, &Refused(&["line 19", "\"0\" stands where a vertex"]));
+    hold_for_all("a corner 0", zero, &Refused(&["line 19", "Expected a vertex of the face, found \"0\""]));
     let at = |x: f64| {
         move |mut obj: Obj| {
             obj.points[4][0] = x;
             obj
         }
     };
-    hold_for_all("no number", at(f64::NAN), &Refused(&["line 6", "NaN", "stands where a coordinate"]));
-    hold_for_all("an infinite number", at(f64::INFINITY), &Refused(&["line 6", "inf", "stands where a coordinate"]));
+    hold_for_all("no number", at(f64::NAN), &Refused(&["line 6", "Expected a coordinate, found \"NaN\""]));
+    hold_for_all(
+        "an infinite number",
+        at(f64::INFINITY),
+        &Refused(&["line 6", "Expected a coordinate, found \"inf\""]),
+    );
     hold_for_all("a huge number", at(1e200), &Refused(&["Point 5 is at (1e200, 0.5, ", "no larger than 1e30"]));
     let nothing = |text: &str| Obj { rest: text.to_owned(), ..Obj::default() };
     let points = Obj { faces: Vec::new(), ..Obj::plate(1, FLAT_PLATE) };
@@ -391,7 +392,7 @@ fn quadrilaterals_and_polygons() {
         Obj::of(&Obj::plate(2, bend).points, &squares)
     };
     let mixed = |bend: f64| quads(bend).without(&[3]).face(&[4, 5, 8]).face(&[4, 8, 7]);
-    let three = || Mended(&["3 quadrilaterals and polygons were cut into triangles"]);
+    let three = || Mended(&["3 quadrilaterals and polygons were split into triangles"]);
     // A pentagon with a dent, a triangle in that, and others beside it.
     let dented = |bend: f64| {
         let points = up(bend, &[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 1.0], [0.0, 2.0], [3.0, 1.0]]);
@@ -404,7 +405,7 @@ fn quadrilaterals_and_polygons() {
         let points = [[0.0; 3], [1.0, 1.0, z], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0]];
         Obj::of(&points, &[&[2, 4, 1], &[4, 5, 1], &[0, 1, 2, 3]])
     };
-    let crosses = || Refused(&["at (0, 0, 0)", "Element 3 crosses itself", "in the order in which they lie"]);
+    let crosses = || Refused(&["at (0, 0, 0)", "Element 3 crosses itself", "in order around it"]);
     let already = Refused(&["quadrilaterals already: all of its 4", "--use shape"]);
     hold(vec![
         ("quadrilaterals alone", quads(FLAT_PLATE), already, Mended(&[CUTS])),
@@ -440,14 +441,12 @@ fn t_junctions_and_sheets_across_each_other() {
         let square = Obj::of(&[at(1.0, 0.0), at(2.0, 0.0), at(2.0, 1.0), at(1.0, 1.0)], &[&[0, 1, 2], &[0, 2, 3]]);
         Obj::plate(2, bend).and(square, [0.0; 3])
     };
-    let hangs = Refused(&["at (1, 0.5)", "Point 6 hangs in a side", "--use shape"]);
-    let welded = || {
-        Mended(&["2 points lay on others and were made one with them", "1 point hung in a side and was taken into it"])
-    };
+    let hangs = Refused(&["at (1, 0.5)", "Point 6 hangs on a side", "--use shape"]);
+    let welded = || Mended(&["2 coincident points were merged", "1 hanging point was inserted into its edge"]);
     let across =
         Obj::plate(3, FLAT_PLATE).and(Obj::plate(3, FLAT_PLATE).moved(|[x, y, _]| [x, 0.51, y - 0.497]), [0.0; 3]);
     let over = Obj::plate(3, FLAT_PLATE).and(Obj::plate(3, FLAT_PLATE), [0.9, 0.2, 0.0]);
-    let overlap = || Refused(&["Triangles 5, 6, 11, 12, 17 and 7 more overlap", "Take out what is too much"]);
+    let overlap = || Refused(&["Triangles 5, 6, 11, 12, 17 and 7 more overlap", "Remove the overlap"]);
     let mut folded = [FLAT_PLATE, BENT].map(|bend| Obj::plate(3, bend));
     folded.iter_mut().for_each(|obj| obj.points[5][..2].copy_from_slice(&[0.9, 0.9]));
     let [folded, folded_in_space] = folded;
@@ -475,7 +474,7 @@ fn units_and_places_far_and_near_and_meshes_of_one_triangle() {
         for by in [1e-12, 1e12] {
             hold(vec![("another unit", scaled(bend, by), FINE, FINE)]);
         }
-        let small = || Refused(&["The mesh is only 1e-40 large", "another unit"]);
+        let small = || Refused(&["The mesh is only 1e-40 across", "another unit"]);
         let large = || Refused(&["Points 2, 3, 4, 5, 6 and 10 more", "no larger than 1e30"]);
         hold(vec![
             ("too small a unit", scaled(bend, 1e-40), small(), small()),
@@ -483,7 +482,7 @@ fn units_and_places_far_and_near_and_meshes_of_one_triangle() {
         ]);
     }
     let away = |bend: f64, by: f64| Obj::plate(3, bend).moved(|[x, y, z]| [x + by, y + by, z]);
-    let far = || Refused(&["1 large and lies 1e9 from the origin", "Move it to the origin"]);
+    let far = || Refused(&["1 across and 1e9 from the origin", "Move it to the origin"]);
     let triangle = |z: f64| Obj::of(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, z]], &[&[0, 1, 2]]);
     let single = || Refused(&["1 triangle", ODD, "--split-odd"]);
     let tetrahedron = Obj::of(

@@ -10,7 +10,7 @@ use quadfront::core::case::{Case, DomainSource};
 use quadfront::core::convert::conversion;
 use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
-use quadfront::core::discrete::sound::sound;
+use quadfront::core::discrete::repair::repair;
 use quadfront::core::formats::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
@@ -85,7 +85,7 @@ fn every_format_tells_how_far_it_is_and_ends_when_it_is_told_to() {
         for after in 1..=told.len() {
             let mut witness = Witness::who_ends_it(after);
             let fault = read_mesh_watched(&path, None, &mut witness).unwrap_err();
-            assert!(fault.is_stop, "{format:?} after {after}: {fault}");
+            assert!(fault.is_stop(), "{format:?} after {after}: {fault}");
             assert!(witness.told.len() <= after + 1, "{format:?} goes on for {}", witness.told.len() - after);
         }
     }
@@ -101,7 +101,7 @@ fn a_metric_beside_the_mesh_is_part_of_what_can_be_ended() {
     let mut witness = Witness::default();
     assert!(read_mesh_watched(&path, None, &mut witness).unwrap().metric.is_some());
     for after in 1..=witness.told.len() {
-        assert!(read_mesh_watched(&path, None, &mut Witness::who_ends_it(after)).unwrap_err().is_stop);
+        assert!(read_mesh_watched(&path, None, &mut Witness::who_ends_it(after)).unwrap_err().is_stop());
     }
 }
 
@@ -120,7 +120,7 @@ fn mending_and_charts_are_told_and_can_be_ended_anywhere() {
     let mut witness = Witness::default();
     let made = background(&case, &mut witness).unwrap();
     let of = |wanted: Stage| witness.told.iter().filter(move |told| told.0 == wanted).map(|told| told.1);
-    assert_eq!(of(Stage::Mend).count(), 9);
+    assert_eq!(of(Stage::Repair).count(), 9);
     assert!(of(Stage::Chart).count() > 3 && of(Stage::Chart).is_sorted(), "{:?}", witness.told);
     let mut stages: Vec<Stage> = witness.told.iter().map(|told| told.0).collect();
     stages.dedup();
@@ -130,7 +130,7 @@ fn mending_and_charts_are_told_and_can_be_ended_anywhere() {
     assert_eq!(again.mesh.element_count(), made.mesh.element_count());
     for after in (1..=witness.told.len()).step_by(3) {
         let fault = background(&case, &mut Witness::who_ends_it(after)).unwrap_err();
-        assert!(fault.is_stop && fault.place.is_empty(), "after {after}: {fault}");
+        assert!(fault.is_stop() && fault.place.is_empty(), "after {after}: {fault}");
     }
 }
 
@@ -139,12 +139,12 @@ fn work_that_is_ended_before_it_begins_does_nothing() {
     let cancel = Cancel::new();
     cancel.ask();
     let mut witness = Witness { cancel, ..Witness::default() };
-    assert!(sound(&plate(4), &mut witness).unwrap_err().is_stop);
-    let mesh = sound(&plate(4), &mut Nobody).unwrap().mesh;
+    assert!(repair(&plate(4), &mut witness).unwrap_err().is_stop());
+    let mesh = repair(&plate(4), &mut Nobody).unwrap().mesh;
     let edges = Edges::of(&mesh.triangles);
     let found = features(&mesh, &edges, ANGLE);
     let charts = quadfront::core::discrete::chart::charts(&mesh, &edges, &found, Default::default(), &mut witness);
-    assert!(charts.unwrap_err().is_stop);
+    assert!(charts.unwrap_err().is_stop());
 }
 
 #[test]
@@ -159,5 +159,5 @@ fn faces_at_the_same_time_are_told_of_while_they_are_converted() {
     assert!(told.is_sorted(), "{told:?}");
     let before = witness.told.iter().position(|told| told.0 == Stage::Convert).unwrap();
     let ended = conversion::convert(&case, &mut Witness::who_ends_it(before + 4));
-    assert!(ended.unwrap_err().is_stop);
+    assert!(ended.unwrap_err().is_stop());
 }

@@ -1,69 +1,47 @@
 //! Promise: everything that a person does in the window works by its label, and the window shows it.
 //!
-//! Needs a graphics adapter (Mesa's lavapipe is one). Without any, the tests are skipped with the reason; where
-//! `QUADFRONT_NEEDS_ADAPTER` is set, its absence is a failure.
+//! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
 
-use std::time::{Duration, Instant};
+#[path = "window_harness/pictures.rs"]
+mod pictures;
+mod window_harness;
+
+use std::time::Duration;
 
 use eframe::egui::{Key, Modifiers, Vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use quadfront::app::window::{App, Command, Goal, Lost, Place, Source};
+use pictures::{difference, picture};
+use quadfront::app::window::{App, Command, Direction, Goal, Lost, Source, SurfaceView, ViewLayer};
 use quadfront::render::scene::Outlined;
+use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
-fn has_adapter() -> bool {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
-        Ok(_) => true,
-        Err(error) => {
-            assert!(std::env::var_os("QUADFRONT_NEEDS_ADAPTER").is_none(), "no graphics adapter: {error}");
-            println!("skipped: there is no graphics adapter ({error})");
-            false
-        }
-    }
+/// The window on example 1, at step 0.
+fn window() -> Option<Window> {
+    has_adapter().then(|| on(LAPTOP, "example1"))
 }
 
-/// The window on example 1, at step 0; the size is that of a small laptop.
-fn window() -> Option<Harness<'static, App>> {
-    has_adapter().then(|| {
-        let source = Source::BuiltIn("example1".to_owned());
-        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-        let mut harness = builder.build_eframe(|cc| App::new(cc, Some(source)));
-        settle(&mut harness);
-        harness
-    })
+/// The window on a case with surfaces.
+fn window_on(name: &str) -> Option<Window> {
+    has_adapter().then(|| on(Vec2::new(1600.0, 900.0), name))
 }
 
-/// Runs frames until the session has answered everything and the run is recorded.
-fn settle(harness: &mut Harness<'static, App>) {
-    let begin = Instant::now();
-    loop {
-        harness.run_steps(2);
-        let state = &harness.state().state;
-        if state.moment.is_some() && !state.is_busy() && state.recorded {
-            break;
-        }
-        assert!(begin.elapsed() < Duration::from_secs(60), "the session does not answer: {:?}", state.faults);
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    harness.run_steps(2);
+fn on(size: Vec2, name: &str) -> Window {
+    let source = Source::BuiltIn(name.to_owned());
+    let mut harness = start(size, |cc| App::new(cc, Some(source)));
+    settle(&mut harness);
+    harness
 }
 
-fn step(harness: &Harness<'static, App>) -> u64 {
-    harness.state().state.moment.as_ref().unwrap().step
+fn step(harness: &Window) -> u64 {
+    harness.state().state.run().moment.as_ref().unwrap().step
 }
 
-fn quads(harness: &Harness<'static, App>) -> u64 {
-    harness.state().state.moment.as_ref().unwrap().standing
+fn quads(harness: &Window) -> u64 {
+    harness.state().state.run().moment.as_ref().unwrap().standing
 }
 
-fn apply(harness: &mut Harness<'static, App>, command: Command) {
-    harness.state_mut().apply(command);
-    settle(harness);
-}
-
-fn press(harness: &mut Harness<'static, App>, modifiers: Modifiers, key: Key) {
+fn press(harness: &mut Window, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     settle(harness);
 }
@@ -72,10 +50,10 @@ fn press(harness: &mut Harness<'static, App>, modifiers: Modifiers, key: Key) {
 fn buttons_and_keys_step_forward_and_back() {
     let Some(mut harness) = window() else { return };
     assert_eq!(step(&harness), 0);
-    harness.get_by_label("One operation on").click();
+    harness.get_by_label("One operation forward").click();
     settle(&mut harness);
     assert_eq!(step(&harness), 1);
-    harness.get_by_label("One quadrilateral on").click();
+    harness.get_by_label("One quadrilateral forward").click();
     settle(&mut harness);
     assert_eq!(quads(&harness), 1);
     let after_one = step(&harness);
@@ -87,8 +65,8 @@ fn buttons_and_keys_step_forward_and_back() {
     assert_eq!(step(&harness), after_one + 1);
     press(&mut harness, Modifiers::NONE, Key::End);
     let state = &harness.state().state;
-    assert_eq!(step(&harness), state.track.len() as u64);
-    assert!(state.moment.as_ref().unwrap().front.is_empty());
+    assert_eq!(step(&harness), state.run().track.len() as u64);
+    assert!(state.run().moment.as_ref().unwrap().front.is_empty());
     press(&mut harness, Modifiers::NONE, Key::Home);
     assert_eq!(step(&harness), 0);
 }
@@ -96,18 +74,11 @@ fn buttons_and_keys_step_forward_and_back() {
 #[test]
 fn a_parameter_changes_what_follows_and_nothing_before_and_undo_takes_it_back() {
     let Some(mut harness) = window() else { return };
-    let kinds = |harness: &Harness<'static, App>| {
-        harness.state().state.track.iter().map(|t| (t.kind, t.standing)).collect::<Vec<_>>()
-    };
+    let kinds =
+        |harness: &Window| harness.state().state.run().track.iter().map(|t| (t.kind, t.standing)).collect::<Vec<_>>();
     let before = kinds(&harness);
     apply(&mut harness, Command::Go(Goal::Step(100)));
-    harness.get_by_label("theta_rect").focus();
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.run_steps(1);
-    harness.get_by_label("theta_rect").type_text("115");
-    harness.run_steps(1);
-    harness.key_press(Key::Enter);
+    type_over(&mut harness, "theta_rect", "115");
     settle(&mut harness);
     assert_eq!(harness.state().state.parameter("theta_rect").as_deref(), Some("115"));
     let changed = kinds(&harness);
@@ -122,7 +93,7 @@ fn a_parameter_changes_what_follows_and_nothing_before_and_undo_takes_it_back() 
 fn breakpoints_stop_forward_and_backward() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::AddBreakpoint("kind == rolled_back".to_owned()));
-    let first = harness.state().state.track.iter().position(|t| t.kind == "rolled_back").unwrap() as u64 + 1;
+    let first = harness.state().state.run().track.iter().position(|t| t.kind == "rolled_back").unwrap() as u64 + 1;
     press(&mut harness, Modifiers::NONE, Key::F5);
     assert_eq!(step(&harness), first);
     press(&mut harness, Modifiers::NONE, Key::F5);
@@ -130,14 +101,18 @@ fn breakpoints_stop_forward_and_backward() {
     press(&mut harness, Modifiers::ALT, Key::F5);
     assert_eq!(step(&harness), first);
     apply(&mut harness, Command::AddBreakpoint("kind == rolled_bakc".to_owned()));
-    assert!(harness.state().state.faults[0].contains("rolled_back"), "{:?}", harness.state().state.faults);
+    assert!(
+        harness.state().state.view().faults[0].contains("rolled_back"),
+        "{:?}",
+        harness.state().state.view().faults
+    );
 }
 
 #[test]
 fn a_segment_that_is_picked_in_the_table_is_explained_in_the_inspector() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::Go(Goal::ToQuads(50)));
-    let segment = harness.state().state.moment.as_ref().unwrap().front[3];
+    let segment = harness.state().state.run().moment.as_ref().unwrap().front[3];
     let name = format!("{} → {}", segment.a.0, segment.b.0);
     harness.get_by_label(&format!("Segment {name}")).click();
     settle(&mut harness);
@@ -148,7 +123,7 @@ fn a_segment_that_is_picked_in_the_table_is_explained_in_the_inspector() {
     harness.get_by_label("Choose as base").click();
     settle(&mut harness);
     let state = &harness.state().state;
-    let base = state.moment.as_ref().unwrap().phase.base().copied().unwrap();
+    let base = state.run().moment.as_ref().unwrap().phase.base().copied().unwrap();
     assert_eq!((base.a, base.b), (segment.a, segment.b), "the person's choice holds");
 }
 
@@ -158,15 +133,14 @@ fn a_run_that_is_saved_opens_with_its_changes() {
     apply(&mut harness, Command::Go(Goal::Step(60)));
     apply(&mut harness, Command::Set("c", "1.5".to_owned()));
     apply(&mut harness, Command::Bookmark);
-    let kinds =
-        |harness: &Harness<'static, App>| harness.state().state.track.iter().map(|t| t.kind).collect::<Vec<_>>();
+    let kinds = |harness: &Window| harness.state().state.run().track.iter().map(|t| t.kind).collect::<Vec<_>>();
     let before = kinds(&harness);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.toml");
-    quadfront::core::record::run_file::write(&path, &harness.state().state.run().unwrap()).unwrap();
+    quadfront::core::record::run_file::write(&path, &harness.state().state.current_run().unwrap()).unwrap();
     apply(&mut harness, Command::Open(Source::File(path)));
     assert_eq!(kinds(&harness), before);
-    let kept = &harness.state().state.kept;
+    let kept = &harness.state().state.document();
     assert_eq!((kept.edits.len(), kept.bookmarks.as_slice()), (1, &[60][..]));
 }
 
@@ -174,21 +148,16 @@ fn a_run_that_is_saved_opens_with_its_changes() {
 fn the_mesh_at_hand_is_saved_in_the_format_of_its_name_and_nothing_is_written_over() {
     let Some(mut harness) = window() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let save = |harness: &mut Harness<'static, App>, name: &str| {
+    let save = |harness: &mut Window, name: &str| {
         press(harness, Modifiers::COMMAND, Key::M);
         let path = folder.path().join(name);
-        harness.state_mut().state.field = path.display().to_string();
-        harness.run_steps(2);
-        harness.key_press(Key::Enter);
-        let begin = Instant::now();
-        while harness.state().state.notice.is_none() && harness.state().state.faults.is_empty() {
-            assert!(begin.elapsed() < Duration::from_secs(20), "nothing is told");
-            std::thread::sleep(Duration::from_millis(5));
-            harness.run_steps(1);
-        }
-        let state = &mut harness.state_mut().state;
-        state.notice = None;
-        let faults = std::mem::take(&mut state.faults);
+        type_over(harness, "Path of the mesh", &path.display().to_string());
+        until(harness, "something is told", |harness| {
+            let view = harness.state().state.view();
+            view.notice().is_some_and(|notice| notice.0.contains(name)) || !view.faults.is_empty()
+        });
+        let faults = harness.state().state.view().faults.clone();
+        faults.iter().for_each(|_| harness.state_mut().apply(Command::CloseFault(0)));
         assert!(faults.is_empty() || faults[0].contains(name), "{faults:?}");
         faults.is_empty().then(|| quadfront::core::formats::format::read_mesh(&path, None).unwrap())
     };
@@ -212,39 +181,31 @@ fn the_palette_finds_a_command_by_its_name() {
     press(&mut harness, Modifiers::COMMAND, Key::P);
     harness.get_by_label("Name of a command").type_text("ten nonsense");
     harness.run_steps(2);
-    harness.get_by_label("No command has these words.");
+    harness.get_by_label("No command matches.");
     press(&mut harness, Modifiers::NONE, Key::Escape);
     assert!(harness.query_by_label("Name of a command").is_none());
     press(&mut harness, Modifiers::COMMAND, Key::P);
-    harness.get_by_label("Name of a command").type_text("10 quadrilaterals on");
+    harness.get_by_label("Name of a command").type_text("10 quadrilaterals forward");
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     settle(&mut harness);
     assert_eq!(quads(&harness), 10);
 }
 
-/// The share of pixels in which two pictures (four bytes a pixel) differ by more than a little.
-fn difference(a: &[u8], b: &[u8]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let apart = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 24);
-    let count = a.chunks(4).zip(b.chunks(4)).filter(|pair| apart(*pair)).count();
-    count as f64 / (a.len() / 4) as f64
-}
-
 #[test]
 fn the_window_looks_the_same_however_one_came_to_a_step_and_other_at_another() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::Go(Goal::Step(400)));
-    let there = harness.render().unwrap().into_raw();
+    let there = picture(&mut harness, "there");
     apply(&mut harness, Command::Go(Goal::End));
-    let end = harness.render().unwrap().into_raw();
+    let end = picture(&mut harness, "end");
     apply(&mut harness, Command::Go(Goal::Step(0)));
     apply(&mut harness, Command::Go(Goal::Step(400)));
-    let again = harness.render().unwrap().into_raw();
+    let again = picture(&mut harness, "again");
     assert!(difference(&there, &again) < 0.002, "{}", difference(&there, &again));
     assert!(difference(&there, &end) > 0.05, "{}", difference(&there, &end));
     apply(&mut harness, Command::ToggleTheme);
-    let light = harness.render().unwrap().into_raw();
+    let light = picture(&mut harness, "light");
     assert!(difference(&light, &again) > 0.5);
 }
 
@@ -252,36 +213,26 @@ fn the_window_looks_the_same_however_one_came_to_a_step_and_other_at_another() {
 fn a_file_that_is_not_there_is_a_message_and_the_window_goes_on() {
     let Some(mut harness) = window() else { return };
     harness.state_mut().apply(Command::Open(Source::named("no-such-case.toml")));
-    let begin = Instant::now();
-    while harness.state().state.faults.is_empty() {
-        assert!(begin.elapsed() < Duration::from_secs(20));
-        harness.run_steps(1);
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    assert!(harness.state().state.faults[0].contains("no-such-case.toml"));
+    until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
+    assert!(harness.state().state.view().faults[0].contains("no-such-case.toml"));
     harness.run_steps(2);
     harness.get_by_label("Close").click();
     harness.run_steps(2);
-    assert!(harness.state().state.faults.is_empty());
+    assert!(harness.state().state.view().faults.is_empty());
     apply(&mut harness, Command::Open(Source::named("example1")));
     assert_eq!(step(&harness), 0);
 }
 
 /// Runs frames until something is shown by its label.
-fn wait_for(harness: &mut Harness<'static, App>, label: &str) {
-    let begin = Instant::now();
-    while harness.query_by_label(label).is_none() {
-        assert!(begin.elapsed() < Duration::from_secs(20), "{label} is not shown");
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
+fn wait_for(harness: &mut Window, label: &str) {
+    until(harness, label, |harness| harness.query_by_label(label).is_some());
 }
 
 #[test]
 fn a_node_that_is_watched_stops_the_run_forward_and_backward_and_tells_who_touched_it() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::Go(Goal::ToQuads(40)));
-    let node = harness.state().state.moment.as_ref().unwrap().front[0].a;
+    let node = harness.state().state.run().moment.as_ref().unwrap().front[0].a;
     apply(&mut harness, Command::Pick(Some(Outlined::Node(node))));
     harness.get_by_label("Watch").click();
     settle(&mut harness);
@@ -295,29 +246,29 @@ fn a_node_that_is_watched_stops_the_run_forward_and_backward_and_tells_who_touch
     press(&mut harness, Modifiers::ALT, Key::F5);
     assert_eq!(step(&harness), first);
     apply(&mut harness, Command::Go(Goal::Step(second)));
-    wait_for(&mut harness, "What became of it");
+    wait_for(&mut harness, "Past steps");
     apply(&mut harness, Command::Go(Goal::Step(second + 1)));
-    harness.get_by_label("Who touched this last").click();
+    harness.get_by_label("What touched this last").click();
     settle(&mut harness);
     assert!(step(&harness) <= second);
     harness.get_by_label("Stop watching").click();
     settle(&mut harness);
-    assert!(harness.state().state.kept.watches.is_empty());
+    assert!(harness.state().state.document().watches.is_empty());
 }
 
 #[test]
 fn a_quadrilateral_tells_when_it_was_made_and_what_it_ate() {
     let Some(mut harness) = window() else { return };
     let (at, element) = {
-        let track = &harness.state().state.track;
+        let track = &harness.state().state.run().track;
         let found = track.iter().enumerate().filter_map(|(k, t)| Some((k as u64 + 1, t.formed?.0))).nth(30);
         found.unwrap()
     };
     apply(&mut harness, Command::Go(Goal::Step(at + 3)));
     apply(&mut harness, Command::Pick(Some(Outlined::Element(element))));
     harness.get_by_label(&format!("Quadrilateral {}", element.0));
-    wait_for(&mut harness, "What became of it");
-    assert!(harness.query_by_label_contains("It ate the triangles").is_some());
+    wait_for(&mut harness, "Past steps");
+    assert!(harness.query_by_label_contains("made of the triangles").is_some());
     harness.get_by_label("When was this made").click();
     settle(&mut harness);
     assert_eq!(step(&harness), at);
@@ -333,12 +284,12 @@ fn fields_of_conditions_are_offered_and_an_error_stays_where_it_can_be_mended() 
     harness.run_steps(3);
     harness.get_by_label("Use quad.min_angle").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().state.breakpoint_field, "quad.min_angle ");
+    assert_eq!(harness.get_by_label(field).value().as_deref(), Some("quad.min_angle "));
     harness.get_by_label(field).type_text("<");
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(3);
-    assert!(harness.state().state.kept.breakpoints.is_empty());
+    assert!(harness.state().state.document().breakpoints.is_empty());
     assert!(harness.query_by_label_contains("position").is_some(), "the error says where");
     harness.get_by_label(field).focus();
     harness.run_steps(2);
@@ -346,20 +297,22 @@ fn fields_of_conditions_are_offered_and_an_error_stays_where_it_can_be_mended() 
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     settle(&mut harness);
-    assert_eq!(harness.state().state.kept.breakpoints, [("quad.min_angle < 30".to_owned(), true)]);
+    let breakpoints = &harness.state().state.document().breakpoints;
+    assert!(breakpoints.len() == 1 && breakpoints[0].is_on, "{breakpoints:?}");
+    assert_eq!(breakpoints[0].condition, "quad.min_angle < 30");
 }
 
 #[test]
 fn the_inspector_says_why_with_the_numbers_of_the_paper() {
     let Some(mut harness) = window() else { return };
-    apply(&mut harness, Command::Go(Goal::Kind("base_selected", true)));
+    apply(&mut harness, Command::Go(Goal::Kind("base_selected", Direction::Forward)));
     for label in ["H-value", "Frontal angles", "Why this segment", "Length", "Ends"] {
         harness.get_by_label(label);
     }
     assert!(harness.query_by_label_contains("Same choice for").is_some());
-    apply(&mut harness, Command::Go(Goal::Kind("side_chosen", true)));
+    apply(&mut harness, Command::Go(Goal::Kind("side_chosen", Direction::Forward)));
     assert!(harness.query_by_label_contains("tried").is_some(), "what the side was chosen from");
-    assert!(harness.query_all_by_label_contains("taken").next().is_some());
+    assert!(harness.query_all_by_label_contains("chosen").next().is_some());
 }
 
 #[test]
@@ -393,50 +346,40 @@ fn the_window_is_found_again_as_it_was_left_and_nonsense_is_told() {
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("window.json");
-    let start = |path: std::path::PathBuf| {
+    let on = |path: std::path::PathBuf| {
         let source = Source::BuiltIn("two-faces".to_owned());
-        let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-        let mut harness = builder.build_eframe(|cc| App::kept(cc, Some(source), Some(path), Lost::default()));
+        let mut harness = start(LAPTOP, |cc| App::kept(cc, Some(source), Some(path), Lost::default()));
         settle(&mut harness);
         harness
     };
-    let mut harness = start(path.clone());
+    let mut harness = on(path.clone());
     harness.get_by_label("Layers").click();
-    apply(&mut harness, Command::Layer(7));
+    apply(&mut harness, Command::Layer(ViewLayer::MetricEllipses));
     apply(&mut harness, Command::ToggleTheme);
-    let begin = Instant::now();
-    while !path.exists() {
-        assert!(begin.elapsed() < Duration::from_secs(20), "nothing is kept");
-        std::thread::sleep(Duration::from_millis(50));
-        harness.run_steps(1);
-    }
+    until(&mut harness, "something is kept", |_| path.exists());
     let text = std::fs::read_to_string(&path).unwrap();
-    let again = start(path.clone());
-    assert!(again.state().state.kept.layers.ellipses);
+    let again = on(path.clone());
+    assert!(again.state().state.document().layers.ellipses);
     assert!(text.contains("\"dark\": false"), "{text}");
     again.get_by_label("Colour by");
     drop(again);
     std::fs::write(&path, &text[..text.len() / 2]).unwrap();
-    let bad = start(path);
-    assert!(bad.state().state.faults[0].contains("window.json"), "{:?}", bad.state().state.faults);
-    assert!(!bad.state().state.kept.layers.ellipses);
+    let bad = on(path);
+    assert!(bad.state().state.view().faults[0].contains("window.json"), "{:?}", bad.state().state.view().faults);
+    assert!(!bad.state().state.document().layers.ellipses);
 }
 
 #[test]
 fn a_window_of_hardly_any_size_and_back_is_no_trouble() {
     let Some(mut harness) = window() else { return };
-    let before = harness.render().unwrap().into_raw();
+    let before = picture(&mut harness, "before");
     for size in [Vec2::new(1.0, 1.0), Vec2::new(3000.0, 2.0), Vec2::new(300.0, 900.0), Vec2::new(1280.0, 800.0)] {
         harness.set_size(size);
         harness.run_steps(4);
         harness.render().unwrap();
     }
     settle(&mut harness);
-    let picture = harness.render().unwrap();
-    if let Some(folder) = std::env::var_os("QUADFRONT_PICTURES") {
-        picture.save(std::path::Path::new(&folder).join("resized.png")).unwrap();
-    }
-    let after = picture.into_raw();
+    let after = picture(&mut harness, "resized");
     assert!(difference(&before, &after) < 0.02, "{}", difference(&before, &after));
 }
 
@@ -448,21 +391,17 @@ fn a_lost_device_saves_the_run_and_says_where() {
     let lost = Lost::default();
     let (device, heard) = (std::sync::Arc::new(std::sync::Mutex::new(None)), lost.clone());
     let kept = device.clone();
-    let builder = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).wgpu();
-    let mut harness = builder.build_eframe(|cc| {
+    let mut harness = start(LAPTOP, |cc| {
         *kept.lock().unwrap() = cc.wgpu_render_state.as_ref().map(|render| render.device.clone());
         App::kept(cc, Some(Source::BuiltIn("two-faces".to_owned())), None, heard)
     });
     settle(&mut harness);
     let device = device.lock().unwrap().take().unwrap();
     device.destroy();
-    let begin = Instant::now();
-    while !harness.state().state.is_lost {
-        assert!(begin.elapsed() < Duration::from_secs(20), "nobody has heard of it");
+    until(&mut harness, "the window has heard of it", |harness| {
         let _ = device.poll(wgpu::PollType::Poll);
-        std::thread::sleep(Duration::from_millis(10));
-        harness.run_steps(1);
-    }
+        harness.state().is_lost()
+    });
     let told = lost.fault().unwrap().to_string();
     let path = std::path::PathBuf::from(told.split_whitespace().last().unwrap().trim_end_matches('.'));
     assert!(told.contains("was lost") && path.exists(), "{told}");
@@ -477,47 +416,32 @@ fn times_are_shown_and_measured_where_they_are_asked_for() {
     harness.run_steps(2);
     assert!(harness.query_by_label_contains("state ").is_some());
     harness.state_mut().apply(Command::Measure);
-    let begin = Instant::now();
-    while harness.state().state.measuring.is_some() {
-        assert!(begin.elapsed() < Duration::from_secs(60));
-        harness.run_steps(1);
-    }
-    assert!(harness.query_by_label_contains("60 quads on and back").is_some());
-}
-
-/// The window on a case with surfaces.
-fn window_on(name: &str) -> Option<Harness<'static, App>> {
-    has_adapter().then(|| {
-        let source = Source::BuiltIn(name.to_owned());
-        let builder = Harness::builder().with_size(Vec2::new(1600.0, 900.0)).wgpu();
-        let mut harness = builder.build_eframe(|cc| App::new(cc, Some(source)));
-        settle(&mut harness);
-        harness
-    })
+    until(&mut harness, "it is measured", |harness| harness.state().state.run().measuring.is_none());
+    assert!(harness.query_by_label_contains("60 quads forward and back").is_some());
 }
 
 #[test]
 fn surfaces_open_in_space_and_a_key_a_button_and_the_palette_lead_to_the_plane_and_back() {
     let Some(mut harness) = window_on("example2") else { return };
-    let place = |harness: &Harness<'static, App>| harness.state().state.space.place;
-    assert_eq!(place(&harness), Place::Space);
-    let space = harness.render().unwrap().into_raw();
+    let place = |harness: &Window| harness.state().state.workspace().surfaces.view;
+    assert_eq!(place(&harness), SurfaceView::Space);
+    let space = picture(&mut harness, "space");
     press(&mut harness, Modifiers::NONE, Key::V);
-    assert_eq!(place(&harness), Place::Plane);
-    let plane = harness.render().unwrap().into_raw();
+    assert_eq!(place(&harness), SurfaceView::Plane);
+    let plane = picture(&mut harness, "plane");
     assert!(difference(&space, &plane) > 0.02, "{}", difference(&space, &plane));
     harness.get_by_label("Show in space").click();
     settle(&mut harness);
-    assert_eq!(place(&harness), Place::Space);
-    let again = harness.render().unwrap().into_raw();
+    assert_eq!(place(&harness), SurfaceView::Space);
+    let again = picture(&mut harness, "again");
     assert!(difference(&space, &again) < 0.004, "{}", difference(&space, &again));
     press(&mut harness, Modifiers::COMMAND, Key::P);
     harness.get_by_label("Name of a command").type_text("side by side");
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     settle(&mut harness);
-    assert_eq!(place(&harness), Place::Both);
-    let both = harness.render().unwrap().into_raw();
+    assert_eq!(place(&harness), SurfaceView::Both);
+    let both = picture(&mut harness, "both");
     assert!(difference(&both, &space) > 0.02 && difference(&both, &plane) > 0.02);
 }
 
@@ -530,11 +454,11 @@ fn a_step_in_space_looks_the_same_however_one_came_to_it() {
             press(&mut harness, Modifiers::NONE, Key::C);
         }
         apply(&mut harness, Command::Go(Goal::Step(40)));
-        let there = harness.render().unwrap().into_raw();
+        let there = picture(&mut harness, "there");
         apply(&mut harness, Command::Go(Goal::End));
-        let end = harness.render().unwrap().into_raw();
+        let end = picture(&mut harness, "end");
         apply(&mut harness, Command::Go(Goal::Step(40)));
-        let again = harness.render().unwrap().into_raw();
+        let again = picture(&mut harness, "again");
         assert!(difference(&there, &again) < 0.002, "{}", difference(&there, &again));
         assert!(difference(&there, &end) > 0.02, "{}", difference(&there, &end));
     }
@@ -548,14 +472,14 @@ fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_wha
     let at = rect.center();
     harness.hover_at(at);
     harness.run_steps(2);
-    let what = harness.state().state.hovered.expect("something is under the pointer");
+    let what = harness.state().state.frame().hovered.expect("something is under the pointer");
     harness.drag_at(at);
     harness.run_steps(1);
     harness.drop_at(at);
     harness.run_steps(3);
     let state = &harness.state().state;
-    assert_eq!(state.kept.picked, Some(what));
-    let (mesh, camera) = (state.moment.as_ref().unwrap().mesh.clone(), state.space.camera.unwrap());
+    assert_eq!(state.document().picked, Some(what));
+    let (mesh, camera) = (state.run().moment.as_ref().unwrap().mesh.clone(), state.view().space.camera.unwrap());
     let towards = camera.towards();
     let nodes = match what {
         Outlined::Node(n) => vec![n],
@@ -571,21 +495,21 @@ fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_wha
     }
     harness.drop_at(at + Vec2::new(80.0, 32.0));
     harness.run_steps(3);
-    let turned = harness.state().state.space.camera.unwrap();
+    let turned = harness.state().state.view().space.camera.unwrap();
     assert!(turned.towards().angle_between(towards) > 0.2, "{}", turned.towards().angle_between(towards));
     assert_eq!(turned.scale, camera.scale);
     press(&mut harness, Modifiers::NONE, Key::X);
-    let camera = harness.state().state.space.camera.unwrap();
+    let camera = harness.state().state.view().space.camera.unwrap();
     assert!(camera.towards().distance(glam::DVec3::X) < 1e-9);
 }
 
 #[test]
 fn hidden_lines_go_round_and_show_more() {
     let Some(mut harness) = window_on("sphere") else { return };
-    let mut pictures = vec![harness.render().unwrap().into_raw()];
+    let mut pictures = vec![picture(&mut harness, "hidden")];
     for _ in 0..3 {
         press(&mut harness, Modifiers::NONE, Key::H);
-        pictures.push(harness.render().unwrap().into_raw());
+        pictures.push(picture(&mut harness, "hidden"));
     }
     let apart: Vec<f64> = pictures[1..].iter().map(|p| difference(&pictures[0], p)).collect();
     assert!(apart[1] > 0.005 && apart[1] > apart[0] && apart[2] < 0.002, "{apart:?}");

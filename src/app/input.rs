@@ -11,7 +11,7 @@ use crate::core::case::Taking;
 use crate::core::case::built_in;
 use crate::core::case::{self, Case};
 use crate::core::convert::walk::Stop;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::format::{self, Format};
 use crate::core::formats::save::load;
 use crate::core::kernel::spelling::nearest;
@@ -237,11 +237,10 @@ fn mesh_words(options: &MeshOptions) -> Vec<MeshWord> {
 /// tell it.
 fn mesh_case(path: PathBuf, source: &Source, options: &MeshOptions) -> Result<Case, Fault> {
     let words = mesh_words(options);
-    let plain = Case::of_mesh(path, source.sol.clone());
+    let plain = Case::of_mesh(path.clone(), source.sol.clone());
     if words.is_empty() {
         return Ok(plain);
     }
-    let case::DomainSource::Mesh { path, .. } = &plain.domain else { return Ok(plain) };
     let quoted = |path: &Path| toml::Value::String(path.display().to_string()).to_string();
     let sol = source.sol.as_ref().map_or_else(String::new, |sol| format!("sol = {}\n", quoted(sol)));
     let lines: Vec<String> = words.into_iter().map(|word| word.line).collect();
@@ -249,14 +248,13 @@ fn mesh_case(path: PathBuf, source: &Source, options: &MeshOptions) -> Result<Ca
         "version = {}\ntitle = {}\nmesh = {}\n{sol}{}\n",
         case::VERSION,
         toml::Value::String(plain.title.clone()),
-        quoted(path),
+        quoted(&path),
         lines.join("\n")
     );
     let mut case = Case::parse(&text, &plain.name, "the options", Path::new(""))?;
     // A path that is no text stays what it is.
-    if let case::DomainSource::Mesh { path: own, sol, .. } = &mut case.domain {
-        *own = path.clone();
-        *sol = source.sol.clone();
+    if let case::DomainSource::Mesh { source: own, .. } = &mut case.domain {
+        *own = case::MeshSource::File { path, sol: source.sol.clone() };
     }
     Ok(case)
 }
@@ -341,6 +339,6 @@ fn standard_input() -> Result<Vec<u8>, Fault> {
     std::io::stdin()
         .lock()
         .read_to_end(&mut bytes)
-        .map_err(|error| Fault::new(format!("It cannot be read: {error}")).at(STANDARD_INPUT))?;
+        .map_err(|error| Fault::new(format!("It cannot be read: {error}")).of_kind(FaultKind::Io).at(STANDARD_INPUT))?;
     Ok(bytes)
 }

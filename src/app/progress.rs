@@ -60,7 +60,7 @@ impl Progress {
         let parts = match self.now {
             _ if total == 0 => "{msg}",
             // Bytes, and steps of unequal length.
-            Some((Stage::Read | Stage::Mend, _)) => "{msg}: {percent} % {bar:20} {left}",
+            Some((Stage::Read | Stage::Repair, _)) => "{msg}: {percent} % {bar:20} {left}",
             _ => "{msg}: {done} of about {all} {bar:20} {left}",
         };
         self.bar.set_style(style(parts));
@@ -110,7 +110,7 @@ impl Watch for Progress {
 fn words(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "Reading",
-        Stage::Mend => "Mending the mesh",
+        Stage::Repair => "Repairing the mesh",
         Stage::Chart => "Laying the surface flat",
         Stage::Divide => "Dividing the curves",
         Stage::Triangulate => "Triangulating",

@@ -1,17 +1,14 @@
 //! The work of `core` as the commands need it: from a case to a mesh that can be written, and what is told about it.
 
-use std::collections::BTreeMap;
 use std::io;
 
-use crate::core::background::adapt::Adapted;
 use crate::core::case::parameters::Parameters;
 use crate::core::case::{Case, DomainSource, MeshUse};
-use crate::core::convert::conversion::{self, Converted};
-use crate::core::convert::converter::{Converter, Counts};
+use crate::core::convert::conversion;
+use crate::core::convert::converter::Converter;
 use crate::core::convert::phase::Phase;
 use crate::core::convert::walk::{StepReport, Stop, Tell, walk_editing};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::number;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::names::Names;
@@ -19,13 +16,12 @@ use crate::core::metric::field::Sizing;
 use crate::core::prepare::{self, Background};
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::export::Export;
-use crate::core::record::report::{CaseTold, LastResort, Program, Report};
+use crate::core::record::report::Report;
 use crate::core::record::statistics::{Measured, Statistics};
 use crate::core::run::births::Births;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{ShownState, fingerprint};
 use crate::core::soup::mesh_file::MeshFile;
-use crate::core::soup::soundness::{Allow, examine};
 use crate::render::look::{Layer, Look};
 use crate::render::picture::{Picture, Seen};
 
@@ -148,24 +144,10 @@ pub(super) fn convert(
     watch.tell(Stage::Check, 0, 0);
     let data = shows_data.then_some((&converted.sizing, births.as_ref()));
     let (export, mut flaw) = exported(&converted.mesh, &converted.names, data, at.is_some())?;
-    if converted.mesh.ground().is_some() && takes_triangles(case) {
+    if converted.mesh.embedding().is_some() && takes_triangles(case) {
         flaw = flaw.map(|fault| fault.remedy("Its triangles leave no better here: mesh its shape anew (--use shape)"));
     }
-    let resort = converted.last_resort.quads();
-    let report = Report {
-        program: Program::this(),
-        case: CaseTold::of(case),
-        parameters: case.parameters.clone(),
-        background_triangles: converted.triangles,
-        regions: converted.names.faces.len(),
-        valid: flaw.is_none(),
-        mesh: Statistics::measure(export.measured(), &converted.sizing)?,
-        on_surfaces: converted.mesh.ground().is_some(),
-        last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
-        repairs: converted.repairs.clone(),
-        events: events(&converted),
-        timing: Vec::new(),
-    };
+    let report = Report::of_export(case, &converted, &export, flaw.is_none())?;
     let (phase, in_force) = end;
     let state = fingerprint(&converted.mesh, &phase);
     let shown = ShownState { step: converted.counts.steps, at, state };
@@ -248,7 +230,6 @@ pub(super) fn statistics(export: &Export, sizing: &Sizing) -> Result<Statistics,
     Ok(Statistics::measure(of, sizing)?)
 }
 
-/// Everything that is checked on a mesh: its structure, exact convexity, and the file as others will see it.
 /// A mesh for other programs, with its data where they are to be looked at, and what a check finds wrong with it. On the way to the
 /// end there are triangles and a front.
 ///
@@ -264,92 +245,11 @@ pub(super) fn exported(
     if let Some((sizing, births)) = data {
         export.describe(mesh, sizing, births)?;
     }
-    // Both sides of a crack lie at the same place.
-    let allow = Allow { triangles: on_the_way, seams: true, branching: mesh.ground().is_some() };
-    let flaw = flaw(mesh, &export.file, allow);
+    let flaw = export.flaw(mesh, on_the_way);
     Ok((export, flaw))
 }
 
 /// Whether the triangles of a mesh are converted as they are.
 fn takes_triangles(case: &Case) -> bool {
     matches!(&case.domain, DomainSource::Mesh { taking, .. } if taking.used == Some(MeshUse::Triangles))
-}
-
-fn flaw(mesh: &Mesh, file: &MeshFile, allow: Allow) -> Option<Fault> {
-    if let Err(what) = mesh.check() {
-        return Some(Fault::new(format!("The mesh is invalid: {what}")));
-    }
-    let folded = if allow.triangles { Vec::new() } else { mesh.folded() };
-    let Some(first) = folded.first().and_then(|&e| mesh.corners(e).next()) else {
-        let fault = examine(file).verdict(allow).err()?;
-        let has_none = fault.remedy.is_empty() && mesh.ground().is_some();
-        return Some(if has_none { fault.remedy("Ask for other sizes there") } else { fault });
-    };
-    let [x, y, z] = mesh.xyz(first).to_array().map(number);
-    let what = match folded.len() {
-        1 => "1 quadrilateral folds over its surface".to_owned(),
-        n => format!("{n} quadrilaterals fold over their surface"),
-    };
-    Some(
-        Fault::new(format!("The mesh is too coarse for its surface: {what} (the first at {x}, {y}, {z})"))
-            .remedy("Ask for smaller sizes there, for example by a metric of kind \"curvature\""),
-    )
-}
-
-fn events(converted: &Converted) -> BTreeMap<String, u64> {
-    let Adapted { divisions, collapses, swaps, moves } = converted.adapted;
-    let (resort, finished) = (converted.last_resort, converted.finished);
-    let cleaned_up = finished.cleaned_up;
-    let Counts {
-        steps,
-        formed,
-        right_replaced,
-        rescued,
-        rolled_back,
-        deferred,
-        seamed,
-        transitions,
-        split,
-        enhanced,
-        removed,
-        closed,
-    } = converted.counts;
-    let front = [
-        ("front_closed", closed),
-        ("front_deferred", deferred),
-        ("front_enhanced", enhanced),
-        ("front_formed", formed),
-        ("front_node_removed", removed),
-        ("front_rescued", rescued),
-        ("front_right_replaced", right_replaced),
-        ("front_rolled_back", rolled_back),
-        ("front_seam", seamed),
-        ("front_split", split),
-        ("front_step", steps),
-        ("front_transition_seam", transitions),
-    ];
-    let counts = [
-        ("background_collapse", collapses),
-        ("background_division", divisions),
-        ("background_move", moves),
-        ("background_swap", swaps),
-        ("clean_up_collapse", cleaned_up.collapses),
-        ("clean_up_doublet", cleaned_up.doublets),
-        ("clean_up_opening", cleaned_up.openings),
-        ("clean_up_pair", cleaned_up.pairs),
-        ("clean_up_refused", cleaned_up.refused),
-        ("clean_up_rotation", cleaned_up.rotations),
-        ("clean_up_sequence", cleaned_up.longer),
-        ("last_resort_division", resort.divided),
-        ("last_resort_merge", resort.merged),
-        ("last_resort_recut", resort.recut),
-        ("last_resort_template_quad", resort.template_quads),
-        ("smoothing_move", finished.moves),
-        ("unfolding_collapsed", finished.unfolded.collapsed),
-        ("unfolding_moved", finished.unfolded.moved),
-        ("unfolding_pillowed", finished.unfolded.pillowed),
-        ("unfolding_rotated", finished.unfolded.rotated),
-    ];
-    let counts = counts.into_iter().map(|(name, count)| (name, count as u64));
-    counts.chain(front).map(|(name, count)| (name.to_owned(), count)).collect()
 }

@@ -1,4 +1,4 @@
-//! How work tells how far it is, and hears that it is to end. `core` has no clock: whoever watches measures time.
+//! Progress and cancellation of long work. `core` has no clock: the watcher measures time.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -6,22 +6,23 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::fault::Fault;
 
-/// The parts of a conversion, in their order.
+/// The stages of a conversion, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Stage {
-    /// Reading the case or the mesh; counted in bytes.
+    /// Reading the case or the mesh, in bytes.
     Read,
-    /// Mending a mesh that was given.
-    Mend,
-    /// Cutting a surface into charts and laying them flat; counted in triangles.
+    /// Repairing the given mesh.
+    Repair,
+    /// Cutting a surface into charts and flattening them, in triangles.
     Chart,
-    /// Dividing curves and making loops even.
+    /// Dividing curves with an even count for each loop.
     Divide,
     /// Constrained Delaunay triangulation.
     Triangulate,
     /// Adapting the background mesh to the metric.
     Adapt,
-    /// Triangles into quadrilaterals.
+    /// Merging triangles into quadrilaterals.
     Convert,
     /// Clean-up and smoothing.
     Finish,
@@ -31,47 +32,47 @@ pub enum Stage {
     Write,
 }
 
-/// Whoever wants to know how far the work is.
+/// Receives progress.
 pub trait Watch {
-    /// Told when a stage begins (`done == 0`) and now and then within it; `total` is a guess, 0 where there is none.
+    /// Called when a stage begins (`done == 0`) and at intervals within it; `total` is an estimate, 0 if unknown.
     fn tell(&mut self, stage: Stage, done: u64, total: u64);
 
-    /// By what the work is told to end before it is done; by nothing where nobody can want that.
+    /// The handle by which the work can be cancelled; by default, it cannot.
     fn cancel(&self) -> Cancel {
         Cancel::default()
     }
 }
 
-/// Nobody watches.
+/// Ignores progress.
 pub struct Nobody;
 
 impl Watch for Nobody {
     fn tell(&mut self, _: Stage, _: u64, _: u64) {}
 }
 
-/// Tells work, from any thread, that its result is not wanted any more. All copies are one.
+/// Cancels work from any thread. Clones share one flag.
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Option<Arc<AtomicBool>>);
 
 impl Cancel {
-    /// One that can be asked for.
+    /// A handle that can be cancelled.
     pub fn new() -> Cancel {
         Cancel(Some(Arc::default()))
     }
 
-    /// Asks for it.
+    /// Requests cancellation.
     pub fn ask(&self) {
         if let Some(asked) = &self.0 {
             asked.store(true, Ordering::Relaxed);
         }
     }
 
-    /// Whether it has been asked for. What comes out of a loop that ended by it is of no use: see [`Cancel::check`].
+    /// Whether cancellation was requested. A loop that ends by it gives no valid result: see [`Cancel::check`].
     pub fn is_asked(&self) -> bool {
         self.0.as_ref().is_some_and(|asked| asked.load(Ordering::Relaxed))
     }
 
-    /// Ends the work where it has been asked for.
+    /// Returns an error if cancellation was requested.
     ///
     /// # Errors
     /// [`Fault::stopped`].
@@ -80,23 +81,23 @@ impl Cancel {
     }
 }
 
-/// How a file is read: whoever reads it tells, and asks.
+/// Progress and cancellation while a file is read.
 pub trait Pace {
-    /// Tells how many of the file's bytes are read, and whether to go on.
+    /// Reports the bytes read; returns whether to go on.
     fn goes_on(&self, done: usize, total: usize) -> bool;
 
-    /// By what reading is told to end.
+    /// The handle by which reading is cancelled.
     fn cancel(&self) -> &Cancel;
 }
 
-/// The reading of files while somebody watches.
+/// Reports the reading of files to a [`Watch`].
 pub struct Reading<'w> {
     watch: RefCell<&'w mut dyn Watch>,
     cancel: Cancel,
 }
 
 impl<'w> Reading<'w> {
-    /// It begins.
+    /// Starts reading.
     pub fn watched(watch: &'w mut dyn Watch) -> Reading<'w> {
         Reading { cancel: watch.cancel(), watch: RefCell::new(watch) }
     }

@@ -268,7 +268,7 @@ impl Picture {
     /// the making, and the marks that are asked for.
     pub fn of_state(seen: &Seen<'_>, look: &Look) -> Picture {
         let (Seen { mesh, parameters, phase, changed }, layers) = (*seen, look.layers);
-        if mesh.ground().is_some() {
+        if mesh.embedding().is_some() {
             return Picture::of_state_in_space(seen, look);
         }
         let mut picture = Picture::of_mesh(&Export::of(mesh, &Names::default()).file);

@@ -115,8 +115,8 @@ fn lines_of_obj_are_taken_in_every_form_with_their_groups() {
     let names: Vec<_> = mesh.groups.iter().map(|group| (group.dimension, group.tag, group.name.as_str())).collect();
     assert_eq!(names, [(1, 1, "rail"), (1, 2, "other"), (2, 1, "rail")]);
     let told = |text: &str| read_bytes("a.obj", text.as_bytes(), Format::Obj).unwrap_err().to_string();
-    assert!(told("v 0 0 0\nl 1 2\n").contains("line 2: A face or line has the vertex 2"));
-    assert!(told("v 0 0 0\nl 1 x\n").contains("\"x\" stands where a vertex of the line is expected"));
+    assert!(told("v 0 0 0\nl 1 2\n").contains("line 2: A face or line refers to vertex 2"));
+    assert!(told("v 0 0 0\nl 1 x\n").contains("Expected a vertex of the line, found \"x\""));
 }
 
 /// Sets and surfaces as Abaqus's users write them.

@@ -24,54 +24,42 @@ fn what_is_broken_is_refused_with_its_line_and_a_reason() {
         (
             Format::Msh,
             "$MeshFormat\n4.0 0 8\n".into(),
-            "a, line 2: MSH version 4.0 is not read. Save it as MSH 4.1 or 2.2.",
+            "a, line 2: MSH version 4.0 is not supported. Save it as MSH 4.1 or 2.2.",
         ),
-        (Format::Msh, "$NOD\n1\n".into(), "line 1: The section \"$NOD\" stands before $MeshFormat"),
+        (Format::Msh, "$NOD\n1\n".into(), "line 1: The section \"$NOD\" precedes $MeshFormat"),
         (Format::Msh, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".into(), "There is no section $Nodes"),
         (
             Format::Msh,
             two("99999999999\n1 0 0 0", "0"),
             "line 5: 99999999999 as a number of nodes is more than the file",
         ),
-        (Format::Msh, two("2\n1 0 0 0", "0"), "line 7: \"$EndNodes\" stands where the number of a node is expected"),
-        (Format::Msh, two("1\n1 0 0 0\n2 0 0 0", "0"), "line 7: \"2\" stands where $EndNodes is expected. The counts"),
-        (Format::Msh, two("2\n1 0 0 0\n2 0 nan 0", "0"), "line 7: NaN stands where a coordinate is expected"),
-        (Format::Msh, two("2\n1 0 0 0\n1 0 1 0", "0"), "Node 1 comes twice"),
-        (Format::Msh, two(three, "1\n1 2 2 0 1 1 2 4"), "line 12: An element has the node 4, which does not exist"),
+        (Format::Msh, two("2\n1 0 0 0", "0"), "line 7: Expected the number of a node, found \"$EndNodes\""),
+        (Format::Msh, two("1\n1 0 0 0\n2 0 0 0", "0"), "line 7: Expected $EndNodes, found \"2\". The counts"),
+        (Format::Msh, two("2\n1 0 0 0\n2 0 nan 0", "0"), "line 7: Expected a coordinate, found NaN"),
+        (Format::Msh, two("2\n1 0 0 0\n1 0 1 0", "0"), "node number 1 is used twice"),
+        (Format::Msh, two(three, "1\n1 2 2 0 1 1 2 4"), "line 12: An element refers to node 4, which does not exist"),
         (
             Format::Msh,
             two(three, "1\n1 9 2 0 1 1 2 3 1 2 3"),
-            "line 12: Elements of higher order (type 9) are not read",
+            "line 12: Elements of higher order (type 9) are not supported",
         ),
-        (Format::Msh, two(three, "1\n1 777 2 0 1 1 2 3"), "line 12: Element type 777 is not known"),
+        (Format::Msh, two(three, "1\n1 777 2 0 1 1 2 3"), "line 12: Unknown element type 777"),
         (Format::Medit, "Vertices\n".into(), "does not begin with MeshVersionFormatted"),
-        (Format::Medit, format!("{sol}0 x 0\n"), "line 4: \"x\" stands where a coordinate is expected"),
-        (
-            Format::Medit,
-            format!("{sol}0 0 0\nTriangles 1\n1 1 2 0\n"),
-            "line 6: An element has the vertex 2, and there are 1",
-        ),
-        (Format::Medit, format!("{sol}0 0 0\nEdges 1\n0 1 0\n"), "An element has the vertex 0"),
+        (Format::Medit, format!("{sol}0 x 0\n"), "line 4: Expected a coordinate, found \"x\""),
+        (Format::Medit, format!("{sol}0 0 0\nTriangles 1\n1 1 2 0\n"), "line 6: An element refers to vertex 2 of 1"),
+        (Format::Medit, format!("{sol}0 0 0\nEdges 1\n0 1 0\n"), "An element refers to vertex 0"),
         (Format::Medit, format!("{sol}0 0 0\nTrianglesP2 1\n"), "Elements of higher order (TrianglesP2)"),
         (Format::Medit, format!("{sol}0 0 0\nEdges 1000000\n1 1 0\n"), "1000000 as a number of elements is more than"),
-        (Format::Obj, "v 0 0\n".into(), "a, line 1: \"\" stands where a coordinate is expected"),
-        (
-            Format::Obj,
-            "v 0 0 0\n\nf 1 1 2\nf 1 1 1\n".into(),
-            "a, line 3: A face or line has the vertex 2, and there are 1",
-        ),
-        (Format::Obj, "v 0 0 0\nf 1 1 -2\n".into(), "line 2: \"-2\" stands where a vertex of the face is expected"),
-        (Format::Obj, "v 0 0 inf\n".into(), "line 1: \"inf\" stands where a coordinate"),
-        (
-            Format::Inp,
-            format!("{nodes}*ELEMENT, TYPE=S4\n1, 1, 2, 3\n"),
-            "line 6: \"\" stands where a node of the element",
-        ),
-        (Format::Inp, format!("{nodes}*ELEMENT, TYPE=S8R\n"), "line 5: Elements of type S8R are not read"),
-        (Format::Inp, format!("{nodes}2, 1, 1\n*Element, type=S3\n"), "Node 2 comes twice"),
+        (Format::Obj, "v 0 0\n".into(), "a, line 1: Expected a coordinate, found \"\""),
+        (Format::Obj, "v 0 0 0\n\nf 1 1 2\nf 1 1 1\n".into(), "a, line 3: A face or line refers to vertex 2 of 1"),
+        (Format::Obj, "v 0 0 0\nf 1 1 -2\n".into(), "line 2: Expected a vertex of the face, found \"-2\""),
+        (Format::Obj, "v 0 0 inf\n".into(), "line 1: Expected a coordinate"),
+        (Format::Inp, format!("{nodes}*ELEMENT, TYPE=S4\n1, 1, 2, 3\n"), "line 6: Expected a node of the element"),
+        (Format::Inp, format!("{nodes}*ELEMENT, TYPE=S8R\n"), "line 5: Elements of type S8R are not supported"),
+        (Format::Inp, format!("{nodes}2, 1, 1\n*Element, type=S3\n"), "node number 2 is used twice"),
         (Format::Inp, "hello\n".into(), "There is no keyword line"),
-        (Format::Vtu, "<a>".into(), "This is no VTK file"),
-        (Format::Vtu, "<VTKFile type=\"PolyData\">".into(), "This is no uncompressed UnstructuredGrid"),
+        (Format::Vtu, "<a>".into(), "This is not a VTK file"),
+        (Format::Vtu, "<VTKFile type=\"PolyData\">".into(), "This is not an uncompressed UnstructuredGrid"),
     ];
     for (format, text, told) in cases {
         let fault = read_bytes("a", text.as_bytes(), format).expect_err(&text).to_string();
@@ -90,8 +78,8 @@ fn a_metric_that_is_none_is_refused_by_its_vertex() {
     );
     assert!(told(&format!("{head}2\n1 1\n1\n-3\n")).contains("line 7: The size of vertex 2 is -3, not positive"));
     assert!(told(&format!("{head}2\n1 1\n1\n1e-200\n")).contains("vertex 2 is not positive definite"));
-    assert!(told(&format!("{head}3\n1 1\n1\n3\n1\n")).contains("has 3 values, and the mesh 2 vertices"));
-    assert!(told(&format!("{head}2\n1 2\n1 1\n")).contains("no metric"));
+    assert!(told(&format!("{head}3\n1 1\n1\n3\n1\n")).contains("has 3 values, but the mesh has 2 vertices"));
+    assert!(told(&format!("{head}2\n1 2\n1 1\n")).contains("do not form a metric"));
     assert!(told(&format!("{head}2\n1 3\n1 0 1\n")).contains("more than the file can hold"));
     assert!(told("MeshVersionFormatted 2\nDimension 2\nEnd\n").contains("no section SolAtVertices"));
 }
@@ -107,7 +95,7 @@ fn a_folder_for_a_mesh_and_a_sol_of_another_mesh_are_refused() {
     write_mesh(&path, Format::Medit, &plates(), TEXT).unwrap();
     fs::write(path.with_extension("sol"), "MeshVersionFormatted 2\nDimension 2\nSolAtVertices 1 1 1 .5").unwrap();
     let told = read_mesh(&path, None).unwrap_err().to_string();
-    assert!(told.contains("b.sol, line 3: The metric has 1 values, and the mesh 6 vertices"), "{told}");
+    assert!(told.contains("b.sol, line 3: The metric has 1 values, but the mesh has 6 vertices"), "{told}");
 }
 
 #[test]
@@ -116,10 +104,10 @@ fn formats_are_known_by_their_extension_and_others_are_refused_with_the_list() {
     let told = |name: &str| Format::from_path(Path::new(name)).unwrap_err().to_string();
     assert_eq!(
         told("a.xyz"),
-        "a.xyz: The format \".xyz\" is not known. Known are .msh, .mesh, .vtu, .obj, .inp, .ply, .stl, .gltf, .glb."
+        "a.xyz: Unknown format \".xyz\". Use one of .msh, .mesh, .vtu, .obj, .inp, .ply, .stl, .gltf, .glb."
     );
     assert!(told("a").contains("no extension"));
-    assert!(told("a.meshb").contains("Use its text form, .mesh"));
+    assert!(told("a.meshb").contains("Use the text format, .mesh"));
 }
 
 #[test]

@@ -145,7 +145,7 @@ fn areas(mesh: &Mesh) -> BTreeMap<u32, f64> {
 /// held against that in the plane, and their points in space joined; there edges branch by right, and a mesh may be too coarse
 /// for its surface.
 fn sound(mesh: &Mesh) -> Result<(), String> {
-    let in_space = mesh.ground().is_some();
+    let in_space = mesh.embedding().is_some();
     let by_right = [Defect::SeamNode, Defect::PinchedNode];
     if in_space {
         only(&file(mesh, &|n| mesh.uv(n).extend(0.0), false), &by_right)?;

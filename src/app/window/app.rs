@@ -1,4 +1,4 @@
-//! The window as eframe runs it: hears the session, turns keys into commands, shows the panels.
+//! The window as eframe runs it: takes in what the session reports, turns keys into commands, shows the panels.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
@@ -7,53 +7,56 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, Context, Frame, Key, Modifiers, Panel, Ui, ViewportCommand};
 use eframe::{CreationContext, wgpu};
 
-use super::autosave::Autosave;
 use super::command::{Command, keys};
-use super::files::{Answer, Watcher, free_path, write_png};
+use super::figures::carried;
+use super::files::{free_path, write_png};
 use super::graphics::{self, Lost};
-use super::layout::Layout;
-use super::panels;
-use super::session::{Goal, Source};
-use super::settings::{BOTTOM, Settings};
-use super::state::{Over, State};
+use super::layout::{Layout, TIMELINE_HEIGHTS};
+use super::panels::{self, PanelStates};
+use super::session::Source;
+use super::settings::Settings;
+use super::state::State;
 use super::theme;
 use super::viewport::Views;
 use crate::render::palette::Palette;
 
-/// How long a notice is shown.
-const NOTICE: Duration = Duration::from_secs(6);
-/// How long after a change it is kept how the window is.
+/// How long after a change the settings are written.
 const SETTLED: Duration = Duration::from_millis(1500);
+
+/// How often the window asks a file dialog for its answer.
+const DIALOG: Duration = Duration::from_secs(1);
 
 /// The window.
 pub struct App {
-    /// What it knows.
+    /// What the window knows.
     pub state: State,
     views: Views,
     layout: Layout,
-    /// What the last frame asked for.
-    commands: Vec<Command>,
+    panels: PanelStates,
     taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
     /// Whether the last frame asked for this one at once.
     moving: bool,
     lost: Lost,
-    /// Whether somebody clears the window in the colour of panels.
+    /// Whether the loss has been dealt with.
+    is_lost: bool,
+    /// The title that the window has.
+    title: String,
+    /// Whether eframe clears the window in the colour of the panels.
     is_cleared: bool,
-    /// Where it is kept how the window was left, and what stands there.
+    /// The file of the settings, and the settings that it has.
     path: Option<PathBuf>,
     written: Option<Settings>,
-    /// Since when it is other than what stands there.
+    /// Since when the settings differ from those in the file.
     changed: Option<Instant>,
 }
 
 impl App {
-    /// A window on `source`; on nothing where that is none.
+    /// A window on `source`, if there is one.
     pub fn new(cc: &CreationContext<'_>, source: Option<Source>) -> App {
         App::kept(cc, source, None, Lost::default())
     }
 
-    /// The same, as the last one was left: what is kept of it is at `path`. `lost` hears whether the graphics device is
-    /// lost.
+    /// The same with the settings in the file at `path`. `lost` notices when the graphics device is lost.
     pub fn kept(cc: &CreationContext<'_>, source: Option<Source>, path: Option<PathBuf>, lost: Lost) -> App {
         theme::install(&cc.egui_ctx);
         let context = cc.egui_ctx.clone();
@@ -62,20 +65,18 @@ impl App {
             let context = context.clone();
             lost.listen(&render.device, move || context.request_repaint());
         }
-        let mut state = State::new(Arc::new(move || context.request_repaint()));
-        let mut layout = Layout::default();
-        let read = path.as_deref().map_or(Ok(None), Settings::read);
-        let settings = read.unwrap_or_else(|fault| {
-            state.complain(&fault);
-            None
-        });
+        let (settings, fault) = match path.as_deref().map_or(Ok(None), Settings::read) {
+            Ok(settings) => (settings, None),
+            Err(fault) => (None, Some(fault)),
+        };
         cc.egui_ctx.set_theme(match &settings {
             Some(settings) if !settings.dark => egui::Theme::Light,
             _ => egui::Theme::Dark,
         });
-        if let Some(settings) = &settings {
-            settings.give(&mut state);
-            layout.arrange(Some(&settings.docks));
+        let workspace = settings.as_ref().map(Settings::workspace).unwrap_or_default();
+        let mut state = State::new(Arc::new(move || context.request_repaint()), workspace);
+        if let Some(fault) = fault {
+            state.complain(&fault);
         }
         if let Some(source) = source {
             state.open(source);
@@ -83,11 +84,13 @@ impl App {
         App {
             state,
             views: Views::default(),
-            layout,
-            commands: Vec::new(),
+            layout: settings.as_ref().map(Settings::layout).unwrap_or_default(),
+            panels: PanelStates::default(),
             taken: Arc::default(),
             moving: false,
             lost,
+            is_lost: false,
+            title: String::new(),
             is_cleared: false,
             path,
             written: settings,
@@ -95,9 +98,9 @@ impl App {
         }
     }
 
-    /// The same in a program that was started then.
+    /// The same in a program that was started at this time.
     pub fn started(mut self, at: Instant) -> App {
-        self.state.times.started = Some(at);
+        self.panels.time.times.started = Some(at);
         self
     }
 
@@ -107,39 +110,35 @@ impl App {
         self
     }
 
-    /// The same, which keeps its run in a folder while it is worked on and offers what was left there.
+    /// The same, which autosaves its run in a folder and offers abandoned runs from it.
     #[must_use]
     pub fn keeping(mut self, folder: Option<PathBuf>) -> App {
-        self.state.autosave = folder.map(|folder| Autosave::new(folder, self.state.wake.clone()));
+        if let Some(folder) = folder {
+            self.state.autosave_in(folder);
+        }
         self
     }
 
-    /// Keeps the run, and hears of files: those that change and those that are written.
-    fn files(&mut self, context: &Context) {
-        if let Some(mut autosave) = self.state.autosave.take() {
-            let (opened, source) = (self.state.opened.clone(), self.state.source.clone());
-            let (faults, again) = autosave.look(opened.as_ref(), source.as_ref(), || self.state.run());
-            faults.iter().for_each(|fault| self.state.complain(fault));
-            if let Some(again) = again {
-                context.request_repaint_after(again);
-            }
-            self.state.autosave = Some(autosave);
-        }
-        self.state.hear_figures();
-        self.state.hear_saving();
-        match self.state.watcher.as_ref().and_then(Watcher::news) {
-            Some(Ok(name)) => self.state.notice(format!("{name} has changed: Ctrl+R opens it again.")),
-            Some(Err(fault)) => self.state.complain(&fault),
-            None => {}
-        }
-    }
-
-    /// Does what a person asks for.
+    /// Does what the user asks for.
     pub fn apply(&mut self, command: Command) {
         self.state.apply(command);
     }
 
-    fn keys(&mut self, context: &Context) {
+    /// Whether the graphics device was lost and the window is about to close.
+    pub fn is_lost(&self) -> bool {
+        self.is_lost
+    }
+
+    /// Does what keys and files that are dropped on the window ask for.
+    fn input(&mut self, context: &Context) {
+        let mut commands = self.keys(context);
+        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
+        commands.extend(dropped.map(|path| Command::Open(Source::File(path))));
+        commands.into_iter().for_each(|command| self.state.apply(command));
+    }
+
+    fn keys(&self, context: &Context) -> Vec<Command> {
+        let mut commands = Vec::new();
         let typing = context.egui_wants_keyboard_input();
         for (modifiers, key, command) in keys() {
             let bare = modifiers.is_none() || modifiers == Modifiers::SHIFT;
@@ -147,38 +146,24 @@ impl App {
                 continue;
             }
             if context.input_mut(|input| input.consume_key(modifiers, key)) {
-                self.commands.push(command);
+                commands.push(command);
             }
         }
         if !typing && context.input(|input| input.key_pressed(Key::Questionmark)) {
-            self.commands.push(Command::Help);
+            commands.push(Command::Help);
         }
+        commands
     }
 
-    fn play(&mut self, context: &Context) {
-        let Some(last) = self.state.playing else { return };
-        let period = Duration::from_secs_f32(1.0 / self.state.speed.max(0.1));
-        if self.state.is_busy() {
-            return;
-        }
-        let waited = last.elapsed();
-        if waited >= period {
-            self.state.playing = Some(Instant::now());
-            self.state.apply(Command::Go(Goal::Quads(1)));
-        } else {
-            context.request_repaint_after(period - waited);
-        }
-    }
-
-    /// How the window is to be found again.
+    /// The current settings.
     fn settings(&self, context: &Context) -> Settings {
         let size = context
             .input(|input| input.viewport().inner_rect)
             .map(|rect| [rect.width().round(), rect.height().round()]);
-        Settings::of(&self.state, context.theme() == egui::Theme::Dark, size, self.layout.arranged())
+        Settings::of(self.state.workspace(), &self.layout, context.theme() == egui::Theme::Dark, size)
     }
 
-    /// Keeps how the window is, a moment after it was changed.
+    /// Writes the settings a moment after they have changed.
     fn keep(&mut self, context: &Context, at_once: bool) {
         let Some(path) = self.path.clone() else { return };
         let now = self.settings(context);
@@ -193,68 +178,52 @@ impl App {
                 if let Err(fault) = now.write(&path) {
                     self.state.complain(&fault);
                 }
-                // What cannot be written is not tried again until it changes.
+                // After a failure there is no other attempt until they change again.
                 (self.written, self.changed) = (Some(now), None);
             }
         }
     }
 
-    /// Where the graphics device is lost, saves the run and closes the window.
+    /// If the graphics device is lost, saves the run and closes the window.
     fn graphics(&mut self, context: &Context) {
         if let Some(fault) = self.lost.refused() {
             self.state.complain(&fault);
         }
-        if self.lost.reason().is_some() && !std::mem::replace(&mut self.state.is_lost, true) {
+        if self.lost.reason().is_some() && !std::mem::replace(&mut self.is_lost, true) {
             self.lost.save_was(self.state.save_run());
             context.send_viewport_cmd(ViewportCommand::Close);
         }
     }
 
-    /// Steps on and back where that is being measured.
+    /// Goes on with a measurement of times, if there is one.
     fn measure(&mut self, context: &Context, frame: &eframe::Frame) {
-        let busy = self.state.is_busy();
-        let took = self.state.moment.as_ref().map_or(Duration::ZERO, |moment| moment.took);
-        let end = self.state.track.len() as u64;
-        let Some(measuring) = &mut self.state.measuring else { return };
+        if self.state.run().measuring.is_none() {
+            return;
+        }
         context.request_repaint();
         if let Some(render) = frame.wgpu_render_state() {
-            // A frame is done when the card is.
+            // A frame is done when the graphics card is.
             let _ = render.device.poll(wgpu::PollType::wait_indefinitely());
         }
-        if let Some(goal) = measuring.next(!busy, took, end) {
-            self.state.apply(Command::Go(goal));
-        } else if let Some(told) = measuring.told() {
-            println!("{told}");
-            self.state.measuring = None;
-            self.state.notice(told);
-        }
+        self.state.measure_on();
     }
 
-    fn dialogs(&mut self, context: &Context) {
-        let answer = self.state.dialog.as_ref().map(|dialog| dialog.answer());
-        match answer {
-            None => {}
-            Some(Answer::Waiting) => context.request_repaint_after(Duration::from_secs(1)),
-            Some(answer) => {
-                self.state.dialog = None;
-                match answer {
-                    Answer::File(path) => self.commands.push(Command::Open(Source::File(path))),
-                    Answer::Missing => {
-                        self.state.overlay = Over::Path;
-                        self.state.notice("The system has no file dialog: type the path.".to_owned());
-                    }
-                    Answer::Nothing | Answer::Waiting => {}
-                }
-            }
+    /// Takes in what worker threads report, and has frames drawn while something is under way.
+    fn hear(&mut self, context: &Context) {
+        if let Some(wait) = self.state.play_on() {
+            context.request_repaint_after(wait);
         }
-        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped {
-            self.commands.push(Command::Open(Source::File(path)));
+        self.state.hear_soon();
+        if let Some(wait) = self.state.hear_files() {
+            context.request_repaint_after(wait);
+        }
+        if let Some((changes, slots)) = self.state.take_changes() {
+            self.views.note(&changes, slots);
         }
     }
 
     fn screenshots(&mut self, context: &Context) {
-        if std::mem::take(&mut self.state.screenshot) {
+        if self.state.frame().screenshot {
             let (taken, wake) = (self.taken.clone(), context.clone());
             context.request_screenshot(move |image| {
                 if let Ok(mut taken) = taken.lock() {
@@ -266,102 +235,103 @@ impl App {
         let image = self.taken.lock().ok().and_then(|mut taken| taken.take());
         if let Some(image) = image {
             let path = free_path("quadfront-window", "png");
-            match write_png(&path, &image, self.state.carried()) {
+            match write_png(&path, &image, carried(&self.state)) {
                 Ok(()) => self.state.notice(format!("The window was saved as {}.", path.display())),
                 Err(fault) => self.state.complain(&fault),
             }
         }
     }
+
+    /// Shows all panels and does what they ask for. Returns whether the next frame has something new to show.
+    fn show(&mut self, ui: &mut Ui) -> bool {
+        let context = ui.ctx().clone();
+        let palette = theme::palette(context.theme() == egui::Theme::Dark);
+        // eframe clears the window in the colour of the panels: with software rendering every full layer costs time.
+        let plain = if self.is_cleared { Frame::NONE } else { Frame::NONE.fill(theme::ink(palette.panel)) };
+        let mut commands = Vec::new();
+        let (state, local, asked) = (&self.state, &mut self.panels, &mut commands);
+        Panel::top("menus").frame(plain).exact_size(32.0).show(ui, |ui| panels::top::show(ui, state, asked, palette));
+        if state.run().import.is_some() {
+            panels::offer::show(ui, state, asked, palette);
+            panels::messages::show(ui, state, asked, palette);
+            panels::import::show(ui, state, plain, asked, palette);
+            egui::CentralPanel::default().frame(plain).show(ui, |ui| {
+                self.views.given(ui, state, asked, palette);
+            });
+        } else {
+            docks(ui, state, local, &mut self.views, &mut self.layout, asked, palette, plain);
+        }
+        panels::over::show(&context, state, &mut local.over, asked, palette);
+        self.state.end_frame(commands)
+    }
 }
 
-/// Transport, timeline, docks and what floats over them: the window on a run.
+/// The window on a run: transport, timeline, docks and what floats over them.
 fn docks(
     ui: &mut Ui,
-    state: &mut State,
+    state: &State,
+    local: &mut PanelStates,
     views: &mut Views,
     layout: &mut Layout,
     commands: &mut Vec<Command>,
     palette: &'static Palette,
     plain: Frame,
 ) {
-    // A window that has no room for the timeline does not make it forget its height.
-    let squashed = ui.available_height() < state.bottom + BOTTOM[0];
+    // A window without room for the timeline must not change the height that the user has chosen.
+    let squashed = ui.available_height() < layout.timeline_height + TIMELINE_HEIGHTS[0];
     let time = Panel::bottom(if squashed { "time squashed" } else { "time" })
         .frame(plain)
-        .default_size(state.bottom)
-        .size_range(BOTTOM[0]..=BOTTOM[1])
+        .default_size(layout.timeline_height)
+        .size_range(TIMELINE_HEIGHTS[0]..=TIMELINE_HEIGHTS[1])
         .resizable(true)
-        .show(ui, |ui| panels::time::show(ui, state, commands, palette));
+        .show(ui, |ui| panels::time::show(ui, state, &mut local.time, commands, palette));
     if !squashed {
-        state.bottom = time.response.rect.height();
+        layout.timeline_height = time.response.rect.height();
     }
     panels::offer::show(ui, state, commands, palette);
-    panels::messages::show(ui, state, palette);
+    panels::messages::show(ui, state, commands, palette);
     egui::CentralPanel::default().frame(plain).show(ui, |ui| {
-        layout.show(ui, state, views, commands, palette);
+        layout.show(ui, state, local, views, commands, palette);
     });
-    panels::notes::show(ui.ctx(), state, palette);
+    panels::notes::show(ui.ctx(), state, commands, palette);
     panels::figure::show(ui.ctx(), state, commands, palette);
 }
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        self.state.times.frame(std::mem::take(&mut self.moving));
-        self.state.times.first(self.views.has_shown());
+        let times = &mut self.panels.time.times;
+        times.frame(std::mem::take(&mut self.moving));
+        times.first(self.views.has_shown());
         self.state.hear();
         self.graphics(&context);
         self.measure(&context, frame);
-        self.keys(&context);
-        self.dialogs(&context);
-        for command in std::mem::take(&mut self.commands) {
-            self.state.apply(command);
+        self.state.hear_dialog();
+        if self.state.run().is_asking_for_file() {
+            context.request_repaint_after(DIALOG);
         }
-        if std::mem::take(&mut self.state.toggle_theme) {
+        self.input(&context);
+        if self.state.frame().toggle_theme {
             let dark = context.theme() == egui::Theme::Dark;
             context.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
         }
-        self.state.look_at_import(context.theme() == egui::Theme::Dark);
-        self.play(&context);
-        self.state.hear_soon();
-        self.files(&context);
+        self.state.hear_import(context.theme() == egui::Theme::Dark);
+        self.hear(&context);
         self.screenshots(&context);
-        let palette = theme::palette(context.theme() == egui::Theme::Dark);
-        let (state, commands) = (&mut self.state, &mut self.commands);
-        // The window is cleared in the colour of panels: every layer over all of it costs where the processor paints.
-        let plain = if self.is_cleared { Frame::NONE } else { Frame::NONE.fill(theme::ink(palette.panel)) };
-        Panel::top("menus")
-            .frame(plain)
-            .exact_size(32.0)
-            .show(ui, |ui| panels::top::show(ui, state, commands, palette));
-        if state.import.is_some() {
-            panels::offer::show(ui, state, commands, palette);
-            panels::messages::show(ui, state, palette);
-            panels::import::show(ui, state, plain, commands, palette);
-            egui::CentralPanel::default().frame(plain).show(ui, |ui| {
-                self.views.given(ui, state, commands, palette);
-            });
-        } else {
-            docks(ui, state, &mut self.views, &mut self.layout, commands, palette, plain);
-        }
-        panels::over::show(&context, state, commands, palette);
-        if let Some((_, since)) = &self.state.notice {
-            match NOTICE.checked_sub(since.elapsed()) {
-                Some(left) => context.request_repaint_after(left),
-                None => self.state.notice = None,
-            }
-        }
-        if !self.commands.is_empty() {
+        if self.show(ui) {
             context.request_repaint();
+        }
+        if let Some((_, left)) = self.state.view().notice() {
+            context.request_repaint_after(left);
         }
         self.keep(&context, false);
         self.moving = context.has_requested_repaint();
-        let title = match &self.state.opened {
+        let title = match &self.state.run().opened {
             Some(opened) => format!("{} – quadfront", opened.case.name),
             None => "quadfront".to_owned(),
         };
-        if self.state.title != title {
-            self.state.title.clone_from(&title);
+        if self.title != title {
+            self.title.clone_from(&title);
             context.send_viewport_cmd(ViewportCommand::Title(title));
         }
     }
@@ -374,8 +344,8 @@ impl eframe::App for App {
         if let (Some(path), Some(written)) = (&self.path, &self.written)
             && self.changed.is_some()
         {
-            let now = Settings::of(&self.state, written.dark, written.window, self.layout.arranged());
-            // The window is gone: there is nobody to tell.
+            let now = Settings::of(self.state.workspace(), &self.layout, written.dark, written.window);
+            // The window is gone: the fault cannot be shown.
             let _ = now.write(path);
         }
     }

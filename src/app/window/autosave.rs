@@ -1,10 +1,10 @@
-//! Runs that are kept while they are worked on: each window has a file of its own in the user's state folder, which
-//! grows with the run and goes when nothing is unsaved. What a crash leaves behind is offered at the next start.
+//! Autosaves the run: each window has a file of its own in the user's state folder, which is removed once nothing is
+//! unsaved. After a crash, the next start offers to recover the run.
 //!
-//! A window holds a lock beside its file for as long as it lives; the system releases it however the window ends. So
-//! two windows never take each other's runs, and a run whose lock is free was left behind.
+//! A window holds a lock beside its file as long as it is open; the system releases it however the window ends. So two
+//! windows never take each other's runs, and a run whose lock is free was abandoned.
 
-mod place;
+mod slot;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,18 +12,18 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-pub use place::{Offer, folder};
-use place::{Place, left_behind};
+pub use slot::{Offer, folder};
+use slot::{RunSlot, left_behind};
 
+use super::import::ImportOptions;
 use super::session::{Opened, Source, Wake};
-use crate::app::command_line::MeshOptions;
 use crate::core::fault::Fault;
 use crate::core::record::run_file::Keeper;
 use crate::core::run::run::{Bookmark, Camera, Edit, Run};
 
-/// After a failure it is tried again so often.
+/// How long to wait after a failure before the next attempt.
 const AGAIN: Duration = Duration::from_secs(10);
-/// A camera that moves is kept so often.
+/// How often a moving camera is saved.
 const CAMERA: Duration = Duration::from_secs(2);
 
 enum Ask {
@@ -39,13 +39,13 @@ struct Saver {
 }
 
 impl Saver {
-    fn new(folder: PathBuf, place: Option<Place>, wake: Wake) -> Saver {
+    fn new(folder: PathBuf, slot: Option<RunSlot>, wake: Wake) -> Saver {
         let (ask, asked) = channel();
         let (tell, told) = channel();
         let thread = std::thread::spawn(move || {
-            let mut work = Work { folder, place, keeper: None, pending: None, complained: false };
+            let mut work = Work { folder, slot, keeper: None, pending: None, complained: false };
             work.serve(&asked, &|fault| {
-                // Nobody listens where the window is being closed.
+                // Nobody listens while the window is being closed.
                 let _ = tell.send(fault);
                 wake();
             });
@@ -63,7 +63,7 @@ impl Saver {
 impl Drop for Saver {
     fn drop(&mut self) {
         self.ask = None;
-        // What was asked last is on the disk when the window is gone.
+        // The last request is on the disk before the window is gone.
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -72,9 +72,9 @@ impl Drop for Saver {
 
 struct Work {
     folder: PathBuf,
-    place: Option<Place>,
+    slot: Option<RunSlot>,
     keeper: Option<Keeper>,
-    /// What could not be written.
+    /// The run that could not be written.
     pending: Option<Box<Run>>,
     complained: bool,
 }
@@ -87,7 +87,7 @@ impl Work {
                 None => asked.recv().map_err(|_| RecvTimeoutError::Disconnected),
             };
             let ask = match first {
-                // Of several only the last one counts.
+                // Of several requests only the last one counts.
                 Ok(first) => asked.try_iter().last().unwrap_or(first),
                 Err(RecvTimeoutError::Timeout) => match self.pending.take() {
                     Some(run) => Ask::Keep(run),
@@ -98,8 +98,8 @@ impl Work {
             match ask {
                 Ask::Forget => {
                     (self.keeper, self.pending) = (None, None);
-                    if let Some(place) = self.place.take() {
-                        place.remove();
+                    if let Some(slot) = self.slot.take() {
+                        slot.remove();
                     }
                 }
                 Ask::Keep(run) => match self.keep(&run) {
@@ -116,25 +116,25 @@ impl Work {
     }
 
     fn keep(&mut self, run: &Run) -> Result<(), Fault> {
-        let place = match self.place.take() {
-            Some(place) => place,
-            None => Place::new(&self.folder)?,
+        let slot = match self.slot.take() {
+            Some(slot) => slot,
+            None => RunSlot::new(&self.folder)?,
         };
-        let place = self.place.insert(place);
+        let slot = self.slot.insert(slot);
         let keeper = match self.keeper.take() {
             Some(keeper) => keeper,
-            None => Keeper::new(place.path.clone(), run)?,
+            None => Keeper::new(slot.path.clone(), run)?,
         };
         let kept = self.keeper.insert(keeper).keep(run);
-        kept.map(drop).map_err(|fault| {
-            let remedy = fault.remedy.clone();
-            let told = Fault { what: format!("The run cannot be kept while you work on it: {}", fault.what), ..fault };
-            told.remedy(format!("{remedy}; it is tried again, and Ctrl+S saves the run elsewhere"))
+        kept.map(drop).map_err(|mut fault| {
+            fault.what = format!("The run cannot be autosaved: {}", fault.what);
+            fault.remedy += "; autosave tries again, and Ctrl+S saves the run elsewhere";
+            fault
         })
     }
 }
 
-/// What of a run is kept.
+/// The changes of a run that are saved.
 #[derive(Clone, Debug, PartialEq)]
 struct Changes {
     edits: Vec<Edit>,
@@ -151,16 +151,16 @@ impl Changes {
     }
 }
 
-/// Keeps the run of a window, and offers what was left behind.
+/// Autosaves the run of a window, and offers abandoned runs.
 pub struct Autosave {
     folder: PathBuf,
     wake: Wake,
     saver: Saver,
     offers: Vec<Offer>,
     scan: Receiver<Vec<Offer>>,
-    /// The run that is kept, as it was opened.
+    /// The run that is autosaved, as it was opened.
     opened: Option<Arc<Opened>>,
-    /// What it was when it was opened or saved last; none for one that was left behind.
+    /// Its changes when it was opened or last saved by the user; none for a recovered run.
     saved: Option<Changes>,
     /// What is on the disk, and since when.
     kept: Option<(Changes, Option<Camera>, Instant)>,
@@ -169,43 +169,43 @@ pub struct Autosave {
 }
 
 impl Autosave {
-    /// Keeps runs in a folder; what was left there is looked for beside the window.
+    /// Autosaves runs in a folder, and searches it for abandoned runs in the background.
     pub fn new(folder: PathBuf, wake: Wake) -> Autosave {
         let saver = Saver::new(folder.clone(), None, wake.clone());
         let scan = scan(folder.clone(), wake.clone());
         Autosave { folder, wake, saver, offers: Vec::new(), scan, opened: None, saved: None, kept: None, opening: None }
     }
 
-    /// The run that is offered, and how many more there are.
+    /// The run on offer, and how many more there are.
     pub fn offer(&self) -> Option<(&Offer, usize)> {
         self.offers.first().map(|offer| (offer, self.offers.len() - 1))
     }
 
-    /// Takes the offer: what is to be opened.
+    /// Accepts the offer. Returns what to open.
     pub fn take(&mut self) -> Option<Source> {
         if self.offers.is_empty() {
             return None;
         }
-        // One that is still being opened is offered again.
+        // If another one is still being opened, it is offered again.
         let offer = self.offers.remove(0);
-        let source = Source::File(offer.place.path.clone());
+        let source = Source::File(offer.slot.path.clone());
         self.offers.extend(self.opening.replace(offer));
         Some(source)
     }
 
-    /// Throws the offer away.
+    /// Discards the offer.
     pub fn discard(&mut self) {
         if !self.offers.is_empty() {
-            self.offers.remove(0).place.remove();
+            self.offers.remove(0).slot.remove();
         }
     }
 
-    /// The run has been saved as it is.
+    /// The user has saved the run as it is.
     pub fn saved(&mut self, run: &Run) {
         self.saved = Some(Changes::of(run));
     }
 
-    /// Looks at the window's run; what went wrong, and when to look again.
+    /// Saves the window's run if it has changed. Returns what went wrong, and when to look again.
     pub fn look(
         &mut self,
         opened: Option<&Arc<Opened>>,
@@ -234,7 +234,7 @@ impl Autosave {
             if *camera == run.camera {
                 return (faults, None);
             }
-            // Whoever moves the mesh does not write at every frame.
+            // A moving camera is not written at every frame.
             if let Some(left) = CAMERA.checked_sub(since.elapsed()).filter(|left| !left.is_zero()) {
                 return (faults, Some(left));
             }
@@ -244,23 +244,23 @@ impl Autosave {
         (faults, None)
     }
 
-    /// The run that was offered cannot be opened: it is offered again.
+    /// The run on offer could not be opened: it is offered again.
     pub fn failed(&mut self) {
         self.offers.extend(self.opening.take());
     }
 
-    /// The window has opened another run: that of before stays where it is kept, and is offered where it was not saved.
+    /// The window has opened another run. The file of the one before stays and is offered, if it had unsaved changes.
     fn begin(&mut self, opened: &Arc<Opened>, source: Option<&Source>) {
-        let is_it = |offer: &Offer| source == Some(&Source::File(offer.place.path.clone()));
+        let is_it = |offer: &Offer| source == Some(&Source::File(offer.slot.path.clone()));
         let adopted = self.opening.take_if(|offer| is_it(offer));
         let was_unsaved = self.kept.take().is_some();
-        // How a mesh was taken is nowhere but in the run.
-        let was_taken = matches!(source, Some(Source::Mesh(_, options)) if *options != MeshOptions::default());
+        // How a mesh was imported is stored nowhere but in the run.
+        let was_taken = matches!(source, Some(Source::Mesh(_, options)) if *options != ImportOptions::default());
         let is_unsaved = adopted.is_some() || was_taken;
         self.saved = (!is_unsaved).then(|| Changes::of(&opened.run));
-        let place = adopted.map(|offer| offer.place);
-        // The old one ends first, and lets go of its lock.
-        drop(std::mem::replace(&mut self.saver, Saver::new(self.folder.clone(), place, self.wake.clone())));
+        let slot = adopted.map(|offer| offer.slot);
+        // The old one ends first and releases its lock.
+        drop(std::mem::replace(&mut self.saver, Saver::new(self.folder.clone(), slot, self.wake.clone())));
         if was_unsaved {
             self.scan = scan(self.folder.clone(), self.wake.clone());
         }
@@ -268,11 +268,11 @@ impl Autosave {
     }
 }
 
-/// Looks for runs that were left behind, on a thread of its own.
+/// Searches for abandoned runs on a thread of its own.
 fn scan(folder: PathBuf, wake: Wake) -> Receiver<Vec<Offer>> {
     let (tell, told) = channel();
     std::thread::spawn(move || {
-        // Nobody listens where the window is being closed.
+        // Nobody listens while the window is being closed.
         let _ = tell.send(left_behind(&folder));
         wake();
     });
@@ -341,7 +341,7 @@ mod tests {
             std::thread::sleep(Duration::from_millis(30));
         }
         let told = saver.told.recv_timeout(Duration::from_secs(20)).unwrap();
-        assert!(told.what.contains("cannot be kept") && told.remedy.contains("Ctrl+S"), "{told}");
+        assert!(told.what.contains("cannot be autosaved") && told.remedy.contains("Ctrl+S"), "{told}");
         assert!(saver.told.recv_timeout(Duration::from_millis(100)).is_err());
     }
 }

@@ -1,38 +1,51 @@
-//! Everything that a person can do, as a value: menus, keys, the palette and tests all speak it.
+//! Everything that can be done in the window, as a value: menus, keys, panels, the palette and tests all use it.
 
 use eframe::egui::{Key, Modifiers};
 
-use super::figures::Formats;
-use super::session::{Goal, Source};
-use super::state::Place;
-use crate::app::command_line::MeshOptions;
+use super::figures::{FigureForm, Formats};
+use super::import::{Gesture, ImportOptions};
+use super::session::{Direction, Goal, Source};
+use super::state::{SurfaceView, ViewCamera, ViewKind};
+use super::view_layer::ViewLayer;
+use super::words;
 use crate::core::case::built_in;
 use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::run::watch::Watched;
 use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 
-/// What a person asks for.
+/// What the user asks for, and what a panel or a view asks for by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Go to another step.
     Go(Goal),
-    /// Go to a breakpoint, forward or backward.
-    ToBreakpoint(bool),
+    /// Go where a text says: a step, or nq=N.
+    GoToText(String),
+    /// Go to the next breakpoint, or to the one before.
+    ToBreakpoint(Direction),
     /// Play, or stop playing.
     Play,
     /// Quadrilaterals a second while playing.
     Speed(f32),
     /// Stop what is under way.
     Stop,
-    /// Keep something in the inspector.
+    /// The pointer is on something in this frame.
+    Hover(Outlined),
+    /// Select something for the inspector.
     Pick(Option<Outlined>),
     /// Show something in the middle of the view.
     Show(Outlined),
+    /// Light something up in the views, with a notice that says what.
+    LightUp(Vec<Outlined>, String),
     /// Go back to the step that touched something last.
     LastTouch(Outlined),
     /// Go to the step that made the quadrilateral of an element.
     Made(ElementId),
-    /// Stop where something is touched, or no longer.
+    /// Ask why a segment of the front was or was not chosen.
+    Explain([NodeId; 2]),
+    /// Ask for the history of something.
+    TellPast(Watched),
+    /// Watch something, or stop watching it.
     Watch(Outlined),
     /// Switch a watchpoint on or off.
     SwitchWatch(usize),
@@ -40,29 +53,31 @@ pub enum Command {
     Fit,
     /// Show the base segment in the middle, from near.
     ShowDecision,
-    /// Show meshes on surfaces there.
-    Place(Place),
-    /// From the plane to space and back.
-    TogglePlace,
-    /// Space beside the plane, or no longer.
-    ToggleSplit,
     /// Look at the mesh in space from there.
     LookFrom(Bearing),
-    /// The next way to draw lines that faces cover.
+    /// A view looks elsewhere.
+    MoveCamera(ViewKind, ViewCamera),
+    /// Show meshes on surfaces there.
+    SurfaceView(SurfaceView),
+    /// Switch between the plane and space.
+    TogglePlane,
+    /// Show the plane beside space, or space alone.
+    ToggleSplit,
+    /// The next way to draw hidden lines.
     HiddenLines,
-    /// Elements curved or flat.
+    /// Switch between curved and flat elements.
     ToggleCurved,
     /// Change a parameter from this step on.
     Set(&'static str, String),
-    /// Let the selection choose this front segment, from A to B: a change of the run.
+    /// Have the selection choose this front segment, from A to B: a change of the run.
     ChooseBase([NodeId; 2]),
-    /// Put all parameters back to those of the case.
+    /// Reset all parameters to those of the case.
     ResetParameters,
-    /// Switch a layer, counted from 0.
-    Layer(usize),
+    /// Switch a layer on or off.
+    Layer(ViewLayer),
     /// Colour elements by something.
     ColourBy(ColourBy),
-    /// Dark or light.
+    /// Switch between the dark and the light theme.
     ToggleTheme,
     /// Add a breakpoint.
     AddBreakpoint(String),
@@ -70,74 +85,71 @@ pub enum Command {
     SwitchBreakpoint(usize),
     /// Remove a breakpoint.
     RemoveBreakpoint(usize),
-    /// Set or remove a bookmark at this step.
+    /// Set a bookmark at this step, or remove it.
     Bookmark,
     /// Open a case or a mesh.
     Open(Source),
-    /// Show again how the mesh that is open was taken, to take it otherwise.
+    /// Show again how the mesh that is open was imported, to change it.
     Import,
-    /// Take the mesh that is about to be converted otherwise; whether a person is still dragging.
-    SetImport(Box<MeshOptions>, bool),
+    /// Change how the mesh that is about to be converted is imported.
+    SetImport(Box<ImportOptions>, Gesture),
     /// Convert it.
     Convert,
-    /// Give up what is under way with it, or else the mesh.
+    /// Stop the conversion, or else give up the mesh.
     CancelImport,
-    /// Ask for a file by the system's dialog.
+    /// Ask for a file with the system's dialog.
     OpenDialog,
     /// Show the field for a path.
     OpenPath,
     /// Show the field for a step or a number of quadrilaterals.
     GoTo,
-    /// Save the window as a picture.
+    /// Save a picture of the window.
     Screenshot,
-    /// Save the state as a figure, as the panel for figures has it.
+    /// Save a figure of the state, as the panel for figures says.
     Export,
-    /// Show the panel for figures.
+    /// Show or hide the panel for figures.
     Figures,
-    /// Save what the panel for figures has.
+    /// Change how figures are made.
+    SetFigure(Box<FigureForm>),
+    /// Save a figure as the panel for figures says, in these formats.
     SaveFigure(Formats),
-    /// Open the file once more.
+    /// Open the file again.
     Reopen,
-    /// Show what the case is about.
+    /// Show or hide the notes on the case.
     Notes,
-    /// Open the run that was left behind.
+    /// Open the autosaved run that is offered.
     OpenKept,
-    /// Throw the run away that was left behind.
+    /// Discard the autosaved run that is offered.
     DiscardKept,
-    /// Save the run: the case with everything that was changed.
+    /// Save the run: the case with all changes.
     SaveRun,
-    /// Ask where the mesh of the state is to be written.
+    /// Ask where to save the current mesh.
     SaveMesh,
-    /// Take back what a person did last.
+    /// Save the current mesh to a path.
+    SaveMeshAs(String),
+    /// Undo the last change.
     Undo,
-    /// Do it again.
+    /// Redo it.
     Redo,
-    /// Every command by name.
+    /// Show all commands by name.
     Palette,
-    /// All keys.
+    /// Show all keys.
     Help,
-    /// Panels to their first places.
+    /// Close what is open over the window.
+    CloseOverlay,
+    /// Close a message.
+    CloseFault(usize),
+    /// The user has arranged the panels like this.
+    Arrange(String),
+    /// Move all panels back to their first places.
     ResetLayout,
-    /// Step on and back, and tell how long states and frames take.
+    /// Step forward and back, and tell how long states and frames take.
     Measure,
-    /// Show in the status line how long states and frames take.
+    /// Show or hide how long states and frames take.
     ShowTimes,
-    /// Close whatever is open over the window, or give up the selection.
+    /// Close what is open over the window, or clear the selection.
     Escape,
 }
-
-/// Names of the layers, in the order of their digits.
-pub const LAYERS: [&str; 9] = [
-    "live triangles",
-    "dead quads",
-    "front",
-    "boundary",
-    "nodes",
-    "labels",
-    "angle arcs",
-    "metric ellipses",
-    "background mesh",
-];
 
 /// Kinds of events that one can go to.
 pub const KINDS: [&str; 13] = [
@@ -161,7 +173,7 @@ const SHIFT: Modifiers = Modifiers::SHIFT;
 const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 
-/// Keys with what they do; those with more modifiers come first, since egui takes Ctrl+Shift+S for Ctrl+S.
+/// All keys and their commands. Those with more modifiers come first, since egui takes Ctrl+Shift+S for Ctrl+S.
 pub fn keys() -> Vec<(Modifiers, Key, Command)> {
     let mut keys = vec![
         (CTRL_SHIFT, Key::Z, Command::Redo),
@@ -173,7 +185,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
         (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
         (SHIFT, Key::ArrowLeft, Command::Go(Goal::Quads(-10))),
-        (Modifiers::ALT, Key::F5, Command::ToBreakpoint(false)),
+        (Modifiers::ALT, Key::F5, Command::ToBreakpoint(Direction::Back)),
         (CTRL, Key::G, Command::GoTo),
         (CTRL, Key::P, Command::Palette),
         (CTRL, Key::Z, Command::Undo),
@@ -186,13 +198,13 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::R, Command::Reopen),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
         (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
-        (NONE, Key::F5, Command::ToBreakpoint(true)),
+        (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
         (NONE, Key::Home, Command::Go(Goal::Step(0))),
         (NONE, Key::End, Command::Go(Goal::End)),
         (NONE, Key::Space, Command::Play),
         (NONE, Key::F, Command::Fit),
         (NONE, Key::D, Command::ShowDecision),
-        (NONE, Key::V, Command::TogglePlace),
+        (NONE, Key::V, Command::TogglePlane),
         (NONE, Key::I, Command::LookFrom(Bearing::Iso)),
         (NONE, Key::X, Command::LookFrom(Bearing::X)),
         (NONE, Key::Y, Command::LookFrom(Bearing::Y)),
@@ -202,75 +214,86 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (NONE, Key::Escape, Command::Escape),
     ];
     let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
-    keys.extend(digits.into_iter().enumerate().map(|(k, key)| (NONE, key, Command::Layer(k))));
+    keys.extend(digits.into_iter().zip(ViewLayer::ALL).map(|(key, layer)| (NONE, key, Command::Layer(layer))));
     keys
 }
 
 impl Command {
-    /// Its name, as the palette and tooltips have it.
+    /// Its name in the palette, in menus and in tooltips.
     pub fn name(&self) -> String {
         match self {
             Command::Go(goal) => go_name(*goal),
-            Command::ToBreakpoint(true) => "To the next breakpoint".into(),
-            Command::ToBreakpoint(false) => "Back to a breakpoint".into(),
+            Command::GoToText(text) => format!("Go to {text}"),
+            Command::ToBreakpoint(Direction::Forward) => "To the next breakpoint".into(),
+            Command::ToBreakpoint(Direction::Back) => "Back to a breakpoint".into(),
             Command::Play => "Play or pause".into(),
             Command::Speed(speed) => format!("Play {speed} quads a second"),
             Command::Stop => "Stop".into(),
+            Command::Hover(what) => format!("Point at {}", words::thing(*what)),
             Command::Pick(_) => "Select".into(),
             Command::Show(_) => "Show in the middle".into(),
-            Command::LastTouch(_) => "Who touched this last".into(),
+            Command::LightUp(..) => "Light up".into(),
+            Command::LastTouch(_) => "What touched this last".into(),
             Command::Made(_) => "When was this made".into(),
-            Command::Watch(what) => format!("Watch {}", super::words::thing(*what)),
+            Command::Explain([a, b]) => format!("Explain {}", words::segment(*a, *b)),
+            Command::TellPast(_) => "History of the selection".into(),
+            Command::Watch(what) => format!("Watch {}", words::thing(*what)),
             Command::SwitchWatch(_) => "Switch a watchpoint".into(),
-            Command::Measure => "Measure how long steps take here".into(),
+            Command::Measure => "Measure how long steps take".into(),
             Command::ShowTimes => "Show how long states and frames take".into(),
             Command::Fit => "Fit the mesh to the view".into(),
             Command::ShowDecision => "Zoom to the decision".into(),
-            Command::Place(place) => place.name().into(),
-            Command::TogglePlace => "Space or parametric plane".into(),
-            Command::ToggleSplit => "Space and parametric plane side by side".into(),
-            Command::LookFrom(Bearing::Iso) => "Look from before, right and above".into(),
+            Command::LookFrom(Bearing::Iso) => "Look from front, right and above".into(),
             Command::LookFrom(Bearing::X) => "Look from +x".into(),
             Command::LookFrom(Bearing::Y) => "Look from +y".into(),
             Command::LookFrom(Bearing::Z) => "Look from +z".into(),
             Command::LookFrom(bearing) => format!("Look from {bearing}"),
+            Command::MoveCamera(..) => "Move the camera".into(),
+            Command::SurfaceView(view) => view.name().into(),
+            Command::TogglePlane => "Space or parametric plane".into(),
+            Command::ToggleSplit => "Space and parametric plane side by side".into(),
             Command::HiddenLines => "Hidden lines: off, faint, shown".into(),
-            Command::ToggleCurved => "Elements curved or flat".into(),
+            Command::ToggleCurved => "Curved or flat elements".into(),
             Command::Set(key, value) => format!("Set {key} = {value}"),
-            Command::ChooseBase([a, b]) => format!("Choose {} as base", super::words::segment(*a, *b)),
-            Command::ResetParameters => "All parameters as the case has them".into(),
-            Command::Layer(k) => format!("Layer: {}", LAYERS[*k]),
+            Command::ChooseBase([a, b]) => format!("Choose {} as base", words::segment(*a, *b)),
+            Command::ResetParameters => "Reset all parameters to the case".into(),
+            Command::Layer(layer) => format!("Layer: {}", layer.name()),
             Command::ColourBy(by) => format!("Colour by {}", by.name()),
-            Command::ToggleTheme => "Dark or light".into(),
+            Command::ToggleTheme => "Dark or light theme".into(),
             Command::AddBreakpoint(text) => format!("Break where {text}"),
             Command::SwitchBreakpoint(_) => "Switch a breakpoint".into(),
             Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
             Command::Bookmark => "Bookmark this step".into(),
             Command::Open(Source::BuiltIn(name)) => format!("Open {name}"),
             Command::Open(Source::File(path) | Source::Mesh(path, _)) => format!("Open {}", path.display()),
-            Command::Import => "How the mesh is taken…".into(),
-            Command::SetImport(..) => "Take the mesh otherwise".into(),
+            Command::Import => "Import settings of this mesh…".into(),
+            Command::SetImport(..) => "Change the import".into(),
             Command::Convert => "Convert".into(),
             Command::CancelImport => "Cancel".into(),
-            Command::OpenDialog => "Open by dialog…".into(),
+            Command::OpenDialog => "Open with a dialog…".into(),
             Command::OpenPath => "Open by path…".into(),
             Command::GoTo => "Go to a step or NQ…".into(),
             Command::Screenshot => "Save a picture of the window".into(),
             Command::Export => "Save a figure of this state".into(),
             Command::Figures => "Figures: size, ink, layers, strips…".into(),
+            Command::SetFigure(_) => "Change the figure".into(),
             Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
-            Command::Reopen => "Open the file again".into(),
+            Command::Reopen => "Reopen the file".into(),
             Command::Notes => "Notes on this case".into(),
             Command::OpenKept => "Open the run that was not closed".into(),
             Command::DiscardKept => "Discard the run that was not closed".into(),
             Command::SaveRun => "Save the run".into(),
             Command::SaveMesh => "Save the mesh…".into(),
+            Command::SaveMeshAs(path) => format!("Save the mesh as {path}"),
             Command::Undo => "Undo".into(),
             Command::Redo => "Redo".into(),
-            Command::Palette => "Every command by name".into(),
+            Command::Palette => "All commands by name".into(),
             Command::Help => "Keys".into(),
-            Command::ResetLayout => "Panels to their first places".into(),
-            Command::Escape => "Close, or select nothing".into(),
+            Command::CloseOverlay => "Close".into(),
+            Command::CloseFault(_) => "Close the message".into(),
+            Command::Arrange(_) => "Arrange the panels".into(),
+            Command::ResetLayout => "Reset the panels".into(),
+            Command::Escape => "Close, or clear the selection".into(),
         }
     }
 
@@ -297,11 +320,20 @@ impl Command {
         }
     }
 
-    /// Whether it does something while a mesh is about to be converted: what belongs to a run waits until there is one.
+    /// Whether it works while a mesh is about to be converted. What belongs to a run has to wait until there is one,
+    /// unless a panel asked for it by itself in the frame in which the import began.
     pub fn fits_import(&self) -> bool {
         matches!(
             self,
-            Command::SetImport(..)
+            Command::Hover(_)
+                | Command::Explain(_)
+                | Command::TellPast(_)
+                | Command::MoveCamera(..)
+                | Command::SetFigure(_)
+                | Command::CloseOverlay
+                | Command::CloseFault(_)
+                | Command::Arrange(_)
+                | Command::SetImport(..)
                 | Command::Convert
                 | Command::CancelImport
                 | Command::Escape
@@ -323,7 +355,7 @@ impl Command {
         )
     }
 
-    /// All that need nothing else to be said.
+    /// All commands that need no more than their names.
     pub fn all() -> Vec<Command> {
         let mut all: Vec<Command> = keys().into_iter().map(|k| k.2).collect();
         all.extend([
@@ -336,9 +368,9 @@ impl Command {
             Command::ShowTimes,
             Command::Measure,
         ]);
-        all.extend(Place::ALL.map(Command::Place));
+        all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
-        all.extend(KINDS.iter().flat_map(|k| [true, false].map(|f| Command::Go(Goal::Kind(k, f)))));
+        all.extend(KINDS.iter().flat_map(|kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));
         all.extend(built_in::all().map(|case| Command::Open(Source::BuiltIn(case.0.to_owned()))));
         let mut seen: Vec<String> = Vec::new();
         all.retain(|command| {
@@ -352,20 +384,20 @@ impl Command {
 }
 
 fn go_name(goal: Goal) -> String {
-    let kind = super::words::kind;
+    let kind = words::kind;
     match goal {
         Goal::Step(0) => "To the beginning".into(),
         Goal::Step(step) => format!("To step {step}"),
-        Goal::Steps(1) => "One operation on".into(),
+        Goal::Steps(1) => "One operation forward".into(),
         Goal::Steps(-1) => "One operation back".into(),
         Goal::Steps(by) => format!("{by} operations"),
-        Goal::Quads(1) => "One quadrilateral on".into(),
+        Goal::Quads(1) => "One quadrilateral forward".into(),
         Goal::Quads(-1) => "One quadrilateral back".into(),
-        Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals on"),
+        Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals forward"),
         Goal::Quads(by) => format!("{} quadrilaterals back", -by),
         Goal::ToQuads(quads) => format!("To NQ = {quads}"),
-        Goal::Kind(name, true) => format!("Next event: {}", kind(name)),
-        Goal::Kind(name, false) => format!("Event before: {}", kind(name)),
+        Goal::Kind(name, Direction::Forward) => format!("Next event: {}", kind(name)),
+        Goal::Kind(name, Direction::Back) => format!("Previous event: {}", kind(name)),
         Goal::End => "To the end".into(),
     }
 }
@@ -397,8 +429,8 @@ mod tests {
     fn every_command_has_a_name_of_its_own_and_tells_its_key() {
         let all = Command::all();
         assert!(all.len() > 60);
-        assert_eq!(Command::Go(Goal::Steps(1)).tip(), "One operation on  (Ctrl+Right)");
-        assert_eq!(Command::ToBreakpoint(false).tip(), "Back to a breakpoint  (Alt+F5)");
-        assert_eq!(Command::Layer(2).tip(), "Layer: front  (3)");
+        assert_eq!(Command::Go(Goal::Steps(1)).tip(), "One operation forward  (Ctrl+Right)");
+        assert_eq!(Command::ToBreakpoint(Direction::Back).tip(), "Back to a breakpoint  (Alt+F5)");
+        assert_eq!(Command::Layer(ViewLayer::Front).tip(), "Layer: front  (3)");
     }
 }

@@ -1,14 +1,13 @@
-//! Figures from the window: the state at hand, or several steps as a strip, made beside the window by what `render` is
-//! made by.
+//! Figures from the window: the current state, or several steps as a strip, made in the background by the code of
+//! `render`.
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::channel;
 
-use super::files::{answers, free_path};
-use super::session::{Moment, Opened};
-use super::state::State;
-use glam::DVec2;
+use super::files::{Writing, free_path};
+use super::session::{Moment, Opened, Wake};
+use super::state::{State, ViewCamera};
 
 use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Size, Wanted};
 use crate::app::work::{self, Frame};
@@ -26,7 +25,7 @@ use crate::render::look::{HiddenLines, Ink, Layer, Layers, Part};
 use crate::render::orthographic::View;
 use crate::render::picture::{Picture, Seen};
 
-/// What a figure is saved as.
+/// The formats of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Formats {
     /// Vectors.
@@ -38,7 +37,7 @@ pub enum Formats {
 }
 
 impl Formats {
-    /// How they are called.
+    /// Their name.
     pub fn name(self) -> &'static str {
         match self {
             Formats::Svg => "SVG",
@@ -51,16 +50,16 @@ impl Formats {
 /// What a figure shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Content {
-    /// The state at hand.
+    /// The current state.
     #[default]
     State,
     /// The steps with a bookmark, side by side.
     Bookmarks,
-    /// Stops that a person has written, side by side.
+    /// Stops that the user has typed, side by side.
     Stops,
-    /// Edge lengths of the state at hand.
+    /// Edge lengths of the current state.
     Lengths,
-    /// Angles of the state at hand.
+    /// Angles of the current state.
     Angles,
 }
 
@@ -69,7 +68,7 @@ impl Content {
     pub const ALL: [Content; 5] =
         [Content::State, Content::Bookmarks, Content::Stops, Content::Lengths, Content::Angles];
 
-    /// How it is called.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Content::State => "this state",
@@ -81,58 +80,50 @@ impl Content {
     }
 }
 
-/// How figures are made, as a person has set it.
-pub struct Figures {
-    /// Whether the panel is shown.
-    pub shown: bool,
+/// How figures are made, as the user has set it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FigureForm {
     pub content: Content,
-    /// NQ of a strip, with commas between.
+    /// NQ of a strip, separated by commas.
     pub stops: String,
-    /// As `--size` takes it; empty: as wide as a column, or a page.
+    /// As `--size` takes it; empty: as wide as a column, or a page for a strip.
     pub size: String,
     pub dpi: f64,
-    pub grey: bool,
+    pub ink: Ink,
+    /// Whether the ground is transparent, not white.
     pub transparent: bool,
-    /// Layers that are other than usual.
+    /// Layers that differ from the usual ones, and whether they are on.
     pub changed: Vec<(Layer, bool)>,
-    /// Only what is in view.
+    /// Whether only the part in view is drawn.
     pub in_view: bool,
-    /// Name without its ending; empty: after case and step.
+    /// Name without its extension; empty: from case and step.
     pub name: String,
-    making: Vec<Receiver<Result<String, Fault>>>,
 }
 
-impl Default for Figures {
+impl Default for FigureForm {
     fn default() -> Self {
-        Figures {
-            shown: false,
+        FigureForm {
             content: Content::State,
             stops: "50,100,150".to_owned(),
             size: String::new(),
             dpi: 300.0,
-            grey: false,
+            ink: Ink::Colour,
             transparent: false,
             changed: Vec::new(),
             in_view: false,
             name: String::new(),
-            making: Vec::new(),
         }
     }
 }
 
-impl Figures {
+impl FigureForm {
     /// Whether the figure is a strip.
     pub fn is_strip(&self) -> bool {
         matches!(self.content, Content::Bookmarks | Content::Stops)
     }
 
-    /// Whether one is being made.
-    pub fn is_busy(&self) -> bool {
-        !self.making.is_empty()
-    }
-
     fn usual(&self) -> Layers {
-        Layers::usual(if self.grey { Ink::Grey } else { Ink::Colour }, self.is_strip())
+        Layers::usual(self.ink, self.is_strip())
     }
 
     /// Whether a layer is drawn.
@@ -148,13 +139,13 @@ impl Figures {
         }
     }
 
-    /// The options of the command line that say the same.
+    /// The same as options of the command line.
     fn options(&self, part: Option<(Part, f64)>, view: Option<(Bearing, HiddenLines)>) -> Result<FigureOptions, Fault> {
         let wrong = |what: String| Fault::new(format!("The size of the figure is not understood: {what}"));
         let text = self.size.trim();
         let mut size: Option<Size> = if text.is_empty() { None } else { Some(text.parse().map_err(wrong)?) };
         if let Some((_, shape)) = part {
-            // The page has the shape of the view, where it has none of its own.
+            // Unless the page has a shape of its own, it has that of the view.
             let usual = if self.is_strip() { 174.0 } else { 84.0 };
             size = Some(match size.unwrap_or(Size::Millimetres(usual, None)) {
                 Size::Millimetres(w, None) => Size::Millimetres(w, Some((10.0 * w * shape).round() / 10.0)),
@@ -172,7 +163,7 @@ impl Figures {
         Ok(FigureOptions {
             size,
             dpi: (self.dpi != 300.0).then_some(self.dpi),
-            ink: self.grey.then_some(Ink::Grey),
+            ink: (self.ink == Ink::Grey).then_some(Ink::Grey),
             transparent: self.transparent.then_some(true),
             layers: (!self.changed.is_empty()).then(|| LayerWords::exactly(layers)),
             plot,
@@ -187,94 +178,80 @@ impl Figures {
     fn wanted(&self, bookmarks: &[u64]) -> Result<Vec<Wanted>, Fault> {
         if self.content == Content::Bookmarks {
             if bookmarks.is_empty() {
-                return Err(Fault::new("There is no bookmark yet").remedy("Ctrl+B sets one at the step at hand"));
+                return Err(Fault::new("There are no bookmarks").remedy("Ctrl+B bookmarks the current step"));
             }
             return Ok(bookmarks.iter().map(|step| Wanted::at(Some(Stop::Step(*step)))).collect());
         }
         let stops = crate::app::input::stops(&format!("nq={}", self.stops.replace(' ', "")));
-        let stops = stops.map_err(|what| Fault::new(format!("\"{}\" are no stops: {what}", self.stops)))?;
+        let stops = stops.map_err(|what| Fault::new(format!("\"{}\" are not valid stops: {what}", self.stops)))?;
         Ok(stops.0.into_iter().map(Wanted::at).collect())
     }
 }
 
-impl State {
-    /// Makes the figure that the panel describes, on a thread of its own, in the working folder.
-    pub fn save_figure(&mut self, formats: Formats) {
-        let (Some(moment), Some(opened), Some(run)) = (self.moment.clone(), self.opened.clone(), self.run()) else {
-            return;
-        };
-        // Surfaces are seen as in the window; meshes on them are drawn in space whatever it shows.
-        let on_surfaces = moment.mesh.ground().is_some();
-        let (camera, size) = match (on_surfaces, self.is_in_space()) {
-            (false, _) => (self.camera, self.view_size),
-            (true, true) => (self.space.camera, self.space.size),
-            (true, false) => (None, DVec2::ZERO),
-        };
-        let side = camera.filter(|_| on_surfaces).map(|camera| Bearing::of_turn(camera.turn));
-        let part = camera.filter(|_| self.figures.in_view && size.min_element() > 0.0).map(|camera| {
-            let centre = side.map_or(camera.centre.truncate(), |side| View::from(side).place(camera.centre));
-            (Part { centre, height: size.y / camera.points_per_unit() }, size.y / size.x)
-        });
-        let planned = self.figures.options(part, side.map(|side| (side, self.space.hidden))).and_then(|options| {
-            let strip = self.figures.is_strip();
-            let wanted = if strip { Some(self.figures.wanted(&self.kept.bookmarks)?) } else { None };
-            Ok((options, wanted))
-        });
-        let (options, wanted) = match planned {
-            Ok(planned) => planned,
-            Err(fault) => return self.complain(&fault),
-        };
-        let what = match self.figures.content {
-            Content::State => format!("-step-{}", moment.step),
-            Content::Lengths => format!("-step-{}-lengths", moment.step),
-            Content::Angles => format!("-step-{}-angles", moment.step),
-            Content::Bookmarks | Content::Stops => "-strip".to_owned(),
-        };
-        let name = self.figures.name.trim();
-        let stem = if name.is_empty() { format!("{}{what}", run.case.name) } else { name.to_owned() };
-        let (tell, told) = channel();
-        let wake = self.wake.clone();
-        std::thread::spawn(move || {
-            let made = match wanted {
-                Some(wanted) => {
-                    let mut run = run;
-                    run.case.parameters = run.parameters.clone();
-                    figure::make(&run, &wanted, &options, true, &mut Nobody).map(|made| made.0)
-                }
-                None => of_state(&moment, &opened, &run, &options),
-            };
-            // Nobody listens where the window has been closed.
-            let _ = tell.send(made.and_then(|figure| write(&figure, &stem, formats)));
-            wake();
-        });
-        self.figures.making.push(told);
-    }
-
-    /// The text of the run at the state at hand, as figures carry it; none where a mesh that it starts from is gone.
-    pub fn carried(&self) -> Option<String> {
-        let (moment, mut run) = (self.moment.as_ref()?, self.run()?);
-        run.shown = Some(Shown { states: vec![shown(moment)], drawn: Vec::new() });
-        run_file::embedded(&run).ok()
-    }
-
-    /// Hears of the figures that were being made.
-    pub fn hear_figures(&mut self) {
-        for answer in answers(&mut self.figures.making) {
-            match answer {
-                Ok(names) => self.notice(format!("The figure was saved as {names}.")),
-                Err(fault) => self.complain(&fault),
+/// Starts to make the figure that the panel describes, on a thread of its own, in the working folder; does nothing if
+/// nothing is open. The thread calls `wake` when it is done.
+///
+/// # Errors
+/// If the form has no meaning.
+pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writing>, Fault> {
+    let (run, form) = (state.run(), &state.workspace().figure);
+    let (Some(moment), Some(opened), Some(current)) = (run.moment.clone(), run.opened.clone(), state.current_run())
+    else {
+        return Ok(None);
+    };
+    // Surfaces are seen as in the window; meshes on them are drawn in space whatever it shows.
+    let on_surfaces = moment.mesh.embedding().is_some();
+    let ViewCamera { camera, size, .. } = match (on_surfaces, state.is_in_space()) {
+        (false, _) => state.view().plane,
+        (true, true) => state.view().space,
+        (true, false) => ViewCamera::default(),
+    };
+    let side = camera.filter(|_| on_surfaces).map(|camera| Bearing::of_turn(camera.turn));
+    let part = camera.filter(|_| form.in_view && size.min_element() > 0.0).map(|camera| {
+        let centre = side.map_or(camera.centre.truncate(), |side| View::from(side).place(camera.centre));
+        (Part { centre, height: size.y / camera.points_per_unit() }, size.y / size.x)
+    });
+    let options = form.options(part, side.map(|side| (side, state.workspace().surfaces.hidden)))?;
+    let wanted = if form.is_strip() { Some(form.wanted(&state.document().bookmarks)?) } else { None };
+    let what = match form.content {
+        Content::State => format!("-step-{}", moment.step),
+        Content::Lengths => format!("-step-{}-lengths", moment.step),
+        Content::Angles => format!("-step-{}-angles", moment.step),
+        Content::Bookmarks | Content::Stops => "-strip".to_owned(),
+    };
+    let name = form.name.trim();
+    let stem = if name.is_empty() { format!("{}{what}", current.case.name) } else { name.to_owned() };
+    let (tell, told) = channel();
+    std::thread::spawn(move || {
+        let made = match wanted {
+            Some(wanted) => {
+                let mut run = current;
+                run.case.parameters = run.parameters.clone();
+                figure::make(&run, &wanted, &options, true, &mut Nobody).map(|made| made.0)
             }
-        }
-    }
+            None => of_state(&moment, &opened, &current, &options),
+        };
+        // Nobody listens once the window has been closed.
+        let _ = tell.send(made.and_then(|figure| write(&figure, &stem, formats)));
+        wake();
+    });
+    Ok(Some(told))
 }
 
-/// The state at hand, as a figure says which it is.
+/// The text of the run at the current state, as figures carry it; none if the mesh that it starts from is gone.
+pub fn carried(state: &State) -> Option<String> {
+    let (moment, mut run) = (state.run().moment.as_ref()?, state.current_run()?);
+    run.shown = Some(Shown { states: vec![shown(moment)], drawn: Vec::new() });
+    run_file::embedded(&run).ok()
+}
+
+/// How a figure names the current state.
 fn shown(moment: &Moment) -> ShownState {
     let state = fingerprint(&moment.mesh, &moment.phase);
     ShownState { step: moment.step, at: Some(Stop::Step(moment.step)), state }
 }
 
-/// The figure of the state at hand.
+/// The figure of the current state.
 fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &FigureOptions) -> Result<Figure, Fault> {
     let Moment { mesh, parameters, phase, just_changed, .. } = moment.as_ref();
     let seen = Seen { mesh, parameters, phase, changed: just_changed };
@@ -286,7 +263,7 @@ fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &Fig
     Figure::of_run(run, &[frame], options, true)
 }
 
-/// Writes a figure under names that are free; those, for people.
+/// Writes a figure under names that are free. Returns the message that says which.
 fn write(figure: &Figure, stem: &str, formats: Formats) -> Result<String, Fault> {
     let mut names: Vec<PathBuf> = Vec::new();
     if formats != Formats::Png {
@@ -300,5 +277,6 @@ fn write(figure: &Figure, stem: &str, formats: Formats) -> Result<String, Fault>
         save::save(&path, |out| out.write_all(&pixels))?;
         names.push(path);
     }
-    Ok(names.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(" and "))
+    let names: Vec<String> = names.iter().map(|path| path.display().to_string()).collect();
+    Ok(format!("The figure was saved as {}.", names.join(" and ")))
 }

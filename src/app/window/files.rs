@@ -1,4 +1,4 @@
-//! Files from the window: what to open, by the system's dialog or by a path, and pictures of the window.
+//! Files: names and dialogs to open them, a watcher of the file that is open, and pictures of the window.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::ColorImage;
 
+use super::import::ImportOptions;
 use super::session::{Source, Wake};
-use crate::app::command_line::MeshOptions;
 use crate::app::input;
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
@@ -17,15 +17,15 @@ use crate::core::formats::format::Format;
 use crate::core::formats::save;
 use crate::core::record::figure::KEYWORD;
 
-/// How often a file is looked at that may change.
+/// How often the watcher looks at its file.
 const LOOK: Duration = Duration::from_millis(700);
-/// A dialog that has not answered for so long is given up.
+/// A dialog that does not answer for this long is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// An answer that comes sooner is no person's.
+/// An answer that comes sooner does not come from a person.
 const HASTE: Duration = Duration::from_millis(250);
 
 impl Source {
-    /// What a name stands for: a built-in case, or else a file.
+    /// The source that a name stands for: a built-in case, or else a file.
     pub fn named(name: &str) -> Source {
         match built_in::all().any(|case| case.0 == name) {
             true => Source::BuiltIn(name.to_owned()),
@@ -33,7 +33,7 @@ impl Source {
         }
     }
 
-    /// How it is called.
+    /// Its name.
     pub fn name(&self) -> String {
         match self {
             Source::BuiltIn(name) => name.clone(),
@@ -42,7 +42,10 @@ impl Source {
     }
 }
 
-/// What was answered of what is waited for; that and what will never be answered is waited for no more.
+/// A file that a thread writes: what to tell the user when it is done, or what went wrong.
+pub type Writing = Receiver<Result<String, Fault>>;
+
+/// Takes the answers that have come. Receivers that have answered, or never will, are dropped.
 pub fn answers<T>(waiting: &mut Vec<Receiver<T>>) -> Vec<T> {
     let mut answers = Vec::new();
     waiting.retain(|receiver| match receiver.try_recv() {
@@ -55,25 +58,25 @@ pub fn answers<T>(waiting: &mut Vec<Receiver<T>>) -> Vec<T> {
     answers
 }
 
-/// What can be opened, by extension.
+/// Extensions of files that can be opened.
 fn extensions() -> Vec<&'static str> {
     let meshes = Format::ALL.into_iter().map(Format::extension);
     ["toml", "svg", "png"].into_iter().chain(meshes).collect()
 }
 
-/// The system's dialog, on a thread of its own: it may hang where the desktop has no portal.
+/// The system's file dialog, on a thread of its own: it may hang if the desktop has no portal.
 pub struct Dialog {
     answer: Receiver<Option<PathBuf>>,
     since: Instant,
 }
 
-/// What has become of a dialog.
+/// The answer of a dialog.
 pub enum Answer {
     /// Nothing yet.
     Waiting,
     /// A file.
     File(PathBuf),
-    /// A person has closed it.
+    /// The user has closed it.
     Nothing,
     /// There is none, or it hangs.
     Missing,
@@ -87,7 +90,7 @@ impl Dialog {
             let dialog = rfd::FileDialog::new()
                 .set_title("Open a case, a mesh or a figure")
                 .add_filter("Cases, meshes, figures", &extensions());
-            // Nobody listens where the window has given it up.
+            // Nobody listens once the window has given it up.
             let _ = tell.send(dialog.pick_file());
             wake();
         });
@@ -107,7 +110,7 @@ impl Dialog {
     }
 }
 
-/// A path in the working folder that is not taken: `stem.extension`, `stem-2.extension`, ...
+/// A path in the working folder that is free: `stem.extension`, `stem-2.extension`, ...
 pub fn free_path(stem: &str, extension: &str) -> PathBuf {
     let mut path = PathBuf::from(format!("{stem}.{extension}"));
     let mut number = 1;
@@ -118,14 +121,14 @@ pub fn free_path(stem: &str, extension: &str) -> PathBuf {
     path
 }
 
-/// Looks now and then whether a file is as it was, on a thread of its own.
+/// Watches a file for changes on a thread of its own.
 pub struct Watcher {
     news: Receiver<Result<String, Fault>>,
     gone: Arc<AtomicBool>,
 }
 
 impl Watcher {
-    /// A watcher of a file; `wake` is called when there are news.
+    /// Starts to watch a file; `wake` is called when it has changed.
     pub fn of(path: PathBuf, wake: Wake) -> Watcher {
         let (tell, news) = channel();
         let gone = Arc::new(AtomicBool::new(false));
@@ -140,12 +143,12 @@ impl Watcher {
                     continue;
                 }
                 before = now;
-                // What cannot be read is told, and that nothing is lost by it.
-                let read = input::run_of(&path, &MeshOptions::default()).map(|_| path.display().to_string()).map_err(
+                // If it cannot be read any more, nothing is lost, and the message says so.
+                let read = input::run_of(&path, &ImportOptions::default()).map(|_| path.display().to_string()).map_err(
                     |fault| {
                         let remedy =
                             if fault.remedy.is_empty() { String::new() } else { format!("{}. ", fault.remedy) };
-                        fault.remedy(format!("{remedy}The window keeps what it has"))
+                        fault.remedy(format!("{remedy}The window keeps the run that is open"))
                     },
                 );
                 if tell.send(read).is_err() {
@@ -157,7 +160,7 @@ impl Watcher {
         Watcher { news, gone }
     }
 
-    /// What is new: the name of the file that has changed, or what is wrong with it now.
+    /// The latest change: the name of the file, or what is wrong with it now.
     pub fn news(&self) -> Option<Result<String, Fault>> {
         self.news.try_iter().last()
     }

@@ -1,4 +1,4 @@
-//! The graphics device: what is asked of it, and what is done when it is lost or refuses something.
+//! The graphics device: its options, and what happens when it is lost or reports an error.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
@@ -22,24 +22,24 @@ pub fn options() -> WgpuConfiguration {
     options
 }
 
-/// What a device has told of itself.
+/// What a device has reported.
 #[derive(Default)]
-struct Told {
+struct DeviceStatus {
     /// It is lost, with the reason.
     lost: Option<String>,
-    /// It refused something that was not asked for rightly.
+    /// An error of the device.
     refused: Option<String>,
-    /// Where the run was saved after that.
+    /// Where the run was saved after the loss.
     saved: Option<PathBuf>,
 }
 
-/// Hears when the device is lost. A lost device cannot draw any more, nor say so: the run is saved, the window closes,
-/// and the program says what happened where it was started.
+/// Notices when the device is lost. A lost device cannot draw any more, not even a message: the run is saved, the
+/// window closes, and the program prints what happened.
 #[derive(Clone, Default)]
-pub struct Lost(Arc<Mutex<Told>>);
+pub struct Lost(Arc<Mutex<DeviceStatus>>);
 
 impl Lost {
-    /// Listens to a device. What it refuses is told in the window instead of ending the program.
+    /// Listens to a device. Its errors are shown in the window and do not end the program.
     pub fn listen(&self, device: &wgpu::Device, wake: impl Fn() + Send + Sync + 'static) {
         let wake = Arc::new(wake);
         let (told, woken) = (self.0.clone(), wake.clone());
@@ -58,18 +58,18 @@ impl Lost {
         }));
     }
 
-    /// Why the device is lost, where it is.
+    /// Why the device is lost, if it is.
     pub fn reason(&self) -> Option<String> {
         self.0.lock().ok()?.lost.clone()
     }
 
-    /// What the device refused since this was asked last.
+    /// The first error of the device since the last call.
     pub fn refused(&self) -> Option<Fault> {
         let what = self.0.lock().ok()?.refused.take()?;
         let what = what.lines().next().unwrap_or_default().to_owned();
         Some(
-            Fault::new(format!("The graphics driver refuses to draw: {what}"))
-                .remedy("The run itself goes on; save it and start quadfront again"),
+            Fault::new(format!("The graphics driver reports an error: {what}"))
+                .remedy("The run itself is not affected; save it and start quadfront again"),
         )
     }
 
@@ -80,19 +80,19 @@ impl Lost {
         }
     }
 
-    /// What to say after the window has closed for it.
+    /// The message after the window has closed because of the loss.
     pub fn fault(&self) -> Option<Fault> {
         let told = self.0.lock().ok()?;
         let reason = told.lost.as_ref()?.trim_end_matches('.');
         let remedy = match &told.saved {
-            Some(path) => format!("The run was saved; go on with it by: quadfront open {}", path.display()),
+            Some(path) => format!("The run was saved; continue with: quadfront open {}", path.display()),
             None => "Start quadfront again".to_owned(),
         };
         Some(Fault::new(format!("The graphics device was lost ({reason})")).remedy(remedy))
     }
 }
 
-/// Makes the painter known to egui's renderer.
+/// Installs the painter in egui's renderer.
 pub fn install_painter(render: &RenderState) {
     let painter = Painter::new(&render.device, render.target_format, samples(&render.adapter.get_info()));
     render.renderer.write().callback_resources.insert(painter);

@@ -1,70 +1,74 @@
-//! A mesh file that is about to be converted: how it is taken, in the words of the command line, and what it is like.
-//! Whatever a person changes is previewed by a thread (`preview`), the newest wish alone.
+//! The import of a mesh file before it is converted: its options and what the mesh is like. A thread shows the effect
+//! of every change (`preview`); only the latest one counts.
 
 mod preview;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::DVec2;
-
 pub use preview::{KINDS, Loaded, Shown};
-use preview::{Preview, Told, Wanted};
+use preview::{Preview, PreviewNews, Wanted};
 
-use super::session::Wake;
-use super::state::Progress;
-use crate::app::command_line::MeshOptions;
+use super::session::{Direction, Wake};
+use super::state::{Progress, ViewCamera};
+/// How a mesh is imported, in the words of the command line.
+pub use crate::app::command_line::MeshOptions as ImportOptions;
 use crate::app::input;
 use crate::core::case::{MeshUse, Taking};
 use crate::core::fault::Fault;
-use crate::render::camera::Camera;
 
-/// How many changes can be taken back.
+/// How many changes can be undone.
 const UNDO: usize = 100;
 
-/// Units of length that files have, in metres.
+/// Units of length of files, in metres.
 pub const UNITS: [(&str, f64); 4] = [("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("inch", 0.0254)];
+
+/// Whether a change is one of a drag that goes on: all changes of a drag are undone as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gesture {
+    /// The drag goes on.
+    Dragging,
+    /// There is no drag, or it has ended.
+    Done,
+}
 
 /// A mesh that is about to be converted.
 pub struct Import {
     /// Its file.
     pub path: PathBuf,
-    /// How it is taken.
-    pub options: MeshOptions,
+    /// How it is imported.
+    pub options: ImportOptions,
     preview: Preview,
-    /// The mesh, mended, once it is there.
+    /// The mesh with its repairs, once it has been read.
     pub loaded: Option<Arc<Loaded>>,
-    /// Why it was refused, with elements in the file's own unit.
+    /// Why it was refused; shapes are in the unit of the file.
     pub refused: Option<Fault>,
     /// The picture of it.
     pub shown: Option<Arc<Shown>>,
-    /// How far the preview is, while it is under way.
+    /// The progress of the preview, while it is under way.
     pub progress: Option<Progress>,
     wanted: Option<Wanted>,
-    /// The last number that a picture was asked for under.
+    /// The number of the last picture that was asked for.
     generation: u64,
-    undo: Vec<MeshOptions>,
-    redo: Vec<MeshOptions>,
-    /// Whether the last change was one of a drag, which is taken back as one.
-    is_dragging: bool,
-    /// From where it is looked at; none until it is fitted to the view.
-    pub camera: Option<Camera>,
-    /// Whether the view shows all of it, and the size of the view in points.
-    pub fitted: bool,
-    pub size: DVec2,
+    undo: Vec<ImportOptions>,
+    redo: Vec<ImportOptions>,
+    /// What the last change was part of.
+    gesture: Gesture,
+    /// Where the view of it looks.
+    pub view: ViewCamera,
 }
 
-/// What becomes of an import.
+/// What the preview means for the window.
 pub enum News {
-    /// Nothing that anybody else needs to know.
+    /// Nothing.
     Nothing,
     /// The mesh cannot be read.
     Refused(Fault),
 }
 
 impl Import {
-    /// Begins to read a mesh; `generation` is greater than that of any picture before.
-    pub fn begin(path: PathBuf, options: MeshOptions, generation: u64, wake: Wake) -> Import {
+    /// Starts to read a mesh; `generation` is at least the number of any picture before.
+    pub fn begin(path: PathBuf, options: ImportOptions, generation: u64, wake: Wake) -> Import {
         Import {
             preview: Preview::of(path.clone(), wake),
             path,
@@ -77,16 +81,14 @@ impl Import {
             generation,
             undo: Vec::new(),
             redo: Vec::new(),
-            is_dragging: false,
-            camera: None,
-            fitted: true,
-            size: DVec2::ZERO,
+            gesture: Gesture::Done,
+            view: ViewCamera::default(),
         }
     }
 
-    /// Whether the last change was one of a drag that goes on.
-    pub fn is_dragging(&self) -> bool {
-        self.is_dragging
+    /// What the last change was part of.
+    pub fn gesture(&self) -> Gesture {
+        self.gesture
     }
 
     /// The number after which pictures of another import are numbered.
@@ -94,9 +96,9 @@ impl Import {
         self.generation
     }
 
-    /// How the mesh is taken, in the core's words.
+    /// The options in the terms of `core`.
     pub fn taking(&self) -> Taking {
-        // What the panel lets through is valid; options from elsewhere have been read before.
+        // The panel lets only valid options through; those from elsewhere have been read before.
         input::taking_of(&self.path, &self.options).unwrap_or_default()
     }
 
@@ -105,7 +107,7 @@ impl Import {
         self.taking().used.unwrap_or_else(|| self.use_by_default())
     }
 
-    /// The same where nobody says it.
+    /// The use by default.
     pub fn use_by_default(&self) -> MeshUse {
         match &self.loaded {
             Some(loaded) if loaded.is_plane => MeshUse::Triangles,
@@ -118,7 +120,7 @@ impl Import {
         self.loaded.as_ref().is_some_and(|loaded| !loaded.is_plane) || self.used() == MeshUse::Shape
     }
 
-    /// Whether the picture is not that of the options yet.
+    /// Whether the picture does not show the options yet.
     pub fn is_behind(&self) -> bool {
         self.loaded.is_none() || self.shown.as_ref().is_none_or(|shown| Some(&shown.wanted) != self.wanted.as_ref())
     }
@@ -128,77 +130,82 @@ impl Import {
         self.loaded.as_ref().is_some_and(|loaded| loaded.fault.is_none())
     }
 
-    /// Shows what the mesh was refused for, and looks there.
+    /// Shows why the mesh was refused, and looks there.
     pub fn refuse(&mut self, fault: Fault) {
-        self.camera = None;
+        self.view.camera = None;
         self.refused = Some(fault);
     }
 
-    /// Shows what a conversion of the mesh as it is taken was refused for.
+    /// Shows why the conversion was refused.
     pub fn refuse_conversion(&mut self, mut fault: Fault) {
         let scale = self.taking().scale;
         fault.shapes.iter_mut().flatten().for_each(|p| *p /= scale);
         self.refuse(fault);
     }
 
-    /// What was refused may not be, taken otherwise.
+    /// With other options the mesh may not be refused.
     fn reconsider(&mut self) {
         self.refused = self.loaded.as_ref().and_then(|loaded| loaded.fault.clone());
     }
 
-    /// Changes how the mesh is taken, so that it can be taken back.
-    pub fn set(&mut self, options: MeshOptions, dragging: bool) {
+    /// Changes how the mesh is imported; undo takes it back.
+    pub fn set(&mut self, options: ImportOptions, gesture: Gesture) {
+        let goes_on = [gesture, self.gesture] == [Gesture::Dragging; 2];
         if options == self.options {
-            self.is_dragging &= dragging;
+            // A drag begins with its first change.
+            self.gesture = if goes_on { Gesture::Dragging } else { Gesture::Done };
             return;
         }
         let before = std::mem::replace(&mut self.options, options);
-        if !(dragging && self.is_dragging) {
+        self.gesture = gesture;
+        if !goes_on {
             self.undo.push(before);
             if self.undo.len() > UNDO {
                 self.undo.remove(0);
             }
         }
-        self.is_dragging = dragging;
         self.redo.clear();
         self.reconsider();
     }
 
-    /// Takes back the last change, or does it again.
-    pub fn take_back(&mut self, back: bool) {
-        let (from, to) = if back { (&mut self.undo, &mut self.redo) } else { (&mut self.redo, &mut self.undo) };
+    /// Undoes or redoes a change.
+    pub fn take_back(&mut self, direction: Direction) {
+        let (from, to) = match direction {
+            Direction::Back => (&mut self.undo, &mut self.redo),
+            Direction::Forward => (&mut self.redo, &mut self.undo),
+        };
         if let Some(options) = from.pop() {
             to.push(std::mem::replace(&mut self.options, options));
             self.reconsider();
         }
-        self.is_dragging = false;
+        self.gesture = Gesture::Done;
     }
 
-    /// Hears what the preview tells, and asks for a picture where another one is wanted now.
+    /// Takes in what the preview reports, and asks for another picture if the options have changed.
     pub fn look(&mut self, dark: bool) -> News {
         let mut news = News::Nothing;
         for told in self.preview.hear() {
             match told {
-                Told::Progress(progress) => self.progress = Some(progress),
-                Told::Loaded(Ok(loaded)) => {
+                PreviewNews::Progress(progress) => self.progress = Some(progress),
+                PreviewNews::Loaded(Ok(loaded)) => {
                     if let Some(fault) = &loaded.fault {
                         self.refuse(fault.clone());
                     }
                     self.loaded = Some(loaded);
                 }
-                Told::Loaded(Err(fault)) => news = News::Refused(fault),
-                Told::Shown(shown) => self.shown = Some(shown),
-                Told::Refused(fault) => self.refuse(fault),
+                PreviewNews::Loaded(Err(fault)) => news = News::Refused(fault),
+                PreviewNews::Shown(shown) => self.shown = Some(shown),
+                PreviewNews::Refused(fault) => self.refuse(fault),
             }
         }
         if self.loaded.is_some() {
             let taking = self.taking();
             let marks = self.refused.as_ref().map_or_else(Arc::default, |fault| fault.shapes.clone().into());
-            // What is refused has no charts, or their colours would hide what it is refused for.
+            // The colours of charts would hide the elements for which a mesh is refused.
             let bound = (self.has_charts() && self.refused.is_none()).then(|| taking.bound());
             let wanted = Wanted { feature_angle: taking.feature_angle, bound, marks, dark };
             if self.wanted.as_ref() != Some(&wanted) {
-                // Two pictures may come of it.
+                // Up to two pictures will be made.
                 self.generation += 2;
                 self.wanted = Some(wanted.clone());
                 self.preview.ask(wanted, self.generation);
@@ -217,27 +224,27 @@ mod tests {
 
     #[test]
     fn a_drag_is_taken_back_as_one_and_what_follows_for_itself() {
-        let mut import = Import::begin(PathBuf::from("no such.stl"), MeshOptions::default(), 0, Arc::new(|| {}));
-        let angle = |degrees: f64| MeshOptions { feature_angle: Some(degrees), ..MeshOptions::default() };
+        let mut import = Import::begin(PathBuf::from("no such.stl"), ImportOptions::default(), 0, Arc::new(|| {}));
+        let angle = |degrees: f64| ImportOptions { feature_angle: Some(degrees), ..ImportOptions::default() };
         for degrees in [30.0, 31.0, 32.0] {
-            import.set(angle(degrees), true);
+            import.set(angle(degrees), Gesture::Dragging);
         }
         // Let go.
-        import.set(angle(32.0), false);
-        import.set(angle(50.0), true);
+        import.set(angle(32.0), Gesture::Done);
+        import.set(angle(50.0), Gesture::Dragging);
         assert_eq!(import.taking().feature_angle, 50.0_f64.to_radians());
         let mut back = || {
-            import.take_back(true);
+            import.take_back(Direction::Back);
             import.options.feature_angle
         };
         assert_eq!([back(), back(), back()], [Some(32.0), None, None]);
-        import.take_back(false);
+        import.take_back(Direction::Forward);
         assert_eq!(import.options.feature_angle, Some(32.0));
     }
 
     #[test]
     fn a_mesh_that_is_not_there_is_refused_with_its_name() {
-        let mut import = Import::begin(PathBuf::from("no such.stl"), MeshOptions::default(), 0, Arc::new(|| {}));
+        let mut import = Import::begin(PathBuf::from("no such.stl"), ImportOptions::default(), 0, Arc::new(|| {}));
         let begin = std::time::Instant::now();
         let fault = loop {
             if let News::Refused(fault) = import.look(true) {

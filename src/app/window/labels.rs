@@ -1,5 +1,5 @@
-//! What is laid over a view as text and curves: letters, H-values, frontal angles, node ids, ellipses, scale bar and
-//! axes. All of it thins out by its size on the screen; a label that would cover an earlier one is dropped.
+//! Text and curves over a view: letters, H-values, frontal angles, node ids, ellipses, scale bar and axes. Small
+//! details are left out; a label that would cover an earlier one is dropped.
 
 mod corners;
 mod measures;
@@ -13,7 +13,7 @@ pub use measures::shading;
 use super::session::Moment;
 use super::state::State;
 use super::theme::{self, ink};
-use super::viewport::{Frame, class_colour};
+use super::viewport::{ViewFrame, class_colour};
 use super::words;
 use crate::core::front::segment::Segment;
 use crate::core::mesh::ids::NodeId;
@@ -22,18 +22,18 @@ use crate::render::pick::Cover;
 use crate::render::scene::{Decision, Outlined, Scene};
 use glam::{DVec2, DVec3};
 
-/// Labels in a view, and ellipses.
+/// The greatest number of labels in a view, and of ellipses.
 const MOST_LABELS: usize = 150;
-/// Ids stand where the nearest neighbour is so many points away.
+/// A node shows its id if its nearest neighbour is at least so many points away.
 const LEAST_FOR_IDS: f64 = 34.0;
 const MOST_ELLIPSES: usize = 60;
-/// Ellipses are drawn at this share of the unit length.
+/// Ellipses are drawn at this fraction of the unit length.
 const ELLIPSE: f64 = 0.25;
 
-/// How long labels take to come when the zoom has changed, in seconds.
+/// How long new labels fade in after a zoom, in seconds.
 const COMING: f64 = 0.12;
 
-/// Which labels were there in the frame before, so that those that a zoom brings come softly.
+/// The labels of the frame before, so that labels which a zoom adds fade in.
 #[derive(Default)]
 pub struct Memory {
     scale: f64,
@@ -41,33 +41,33 @@ pub struct Memory {
     labels: BTreeMap<String, f64>,
 }
 
-/// Which view it is.
+/// What a view is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum ViewRole {
     Main,
     Lens,
     Whole,
 }
 
-/// What labels are laid over: a view of a scene, and where it is one in space what of it hides labels.
+/// The view of a scene that is labelled, and in space the part of it that hides labels.
 #[derive(Clone, Copy)]
-pub struct Seen<'a> {
-    pub frame: &'a Frame,
+pub struct LabelledScene<'a> {
+    pub frame: &'a ViewFrame,
     pub scene: &'a Scene,
     pub cover: Option<&'a Cover>,
 }
 
-/// Shows everything that is laid over a view.
+/// Shows all labels of a view.
 pub fn show(
     ui: &Ui,
-    seen: &Seen<'_>,
+    seen: &LabelledScene<'_>,
     state: &State,
     moment: &Moment,
     palette: &Palette,
-    which: Which,
+    which: ViewRole,
     memory: &mut Memory,
 ) {
-    let Seen { frame, scene, cover } = *seen;
+    let LabelledScene { frame, scene, cover } = *seen;
     let painter = ui.painter_at(frame.rect);
     let now = ui.input(|input| input.time);
     let scale = frame.camera.points_per_unit();
@@ -76,7 +76,7 @@ pub fn show(
     }
     let before = std::mem::take(&mut memory.labels);
     let is_new = (now - memory.zoomed < COMING && !before.is_empty()).then_some(now);
-    let mut over = Over {
+    let mut over = Labels {
         painter,
         frame,
         scene,
@@ -90,34 +90,34 @@ pub fn show(
         labels: BTreeMap::new(),
     };
     let decision = Decision::of(&moment.phase);
-    if which == Which::Lens {
+    if which == ViewRole::Lens {
         over.unit_grid(state);
     }
-    if which == Which::Whole {
+    if which == ViewRole::Whole {
         over.main_frame(state);
     }
     let small = over.small_view(which, &decision);
     if cover.is_some() {
         over.lens_in_space(state);
     }
-    if state.kept.layers.ellipses && which == Which::Main {
+    if state.document().layers.ellipses && which == ViewRole::Main {
         over.ellipses();
     }
     if !small {
         over.letters(&decision);
     }
-    if state.kept.layers.labels && which != Which::Whole {
+    if state.document().layers.labels && which != ViewRole::Whole {
         over.base(&decision, which);
     }
-    if state.kept.layers.arcs && !small {
+    if state.document().layers.arcs && !small {
         over.wedges_and_arcs(&decision, which);
     }
-    if state.kept.layers.labels && which == Which::Main {
+    if state.document().layers.labels && which == ViewRole::Main {
         over.pointed(state);
         over.front_labels(&decision);
         over.node_ids(&decision);
     }
-    if which == Which::Main {
+    if which == ViewRole::Main {
         over.scale_bar();
         over.axes();
     }
@@ -127,9 +127,9 @@ pub fn show(
     }
 }
 
-struct Over<'a> {
+struct Labels<'a> {
     painter: Painter,
-    frame: &'a Frame,
+    frame: &'a ViewFrame,
     scene: &'a Scene,
     cover: Option<&'a Cover>,
     moment: &'a Moment,
@@ -138,47 +138,46 @@ struct Over<'a> {
     /// Labels of the frame before, with the times at which they came, and those of this one.
     before: BTreeMap<String, f64>,
     labels: BTreeMap<String, f64>,
-    /// The time at which labels come that were not there before; none where they are there at once.
+    /// The time at which new labels start to fade in; none if they do not.
     is_new: Option<f64>,
     now: f64,
 }
 
-impl Over<'_> {
-    /// Where a node lies on the screen; none where it is not there, or hidden.
+impl Labels<'_> {
+    /// Where a node lies on the screen; none if it does not exist or is hidden.
     fn place(&self, node: NodeId) -> Option<Pos2> {
         let spot = self.scene.spot(node).filter(|_| self.moment.mesh.has_node(node))?;
         self.on_screen(spot.at)
     }
 
-    /// Where a place of the scene lies on the screen; none where it is hidden.
+    /// Where a place of the scene lies on the screen; none if it is hidden.
     fn on_screen(&self, place: DVec3) -> Option<Pos2> {
         let seen = self.frame.camera.seen(place, self.frame.size());
         let hidden = self.cover.is_some_and(|cover| cover.hides(seen));
         (!hidden).then(|| self.frame.rect.min + Vec2::new(seen.x as f32, seen.y as f32))
     }
 
-    /// The place of the scene at a place of the plane.
+    /// The place in the scene of a point of the plane.
     fn lifted(&self, p: DVec2) -> DVec3 {
-        match self.moment.mesh.ground() {
-            Some(ground) if self.scene.form().is_in_space() => ground.atlas.xyz(p),
+        match self.moment.mesh.embedding() {
+            Some(embedding) if self.scene.form().is_in_space() => embedding.atlas.xyz(p),
             _ => p.extend(0.0),
         }
     }
 
-    /// Whether the surface is seen from behind at a node, so that what runs anticlockwise in the mesh runs clockwise
-    /// here.
+    /// Whether the surface is seen from behind at a node, so that anticlockwise in the mesh is clockwise on the screen.
     fn is_behind(&self, node: NodeId) -> bool {
         self.scene.spot(node).is_some_and(|spot| spot.normal.dot(self.frame.camera.towards()) < 0.0)
     }
 
-    /// Whether the decision is too small on the screen to be lettered.
-    fn small_view(&self, which: Which, decision: &Decision) -> bool {
+    /// Whether the decision is too small on the screen for letters.
+    fn small_view(&self, which: ViewRole, decision: &Decision) -> bool {
         let Some([a, b]) = decision.base else { return false };
         let length = self.place(a).zip(self.place(b)).map_or(0.0, |(a, b)| a.distance(b));
-        which == Which::Whole && length < 24.0
+        which == ViewRole::Whole && length < 24.0
     }
 
-    /// Puts a label down, unless it would cover one that is there; its plate is drawn first.
+    /// Adds a label, unless it would cover another one; its plate is drawn first.
     fn label(&mut self, at: Pos2, anchor: Align2, text: &str, font: FontId, colour: Color32, plate: bool) -> bool {
         if self.taken.len() >= MOST_LABELS {
             return false;
@@ -200,7 +199,7 @@ impl Over<'_> {
         true
     }
 
-    /// A, B, C and D, away from the middle of what they stand at.
+    /// The letters A, B, C and D, on the outer side of their nodes.
     fn letters(&mut self, decision: &Decision) {
         let letters: Vec<(Pos2, char)> = decision.letters().filter_map(|(n, c)| Some((self.place(n)?, c))).collect();
         if letters.is_empty() {
@@ -223,7 +222,7 @@ impl Over<'_> {
         }
     }
 
-    fn base(&mut self, decision: &Decision, which: Which) {
+    fn base(&mut self, decision: &Decision, which: ViewRole) {
         let Some([a, b]) = decision.base else { return };
         let Some(segment) = self.moment.front.iter().find(|s| s.a == a && s.b == b) else { return };
         let Some((p, q)) = self.place(a).zip(self.place(b)) else { return };
@@ -232,7 +231,7 @@ impl Over<'_> {
         let across = if self.is_behind(a) { -across } else { across };
         let at = p + 0.5 * (q - p) + 18.0 * Vec2::new(-across.x, -across.y);
         let text = match which {
-            Which::Lens => words::fixed(segment.length_metric, 3),
+            ViewRole::Lens => words::fixed(segment.length_metric, 3),
             _ => format!("H {}", words::size(segment.h_value)),
         };
         if p.distance(q) > 44.0 {
@@ -241,9 +240,9 @@ impl Over<'_> {
         }
     }
 
-    /// What is picked and hovered, named.
+    /// The names of what is selected and of what is under the pointer.
     fn pointed(&mut self, state: &State) {
-        for (what, strong) in [(state.kept.picked, true), (state.hovered, false)] {
+        for (what, strong) in [(state.document().picked, true), (state.frame().hovered, false)] {
             let Some(what) = what else { continue };
             let Some(p) = super::viewport::middle(self.moment, what) else { continue };
             let text = match what {

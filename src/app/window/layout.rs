@@ -1,4 +1,4 @@
-//! The panels in their docks: sides keep their widths in points, the view takes the rest.
+//! The docks of the panels: side columns keep their widths in points, the view takes the rest.
 
 mod docks;
 mod written;
@@ -10,12 +10,13 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde_json::Value;
 
 use super::command::Command;
+use super::panels::PanelStates;
 use super::state::State;
 use super::viewport::Views;
 use crate::render::palette::Palette;
 use docks::Docks;
 
-/// Widths in points: front, lens, inspector; and the least that the view keeps.
+/// Widths in points: front, lens, inspector; and the least width of the view.
 const LEFT: f32 = 344.0;
 const LENS: f32 = 263.0;
 const RIGHT: f32 = 332.0;
@@ -100,17 +101,37 @@ impl Room {
     }
 }
 
-/// The docks.
-#[derive(Default)]
+/// Least and greatest height of the timeline with its buttons in points, and its first height.
+pub const TIMELINE_HEIGHTS: [f32; 2] = [120.0, 420.0];
+const TIMELINE_HEIGHT: f32 = 216.0;
+
+/// The docks, and the height of the timeline below them.
 pub struct Layout {
+    pub timeline_height: f32,
     tree: Option<(Tree<Pane>, Room)>,
-    /// The column that takes what the others leave, and the size at the last frame.
+    /// The column that takes the rest of the width, and the size in the frame before.
     middle: Option<TileId>,
     size: Vec2,
-    /// How a person has arranged the docks, by the room that there was.
+    /// How the user has arranged the docks, by the room for columns.
     arranged: BTreeMap<String, Value>,
-    /// Whether a person is moving something.
+    /// Whether the user is moving something.
     edited: bool,
+    /// The last request to arrange the docks that was followed.
+    relayouts: u64,
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Layout {
+            timeline_height: TIMELINE_HEIGHT,
+            tree: None,
+            middle: None,
+            size: Vec2::ZERO,
+            arranged: BTreeMap::new(),
+            edited: false,
+            relayouts: 0,
+        }
+    }
 }
 
 impl Layout {
@@ -118,20 +139,16 @@ impl Layout {
     pub fn show(
         &mut self,
         ui: &mut Ui,
-        state: &mut State,
+        state: &State,
+        local: &mut PanelStates,
         views: &mut Views,
         commands: &mut Vec<Command>,
         palette: &'static Palette,
     ) {
         let size = ui.available_size();
         let room = Room::of(size.x);
-        if std::mem::take(&mut state.reset_layout) {
-            self.arranged.clear();
-            self.tree = None;
-            state.arrange(None);
-        }
-        if std::mem::take(&mut state.relayout) {
-            let kept = state.kept.layout.as_ref().and_then(|text| serde_json::from_str::<Value>(text).ok());
+        if state.view().relayout.take(&mut self.relayouts).is_some() {
+            let kept = state.document().layout.as_ref().and_then(|text| serde_json::from_str::<Value>(text).ok());
             self.arrange(kept.as_ref());
             self.tree = None;
         }
@@ -148,22 +165,22 @@ impl Layout {
         }
         self.size = size;
         let Some((tree, _)) = &mut self.tree else { return };
-        let mut docks = Docks { state, views, commands, palette, edited: false };
+        let mut docks = Docks { state, local, views, commands, palette, edited: false };
         tree.ui(&mut docks, ui);
         self.edited |= docks.edited;
         if self.edited && !ui.input(|input| input.pointer.any_down()) {
             self.edited = false;
             self.arranged.insert(room.name().to_owned(), written::write(tree));
-            state.arrange(Some(self.arranged().to_string()));
+            commands.push(Command::Arrange(self.arranged().to_string()));
         }
     }
 
-    /// How a person has arranged the docks: by the room that there was.
+    /// How the user has arranged the docks, by the room for columns.
     pub fn arranged(&self) -> Value {
         Value::Object(self.arranged.iter().map(|(room, docks)| (room.clone(), docks.clone())).collect())
     }
 
-    /// Arranges the docks as they were; those that cannot be read stand as at first.
+    /// Arranges the docks as they were; those that cannot be read go back to their first places.
     pub fn arrange(&mut self, arranged: Option<&Value>) {
         self.arranged.clear();
         for (room, docks) in arranged.and_then(Value::as_object).into_iter().flatten() {
@@ -228,7 +245,7 @@ impl Layout {
         self.tree = Some((Tree::new(egui::Id::unique("docks"), root, tiles), room));
     }
 
-    /// After a change of the window's size the sides are as wide as before.
+    /// Keeps the widths of the side columns when the window's size changes.
     fn keep_sides(&mut self, size: Vec2) {
         let (Some((tree, _)), Some(middle)) = (&mut self.tree, self.middle) else { return };
         let Some(root) = tree.root() else { return };

@@ -1,21 +1,19 @@
-//! How long states and frames take on this machine: shown in the status line where that is wanted, and measured by
-//! stepping.
+//! How long states and frames take on this machine: shown in the status line, or measured by stepping.
 
 use std::time::{Duration, Instant};
 
 use super::session::Goal;
 
-/// Quadrilaterals that are stepped on, and back again.
+/// How many quadrilaterals to step forward, and back again.
 const QUADS: usize = 60;
-/// Leaps to steps all over the run.
+/// How many leaps to steps all over the run.
 const LEAPS: usize = 20;
-/// A pause between two frames that is longer is no frame's own.
+/// A longer pause between two frames is not the time of a frame.
 const PAUSE: Duration = Duration::from_secs(2);
 
-/// The times of the last states and frames.
+/// The times of the last frames.
 #[derive(Clone, Debug, Default)]
 pub struct Times {
-    state: Option<Duration>,
     frame: Option<Duration>,
     begun: Option<Instant>,
     /// When the program was started, and how long it took from there to the first picture.
@@ -24,20 +22,15 @@ pub struct Times {
 }
 
 impl Times {
-    /// A frame begins; `is_shown`: the one before has shown a mesh.
+    /// A frame begins; `is_shown`: the frame before has shown a mesh.
     pub fn first(&mut self, is_shown: bool) {
         if is_shown && self.first.is_none() {
             self.first = self.started.map(|started| started.elapsed());
         }
     }
 
-    /// A state took so long, from asking to telling.
-    pub fn state(&mut self, took: Duration) {
-        self.state = Some(took);
-    }
-
-    /// A frame begins. `follows`: it was asked for in the one before, so that the time between them is that of a frame,
-    /// with all that the card does.
+    /// A frame begins. `follows`: the frame before asked for it, so that the time between them is that of a whole
+    /// frame, including the work of the graphics card.
     pub fn frame(&mut self, follows: bool) {
         let now = Instant::now();
         if let Some(begun) = self.begun.filter(|_| follows) {
@@ -46,22 +39,22 @@ impl Times {
         self.begun = Some(now);
     }
 
-    /// Both in words.
-    pub fn told(&self) -> String {
+    /// The times in words, with how long the current state took.
+    pub fn told(&self, state: Duration) -> String {
         let told = |time: Option<Duration>, decimals: usize| match time {
             Some(time) => super::words::fixed(1e3 * time.as_secs_f64(), decimals),
             None => super::words::UNDEFINED.to_owned(),
         };
         let first = told(self.first, 0);
-        format!("first {first} ms  \u{b7}  state {} ms  \u{b7}  frame {} ms", told(self.state, 2), told(self.frame, 0))
+        format!("first {first} ms  \u{b7}  state {} ms  \u{b7}  frame {} ms", told(Some(state), 2), told(self.frame, 0))
     }
 }
 
-/// A walk of some quadrilaterals on and back that is timed.
+/// Times steps forward and back, and leaps.
 #[derive(Clone, Debug)]
 pub struct Measuring {
     left: usize,
-    /// Times of states and of frames: on, back, leaping.
+    /// Times of states and of frames: forward, back, leaping.
     states: [Vec<f64>; 3],
     frames: [Vec<f64>; 3],
     asked: Option<Instant>,
@@ -82,16 +75,15 @@ impl Default for Measuring {
 }
 
 impl Measuring {
-    /// At the beginning of a frame: where the state that was asked for has been shown by the frame before, asks for the next.
-    /// `took`: how long that state took. None while it is not there.
-    /// `end`: the last step that is known.
+    /// At the beginning of a frame: the next goal, if the frame before has shown the last one; none while it has not
+    /// arrived. `took`: how long its state took. `end`: the last step that is known.
     pub fn next(&mut self, is_there: bool, took: Duration, end: u64) -> Option<Goal> {
         if !is_there {
             self.late = true;
             return None;
         }
         if self.asked.is_some() && std::mem::take(&mut self.late) {
-            // It came after its frame was begun, and is shown by this one.
+            // It arrived after its frame had begun, and is shown by this one.
             return None;
         }
         let kind = |left: usize| match left.checked_sub(LEAPS) {
@@ -108,12 +100,12 @@ impl Measuring {
         Some(match kind(self.left) {
             0 => Goal::Quads(1),
             1 => Goal::Quads(-1),
-            // Neighbours in time are far from each other in the run.
+            // Successive leaps go far.
             _ => Goal::Step(end * (self.left * 7 % LEAPS) as u64 / LEAPS as u64),
         })
     }
 
-    /// What was measured, where it is done.
+    /// The result, once the measurement is done.
     pub fn told(&self) -> Option<String> {
         if self.left > 0 || self.asked.is_some() {
             return None;
@@ -127,8 +119,8 @@ impl Measuring {
         };
         let [on, back, leap] = [0, 1, 2].map(|k| (spread(&self.states[k], 2), spread(&self.frames[k], 0)));
         Some(format!(
-            "{QUADS} quads on and back, {LEAPS} leaps; milliseconds, median (largest): state {} on, {} back, {} leaping; until the \
-             picture stands {}, {}, {}.",
+            "{QUADS} quads forward and back, {LEAPS} leaps; milliseconds, median (largest): state {} forward, \
+             {} back, {} leaping; until the picture is drawn {}, {}, {}.",
             on.0, back.0, leap.0, on.1, back.1, leap.1
         ))
     }

@@ -1,13 +1,14 @@
 //! The window: a stepping debugger for the merging front.
 //!
-//! What a person does becomes a [`command::Command`]; `State::apply` is the only place where one changes anything.
-//! The run itself works on threads of its own (`session`), so that the window never waits.
+//! What the user does becomes a [`Command`]. The panels read the `state` and return commands; only `state::apply` and
+//! `state::hearing` change it. The run works on threads of its own (`session`), so that the window never waits.
 
 mod words;
 mod icons;
 mod theme;
 mod session;
 mod measure;
+mod view_layer;
 mod command;
 mod files;
 mod import;
@@ -17,7 +18,6 @@ mod autosave;
 mod figures;
 mod mesh_out;
 mod state;
-mod apply;
 mod viewport;
 mod labels;
 mod layout;
@@ -34,8 +34,10 @@ use crate::core::fault::Fault;
 pub use app::App;
 pub use command::Command;
 pub use graphics::Lost;
-pub use session::{Goal, Source};
-pub use state::Place;
+pub use import::Gesture;
+pub use session::{Direction, Goal, Source};
+pub use state::SurfaceView;
+pub use view_layer::ViewLayer;
 
 /// The largest window in points: egui's textures end there.
 const LARGEST: f32 = 8192.0;

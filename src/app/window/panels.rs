@@ -1,4 +1,5 @@
-//! The panels. Each shows a part of the state and pushes commands; none changes the run itself.
+//! The panels. Each reads the state, keeps what is its own (a text that is being typed, a span, a drag), and returns
+//! commands.
 
 pub mod top;
 pub mod legend;
@@ -24,6 +25,16 @@ use super::command::Command;
 use super::theme::{self, ink};
 use crate::render::palette::Palette;
 
+/// What the panels keep for themselves.
+#[derive(Default)]
+pub struct PanelStates {
+    pub time: time::TimeState,
+    pub front: front::FrontState,
+    pub breakpoints: breakpoints::BreakpointsState,
+    pub parameters: parameters::ParametersState,
+    pub over: over::OverState,
+}
+
 /// A button with an icon, its name for screen readers, and a tooltip with its key.
 pub fn icon_button(ui: &mut Ui, icon: &str, size: f32, command: &Command, enabled: bool) -> Response {
     let button = Button::new(RichText::new(icon).font(theme::regular(size))).frame_when_inactive(false);
@@ -32,12 +43,12 @@ pub fn icon_button(ui: &mut Ui, icon: &str, size: f32, command: &Command, enable
     response.on_hover_text(command.tip())
 }
 
-/// The head of a section, with its source at the right.
+/// The heading of a section, with its source at the right.
 pub fn heading(ui: &mut Ui, title: &str, source: &str, palette: &Palette) {
     ui.add_space(8.0);
     let width = ui.max_rect().width();
     ui.horizontal(|ui| {
-        // What stands below may be wider than the panel: heads keep to it.
+        // What follows may be wider than the panel; headings are not.
         ui.set_max_width(width);
         ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {

@@ -1,9 +1,8 @@
-//! The run at work, on threads of its own: the window asks for a state and is told when it is there, so that it never
+//! The run on threads of its own: the window asks for a state and the session reports it, so that the window never
 //! waits.
 //!
-//! One thread has the history and goes where it is asked to; another runs ahead with the history's recorder and hands
-//! over what it found. A goal that lies beyond what is known waits until that thread has come so far, or until it is
-//! stopped.
+//! One thread owns the history and goes to the requested steps; another runs ahead with the history's recorder and
+//! hands over its record. A goal beyond the recorded steps waits until the recorder gets there, or until it is stopped.
 
 mod goal;
 mod moment;
@@ -15,11 +14,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-pub use goal::Goal;
+pub use goal::{Direction, Goal};
 pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
-use crate::app::command_line::MeshOptions;
+use super::import::ImportOptions;
 use crate::core::case::Case;
 use crate::core::convert::event::{Event, Why};
 use crate::core::fault::Fault;
@@ -34,22 +33,22 @@ use crate::core::run::sample::Sample;
 use crate::core::run::watch::Watched;
 use worker::Worker;
 
-/// How often progress is told.
+/// How often progress is reported.
 pub(super) const EVERY: Duration = Duration::from_millis(50);
 
-/// What is asked of a session, by the window or by its own recorder.
+/// Requests to a session, from the window or from its own recorder.
 enum Ask {
-    /// To a goal; asked then.
+    /// Go to a goal, requested at this time.
     Go(Goal, Instant),
-    /// To the next step at which a condition holds or something that is watched is touched, or the last one before.
-    Break(Stops, bool),
-    /// To the step that touched something last.
+    /// Go to the next or the previous step at which a condition holds or something that is watched is touched.
+    Break(Stops, Direction),
+    /// Go to the step that touched something last.
     Touch(Watched),
-    /// To the step that made the quadrilateral of an element.
+    /// Go to the step that made the quadrilateral of an element.
     Made(ElementId),
-    /// What became of something up to the state at hand.
+    /// Report the history of something up to the current step.
     Past(Watched),
-    /// How often conditions hold.
+    /// Count how often conditions hold.
     Count(Vec<Condition>),
     Explain([NodeId; 2]),
     Edits(Vec<Edit>),
@@ -57,31 +56,31 @@ enum Ask {
     Gone,
 }
 
-/// What a session tells.
-pub enum Told {
-    /// How far the work is: what is done, of how much (0: unknown).
+/// What a session reports.
+pub enum SessionNews {
+    /// Progress: how much is done of how much (0: unknown).
     Progress { words: &'static str, done: u64, total: u64 },
-    /// The case stands with its background mesh.
+    /// The case is open and has its background mesh.
     Opened(Arc<Opened>),
-    /// A state is there; so many asks are answered by it.
+    /// A state, with the number of requests that it answers.
     Moment(Arc<Moment>, usize),
-    /// More of the run: steps after `from`, in place of what was known after it; whether the end is among them.
+    /// More of the run: steps after `from`, which replace those known before; `end`: they include the last one.
     Track { from: u64, steps: Vec<Tracked>, samples: Vec<Sample>, end: bool },
-    /// What the checks of the whole mesh found at a step.
+    /// The result of the checks of the whole mesh at a step.
     Checked(u64, Verdict),
-    /// What became of something up to a step.
+    /// The history of something up to a step.
     Past(Arc<Past>),
-    /// How often each of the conditions holds in what is known of the run.
+    /// How often each condition holds in the recorded part of the run.
     Hits(Vec<usize>),
     /// Why a segment of the front was or was not chosen, at a step.
     Explained(u64, Arc<Explained>),
-    /// There is nothing of what was asked for; so many asks are answered by that.
+    /// There is no such step, with the number of requests that this answers.
     Nothing(&'static str, usize),
-    /// Something went wrong; so many asks are answered by that.
+    /// Something went wrong, with the number of requests that this answers.
     Fault(Fault, usize),
 }
 
-/// A case that stands.
+/// A case that is open.
 pub struct Opened {
     pub case: Case,
     /// The run as it was opened.
@@ -89,12 +88,12 @@ pub struct Opened {
     pub background: Background,
 }
 
-/// What is kept of each step of the run.
+/// The record of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tracked {
     /// What the step did.
     pub kind: &'static str,
-    /// Quadrilaterals that stand after it.
+    /// How many quadrilaterals there are after it.
     pub standing: u32,
     /// Segments of the front after it.
     pub front: u32,
@@ -110,39 +109,39 @@ pub struct Tracked {
 #[derive(Clone, Debug)]
 pub struct Explained {
     pub told: SegmentTold,
-    /// The step that put it off, with what spoke against its last attempt; where it is put off.
+    /// The step that put it off, with the reason of its last failure; none unless it is put off.
     pub put_off: Option<(u64, Option<Why>)>,
 }
 
-/// What became of something up to a step.
+/// The history of something up to a step.
 #[derive(Clone, Debug)]
 pub struct Past {
     pub step: u64,
     pub watched: Watched,
-    /// The last steps that touched it, the newest last, with what they did.
+    /// The last steps that touched it, the latest last, with their events.
     pub touches: Vec<(u64, Event)>,
     /// Whether there are more.
     pub more: bool,
-    /// The step that made the quadrilateral, and the triangles that it ate.
+    /// The step that made the quadrilateral, and the triangles that it merged.
     pub made: Option<(u64, Vec<ElementId>)>,
-    /// The step that killed the edge.
+    /// The step after which the edge was no longer live on both sides.
     pub killed: Option<u64>,
 }
 
-/// A run at work.
+/// A run on its threads.
 pub struct Session {
     ask: Sender<Ask>,
-    told: Receiver<Told>,
+    told: Receiver<SessionNews>,
     stop: Arc<AtomicBool>,
-    /// Ends the opening.
+    /// Stops the opening.
     opening: Cancel,
 }
 
-/// Called from other threads when there is something to be told.
+/// Called from other threads when they have something to report.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 impl Session {
-    /// Starts work on a run that `read` reads.
+    /// Opens the run that `read` returns.
     pub fn open(read: impl FnOnce() -> Result<Run, Fault> + Send + 'static, wake: Wake) -> Session {
         let (ask, asked) = channel();
         let (tell, told) = channel();
@@ -152,7 +151,7 @@ impl Session {
         let (own, flag) = (ask.clone(), stop.clone());
         std::thread::spawn(move || match Worker::open(read, own, voice, flag) {
             Ok(mut worker) => worker.serve(&asked),
-            Err((voice, fault)) => voice.say(Told::Fault(*fault, 1)),
+            Err((voice, fault)) => voice.say(SessionNews::Fault(*fault, 1)),
         });
         Session { ask, told, stop, opening }
     }
@@ -162,9 +161,9 @@ impl Session {
         self.ask(Ask::Go(goal, Instant::now()));
     }
 
-    /// Asks to go to where a breakpoint is met, forward or backward.
-    pub fn go_to_break(&self, stops: Stops, forward: bool) {
-        self.ask(Ask::Break(stops, forward));
+    /// Asks to go to where a breakpoint is met.
+    pub fn go_to_break(&self, stops: Stops, direction: Direction) {
+        self.ask(Ask::Break(stops, direction));
     }
 
     /// Asks to go to the step that touched something last.
@@ -177,7 +176,7 @@ impl Session {
         self.ask(Ask::Made(element));
     }
 
-    /// Asks what became of something up to the state at hand.
+    /// Asks for the history of something up to the current step.
     pub fn past(&self, watched: Watched) {
         self.ask(Ask::Past(watched));
     }
@@ -198,23 +197,23 @@ impl Session {
     }
 
     fn ask(&self, ask: Ask) {
-        // A session that has ended has told why.
+        // A session that has ended has reported why.
         let _ = self.ask.send(ask);
     }
 
-    /// Stops what is under way, where it is.
+    /// Stops the work under way.
     pub fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
         self.opening.ask();
     }
 
-    /// What is told next, where that comes soon.
-    pub fn hear_within(&self, patience: Duration) -> Option<Told> {
+    /// The next report, if it comes soon.
+    pub fn hear_within(&self, patience: Duration) -> Option<SessionNews> {
         self.told.recv_timeout(patience).ok()
     }
 
-    /// What has been told since the last time.
-    pub fn hear(&self) -> impl Iterator<Item = Told> + '_ {
+    /// What has been reported since the last call.
+    pub fn hear(&self) -> impl Iterator<Item = SessionNews> + '_ {
         self.told.try_iter()
     }
 }
@@ -227,15 +226,15 @@ impl Drop for Session {
 }
 
 struct Voice {
-    tell: Sender<Told>,
+    tell: Sender<SessionNews>,
     wake: Wake,
     last: Instant,
     cancel: Cancel,
 }
 
 impl Voice {
-    fn say(&self, told: Told) {
-        // Nobody listens any more: the window has opened something else.
+    fn say(&self, told: SessionNews) {
+        // Nobody listens any more if the window has opened something else.
         let _ = self.tell.send(told);
         (self.wake)();
     }
@@ -243,7 +242,7 @@ impl Voice {
     fn progress(&mut self, words: &'static str, done: u64, total: u64) {
         if self.last.elapsed() >= EVERY {
             self.last = Instant::now();
-            self.say(Told::Progress { words, done, total });
+            self.say(SessionNews::Progress { words, done, total });
         }
     }
 }
@@ -258,12 +257,12 @@ impl Watch for Voice {
     }
 }
 
-/// What the window calls a part of the work.
+/// The name of a stage of the work in the window.
 pub(super) fn words_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "Reading",
-        Stage::Mend => "Mending the mesh",
-        Stage::Chart => "Laying the surface flat",
+        Stage::Repair => "Repairing the mesh",
+        Stage::Chart => "Flattening the surface",
         Stage::Divide => "Dividing the curves",
         Stage::Triangulate => "Triangulating",
         Stage::Adapt => "Adapting the triangles",
@@ -276,8 +275,8 @@ pub(super) fn words_of(stage: Stage) -> &'static str {
 pub enum Source {
     /// A built-in case, by its name.
     BuiltIn(String),
-    /// A case, a run or a figure in a file; or a mesh, of which the window shows first what it is like.
+    /// A case, a run or a figure in a file; or a mesh, which the window shows before it is converted.
     File(PathBuf),
-    /// A mesh, taken as the options say.
-    Mesh(PathBuf, MeshOptions),
+    /// A mesh, imported with these options.
+    Mesh(PathBuf, ImportOptions),
 }

@@ -1,13 +1,14 @@
-//! What is kept of the window from one start to the next: where its panels are, what it draws, and how large it is. A
-//! small file in the user's own folder for such things; one that cannot be read is told and left out.
+//! Settings that outlast the window: where its panels are, what it draws, and how large it is, in a small file in the
+//! user's state folder. A file that cannot be read is reported and ignored.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::apply::layer;
-use super::state::{Place, State};
+use super::layout::{Layout, TIMELINE_HEIGHTS};
+use super::state::{Document, SurfaceStyle, SurfaceView, Workspace};
+use super::view_layer::ViewLayer;
 use crate::core::fault::Fault;
 use crate::core::formats::save;
 use crate::render::look::HiddenLines;
@@ -15,10 +16,8 @@ use crate::render::scene::{ColourBy, Layers};
 
 /// The version of the file.
 const VERSION: u32 = 1;
-/// Heights that the timeline can have.
-pub const BOTTOM: [f32; 2] = [120.0, 420.0];
 
-/// What is kept.
+/// The settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     version: u32,
@@ -31,9 +30,9 @@ pub struct Settings {
     speed: f32,
     /// Height of the timeline with its buttons, in points.
     bottom: f32,
-    /// Where meshes on surfaces are shown, how covered lines are drawn, whether elements are curved.
+    /// Where meshes on surfaces are shown, how hidden lines are drawn, whether elements are curved.
     #[serde(default)]
-    place: Place,
+    place: SurfaceView,
     #[serde(default)]
     hidden: HiddenLines,
     #[serde(default)]
@@ -41,56 +40,64 @@ pub struct Settings {
     /// Size of the window in points.
     #[serde(default)]
     pub window: Option<[f32; 2]>,
-    /// The docks that a person has arranged, by the room that there was.
+    /// How the user has arranged the docks, by the room for columns.
     pub docks: Value,
 }
 
 impl Settings {
-    /// Those of a window.
-    pub fn of(state: &State, dark: bool, window: Option<[f32; 2]>, docks: Value) -> Settings {
-        let mut layers = state.kept.layers;
+    /// The settings of a window of this size in points.
+    pub fn of(workspace: &Workspace, layout: &Layout, dark: bool, window: Option<[f32; 2]>) -> Settings {
+        let SurfaceStyle { view, hidden, curved } = workspace.surfaces;
         Settings {
             version: VERSION,
             dark,
-            layers: std::array::from_fn(|k| *layer(&mut layers, k)),
-            colour_by: state.kept.colour_by.name().to_owned(),
-            speed: state.speed,
-            bottom: state.bottom.round(),
-            place: state.space.place,
-            hidden: state.space.hidden,
-            curved: state.space.curved,
+            layers: ViewLayer::ALL.map(|layer| layer.is_on(workspace.document.layers)),
+            colour_by: workspace.document.colour_by.name().to_owned(),
+            speed: workspace.speed,
+            bottom: layout.timeline_height.round(),
+            place: view,
+            hidden,
+            curved,
             window,
-            docks,
+            docks: layout.arranged(),
         }
     }
 
-    /// Gives them to a window.
-    pub fn give(&self, state: &mut State) {
-        let mut layers = Layers::default();
-        for (k, on) in self.layers.into_iter().enumerate() {
-            *layer(&mut layers, k) = on;
+    /// A workspace as it was left.
+    pub fn workspace(&self) -> Workspace {
+        let mut workspace = Workspace::default();
+        let Document { layers, colour_by, .. } = &mut workspace.document;
+        *layers = Layers::default();
+        for (layer, on) in ViewLayer::ALL.into_iter().zip(self.layers) {
+            *layer.switch(layers) = on;
         }
-        state.kept.layers = layers;
-        (state.space.place, state.space.hidden, state.space.curved) = (self.place, self.hidden, self.curved);
-        state.kept.colour_by =
-            ColourBy::ALL.into_iter().find(|by| by.name() == self.colour_by).unwrap_or(state.kept.colour_by);
+        *colour_by = ColourBy::ALL.into_iter().find(|by| by.name() == self.colour_by).unwrap_or(*colour_by);
+        workspace.surfaces = SurfaceStyle { view: self.place, hidden: self.hidden, curved: self.curved };
         if self.speed.is_finite() && (0.1..=1000.0).contains(&self.speed) {
-            state.speed = self.speed;
+            workspace.speed = self.speed;
         }
-        if self.bottom.is_finite() {
-            state.bottom = self.bottom.clamp(BOTTOM[0], BOTTOM[1]);
-        }
+        workspace
     }
 
-    /// Reads them; none where there are none yet.
+    /// The docks as they were left.
+    pub fn layout(&self) -> Layout {
+        let mut layout = Layout::default();
+        layout.arrange(Some(&self.docks));
+        if self.bottom.is_finite() {
+            layout.timeline_height = self.bottom.clamp(TIMELINE_HEIGHTS[0], TIMELINE_HEIGHTS[1]);
+        }
+        layout
+    }
+
+    /// Reads the settings; none if there is no file yet.
     ///
     /// # Errors
-    /// A file that is there and cannot be read.
+    /// If there is a file and it cannot be read.
     pub fn read(path: &Path) -> Result<Option<Settings>, Fault> {
         let fault = |what: String| {
-            Fault::new(format!("What was kept of the window cannot be read: {what}"))
+            Fault::new(format!("The settings of the window cannot be read: {what}"))
                 .at(path.display().to_string())
-                .remedy("It is left out, and written anew when the window changes")
+                .remedy("They are ignored, and written again when the window changes")
         };
         let text = match std::fs::read_to_string(path) {
             Ok(text) => text,
@@ -99,12 +106,12 @@ impl Settings {
         };
         let settings: Settings = serde_json::from_str(&text).map_err(|error| fault(error.to_string()))?;
         if settings.version != VERSION {
-            return Err(fault(format!("it is of version {}, and this quadfront knows {VERSION}", settings.version)));
+            return Err(fault(format!("they have version {}, and this quadfront reads {VERSION}", settings.version)));
         }
         Ok(Some(settings))
     }
 
-    /// Writes them.
+    /// Writes the settings.
     ///
     /// # Errors
     /// What the system says.
@@ -112,14 +119,14 @@ impl Settings {
         let text = serde_json::to_string_pretty(self).map_err(|error| Fault::new(error.to_string()))?;
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|error| {
-                Fault::new(format!("The folder cannot be made: {error}")).at(folder.display().to_string())
+                Fault::new(format!("The folder cannot be created: {error}")).at(folder.display().to_string())
             })?;
         }
         save::save(path, |out| out.write_all(text.as_bytes()))
     }
 }
 
-/// Where they are kept: `XDG_STATE_HOME`, or what stands for it on this system; none where the user has no home.
+/// The path of the file: in `XDG_STATE_HOME` or this system's equivalent; none if the user has no home.
 pub fn path() -> Option<PathBuf> {
     let folder = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = |rest: &str| folder("HOME").map(|home| home.join(rest));
@@ -135,8 +142,6 @@ pub fn path() -> Option<PathBuf> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
 
     #[test]
@@ -144,22 +149,20 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("deep").join("window.json");
         assert_eq!(Settings::read(&path).unwrap(), None);
-        let mut state = State::new(Arc::new(|| {}));
-        state.kept.layers.ellipses = true;
-        state.kept.colour_by = ColourBy::Level;
-        (state.speed, state.bottom) = (30.0, 300.0);
-        (state.space.place, state.space.hidden, state.space.curved) = (Place::Both, HiddenLines::Faint, true);
-        let settings = Settings::of(&state, false, Some([1280.0, 800.0]), serde_json::json!({}));
+        let (mut workspace, mut layout) = (Workspace::default(), Layout::default());
+        workspace.document.layers.ellipses = true;
+        workspace.document.colour_by = ColourBy::Level;
+        (workspace.speed, layout.timeline_height) = (30.0, 300.0);
+        workspace.surfaces = SurfaceStyle { view: SurfaceView::Both, hidden: HiddenLines::Faint, curved: true };
+        let settings = Settings::of(&workspace, &layout, false, Some([1280.0, 800.0]));
         settings.write(&path).unwrap();
         let read = Settings::read(&path).unwrap().unwrap();
         assert_eq!(read, settings);
-        let mut other = State::new(Arc::new(|| {}));
-        read.give(&mut other);
-        assert_eq!((other.kept.layers, other.kept.colour_by), (state.kept.layers, ColourBy::Level));
-        assert_eq!((other.speed, other.bottom), (30.0, 300.0));
-        let space = other.space;
-        assert_eq!((space.place, space.hidden, space.curved), (Place::Both, HiddenLines::Faint, true));
-        // Files of before know nothing of space.
+        let other = read.workspace();
+        assert_eq!(other.document, workspace.document);
+        assert_eq!((other.speed, other.surfaces), (30.0, workspace.surfaces));
+        assert_eq!(read.layout().timeline_height, 300.0);
+        // Older files have no settings for space.
         let text = std::fs::read_to_string(&path).unwrap();
         let old: String =
             text.lines().filter(|line| !line.contains("\"hidden\"")).map(|line| format!("{line}\n")).collect();
@@ -171,7 +174,7 @@ mod tests {
         {
             std::fs::write(&path, bad).unwrap();
             let told = Settings::read(&path).unwrap_err().to_string();
-            assert!(told.contains("window.json") && told.contains("left out"), "{told}");
+            assert!(told.contains("window.json") && told.contains("ignored"), "{told}");
         }
     }
 }

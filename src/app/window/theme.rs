@@ -22,7 +22,7 @@ pub const TITLE: f32 = 16.0;
 pub const ICON: f32 = 16.0;
 pub const TRANSPORT_ICON: f32 = 18.0;
 
-/// The colour as egui has it.
+/// The colour for egui.
 pub fn ink(Rgba([r, g, b, a]): Rgba) -> Color32 {
     Color32::from_rgba_unmultiplied(r, g, b, a)
 }
@@ -32,7 +32,7 @@ pub fn palette(dark: bool) -> &'static Palette {
     if dark { &DARK } else { &LIGHT }
 }
 
-/// Text that stands out: headings, active tabs, results.
+/// Emphasised text: headings, active tabs, results.
 pub fn semibold(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name("semibold".into()))
 }
@@ -47,7 +47,7 @@ pub fn regular(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }
 
-/// Text with low parts, written `_{x}`, and parts that stand out, written `**x**`.
+/// Text with subscripts, written `_{x}`, and emphasis, written `**x**`.
 pub fn formula(text: &str, size: f32, colour: Color32, strong: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     let mut stands_out = false;
@@ -86,7 +86,7 @@ pub fn formula(text: &str, size: f32, colour: Color32, strong: Color32) -> Layou
     job
 }
 
-/// Makes fonts and styles known to a context.
+/// Installs fonts and styles in a context.
 pub fn install(context: &Context) {
     context.set_fonts(fonts());
     context.set_visuals_of(eframe::egui::Theme::Dark, visuals(&DARK));
@@ -167,7 +167,7 @@ fn visuals(palette: &Palette) -> Visuals {
     // Rails and check boxes must be seen on the panel.
     visuals.widgets.inactive.bg_fill = ink(palette.line);
     visuals.handle_shape = HandleShape::Circle;
-    // Neutral means you: amber rows are the algorithm's.
+    // A neutral colour marks the user's selection: amber rows are the algorithm's.
     visuals.selection.bg_fill = ink(palette.selection.faded(0.13));
     visuals.selection.stroke = Stroke::new(1.0, ink(palette.strong));
     visuals.panel_fill = ink(palette.panel);

@@ -1,5 +1,4 @@
-//! The views: the mesh in space or in its plane, the same from the other end of the zoom, and through the metric of a
-//! node.
+//! The views of the mesh: in space or in its plane, as a whole or near the decision, and through the metric of a node.
 
 mod cameras;
 mod faces;
@@ -22,9 +21,10 @@ use super::command::Command;
 use super::labels;
 use super::panels::{self, inspector};
 use super::session::Moment;
-use super::state::{Look, Place, State};
+use super::state::{Look, State, SurfaceView, ViewCamera, ViewKind};
 use super::theme::ink;
 use crate::core::mesh::ids::ElementId;
+use crate::core::run::history::Changes;
 use crate::render::camera::Camera;
 use crate::render::gpu::{Light, Painter, View};
 use crate::render::palette::{Palette, Rgba};
@@ -37,16 +37,16 @@ use stage::Stage;
 pub enum Lens {
     /// The normalised space of a node, where unit edges have length 1 and right angles look right.
     Metric,
-    /// The whole mesh, or where the main view shows that, the decision.
+    /// The whole mesh, or the decision if the main view shows the whole mesh.
     Whole,
 }
 
-/// The pictures of the views on the card: the main one, the lens, the whole, and the plane beside space.
+/// The pictures on the graphics card: 0 is the main view, then come the lens, the whole, and the plane beside space.
 const LENS: usize = 1;
 const WHOLE: usize = 2;
 const BESIDE: usize = 3;
 
-/// All views, with the scenes that they share: that of the plane and that in space.
+/// All views, and the two scenes that they share: one of the plane and one in space.
 #[derive(Default)]
 pub struct Views {
     plane: Stage,
@@ -55,22 +55,24 @@ pub struct Views {
     hint: Option<ElementId>,
     /// Labels of the views in the frame before.
     labels: [labels::Memory; 4],
-    /// What the open menu is about.
+    /// What the open context menu is about.
     menu_of: Option<Outlined>,
-    /// The place that a drag in space turns about.
+    /// The point about which a drag in space turns the mesh.
     pivot: Option<glam::DVec3>,
-    /// What of the scene in space hides labels.
+    /// The part of the scene in space that hides labels.
     cover: space::Covering,
+    /// The last request to look somewhere that the views have followed.
+    looked: u64,
 }
 
-/// A view's camera with its place on the screen.
+/// The camera of a view and its rectangle on the screen.
 #[derive(Clone, Copy)]
-pub struct Frame {
+pub struct ViewFrame {
     pub camera: Camera,
     pub rect: Rect,
 }
 
-impl Frame {
+impl ViewFrame {
     pub fn size(&self) -> DVec2 {
         DVec2::new(f64::from(self.rect.width()), f64::from(self.rect.height()))
     }
@@ -99,20 +101,20 @@ impl Views {
     }
 
     /// The main view.
-    pub fn space(&mut self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &'static Palette) {
+    pub fn space(&mut self, ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());
-        let Some(moment) = state.moment.clone() else {
+        let Some(moment) = state.run().moment.clone() else {
             self.canvas(ui, rect, "space", state);
             ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
             return empty(ui, state, commands, palette);
         };
-        let look = state.look.take();
-        let on_surfaces = moment.mesh.ground().is_some();
-        match state.space.place {
-            Place::Plane => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
+        let look = state.view().look.take(&mut self.looked);
+        let on_surfaces = moment.mesh.embedding().is_some();
+        match state.workspace().surfaces.view {
+            SurfaceView::Plane => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
             _ if !on_surfaces => self.in_plane(ui, rect, 0, look, state, &moment, commands, palette),
-            Place::Space => self.in_space(ui, rect, look, state, &moment, commands, palette),
-            Place::Both => {
+            SurfaceView::Space => self.in_space(ui, rect, look, state, &moment, commands, palette),
+            SurfaceView::Both => {
                 let middle = whole_pixels(rect, 1.0).center().x;
                 let (left, right) = rect.split_left_right_at_x(middle);
                 let right = right.with_min_x(middle + 2.0);
@@ -126,7 +128,7 @@ impl Views {
         }
     }
 
-    /// What is pointed at and dragged in a view.
+    /// The pointer in a view.
     fn canvas(&self, ui: &Ui, rect: Rect, name: &str, state: &State) -> egui::Response {
         let response = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, spoken(state)));
@@ -140,39 +142,39 @@ impl Views {
         rect: Rect,
         index: usize,
         look: Option<Look>,
-        state: &mut State,
+        state: &State,
         moment: &Moment,
         commands: &mut Vec<Command>,
         palette: &'static Palette,
     ) {
         let response = self.canvas(ui, rect, "plane", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        let mut camera = aim(state, moment, size, look);
+        let (mut camera, is_fitted) = aim(state, moment, size, look);
         steer(ui, &response, &mut camera, rect);
-        state.camera = Some(camera);
-        let frame = Frame { camera, rect };
+        moved(state.view().plane, ViewKind::Plane, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
+        let frame = ViewFrame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         let hovered = pointer.and_then(|at| {
             let p = frame.plane(at)?;
             let project = |p: DVec2| frame.camera.project(p.extend(0.0), frame.size());
             pick::pick(&moment.mesh, p, frame.inside(at), &project, self.hint)
         });
-        self.hover(ui, &response, state, hovered, commands);
+        self.point(ui, &response, state, hovered, commands);
         self.update(state, moment, palette, &frame, Form::Plane, true);
         self.paint(ui, index, &frame, palette, 0.0, Form::Plane);
         faces::show(ui, &frame, state, moment, palette);
-        let over = labels::Seen { frame: &frame, scene: &self.plane.scene, cover: None };
-        labels::show(ui, &over, state, moment, palette, labels::Which::Main, &mut self.labels[index]);
+        let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
+        labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[index]);
         if index == 0 {
             labels::shading(ui, &frame, &self.shading, palette);
         }
     }
 
     /// Another view of the same scene.
-    pub fn other(&mut self, ui: &mut Ui, state: &mut State, lens: Lens, palette: &'static Palette) {
+    pub fn other(&mut self, ui: &mut Ui, state: &State, lens: Lens, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());
         let ground = |ui: &Ui| ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
-        let Some(moment) = state.moment.clone() else {
+        let Some(moment) = state.run().moment.clone() else {
             ground(ui);
             return;
         };
@@ -190,36 +192,28 @@ impl Views {
             });
             return;
         };
-        let frame = Frame { camera, rect };
-        let (which, k) = if lens == Lens::Metric { (labels::Which::Lens, LENS) } else { (labels::Which::Whole, WHOLE) };
+        let frame = ViewFrame { camera, rect };
+        let (which, k) =
+            if lens == Lens::Metric { (labels::ViewRole::Lens, LENS) } else { (labels::ViewRole::Whole, WHOLE) };
         self.update(state, &moment, palette, &frame, Form::Plane, false);
         self.paint(ui, k, &frame, palette, 0.0, Form::Plane);
-        let over = labels::Seen { frame: &frame, scene: &self.plane.scene, cover: None };
+        let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
         labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
     }
 
-    fn hover(
+    /// Reports what is under the pointer, and selects, shows and offers actions.
+    fn point(
         &mut self,
         ui: &Ui,
         response: &egui::Response,
-        state: &mut State,
+        state: &State,
         hovered: Option<Outlined>,
         commands: &mut Vec<Command>,
     ) {
         if let Some(Outlined::Element(e)) = hovered {
             self.hint = Some(e);
         }
-        // With two views only the one that the pointer is over says what is hovered.
-        let over = response.hovered() || response.dragged();
-        let elsewhere = state.is_in_space() && state.space.place == Place::Both && !over;
-        let told = over || state.hover_from_view && !elsewhere;
-        if told && state.hovered != hovered {
-            state.hovered = hovered;
-            state.hover_from_view = hovered.is_some();
-            state.over_epoch += 1;
-            // A view that was drawn before this one shows it too.
-            ui.ctx().request_repaint();
-        }
+        commands.extend(hovered.map(Command::Hover));
         if response.clicked() {
             commands.push(Command::Pick(hovered));
         }
@@ -250,27 +244,29 @@ impl Views {
         }
     }
 
-    /// Brings a scene up to date with the state: by what changed, where it is only that. `leads`: it is laid out for
+    /// Notes the differences from the state before.
+    pub fn note(&mut self, changes: &Changes, slots: usize) {
+        self.plane.note(changes, slots);
+        self.space.note(changes, slots);
+    }
+
+    /// Brings a scene up to date with the state, by the differences if possible. `leads`: the scene is laid out for
     /// this view.
     fn update(
         &mut self,
-        state: &mut State,
+        state: &State,
         moment: &Moment,
         palette: &Palette,
-        frame: &Frame,
+        frame: &ViewFrame,
         form: Form,
         leads: bool,
     ) {
-        let changes = state.changes.take();
-        let slots = moment.mesh.element_slots();
-        self.plane.note(&changes, slots);
-        self.space.note(&changes, slots);
         let stage = if form.is_in_space() { &mut self.space } else { &mut self.plane };
         stage.update(state, moment, palette, frame, form, leads, &mut self.shading);
     }
 
-    /// Draws a view; `hidden`: how much is seen of covered lines.
-    fn paint(&self, ui: &Ui, index: usize, frame: &Frame, palette: &Palette, hidden: f32, form: Form) {
+    /// Draws a view; `hidden`: the opacity of hidden lines.
+    fn paint(&self, ui: &Ui, index: usize, frame: &ViewFrame, palette: &Palette, hidden: f32, form: Form) {
         let (stage, light) = match form {
             Form::Plane => (&self.plane, Light::NONE),
             _ => (&self.space, Light::on_surfaces(palette.dark)),
@@ -288,22 +284,29 @@ impl Views {
     }
 }
 
-/// What screen readers hear of the view.
+/// Reports where a view looks, if that has changed.
+fn moved(before: ViewCamera, view: ViewKind, camera: ViewCamera, commands: &mut Vec<Command>) {
+    if camera != before {
+        commands.push(Command::MoveCamera(view, camera));
+    }
+}
+
+/// The description of the view for screen readers.
 fn spoken(state: &State) -> String {
-    match &state.moment {
+    match &state.run().moment {
         Some(moment) => format!("Mesh at step {}, {} quadrilaterals", moment.step, moment.standing),
         None => "No mesh".to_owned(),
     }
 }
 
 fn empty(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    if state.is_busy() {
+    if state.run().is_busy() {
         return;
     }
     let rect = Rect::from_center_size(ui.max_rect().center(), Vec2::new(420.0, 80.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
         ui.vertical_centered(|ui| {
-            ui.colored_label(ink(palette.weak), "No case is open. Drop a case or a mesh here, or");
+            ui.colored_label(ink(palette.weak), "No case is open. Drop a case or a mesh file here, or");
             for command in [Command::Open(super::Source::BuiltIn("example1".into())), Command::OpenPath] {
                 if ui.button(command.name()).clicked() {
                     commands.push(command);
@@ -313,7 +316,7 @@ fn empty(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pale
     });
 }
 
-/// A rectangle on whole pixels, so that the picture is laid down as it was drawn.
+/// Rounds a rectangle to whole pixels, so that the picture is not resampled.
 fn whole_pixels(rect: Rect, pixels: f32) -> Rect {
     let whole = |x: f32| (x * pixels).round() / pixels;
     Rect::from_min_max(
@@ -322,7 +325,7 @@ fn whole_pixels(rect: Rect, pixels: f32) -> Rect {
     )
 }
 
-/// What egui's renderer is handed: the scene as it was when the frame was made.
+/// A picture for egui's renderer: the scene as it was when the frame was made.
 struct Picture {
     scene: Arc<Scene>,
     view: View,

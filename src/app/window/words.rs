@@ -12,11 +12,11 @@ use crate::render::scene::Outlined;
 
 pub use crate::render::number::{UNDEFINED, decimals, degrees, fixed, grouped, size};
 
-/// How far work is.
+/// The progress of some work.
 pub fn progress(progress: &Progress) -> String {
     let Progress { words, done, total } = *progress;
-    // Bytes, and steps of unequal length.
-    if total > 0 && [Stage::Read, Stage::Mend].map(words_of).contains(&words) {
+    // These stages count bytes, or steps of unequal length.
+    if total > 0 && [Stage::Read, Stage::Repair].map(words_of).contains(&words) {
         format!("{words}: {} %", 100 * done.min(total) / total)
     } else if total > 0 {
         format!("{words} {} of about {}", grouped(done), grouped(total.max(done)))
@@ -35,7 +35,7 @@ pub fn edge([a, b]: [NodeId; 2]) -> String {
     format!("{}–{}", a.0, b.0)
 }
 
-/// Something that can be picked, named.
+/// The name of something that can be selected.
 pub fn thing(what: Outlined) -> String {
     match what {
         Outlined::Node(node) => format!("node {}", node.0),
@@ -52,7 +52,7 @@ pub fn side(side: Side) -> &'static str {
     }
 }
 
-/// How a kind of event is called.
+/// The name of a kind of event.
 pub fn kind(kind: &str) -> String {
     kind.replace('_', " ")
 }
@@ -61,39 +61,39 @@ pub fn kind(kind: &str) -> String {
 pub fn event(event: &Event) -> String {
     match *event {
         Event::BaseSelected { a, b, class, h_value, .. } => {
-            format!("base chosen: {}, class {class}, H {}", segment(a, b), size(h_value))
+            format!("base selected: {}, class {class}, H {}", segment(a, b), size(h_value))
         }
-        Event::PickLost { a, b } => format!("{} was picked as base and is not on the front any more", segment(a, b)),
+        Event::PickLost { a, b } => format!("{} was chosen as base, but is no longer on the front", segment(a, b)),
         Event::SideIsFront { side: s, node } => format!("{} side is the front, to node {}", side(s), node.0),
         Event::SideChosen { edge } => {
             let off = degrees(edge.deviation);
-            format!("{} side chosen: node {}, {off}° off the direction aimed at", side(edge.side), edge.node.0)
+            format!("{} side chosen: node {}, {off}° off the target direction", side(edge.side), edge.node.0)
         }
         Event::SideSwapped { edge, .. } => {
             let off = degrees(edge.deviation);
-            format!("{} side swapped in: node {}, {off}° off the direction aimed at", side(edge.side), edge.node.0)
+            format!("{} side made by a swap: node {}, {off}° off the target direction", side(edge.side), edge.node.0)
         }
         Event::SideDivided { side: s, node, length } => {
             format!("{} side divided at new node {}; it was {} long", side(s), node.0, fixed(length, 2))
         }
         Event::TopSwapped { across, new } => format!("top: {} swapped for {}", edge(across), edge(new)),
         Event::TopFound { ends, swaps } => match swaps {
-            0 => format!("top edge is there: {}", edge(ends)),
-            1 => format!("top edge is there: {}, after 1 swap", edge(ends)),
-            _ => format!("top edge is there: {}, after {swaps} swaps", edge(ends)),
+            0 => format!("top edge found: {}", edge(ends)),
+            1 => format!("top edge found: {}, after 1 swap", edge(ends)),
+            _ => format!("top edge found: {}, after {swaps} swaps", edge(ends)),
         },
         Event::NodeRemoved { node, purpose: Purpose::Recovery } => {
-            format!("node {} removed from the top's way", node.0)
+            format!("node {} removed to clear the way for the top", node.0)
         }
         Event::NodeRemoved { node, purpose: Purpose::Enhancement } => format!("node {} of low valence removed", node.0),
         Event::Formed { element, quality, eaten, .. } => {
-            format!("quadrilateral {} stands: quality {}, {eaten} triangles eaten", element.0, fixed(quality, 2))
+            format!("quadrilateral {} formed: quality {}, {eaten} triangles merged", element.0, fixed(quality, 2))
         }
         Event::RolledBack { attempt, why: reason } => {
-            format!("attempt {} taken back: {}", u32::from(attempt) + 1, why(reason))
+            format!("attempt {} rolled back: {}", u32::from(attempt) + 1, why(reason))
         }
         Event::Deferred { a, b } => format!("segment {} put off", segment(a, b)),
-        Event::Enhanced { new } => format!("edge {} swapped in beside the new quadrilateral", edge(new)),
+        Event::Enhanced { new } => format!("edge {} made by a swap beside the new quadrilateral", edge(new)),
         Event::Smoothed { nodes } => format!("{nodes} nodes smoothed"),
         Event::Seamed { at, node, angle } => {
             format!("seam at node {}: {}° closed, ends joined in node {}", at.0, degrees(angle), node.0)
@@ -106,13 +106,13 @@ pub fn event(event: &Event) -> String {
             node.0
         ),
         Event::SeamRefused { at, angle, .. } => {
-            format!("no seam at node {}, of {}°: it cannot be joined", at.0, degrees(angle))
+            format!("no seam at node {} of {}°: its ends cannot be joined", at.0, degrees(angle))
         }
         Event::Split { node, .. } => format!("front split at node {}", node.0),
         Event::Closed { segments, quads, quality } => {
             format!("loop of {segments} segments closed by {quads} quadrilaterals, worst quality {}", fixed(quality, 2))
         }
-        Event::SecondPass => "every segment is put off: all are taken up again with wider gates".to_owned(),
+        Event::SecondPass => "all segments are put off: second pass with wider tolerances".to_owned(),
         Event::Matched { triangles, unmatched, .. } => format!(
             "last resort: {} triangles paired, {} without a partner",
             grouped(triangles as u64),
@@ -122,20 +122,20 @@ pub fn event(event: &Event) -> String {
             format!("last resort: {quads} quadrilaterals of {triangles} triangles, from element {}", element.0)
         }
         Event::Cleaned { energy: [before, after], .. } => {
-            format!("structure cleaned up at one place: energy {} to {}", size(before), size(after))
+            format!("mesh structure cleaned up locally: energy {} to {}", size(before), size(after))
         }
         Event::Unfolded { element, how, .. } => {
             let how = match how {
                 Mending::Moved => "its corners were moved",
                 Mending::Rotated { .. } => "an edge was rotated",
-                Mending::Collapsed { .. } => "two of its corners were made one",
-                Mending::Pillowed { .. } => "a smaller quadrilateral was inlaid",
+                Mending::Collapsed { .. } => "two of its corners were merged",
+                Mending::Pillowed { .. } => "a smaller quadrilateral was inserted",
             };
             format!("element {} folded over the surface: {how}", element.0)
         }
         Event::FaceConverted { region } => format!("face {} is converted", region + 1),
         Event::Swept { looked, moved } => format!("{moved} of {looked} nodes smoothed by the energy"),
-        Event::LastResort(outcome) => format!("last resort: {} triangles left over", grouped(outcome.triangles as u64)),
+        Event::LastResort(outcome) => format!("last resort: {} triangles left", grouped(outcome.triangles as u64)),
         Event::PostProcessed => "whole mesh cleaned up and smoothed".to_owned(),
         Event::Finished => "done".to_owned(),
     }
@@ -144,10 +144,10 @@ pub fn event(event: &Event) -> String {
 /// Why an edge is not the side.
 pub fn passed(passed: Passed, candidate: &Candidate, tried: &Candidates) -> String {
     match passed {
-        Passed::Taken => "ends at a corner that is taken".to_owned(),
+        Passed::Taken => "ends at a corner in use".to_owned(),
         Passed::WideAngle => "front, but not below \u{3b8}rect".to_owned(),
         Passed::SmallAngle => "the front is the side".to_owned(),
-        Passed::LaidDown => "this attempt has its own".to_owned(),
+        Passed::LaidDown => "not used in this attempt".to_owned(),
         Passed::Farther if candidate.deviation > tried.limit => format!("more than {}°", degrees(tried.limit)),
         Passed::Farther => "another is nearer".to_owned(),
         Passed::NotNeeded => "no swap is needed".to_owned(),
@@ -158,15 +158,15 @@ pub fn passed(passed: Passed, candidate: &Candidate, tried: &Candidates) -> Stri
 /// Why an attempt was taken back.
 pub fn why(why: Why) -> String {
     match why {
-        Why::NoSide(s) => format!("no edge can be the {} side", side(s)),
-        Why::NoDivision(s) => format!("the {} side cannot be divided where it must be", side(s)),
+        Why::NoSide(s) => format!("no edge fits the {} side", side(s)),
+        Why::NoDivision(s) => format!("the {} side cannot be divided at the required point", side(s)),
         Why::TopBlocked(ends) => format!("dead edge {} lies across the top", edge(ends)),
         Why::TopThroughNode(node) => format!("node {} lies on the top edge", node.0),
-        Why::TopTooLong => "the swaps for the top come to no end".to_owned(),
-        Why::TooLong(length) => format!("a new side or the top is {} long", fixed(length, 2)),
+        Why::TopTooLong => "the swaps for the top do not terminate".to_owned(),
+        Why::TooLong(length) => format!("a new side or the top is too long: {}", fixed(length, 2)),
         Why::NotDisc => "the four sides do not enclose a disc of live triangles".to_owned(),
         Why::NotConvex => "it would not be strictly convex".to_owned(),
-        Why::Poor(quality) => format!("its quality would be {}", fixed(quality, 2)),
+        Why::Poor(quality) => format!("its quality would be only {}", fixed(quality, 2)),
         Why::OddLoop(segments) => format!("a loop would become odd, with {segments} segments"),
         Why::NoMetric => "the field gives no metric at a new node".to_owned(),
     }

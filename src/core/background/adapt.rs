@@ -1,14 +1,15 @@
-//! The background mesh made unit in the metric (docs/algorithm.md, "Adaptation to the metric"): local remeshing by
-//! split, collapse, swap and smooth.
+//! Adaptation of the background mesh to unit edges in the metric (docs/algorithm.md, "Adaptation to the metric"): local
+//! remeshing by split, collapse, swap and smooth.
 //!
-//! Boundary edges and nodes are never touched. Every operation is judged first (exactly where it is topological) and then
-//! done; the metric only ranks. First a coarse mesh is refined from the longest edge down with Delaunay swaps in the
-//! metric, which makes nearly all nodes; then a few cycles of collapse, split, swap and smooth mend what is not unit.
+//! Boundary edges and nodes never change. Every operation is checked first (exactly where it is topological) and then
+//! done; the metric only ranks. First a coarse mesh is refined by division of the longest edges with Delaunay swaps in
+//! the metric, which creates nearly all nodes; then a few cycles of collapse, split, swap and smooth correct edges that
+//! are not unit.
 
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::predicates::firm;
 use crate::core::kernel::tensor::Metric2;
 use crate::core::mesh::half_edge::Mesh;
@@ -18,27 +19,29 @@ use crate::core::metric::field::MetricSource;
 use crate::core::metric::measure::triangle_quality;
 use crate::core::progress::{Stage, Watch};
 
-/// Longest and shortest length of a unit edge.
+/// The largest and smallest length of a unit edge.
 const LONG: f64 = std::f64::consts::SQRT_2;
 const SHORT: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Below this many elements an edge is also measured at its middle, so that a thin zone of small sizes that no node has
-/// met yet is not jumped over.
+/// Below this number of elements edges are also measured at their middle, so that no thin zone of small sizes between
+/// nodes is missed.
 const SAMPLED: usize = 20_000;
 /// Cycles of collapse, split, swap and smooth after the refinement.
 const CYCLES: usize = 4;
-/// Where a pass of the refinement makes fewer nodes than one in so many elements, the next looks at their surroundings only.
+/// If a refinement pass creates fewer nodes than one per this many elements, the next pass checks only their
+/// neighbourhood.
 const FEW: usize = 16;
-/// Longer than this an edge is divided whatever becomes of its triangles (on surfaces).
+/// A longer edge is divided whatever the quality of the new triangles (on surfaces).
 const MUCH_TOO_LONG: f64 = 2.5;
-/// A collapse or a split must not make a triangle worse than this, or than the worst of those it replaces.
+/// A collapse or a split must not create a triangle worse than this, or than the worst of those that it replaces.
 const LEAST_QUALITY: f64 = 0.4;
-/// A division must not make a triangle that is worse than this, unless it is not much worse than the one that it divides:
-/// by two thirds at the worst where the divided side is the longest, by less than half beside a longer one.
+/// A division must not create a triangle worse than this, unless it is not much worse than the divided one: two thirds
+/// worse at most if the divided side is the longest, less than half worse otherwise.
 const POOR: f64 = 0.1;
 const NOT_MUCH_WORSE: f64 = 0.55;
 
-/// What the adaptation did.
+/// The numbers of operations of an adaptation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Adapted {
     /// Edges divided.
     pub divisions: usize,
@@ -53,7 +56,7 @@ pub struct Adapted {
 /// Adapts the mesh to the metric until its edges are unit, as far as the fixed boundary allows.
 ///
 /// # Errors
-/// Where the field yields no metric inside the domain, or asks for more than `most_elements` triangles.
+/// If the metric fails inside the domain or requires more than `most_elements` triangles.
 pub fn adapt(
     mesh: Mesh,
     source: &dyn MetricSource,
@@ -73,13 +76,13 @@ struct Adapter<'a> {
     source: &'a dyn MetricSource,
     most_elements: usize,
     done: Adapted,
-    /// Half-edges whose swap is to be looked at; kept for its memory.
+    /// Candidates for swaps; a member to reuse its memory.
     stack: Vec<HalfEdgeId>,
-    /// Quality of each element while swaps are looked for; kept for its memory.
+    /// The quality of each element during swaps; a member to reuse its memory.
     quality: Vec<f64>,
 }
 
-/// An edge that was found too long or too short, to be met again after others have changed.
+/// An edge that is too long or too short, with what is needed to recognise it after others have changed.
 #[derive(Clone, Copy)]
 struct Found {
     length: f64,
@@ -109,8 +112,8 @@ impl Adapter<'_> {
 
     // ---- refinement ----
 
-    /// Divides all edges longer than unit, longest first, until there are none; what a division makes is swapped to the
-    /// Delaunay triangulation of the metric at once.
+    /// Divides all edges longer than unit, longest first, until there are none; swaps restore the Delaunay
+    /// triangulation in the metric after each division.
     fn refine(&mut self, watch: &mut dyn Watch) -> Result<(), Fault> {
         let mut ordered = self.mesh.element_count();
         let mut found = self.long_edges(self.mesh.edges(), ordered < SAMPLED)?;
@@ -128,7 +131,8 @@ impl Adapter<'_> {
             }
             let sampled = self.mesh.element_count() < SAMPLED;
             found = if self.mesh.element_count() > 2 * ordered {
-                // New nodes are strewn over memory; put in order as the mesh grows, all passes stay near linear.
+                // New nodes are scattered in memory; reordering as the mesh grows keeps the cost of all passes nearly
+                // linear.
                 self.mesh = self.mesh.reordered();
                 ordered = self.mesh.element_count();
                 self.long_edges(self.mesh.edges(), sampled)?
@@ -140,8 +144,8 @@ impl Adapter<'_> {
         }
     }
 
-    /// The edges that can be long after a pass: those that were and were left, and those around the new nodes (every
-    /// element that the pass changed has one), in the order of their ids.
+    /// The edges that may be long after a pass, by id: the remaining long ones, and those around the new nodes (every
+    /// element that the pass changed has one).
     fn edges_after(&self, found: &[Found], made: &[NodeId]) -> Vec<HalfEdgeId> {
         let mesh = &self.mesh;
         let around = made.iter().flat_map(|&m| mesh.fan(m)).flat_map(|h| [h, mesh.next(h), mesh.previous(h)]);
@@ -152,13 +156,13 @@ impl Adapter<'_> {
         edges
     }
 
-    /// Those of the edges that lie inside and are longer than unit, the longest first.
+    /// The inner edges among these that are longer than unit, the longest first.
     fn long_edges(&self, edges: impl Iterator<Item = HalfEdgeId>, sampled: bool) -> Result<Vec<Found>, Fault> {
         let mesh = &self.mesh;
         let mut found = Vec::new();
         for h in edges {
             let [from, to] = mesh.ends(h);
-            // The length is no more than the greater one of those at the two ends, which nearly always is enough to know.
+            // The length is at most the larger one of those at the two ends, which nearly always decides.
             let d = mesh.uv(to) - mesh.uv(from);
             let short = mesh.metric_ref(from).norm2(d).max(mesh.metric_ref(to).norm2(d)) < LONG * LONG;
             if (short && !sampled) || mesh.twin(h).is_none() {
@@ -172,28 +176,29 @@ impl Adapter<'_> {
                 found.push(Found { length, h, from, to });
             }
         }
-        // Edges come by id; a stable sort leaves them so within a class.
+        // Edges are sorted by id; a stable sort preserves that within a class.
         found.sort_by_key(|f| std::cmp::Reverse(length_class(f.length)));
         Ok(found)
     }
 
-    /// Length of a straight line by Simpson's rule, with the metric at its middle; on surfaces at its quarters too.
+    /// Length of a straight line by Simpson's rule, with the metric at its middle; on surfaces, also at its quarters.
     fn sampled_length(&self, from: NodeId, to: NodeId) -> Result<f64, Fault> {
         let d = self.mesh.uv(to) - self.mesh.uv(from);
         let middle = self.metric(self.mesh.uv(from) + 0.5 * d)?;
         let end = |n: NodeId| self.mesh.metric_ref(n).norm2(d).sqrt();
         let middle = middle.norm2(d).sqrt();
-        if self.mesh.ground().is_none() {
+        if self.mesh.embedding().is_none() {
             return Ok((end(from) + 4.0 * middle + end(to)) / 6.0);
         }
-        // On a surface the first triangles are as large as its faces, and the size may change many times along an edge.
+        // On a surface the first triangles are as large as its faces, and the size may vary several times along an
+        // edge.
         let at = |t: f64| Ok::<f64, Fault>(self.metric(self.mesh.uv(from) + t * d)?.norm2(d).sqrt());
         Ok((end(from) + end(to) + 4.0 * (at(0.25)? + at(0.75)?) + 2.0 * middle) / 12.0)
     }
 
-    /// Divides an edge that still is as it was found and gives the new node, unless the new node would come closer than `least` to the
-    /// opposite ones, or make a poor triangle poorer: beside a side of the boundary that is much too long, and may not be
-    /// divided, there is a long edge for ever.
+    /// Divides an edge that still exists and returns the new node, unless the new node would be closer than `least` to
+    /// the opposite ones, or would make a poor triangle worse: beside a boundary side that is much too long, and cannot
+    /// be divided, a long edge must remain.
     fn divide(&mut self, f: Found, least: f64) -> Result<Option<NodeId>, Fault> {
         let mesh = &self.mesh;
         if !self.still_there(f) {
@@ -201,33 +206,34 @@ impl Adapter<'_> {
         }
         let Some(twin) = mesh.twin(f.h) else { return Ok(None) };
         let (c, d) = (mesh.apex(f.h), mesh.apex(twin));
-        let place = self.middle(f.from, f.to);
-        let metric = self.metric(place)?;
-        let near = |n: NodeId| length_over(&metric, mesh.metric_ref(n), mesh.uv(n) - place) < least;
+        let middle = self.middle(f.from, f.to);
+        let metric = self.metric(middle)?;
+        let near = |n: NodeId| length_over(&metric, mesh.metric_ref(n), mesh.uv(n) - middle) < least;
         if f.length < 2.0 && (near(c) || near(d)) {
             return Ok(None);
         }
         let fit = |h_ab: HalfEdgeId| {
             let (a, b, c) = (mesh.origin(h_ab), mesh.target(h_ab), mesh.apex(h_ab));
             let half = |n: NodeId| {
-                quality_over([mesh.uv(n), place, mesh.uv(c)], [mesh.metric_ref(n), &metric, mesh.metric_ref(c)]).abs()
+                quality_over([mesh.uv(n), middle, mesh.uv(c)], [mesh.metric_ref(n), &metric, mesh.metric_ref(c)]).abs()
             };
             let after = half(a).min(half(b));
             after >= POOR || after >= NOT_MUCH_WORSE * mesh.triangle_quality([a, b, c])
         };
-        // On a surface, whose first triangles know little of the metric, no poor triangle may stand in the way of an edge that
-        // is much too long, but beside the boundary.
+        // On a surface, the first triangles hardly reflect the metric: away from the boundary, a poor triangle must not
+        // prevent the division of an edge that is much too long.
         let inside = |h: HalfEdgeId| mesh.half_edges(h.element()).all(|h| mesh.twin(h).is_some());
-        let forced = mesh.ground().is_some() && f.length > MUCH_TOO_LONG && inside(f.h) && inside(twin);
+        let forced = mesh.embedding().is_some() && f.length > MUCH_TOO_LONG && inside(f.h) && inside(twin);
         if !(forced || fit(f.h) && fit(twin)) {
             return Ok(None);
         }
         if mesh.element_count() + 2 > self.most_elements {
-            return Err(Fault::new(format!("The metric asks for more than {} triangles", self.most_elements))
-                .at(format!("near ({}, {}), where the smallest size is {}", place.x, place.y, metric.min_size()))
-                .remedy("Make the sizes larger there, or allow more by max_quads"));
+            return Err(Fault::new(format!("The metric requires more than {} triangles", self.most_elements))
+                .of_kind(FaultKind::Limit)
+                .at(format!("near ({}, {}), where the smallest size is {}", middle.x, middle.y, metric.min_size()))
+                .remedy("Increase the sizes there, or raise max_quads"));
         }
-        let made = self.mesh.divide(f.h, place, metric).ok();
+        let made = self.mesh.divide(f.h, middle, metric).ok();
         if let Some(m) = made {
             self.done.divisions += 1;
             self.make_delaunay(m);
@@ -235,7 +241,7 @@ impl Adapter<'_> {
         Ok(made)
     }
 
-    /// The place that halves the metric length of an edge when the size changes linearly along it.
+    /// The point that halves the metric length of an edge if the size varies linearly along it.
     fn middle(&self, from: NodeId, to: NodeId) -> DVec2 {
         let (p, q) = (self.mesh.uv(from), self.mesh.uv(to));
         let (l_p, l_q) = (self.mesh.metric_ref(from).norm2(q - p).sqrt(), self.mesh.metric_ref(to).norm2(q - p).sqrt());
@@ -255,7 +261,8 @@ impl Adapter<'_> {
     fn make_delaunay(&mut self, m: NodeId) {
         let mesh = &mut self.mesh;
         self.stack.extend(mesh.fan(m).map(|h| mesh.next(h)));
-        // The criterion takes its metric from four nodes, so that no order of swaps is sure to end: it is bounded.
+        // The criterion uses the metrics of four nodes, so that termination is not guaranteed: bound the number of
+        // swaps.
         let mut budget = 100;
         while let Some(h) = self.stack.pop() {
             if budget > 0 && !is_delaunay(mesh, h) && mesh.can_swap(h).is_ok() {
@@ -272,7 +279,7 @@ impl Adapter<'_> {
 
     // ---- the cycles ----
 
-    /// Swaps every edge whose swap raises the lesser quality of its two triangles, until there is none.
+    /// Swaps every edge whose swap improves the worse of its two triangles, until there are none.
     fn swap_where_better(&mut self) {
         let mesh = &mut self.mesh;
         self.quality.clear();
@@ -323,7 +330,7 @@ impl Adapter<'_> {
         }
     }
 
-    /// The worst quality around b after a would be merged into it, if that is possible and good enough.
+    /// The worst quality around b after a collapse of a into it, if that is possible and good enough.
     fn quality_after_collapse(&self, h_ab: HalfEdgeId) -> Option<f64> {
         let mesh = &self.mesh;
         let [a, b] = mesh.ends(h_ab);
@@ -342,7 +349,7 @@ impl Adapter<'_> {
         good.then_some(after)
     }
 
-    /// Divides edges longer than unit again, where that makes no edge much too short.
+    /// Divides edges longer than unit again, unless that creates an edge that is much too short.
     fn split_long(&mut self, sampled: bool) -> Result<(), Fault> {
         for f in self.long_edges(self.mesh.edges(), sampled)? {
             self.divide(f, SHORT)?;
@@ -350,7 +357,8 @@ impl Adapter<'_> {
         Ok(())
     }
 
-    /// Moves every free node to the mean of the places at unit distance from its neighbours, where that is no harm.
+    /// Moves every free node towards the mean of the points at unit distance from its neighbours, unless that does
+    /// harm.
     fn smooth(&mut self) -> Result<(), Fault> {
         for node in (0..self.mesh.node_slots() as u32).map(NodeId) {
             if self.mesh.has_node(node) && !self.mesh.is_fixed(node) {
@@ -363,7 +371,7 @@ impl Adapter<'_> {
     fn smooth_node(&mut self, node: NodeId) -> Result<(), Fault> {
         let mesh = &self.mesh;
         let (here, metric) = (mesh.uv(node), mesh.metric_ref(node));
-        // The ring: the two other corners of each triangle, with their places and the sum of their metrics.
+        // The star: the two other corners of each triangle, with their coordinates and the sum of their metrics.
         let mut star: SmallVec<[([DVec2; 2], Metric2); 12]> = SmallVec::new();
         let mut sum = DVec2::ZERO;
         for h in mesh.fan(node) {
@@ -376,20 +384,20 @@ impl Adapter<'_> {
         let there = sum / star.len() as f64;
         let quality =
             |([b, c], m): &([DVec2; 2], Metric2), p: DVec2, m_p: &Metric2| triangle_quality(&sum_of(m, m_p), p, *b, *c);
-        // What is good enough whatever it was before; only below it that has to be known.
+        // A quality that is always good enough; the previous quality matters only below it.
         const GOOD: f64 = 0.6;
         let mut least = GOOD;
         for step in [1.0, 0.5, 0.25] {
-            let place = here + (there - here) * step;
-            let Ok(metric) = self.source.metric(place) else { continue };
-            let worst = star.iter().map(|t| quality(t, place, &metric)).fold(f64::INFINITY, f64::min);
+            let moved = here + (there - here) * step;
+            let Ok(metric) = self.source.metric(moved) else { continue };
+            let worst = star.iter().map(|t| quality(t, moved, &metric)).fold(f64::INFINITY, f64::min);
             if worst < least && least == GOOD {
                 let before = star.iter().map(|t| quality(t, here, mesh.metric_ref(node)));
                 least = before.fold(GOOD, f64::min);
             }
-            // As `Mesh::can_move` judges, with the places at hand.
-            if worst >= least && star.iter().all(|([b, c], _)| firm(place, *b, *c)) {
-                self.mesh.move_node(node, place, metric);
+            // The check of `Mesh::can_move`, with the known coordinates.
+            if worst >= least && star.iter().all(|([b, c], _)| firm(moved, *b, *c)) {
+                self.mesh.move_node(node, moved, metric);
                 self.done.moves += 1;
                 return Ok(());
             }
@@ -403,14 +411,15 @@ fn sum_of(a: &Metric2, b: &Metric2) -> Metric2 {
     Metric2 { uu: a.uu + b.uu, uv: a.uv + b.uv, vv: a.vv + b.vv }
 }
 
-/// Lengths within a quarter of an octave count as equal: what is nearly as urgent is done in the order of memory.
+/// Lengths within a quarter of an octave count as equal, so that edges of similar length are processed in the order of
+/// memory.
 fn length_class(length: f64) -> i64 {
-    // The exponent and the upper two bits of the fraction, as the number's own bits have them.
+    // The exponent and the upper two bits of the fraction.
     (length.to_bits() >> 50) as i64
 }
 
-/// Whether the edge is Delaunay in the mean shape of the metrics of its four nodes: the opposite angles sum to at most
-/// 180 degrees.
+/// Whether the edge is Delaunay in the normalised mean of the metrics of its four nodes: the opposite angles sum to at
+/// most 180 degrees.
 #[inline]
 fn is_delaunay(mesh: &Mesh, h_ab: HalfEdgeId) -> bool {
     let Some(h_ba) = mesh.twin(h_ab) else { return true };
@@ -428,8 +437,8 @@ fn is_delaunay(mesh: &Mesh, h_ab: HalfEdgeId) -> bool {
     at_c.0 * at_d.1 + at_c.1 * at_d.0 >= 0.0
 }
 
-/// The qualities of the two triangles after a swap, where it raises the lesser one by enough not to be undone by
-/// rounding; `quality` has those before it.
+/// The qualities of the two triangles after a swap, if it improves the worse one by more than rounding errors;
+/// `quality` has the current ones.
 #[inline]
 fn better_by_swap(mesh: &Mesh, quality: &[f64], h_ab: HalfEdgeId) -> Option<[f64; 2]> {
     let h_ba = mesh.twin(h_ab)?;

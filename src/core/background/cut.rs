@@ -1,36 +1,37 @@
-//! Cutting triangles apart along everything that may not be changed: boundaries between regions, cracks and repeated
-//! lines. A node becomes one node for each fan of triangles around it; its point is doubled across cracks, and where parts
-//! meet in a point only, since a node of two fans would be no sound mesh.
+//! Cutting of triangles along all fixed lines: boundaries between regions, cracks and repeated lines. A node becomes
+//! one node for each fan of triangles around it; its point is doubled across cracks and at pinched nodes, since a
+//! manifold mesh has one fan per node.
 
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
 use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::mesh::ids::PointId;
+use crate::core::mesh::order::grouped;
 use crate::core::mesh::triangle_set::TriangleSet;
 
-/// A line of edges inside a region along which the triangles are cut apart.
+/// The kind of a line inside a region along which the triangles are cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
-    /// The two sides get points of their own, but at the ends inside.
+    /// The two sides get separate points, except at inner ends.
     Crack,
     /// The two sides share their points.
     Repeated,
 }
 
-/// Triangles that have been cut apart.
+/// Triangles after cutting.
 #[derive(Clone, Debug)]
 pub struct CutMesh {
     /// The triangles with their new nodes, in the given order.
     pub set: TriangleSet,
     /// The given node that each new one is a copy of.
     pub origin: Vec<u32>,
-    /// Sides of triangles with no neighbour, from node to node with the triangle on the left, in the triangles' order.
+    /// Sides of triangles without a neighbour, directed with the triangle on the left, in the order of the triangles.
     pub sides: Vec<[u32; 2]>,
 }
 
 /// A side of a triangle: its nodes in ascending order, and `3 * triangle + corner` with the corner at which it starts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Side {
     /// The lower node.
     pub low: u32,
@@ -40,39 +41,36 @@ pub struct Side {
     pub corner: u32,
 }
 
-/// All sides of the triangles, sorted, so that those between the same two nodes stand together. Linear but for hubs.
+impl Side {
+    /// Its nodes in ascending order.
+    pub fn ends(&self) -> (u32, u32) {
+        (self.low, self.high)
+    }
+
+    /// Its triangle.
+    pub fn triangle(&self) -> usize {
+        self.corner as usize / 3
+    }
+}
+
+/// All sides of the triangles, sorted, so that those between the same two nodes are consecutive. Linear time, except
+/// for hubs.
 pub fn sorted_sides(nodes: usize, triangles: &[[u32; 3]]) -> Vec<Side> {
     let side = |corner: u32| {
         let t = &triangles[corner as usize / 3];
         let (a, b) = (t[corner as usize % 3], t[(corner as usize + 1) % 3]);
         Side { low: a.min(b), high: a.max(b), corner }
     };
-    let corners = 3 * triangles.len() as u32;
-    let mut start = vec![0_u32; nodes + 1];
-    for corner in 0..corners {
-        start[side(corner).low as usize + 1] += 1;
-    }
-    for i in 0..nodes {
-        start[i + 1] += start[i];
-    }
-    let mut sorted = vec![Side { low: 0, high: 0, corner: 0 }; corners as usize];
-    let mut next = start.clone();
-    for corner in 0..corners {
-        let s = side(corner);
-        let slot = &mut next[s.low as usize];
-        sorted[*slot as usize] = s;
-        *slot += 1;
-    }
-    for w in start.windows(2) {
-        sorted[w[0] as usize..w[1] as usize].sort_unstable();
-    }
+    let sides: Vec<Side> = (0..3 * triangles.len() as u32).map(side).collect();
+    let mut sorted = grouped(nodes, &sides, |side| side.low);
+    sorted.chunk_by_mut(|a, b| a.low == b.low).for_each(<[_]>::sort_unstable);
     sorted
 }
 
-/// Cuts triangles apart: where two regions meet, along `lines` (edges, either direction), and at nodes where fans of
-/// triangles meet in a point only. Nodes without triangles are dropped; new nodes stand in the order of the given ones.
+/// Cuts triangles between regions, along `lines` (edges in either direction), and at pinched nodes, where fans of
+/// triangles meet only in a point. Nodes without triangles are dropped; new nodes have the order of the given ones.
 ///
-/// The triangles must be anticlockwise and no side may be one of more than two triangles.
+/// The triangles must be anticlockwise, and no side may belong to more than two triangles.
 pub fn cut(uv: &[DVec2], triangles: Vec<[u32; 3]>, region: Vec<u32>, lines: &[([u32; 2], Cut)]) -> CutMesh {
     let lines: FxHashMap<(u32, u32), Cut> = lines.iter().map(|&([a, b], cut)| ((a.min(b), a.max(b)), cut)).collect();
     let next = |c: u32| if c % 3 == 2 { c - 2 } else { c + 1 };
@@ -80,32 +78,21 @@ pub fn cut(uv: &[DVec2], triangles: Vec<[u32; 3]>, region: Vec<u32>, lines: &[([
     let node_of = |c: u32| triangles[c as usize / 3][c as usize % 3];
     let (mut fans, mut sectors) = (DisjointSets::new(corners), DisjointSets::new(corners));
     let mut joined = vec![false; corners];
-    for pair in sorted_sides(uv.len(), &triangles).chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
+    for pair in sorted_sides(uv.len(), &triangles).chunk_by(|a, b| a.ends() == b.ends()) {
         let [a, b] = pair else { continue };
-        let line = if lines.is_empty() { None } else { lines.get(&(a.low, a.high)) };
+        let line = if lines.is_empty() { None } else { lines.get(&a.ends()) };
         // The corners of the two triangles at the same node.
         let facing = [(a.corner, next(b.corner)), (next(a.corner), b.corner)];
         if line != Some(&Cut::Crack) {
             facing.iter().for_each(|&(c, d)| sectors.join(c, d));
         }
-        if line.is_none() && region[a.corner as usize / 3] == region[b.corner as usize / 3] {
+        if line.is_none() && region[a.triangle()] == region[b.triangle()] {
             facing.iter().for_each(|&(c, d)| fans.join(c, d));
             joined[a.corner as usize] = true;
             joined[b.corner as usize] = true;
         }
     }
-    // Corners by node, each node's in ascending order.
-    let mut start = vec![0_u32; uv.len() + 1];
-    (0..corners as u32).for_each(|c| start[node_of(c) as usize + 1] += 1);
-    for i in 0..uv.len() {
-        start[i + 1] += start[i];
-    }
-    let mut by_node = vec![0_u32; corners];
-    for c in 0..corners as u32 {
-        let slot = &mut start[node_of(c) as usize];
-        by_node[*slot as usize] = c;
-        *slot += 1;
-    }
+    let by_node = grouped(uv.len(), &(0..corners as u32).collect::<Vec<_>>(), |&c| node_of(c));
     const NONE: u32 = u32::MAX;
     let (mut node_of_fan, mut point_of_sector) = (vec![NONE; corners], vec![NONE; corners]);
     let mut set = TriangleSet { triangles: vec![[0; 3]; triangles.len()], region, ..TriangleSet::default() };
@@ -119,7 +106,7 @@ pub fn cut(uv: &[DVec2], triangles: Vec<[u32; 3]>, region: Vec<u32>, lines: &[([
                 node_of_fan[fan] = set.uv.len() as u32;
                 set.uv.push(uv[node as usize]);
                 origin.push(node);
-                // Fans that meet along an edge, be it between regions or repeated, are at one point.
+                // Fans that meet along an edge, between regions or repeated, share a point.
                 let point = &mut point_of_sector[sectors.find(c) as usize];
                 if *point == NONE {
                     *point = points;
@@ -138,8 +125,8 @@ pub fn cut(uv: &[DVec2], triangles: Vec<[u32; 3]>, region: Vec<u32>, lines: &[([
 }
 
 impl CutMesh {
-    /// Makes one point of all nodes that come from places at one point in space; `joined` names the first place there, `xyz`
-    /// that point. Only the images of one curve on different sides are joined, so that cracks stay open.
+    /// Gives nodes at the same point in space one output point; for each original node, `joined` is the first one at
+    /// the same point, and `xyz` that point. Only images of one curve are joined, so that cracks remain open.
     pub fn join_in_space(&mut self, joined: &[u32], xyz: &[DVec3]) {
         let points = self.set.point.iter().map(|p| p.index() + 1).max().unwrap_or(0);
         let mut images = vec![0_u32; joined.len()];
@@ -156,7 +143,7 @@ impl CutMesh {
                 }
             }
         }
-        // Numbered anew in the order of the nodes.
+        // Renumbered in the order of the nodes.
         let mut new = vec![None; points];
         self.set.xyz.clear();
         for (node, &origin) in self.origin.iter().enumerate() {
@@ -169,8 +156,8 @@ impl CutMesh {
         }
     }
 
-    /// The boundary loops, each the nodes in their order with the triangles on the left. Every node has one fan, so
-    /// that it starts one side at most.
+    /// The boundary loops, each as its nodes in order with the triangles on the left. Every node has one fan, and so
+    /// starts at most one side.
     pub fn loops(&self) -> Vec<Vec<u32>> {
         const NONE: u32 = u32::MAX;
         let mut next = vec![NONE; self.set.uv.len()];
@@ -186,7 +173,7 @@ impl CutMesh {
                 at = std::mem::replace(&mut next[at as usize], NONE);
             }
             if !nodes.is_empty() {
-                debug_assert_eq!(at, start, "the boundary of a fan goes in and out");
+                debug_assert_eq!(at, start, "a boundary is closed");
                 loops.push(nodes);
             }
         }

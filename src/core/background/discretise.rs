@@ -1,10 +1,11 @@
-//! Curves divided at equal metric arclength, with even loops (docs/algorithm.md, "Curves divided at equal metric
-//! length", "Even loops").
+//! Division of curves at equal metric arclength, with even loops (docs/algorithm.md, "Curves divided at equal metric
+//! length", "Even loops" and step 1 of 3).
 
 use glam::{DVec2, DVec3};
 
-use super::length::{Piece, about, give, measure, share_out};
+use super::length::{Piece, give, measure, share_out};
 use crate::core::fault::Fault;
+use crate::core::geometry::assembly::{loop_name, placed};
 use crate::core::geometry::curve::distance_to_segment;
 use crate::core::geometry::domain::Domain;
 use crate::core::geometry::domain_curve::{CurveId, DirectedCurve};
@@ -12,39 +13,39 @@ use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::kernel::parity;
 use crate::core::metric::field::MetricSource;
 
-/// More segments than this on all curves together are refused: the sizes cannot be meant.
+/// More segments than this on all curves together are refused, since such sizes must be an error.
 const MOST_SEGMENTS: f64 = 2e7;
 
-/// A divided domain: nodes on curves. Each curve is divided once, whatever number of faces it bounds; on surfaces, all its
-/// images at the same points.
+/// A divided domain: nodes on curves. Each curve is divided once, however many faces it bounds; on surfaces, all its
+/// images are divided at the same points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DividedDomain {
-    /// Coordinates of each node: the domain's vertices come first, in their order, then the nodes inside curves.
+    /// Coordinates of each node: first the vertices of the domain in their order, then the nodes inside curves.
     pub nodes: Vec<DVec2>,
-    /// Nodes of each curve from its start to its end.
+    /// The nodes of each curve from its start to its end.
     pub chains: Vec<Vec<u32>>,
     /// The parameters of those nodes.
     pub parameters: Vec<Vec<f64>>,
-    /// On surfaces: the first node at the same point in space, for each node. Empty in the plane.
+    /// On surfaces: for each node the first node at the same point in space. Empty in the plane.
     pub joined: Vec<u32>,
     /// On surfaces: the point in space of each node. Empty in the plane.
     pub xyz: Vec<DVec3>,
 }
 
-/// Lengths of the curves in the metric, and into how many segments they are to be divided.
+/// The metric lengths of the curves and their numbers of segments.
 pub struct Division<'a> {
     domain: &'a Domain,
     metric: &'a dyn MetricSource,
-    /// The smooth straight or curved pieces of each curve, between its corners; none for an image that follows another.
+    /// The smooth pieces of each curve, between its corners; empty for an image that follows another.
     pieces: Vec<Vec<Piece>>,
 }
 
-/// Divides the curves of a domain into segments of about unit metric length, all topological loops even and of at least
-/// four segments.
+/// Divides the curves of a domain into segments of about unit metric length, so that all topological loops are even and
+/// have at least four segments.
 ///
 /// # Errors
-/// Where the metric fails, where fixed numbers of segments do not allow even loops, and where the sizes ask for more
-/// segments than could be meant.
+/// If the metric fails, if fixed numbers of segments do not allow even loops, or if the sizes require too many
+/// segments.
 pub fn divide(domain: &Domain, metric: &dyn MetricSource) -> Result<DividedDomain, Fault> {
     let mut division = Division::measure(domain, metric)?;
     division.even_out()?;
@@ -52,10 +53,10 @@ pub fn divide(domain: &Domain, metric: &dyn MetricSource) -> Result<DividedDomai
 }
 
 impl<'a> Division<'a> {
-    /// Measures the curves and gives each the number of segments nearest to its length, or the fixed one.
+    /// Measures the curves and gives each the number of segments closest to its length, or the fixed one.
     ///
     /// # Errors
-    /// Where the metric fails, sizes are absurdly small, or a fixed number is less than the curve has pieces.
+    /// If the metric fails, sizes are far too small, or a fixed number is less than the number of pieces.
     pub fn measure(domain: &'a Domain, metric: &'a dyn MetricSource) -> Result<Self, Fault> {
         let mut division = Division { domain, metric, pieces: Vec::with_capacity(domain.curves.len()) };
         let mut total = 0.0;
@@ -68,11 +69,8 @@ impl<'a> Division<'a> {
             let length: f64 = curve.segments.map_or_else(|| pieces.iter().map(Piece::length).sum(), f64::from);
             total += length;
             if total > MOST_SEGMENTS {
-                let what = format!("The curve \"{}\" would get {length:.3e} segments", curve.name);
-                return Err(about(
-                    curve,
-                    Fault::new(what).remedy("Ask for larger sizes along it, or for fewer segments"),
-                ));
+                let fault = Fault::new(format!("The curve \"{}\" would get {length:.3e} segments", curve.name));
+                return Err(placed(fault.remedy("Increase the sizes along it, or give fewer segments"), &curve.place));
             }
             match curve.segments {
                 None => {
@@ -87,15 +85,13 @@ impl<'a> Division<'a> {
                 }
                 Some(n) => {
                     if (n as usize) < pieces.len() {
-                        return Err(about(
-                            curve,
-                            Fault::new(format!(
-                                "The curve \"{}\" has {} pieces between corners and is to have {n} segments",
-                                curve.name,
-                                pieces.len()
-                            ))
-                            .remedy(format!("Give it at least {} segments", pieces.len())),
+                        let fault = Fault::new(format!(
+                            "The curve \"{}\" has {} pieces between corners, but only {n} segments",
+                            curve.name,
+                            pieces.len()
                         ));
+                        let remedy = format!("Give it at least {} segments", pieces.len());
+                        return Err(placed(fault.remedy(remedy), &curve.place));
                     }
                     share_out(&mut pieces, n);
                 }
@@ -110,23 +106,23 @@ impl<'a> Division<'a> {
         self.pieces[self.first(id).index()].iter().map(|p| p.segments).sum()
     }
 
-    /// The curve that rules how this one is divided.
+    /// The curve that determines the division of this one.
     pub fn first(&self, id: CurveId) -> CurveId {
         self.domain.curves[id.index()].first
     }
 
-    /// Whether a curve is an image of sides of triangles.
+    /// Whether a curve is an image of triangle edges.
     pub fn is_polygonal(&self, id: CurveId) -> bool {
         self.domain.curves[id.index()].curve.polygonal()
     }
 
-    /// Divides a curve more finely because of one of its chords, from parameter to parameter: an image of sides at the one of
-    /// its points that the chord misses most, any other by about half as many segments again. By even numbers; `false` where nothing
-    /// would come of it.
+    /// Refines a curve because of one of its chords, given by its parameters: an image of triangle edges at its point
+    /// farthest from the chord, any other curve by about half of its segments. Adds even numbers; `false` if nothing
+    /// changes.
     pub fn refine(&mut self, id: CurveId, chord: [f64; 2]) -> bool {
         let id = self.first(id);
         if self.is_polygonal(id) {
-            return self.part(id, chord);
+            return self.split_at_farthest(id, chord);
         }
         if self.domain.curves[id.index()].segments.is_some()
             || self.domain.images(id).iter().all(|image| image.curve.straight())
@@ -138,10 +134,11 @@ impl<'a> Division<'a> {
         true
     }
 
-    /// Makes a node of the point of a curve of sides that a chord misses most, in proportion to the chord.
-    fn part(&mut self, id: CurveId, [from, to]: [f64; 2]) -> bool {
+    /// Makes a node of the point of a polygonal curve that is farthest from a chord, relative to the length of the
+    /// chord.
+    fn split_at_farthest(&mut self, id: CurveId, [from, to]: [f64; 2]) -> bool {
         let images = self.domain.images(id);
-        let missed = |t: f64| {
+        let deviation = |t: f64| {
             let off = images.iter().map(|image| {
                 let [a, b, p] = [from, to, t].map(|t| image.curve.point(t));
                 distance_to_segment(p, a, b) / a.distance(b).max(f64::MIN_POSITIVE)
@@ -149,18 +146,18 @@ impl<'a> Division<'a> {
             off.fold(0.0, f64::max)
         };
         let inside = images[0].fine.iter().map(|entry| entry.0).filter(|&t| from < t && t < to);
-        let Some((_, t)) = inside.map(|t| (missed(t), t)).max_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+        let Some((_, t)) = inside.map(|t| (deviation(t), t)).max_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
         let pieces = &mut self.pieces[id.index()];
         let Some(k) = pieces.iter().position(|piece| t < piece.end()) else { return false };
-        let Some(parts) = pieces[k].parted(t) else { return false };
+        let Some(parts) = pieces[k].split(t) else { return false };
         pieces.splice(k..=k, parts);
         true
     }
 
-    /// Makes every boundary walk even, and walks and loops at least four segments long.
+    /// Makes every boundary walk even, and gives walks and loops at least four segments.
     ///
     /// # Errors
-    /// Where fixed numbers do not allow that: names the loop with its number of segments.
+    /// If fixed numbers do not allow that: names the loop with its number of segments.
     pub fn even_out(&mut self) -> Result<(), Fault> {
         let walks: Vec<(usize, &Vec<DirectedCurve>)> =
             self.domain.faces.iter().enumerate().flat_map(|(f, face)| face.walks.iter().map(move |w| (f, w))).collect();
@@ -178,24 +175,25 @@ impl<'a> Division<'a> {
                 self.pieces[c][piece].segments = n;
             }
         }
-        // Curves that no walk runs through an odd number of times.
+        // Curves that no walk traverses an odd number of times.
         let mut doubled = vec![true; self.pieces.len()];
         rows.iter().flatten().for_each(|&c| doubled[c as usize] = false);
         let loops = self.domain.faces.iter().enumerate().flat_map(|(f, face)| face.loops.iter().map(move |l| (f, l)));
         for (f, steps) in loops.chain(walks) {
             while steps.iter().map(|s| self.segments(s.curve)).sum::<u32>() < 4 {
-                let stretched = |id: CurveId| self.pieces[id.index()].iter().map(Piece::stretched).fold(0.0, f64::max);
+                let longest =
+                    |id: CurveId| self.pieces[id.index()].iter().map(Piece::segment_length).fold(0.0, f64::max);
                 let free = steps
                     .iter()
                     .map(|s| self.first(s.curve))
                     .filter(|id| self.domain.curves[id.index()].segments.is_none());
-                let Some(id) = free.max_by(|a, b| stretched(*a).total_cmp(&stretched(*b)).then(b.cmp(a))) else {
-                    return Err(self.told_loop(f, steps, |name, n| {
+                let Some(id) = free.max_by(|a, b| longest(*a).total_cmp(&longest(*b)).then(b.cmp(a))) else {
+                    return Err(self.loop_fault(f, steps, |name, n| {
                         Fault::new(format!("The {name} has {n} segments; it needs at least 4"))
                             .remedy("Give its curves more segments, or leave the numbers out")
                     }));
                 };
-                // One more on a line that is run twice leaves every loop even; elsewhere it has to be two.
+                // One more segment on a line that is traversed twice keeps every loop even; other curves need two.
                 give(&mut self.pieces[id.index()], if doubled[id.index()] { 1 } else { 2 });
             }
         }
@@ -203,8 +201,9 @@ impl<'a> Division<'a> {
         Ok(())
     }
 
-    /// Where two curves run between the same points in space, such as on both sides of a narrow gap, and one of them is a single chord
-    /// and bends while the other is divided and straight, the nodes of the one would hang in the chord of the other: it is divided too.
+    /// If two curves connect the same points in space, such as on both sides of a narrow gap, and one is bent and a
+    /// single chord while the other is straight and divided, the nodes of the latter would lie on the chord of the
+    /// former, which is therefore divided too.
     fn open_lenses(&mut self) {
         let Some(spatial) = self.domain.spatial.clone() else { return };
         let ends_of = |id: CurveId| {
@@ -226,7 +225,8 @@ impl<'a> Division<'a> {
         }
     }
 
-    /// The cheapest way to change the curve's number by one: relative length error after it, the piece, its new number.
+    /// The cheapest change of the number of segments by one: the resulting relative length error, the piece, its new
+    /// number.
     fn best_toggle(&self, c: usize) -> Option<(f64, usize, u32)> {
         let curve = &self.domain.curves[c];
         if curve.segments.is_some() || curve.first.index() != c {
@@ -246,11 +246,11 @@ impl<'a> Division<'a> {
         best
     }
 
-    /// A fault about a loop of a face, with its name, its number of segments and its place.
-    fn told_loop(&self, f: usize, steps: &[DirectedCurve], fault: impl Fn(&str, u32) -> Fault) -> Fault {
+    /// A fault about a loop of a face, made from its name and its number of segments, with its place.
+    fn loop_fault(&self, f: usize, steps: &[DirectedCurve], fault: impl Fn(&str, u32) -> Fault) -> Fault {
         let curve = &self.domain.curves[steps[0].curve.index()];
         let n = steps.iter().map(|s| self.segments(s.curve)).sum();
-        about(curve, fault(&self.loop_name(f, steps), n))
+        placed(fault(&self.loop_name(f, steps), n), &curve.place)
     }
 
     fn loop_name(&self, f: usize, steps: &[DirectedCurve]) -> String {
@@ -259,8 +259,7 @@ impl<'a> Division<'a> {
             return format!("boundary loop \"{}\"", self.domain.curves[steps[0].curve.index()].name);
         }
         match face.loops.iter().position(|l| l.iter().any(|s| steps.contains(s))) {
-            Some(0) => format!("outer loop of \"{}\"", face.name),
-            Some(i) => format!("hole {i} of \"{}\"", face.name),
+            Some(i) => loop_name(&face.name, i),
             None => format!("loop of internal lines of \"{}\"", face.name),
         }
     }
@@ -286,7 +285,7 @@ impl<'a> Division<'a> {
             }
         };
         if let [(f, walk)] = blamed {
-            return self.told_loop(*f, walk, |name, n| {
+            return self.loop_fault(*f, walk, |name, n| {
                 Fault::new(format!("The {name} has {n} segments; an all-quad mesh needs an even count"))
                     .remedy(remedy.clone())
             });
@@ -294,21 +293,22 @@ impl<'a> Division<'a> {
         let names: Vec<String> = blamed.iter().map(|(f, walk)| format!("the {}", self.loop_name(*f, walk))).collect();
         let total: u32 = fixed.iter().map(|id| self.segments(*id)).sum();
         let fault = Fault::new(format!(
-            "An all-quad mesh needs even loops, and {} cannot all be even: their fixed curves have {total} segments together",
+            "An all-quad mesh needs even loops, and {} cannot all be even: \
+             their fixed curves have {total} segments together",
             names.join(", ")
         ));
-        about(&self.domain.curves[blamed[0].1[0].curve.index()], fault.remedy(remedy))
+        placed(fault.remedy(remedy), &self.domain.curves[blamed[0].1[0].curve.index()].place)
     }
 
-    /// Columns of a walk in the parity system: its curves but those that it runs twice, ascending.
+    /// Columns of a walk in the parity system, ascending: its curves except those that it traverses twice.
     fn single_columns(&self, walk: &[DirectedCurve]) -> Vec<u32> {
         let mut ids: Vec<u32> = walk.iter().map(|d| self.first(d.curve).0).collect();
         ids.sort_unstable();
         ids.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1).map(|g| g[0]).collect()
     }
 
-    /// The first vertex at the same point of space for each vertex of the plane. Vertices are joined by the curves whose
-    /// images end in them: where faces, or the sides of a cut, have no curve in common, they meet in a place and are apart.
+    /// For each vertex of the plane the first vertex at the same point in space. Vertices are joined by the curves
+    /// whose images end in them: faces, or sides of a cut, that meet in a point but share no curve remain separate.
     fn joined_vertices(&self) -> Vec<u32> {
         let mut sets = DisjointSets::new(self.domain.vertices.len());
         for curve in &self.domain.curves {
@@ -319,21 +319,21 @@ impl<'a> Division<'a> {
         (0..self.domain.vertices.len() as u32).map(|v| sets.find(v)).collect()
     }
 
-    /// The nodes: each piece of each curve at equal metric arclength.
+    /// The nodes, at equal metric arclength in each piece of each curve.
     ///
     /// # Errors
-    /// Where the metric fails.
+    /// If the metric fails.
     pub fn nodes(&self) -> Result<DividedDomain, Fault> {
         let mut divided = DividedDomain { nodes: self.domain.vertices.clone(), ..DividedDomain::default() };
         if let Some(spatial) = &self.domain.spatial {
             divided.joined = self.joined_vertices();
             divided.xyz = spatial.vertex_of.iter().map(|&v| spatial.vertices[v as usize]).collect();
         }
-        // Where the curve that rules was divided.
+        // The parameters of the last first image.
         let mut parameters: Vec<f64> = Vec::new();
         for (c, curve) in self.domain.curves.iter().enumerate() {
-            let rules = curve.first.index() == c;
-            if rules {
+            let is_first = curve.first.index() == c;
+            if is_first {
                 parameters.clear();
                 let (pieces, images) = (&self.pieces[c], self.domain.images(curve.first));
                 for (i, piece) in pieces.iter().enumerate() {
@@ -349,8 +349,8 @@ impl<'a> Division<'a> {
                 chain.push(node);
                 divided.nodes.push(curve.curve.point(t));
                 if let Some(spatial) = &self.domain.spatial {
-                    // Images of one curve stand together, the first one first.
-                    divided.joined.push(if rules { node } else { divided.chains[curve.first.index()][k + 1] });
+                    // Images of one curve are consecutive, beginning with the first.
+                    divided.joined.push(if is_first { node } else { divided.chains[curve.first.index()][k + 1] });
                     divided.xyz.push(spatial.curves[c].point(t));
                 }
             }

@@ -1,19 +1,21 @@
-//! Metric lengths of curves: each smooth piece with a table of its arclength (docs/algorithm.md, "Curves divided at
-//! equal metric length"), and how many segments it is to have.
+//! Metric lengths of curves: a table of the arclength of each smooth piece (docs/algorithm.md, "Curves divided at equal
+//! metric length"), and its number of segments.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::core::fault::Fault;
+use crate::core::geometry::assembly::placed;
 use crate::core::geometry::domain_curve::DomainCurve;
 use crate::core::kernel::decimal::point_text;
 use crate::core::metric::field::MetricSource;
 
 /// A piece of a curve between two corners.
 pub struct Piece {
-    /// Parameters and metric lengths from the piece's start, ascending; between two the curve is resolved.
+    /// Parameters and metric lengths from the start of the piece, ascending; the quadrature is accurate between two
+    /// entries.
     table: Vec<(f64, f64)>,
-    /// Number of segments that it is to have.
+    /// Number of segments.
     pub segments: u32,
 }
 
@@ -28,14 +30,14 @@ impl Piece {
         self.table[self.table.len() - 1].0
     }
 
-    /// Divides it at an entry of its table, its segments shared among the two by their lengths, with an even number
-    /// more than before or none; `None` where there is no such entry inside.
-    pub fn parted(&self, t: f64) -> Option<[Piece; 2]> {
+    /// Divides it at an inner entry of its table; the two parts share its segments, and an even number of additional
+    /// ones, by their lengths. `None` if there is no such entry.
+    pub fn split(&self, t: f64) -> Option<[Piece; 2]> {
         let k = self.table.iter().position(|entry| entry.0 == t).filter(|&k| k > 0 && k + 1 < self.table.len())?;
         let before = self.table[k].1;
         let rest = self.table[k..].iter().map(|&(t, length)| (t, length - before)).collect();
         let mut parts = [self.table[..=k].to_vec(), rest].map(|table| Piece { table, segments: 1 });
-        let share = |part: &Piece| (part.length() / self.stretched()).round().max(1.0) as u32;
+        let share = |part: &Piece| (part.length() / self.segment_length()).round().max(1.0) as u32;
         parts.iter_mut().for_each(|part| part.segments = share(part));
         let all: u32 = parts.iter().map(|part| part.segments).sum();
         let wanted = all.max(self.segments);
@@ -43,20 +45,20 @@ impl Piece {
         Some(parts)
     }
 
-    /// How far metric lengths are from 1 when divided into `n` segments.
+    /// The deviation of the segment length from 1 for `n` segments.
     pub fn error(&self, n: u32) -> f64 {
         (self.length() / f64::from(n) - 1.0).abs()
     }
 
     /// Metric length of its segments.
-    pub fn stretched(&self) -> f64 {
+    pub fn segment_length(&self) -> f64 {
         self.length() / f64::from(self.segments)
     }
 
-    /// Parameters that divide it into its segments at equal metric arclength, ends left out.
+    /// The parameters that divide it into its segments at equal metric arclength, without the ends.
     ///
     /// # Errors
-    /// Where the metric fails.
+    /// If the metric fails.
     pub fn divisions(&self, images: &[&DomainCurve], metric: &dyn MetricSource) -> Result<Vec<f64>, Fault> {
         let mut at = 0;
         (1..self.segments)
@@ -65,22 +67,22 @@ impl Piece {
                 while at + 2 < self.table.len() && self.table[at + 1].1 <= target {
                     at += 1;
                 }
-                parameter(images, metric, [self.table[at], self.table[at + 1]], target, 1e-7 * self.stretched())
+                parameter(images, metric, [self.table[at], self.table[at + 1]], target, 1e-7 * self.segment_length())
             })
             .collect()
     }
 }
 
-/// The pieces of a curve, given by all its images in the plane (one, but on surfaces), between its corners, their
-/// tables halved until the quadrature agrees with itself; one segment each for now.
+/// The pieces of a curve between its corners, with one segment each; the curve is given by all its images in the plane
+/// (one, except on surfaces). The tables are bisected until the quadrature converges.
 ///
 /// # Errors
-/// Where the metric fails or is so large that the length overflows.
+/// If the metric fails or the length overflows.
 pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource) -> Result<Vec<Piece>, Fault> {
     let curve = images[0];
     let corners = curve.curve.corners();
     let breaks = curve.curve.breaks();
-    // So fine at first that no feature of the metric is missed; a polyline of many pieces is that fine by itself.
+    // Start finely enough to miss no feature of the metric; a polyline of many pieces is already fine.
     let parts = (64 / (breaks.len() - 1)).clamp(2, 32);
     let mut pieces: Vec<Piece> = Vec::new();
     let mut table = vec![(0.0, 0.0)];
@@ -116,8 +118,8 @@ pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource) -> Result<Vec
 
 /// Gives `more` segments one by one to the piece whose segments are longest.
 pub fn give(pieces: &mut [Piece], more: u32) {
-    // The bits of positive numbers are in their order; ties go to the first.
-    let key = |pieces: &[Piece], i: usize| (pieces[i].stretched().to_bits(), Reverse(i));
+    // The bits of positive numbers sort like the numbers; ties go to the first.
+    let key = |pieces: &[Piece], i: usize| (pieces[i].segment_length().to_bits(), Reverse(i));
     let mut heap: BinaryHeap<_> = (0..pieces.len()).map(|i| key(pieces, i)).collect();
     for _ in 0..more {
         let Some((_, Reverse(i))) = heap.pop() else { return };
@@ -126,22 +128,17 @@ pub fn give(pieces: &mut [Piece], more: u32) {
     }
 }
 
-/// Divides `n` segments, no fewer than there are pieces, among them: in proportion to their lengths, one at least.
+/// Distributes `n` segments, at least one per piece, among the pieces in proportion to their lengths.
 pub fn share_out(pieces: &mut [Piece], n: u32) {
     let total: f64 = pieces.iter().map(Piece::length).sum();
     let spare = f64::from(n) - pieces.len() as f64;
-    // Rounded down, and at least one: never more than n together.
+    // Rounded down, and at least one: the sum is at most n.
     pieces.iter_mut().for_each(|p| p.segments = ((p.length() / total * spare) as u32).max(1));
     let given: u32 = pieces.iter().map(|p| p.segments).sum();
     give(pieces, n - given);
 }
 
-/// A fault about a curve, placed where the case has it.
-pub fn about(curve: &DomainCurve, fault: Fault) -> Fault {
-    if curve.place.is_empty() { fault } else { fault.at(curve.place.clone()) }
-}
-
-/// The parameter between two entries of a table at which the length is `target`, by Newton within a bracket.
+/// The parameter between two entries of a table at which the length is `target`, by Newton's method within a bracket.
 fn parameter(
     images: &[&DomainCurve],
     metric: &dyn MetricSource,
@@ -167,20 +164,21 @@ fn parameter(
     Ok(t)
 }
 
-/// Metric length of the derivative at `t`: on every face of the curve the same, but where sizes depend on the surface,
-/// of which the smallest rule.
+/// Metric length of the derivative at `t`. It is the same on every face of the curve, unless sizes depend on the
+/// surface: then the smallest sizes count.
 fn speed(images: &[&DomainCurve], metric: &dyn MetricSource, t: f64) -> Result<f64, Fault> {
     let mut fastest = 0.0_f64;
     for curve in images {
         let (p, d) = curve.curve.at(t);
         let m = metric.metric(p).map_err(|bad| {
             let place = format!("on the curve \"{}\" at {}", curve.name, point_text(bad.place.uv));
-            about(curve, Fault::new(bad.what.clone()).at(place))
+            placed(Fault::new(bad.what.clone()).at(place), &curve.place)
         })?;
         let square = m.norm2(d);
         if !square.is_finite() {
-            let fault = Fault::new(format!("The curve \"{}\" is no finite number of target sizes long", curve.name));
-            return Err(about(curve, fault.at(format!("at {}", point_text(p))).remedy("Ask for larger sizes there")));
+            let fault = Fault::new(format!("The curve \"{}\" is infinitely many target sizes long", curve.name))
+                .at(format!("at {}", point_text(p)));
+            return Err(placed(fault.remedy("Increase the sizes there"), &curve.place));
         }
         fastest = fastest.max(square.max(0.0).sqrt());
     }

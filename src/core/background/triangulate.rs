@@ -1,48 +1,37 @@
 //! The constrained Delaunay triangulation of divided curves (docs/algorithm.md, "Triangulation and cuts"), by face, cut
-//! apart along shared curves, cracks and repeated lines.
+//! along shared curves, cracks and repeated lines.
 
 use glam::DVec2;
 use rustc_hash::{FxHashMap, FxHashSet};
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
+use super::clash::{Clash, DividedChord, chords_at, clash, too_thin};
 use super::cut::{Cut, CutMesh, cut, sorted_sides};
 use super::discretise::{DividedDomain, Division};
 use crate::core::fault::Fault;
 use crate::core::geometry::crossing::crossing_of;
 use crate::core::geometry::domain::Domain;
 use crate::core::geometry::domain_curve::{CurveId, CurveKind};
-use crate::core::kernel::decimal::{number, point_text};
-use crate::core::kernel::predicates::{firm, orient, positive};
+use crate::core::kernel::decimal::point_text;
+use crate::core::kernel::predicates::{firm, positive};
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
 use crate::core::metric::field::MetricSource;
 
-/// How often offending curves are divided more finely before the domain is refused.
+/// The number of refinements of clashing curves before the domain is refused.
 const ROUNDS: usize = 64;
-/// Two chords of a corner whose sine in space is below this are divided more finely.
+/// The two chords of a corner with a smaller sine in space are refined.
 const LEAST_SINE: f64 = 0.02;
-/// So is a chord that leaves its curve by more than this part of the height of the triangle on it: the surface would
-/// bulge out.
+/// A chord is refined if its distance from its curve exceeds this fraction of the height of its triangle, since the
+/// surface would bulge out.
 const MOST_BULGE: f64 = 0.25;
-
-/// A chord of a divided curve: the curve, and which of its chords.
-pub type DividedChord = (CurveId, u32);
-
-/// Why divided curves cannot be triangulated: their chords cross or come too close where the curves do not.
-#[derive(Clone, Debug)]
-pub struct Clash {
-    /// The chords that finer division may help.
-    pub chords: Vec<DividedChord>,
-    /// What is wrong, should it not help.
-    pub fault: Fault,
-}
 
 /// Divides the curves of a domain in the metric and triangulates it; curves whose chords clash are divided more finely
 /// (docs/algorithm.md, "Curves divided at equal metric length").
 ///
 /// # Errors
-/// What [`super::discretise::divide`] refuses, and chords that still clash after many rounds.
+/// What [`super::discretise::divide`] refuses, and chords that still clash after many refinements.
 pub fn divide_and_triangulate(
     domain: &Domain,
     metric: &dyn MetricSource,
@@ -53,7 +42,7 @@ pub fn divide_and_triangulate(
         let divided = division.nodes()?;
         match triangulate(domain, &divided) {
             Ok(Triangulated { set, folded }) => {
-                // A corner that no finer division helps is as the surface has it.
+                // A corner that refinement does not improve is a corner of the surface.
                 if round >= ROUNDS || !refined(&mut division, &divided, folded) {
                     return Ok((divided, set));
                 }
@@ -65,15 +54,15 @@ pub fn divide_and_triangulate(
             }
         }
     }
-    unreachable!("the rounds end by returning")
+    unreachable!("the last round returns")
 }
 
-/// Divides curves more finely at some of their chords; `false` where nothing comes of it.
+/// Refines curves at some of their chords; `false` if nothing changes.
 fn refined(division: &mut Division, divided: &DividedDomain, chords: Vec<DividedChord>) -> bool {
     let mut seen: FxHashSet<DividedChord> = FxHashSet::default();
     let mut helped = false;
     for (id, k) in chords {
-        // A curve of sides is divided at each of these chords, any other once as a whole.
+        // A polygonal curve is refined at each of these chords, any other curve once as a whole.
         let first = division.first(id);
         let [from, to] = [k, k + 1].map(|k| divided.parameters[id.index()][k as usize]);
         if seen.insert((first, if division.is_polygonal(first) { k } else { 0 })) {
@@ -98,13 +87,13 @@ impl HasPosition for Vertex {
 
 type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 
-/// Triangulates divided curves: all faces, without what is outside and in holes. Regions are the faces by number.
+/// Triangulates the faces of divided curves, without the outside and holes. Regions are the faces by number.
 ///
 /// # Errors
 /// Chords that cross, touch or coincide, and triangles that are too thin (docs/algorithm.md, "Rounding").
 ///
 /// # Panics
-/// Where a boundary loop is odd: [`Division::even_out`] has made them even.
+/// If a boundary loop is odd: [`Division::even_out`] has made them even.
 pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<Triangulated, Box<Clash>> {
     let (mesh, folded) = triangles(domain, divided)?;
     for nodes in mesh.loops() {
@@ -117,11 +106,11 @@ pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<Triangula
     Ok(Triangulated { set: mesh.set, folded })
 }
 
-/// What [`triangulate`] makes of divided curves.
+/// The result of [`triangulate`].
 pub struct Triangulated {
     /// The triangles.
     pub set: TriangleSet,
-    /// Chords that fold over the surface in space: finer division may help.
+    /// Chords at which triangles fold over in space: refinement may help.
     pub folded: Vec<DividedChord>,
 }
 
@@ -162,13 +151,12 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<(CutMesh, Vec<D
     Ok((mesh, folded))
 }
 
-/// The Delaunay triangulation of the nodes, and where each is in it. Scaled by a power of two, so that signs are those
-/// of the given coordinates.
+/// The Delaunay triangulation of the nodes, and their handles. Coordinates are scaled by a power of two, so that the
+/// signs of predicates do not change.
 ///
-/// Nodes are inserted from coarse to fine along each curve: every round halves the steps of the one before, so that
-/// each insertion changes little and begins beside the one before. (spade's bulk loaders need quadratic time for nodes
-/// that lie on a few lines, and the one that takes constraints walks a hash set of std, whose order differs between
-/// runs.)
+/// Nodes are inserted from coarse to fine along each curve: every round halves the step, so that each insertion changes
+/// little and begins beside the previous one. (The bulk loaders of spade need quadratic time for nodes on a few lines,
+/// and the one with constraints iterates over a hash set, whose order differs between runs.)
 fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVertexHandle>), Box<Clash>> {
     let largest = divided.nodes.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
     let scale = libm::ldexp(1.0, -libm::ilogb(largest));
@@ -184,9 +172,9 @@ fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVerte
         };
         let handle = cdt.insert(Vertex { at, node }).map_err(failed)?;
         if cdt.num_vertices() == count {
-            // It has taken the place of another one.
+            // It has replaced a node at the same point.
             let other = handles.iter().position(|&h| h == handle).unwrap_or(0) as u32;
-            return Err(clash(domain, chords_at(divided, &[other, node]), "come to the same point", p));
+            return Err(clash(domain, chords_at(divided, &[other, node]), "have a common point", p));
         }
         handles[node as usize] = handle;
         Ok(())
@@ -196,7 +184,7 @@ fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVerte
     let mut step = longest.next_power_of_two();
     while step > 0 {
         for chain in &divided.chains {
-            // Odd multiples of the step, but for the end.
+            // Odd multiples of the step, except the end.
             chain[..chain.len() - 1].iter().skip(step).step_by(2 * step).copied().try_for_each(&mut insert)?;
         }
         step /= 2;
@@ -208,7 +196,7 @@ fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVerte
 struct Edges<'a> {
     domain: &'a Domain,
     divided: &'a DividedDomain,
-    /// The chord that each edge is, by its nodes in ascending order.
+    /// The chord of each edge, by its nodes in ascending order.
     chord_of: FxHashMap<(u32, u32), DividedChord>,
 }
 
@@ -219,13 +207,13 @@ impl<'a> Edges<'a> {
         for (chord, a, b) in edges.all() {
             if let Some(other) = edges.chord_of.insert((a.min(b), a.max(b)), chord) {
                 let middle = divided.nodes[a as usize].midpoint(divided.nodes[b as usize]);
-                return Err(clash(domain, vec![chord, other], "come to the same line", middle));
+                return Err(clash(domain, vec![chord, other], "have a common chord", middle));
             }
         }
         Ok(edges)
     }
 
-    /// Every edge from node to node in its curve's direction.
+    /// All edges with their chords, in the direction of the curve.
     fn all(&self) -> impl Iterator<Item = (DividedChord, u32, u32)> + use<'a> {
         let chains = self.divided.chains.iter().zip(0..);
         chains.flat_map(|(chain, id)| chain.windows(2).zip(0..).map(move |(w, k)| ((CurveId(id), k), w[0], w[1])))
@@ -235,7 +223,7 @@ impl<'a> Edges<'a> {
         self.divided.nodes[node as usize]
     }
 
-    /// The sides of the triangles along curves, each by the first image of its curve.
+    /// The sides of triangles along curves, each with the first image of its curve.
     fn lines(&self, mesh: &CutMesh) -> Vec<([PointId; 2], u32)> {
         let on_curve = |ends: &[u32; 2]| {
             let [a, b] = ends.map(|node| mesh.origin[node as usize]);
@@ -255,16 +243,15 @@ impl<'a> Edges<'a> {
                 [] => {
                     for other in cdt.get_conflicting_edges_between_vertices(from, to) {
                         let [c, d] = other.vertices().map(|v| v.data().node);
-                        let place =
-                            crossing_of([self.at(a), self.at(b)], [self.at(c), self.at(d)]).unwrap_or(self.at(a));
-                        let (chords, ..) = found.get_or_insert((vec![chord], "cross", place));
+                        let p = crossing_of([self.at(a), self.at(b)], [self.at(c), self.at(d)]).unwrap_or(self.at(a));
+                        let (chords, ..) = found.get_or_insert((vec![chord], "cross", p));
                         chords.extend([chord].into_iter().chain(self.chord_of.get(&(c.min(d), c.max(d))).copied()));
                     }
-                    // A conflict at a vertex has no edge to name.
+                    // A conflict at a vertex has no edge.
                     found.get_or_insert((vec![chord], "cross", self.at(a)));
                 }
                 [first, ..] => {
-                    // The edge runs through a node, which has split it.
+                    // The edge passes through a node, which has split it.
                     let ends = cdt.directed_edge(*first).vertices().map(|v| v.data().node);
                     let through = if ends.contains(&a) {
                         ends.into_iter().find(|&n| n != a)
@@ -280,19 +267,19 @@ impl<'a> Edges<'a> {
         }
         match found {
             None => Ok(()),
-            Some((chords, verb, place)) => Err(clash(self.domain, chords, verb, place)),
+            Some((chords, verb, p)) => Err(clash(self.domain, chords, verb, p)),
         }
     }
 
-    /// The face of each triangle, `None` outside. Every chord must have the faces on its sides that its curve has.
+    /// The face of each triangle, `None` outside. Every chord must have the same faces on its sides as its curve.
     fn flood(&self, cdt: &Cdt, handles: &[FixedVertexHandle]) -> Result<Vec<Option<u32>>, Box<Clash>> {
-        // The hull's outside is not among the inner faces: there, nothing is to be labelled.
+        // The outer face is not among the inner faces, and gets no label.
         let mut labels: Vec<Option<Option<u32>>> = vec![None; cdt.num_inner_faces()];
         let mut walls = vec![false; cdt.num_undirected_edges()];
         let mut seeds = Vec::new();
         let missing = |chord: DividedChord| {
             let first = self.domain.curves[chord.0.index()].first();
-            clash(self.domain, vec![chord], "cannot be kept as it is divided", first)
+            clash(self.domain, vec![chord], "is not an edge of the triangulation with this division", first)
         };
         for (id, a, b) in self.all() {
             let curve = &self.domain.curves[id.0.index()];
@@ -334,16 +321,16 @@ impl<'a> Edges<'a> {
                 }
             }
         }
-        // What no curve touches lies outside of all.
+        // Faces that no curve bounds lie outside.
         Ok(labels.into_iter().map(Option::flatten).collect())
     }
 
-    /// A chord that has jumped over another curve: all curved ones are to be divided more finely.
+    /// The clash of a chord that has crossed another curve entirely: all curves are refined.
     fn misplaced(&self, chord: DividedChord, node: u32) -> Box<Clash> {
         let mut found = clash(
             self.domain,
             vec![chord],
-            "lies on the wrong side of another when divided so coarsely",
+            "lies on the wrong side of another with this coarse division",
             self.at(node),
         );
         found.chords = self.all().map(|(chord, ..)| chord).collect();
@@ -355,12 +342,11 @@ impl<'a> Edges<'a> {
         firm(a, b, c)
     }
 
-    /// Swaps the longest side of triangles that are too thin where both triangles are firm then: three nodes of a curve
-    /// that is all but straight make such a triangle, which its neighbour can be divided into.
+    /// Swaps the longest side of triangles that are too thin if both new triangles are positive: three nodes of an
+    /// almost straight curve form such a triangle, which can be merged with its neighbour.
     fn turn_thin(&self, triangles: &mut [[u32; 3]], region: &[u32]) {
         let mut thin: Vec<usize> = (0..triangles.len()).filter(|&t| !self.is_firm(triangles[t])).collect();
-        // One swap may leave a neighbour as thin, which is then swapped in its turn: the thin triangles of a row, one
-        // by one.
+        // A swap may leave a thin neighbour, which a later round swaps: thin triangles in a row are swapped one by one.
         for _ in 0..ROUNDS {
             if thin.is_empty() {
                 return;
@@ -372,10 +358,10 @@ impl<'a> Edges<'a> {
                 let Some(k) = (0..3).max_by(|&i, &j| long(i).total_cmp(&long(j)).then(j.cmp(&i))) else { continue };
                 let [a, b, apex] = [0, 1, 2].map(|i| triangles[t][(k + i) % 3]);
                 let key = (a.min(b), a.max(b));
-                let from = sides.partition_point(|side| (side.low, side.high) < key);
-                let mut beyond = sides[from..].iter().take_while(|side| (side.low, side.high) == key);
-                let Some(other) = beyond.find(|side| side.corner as usize / 3 != t) else { continue };
-                let (o, i) = (other.corner as usize / 3, other.corner as usize % 3);
+                let from = sides.partition_point(|side| side.ends() < key);
+                let mut beyond = sides[from..].iter().take_while(|side| side.ends() == key);
+                let Some(other) = beyond.find(|side| side.triangle() != t) else { continue };
+                let (o, i) = (other.triangle(), other.corner as usize % 3);
                 if self.chord_of.contains_key(&key)
                     || region[o] != region[t]
                     || touched.contains(&o)
@@ -397,10 +383,10 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Chords of curves of sides with a corner of a triangle between them that lies flat or turned over in space, along
-    /// the normal of the surface there, and chords that leave their curve by much of the height of the triangle on
-    /// them: between bent curves that are near each other chords may cross in space that do not in the plane. (Smooth
-    /// curves are left as they are: their sizes follow the surface.)
+    /// Pairs of chords of polygonal curves with a triangle corner between them that is flat or inverted in space
+    /// relative to the surface normal, and chords whose distance from their curve is large compared with the height of
+    /// their triangle: chords of bent curves close to each other may cross in space even if they do not in the plane.
+    /// (Smooth curves are not refined: their sizes follow the surface.)
     fn folded(&self, triangles: &[[u32; 3]]) -> Vec<DividedChord> {
         let Some(spatial) = &self.domain.spatial else { return Vec::new() };
         let is_polygonal = |chord: &DividedChord| self.domain.curves[chord.0.index()].curve.polygonal();
@@ -417,7 +403,8 @@ impl<'a> Edges<'a> {
                 let [one, other] = [chords[k], chords[(k + 2) % 3]];
                 let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
                 match (one, other) {
-                    // Beside two chords that meet bluntly, most likely along one curve, the triangle tells nothing.
+                    // Two chords that meet at an obtuse angle probably belong to one curve: the triangle is no
+                    // evidence.
                     (Some(one), Some(other)) if a.dot(b) > 0.0 => {
                         let middle = t.iter().map(|&n| self.at(n)).sum::<DVec2>() / 3.0;
                         let normal = spatial.atlas.at(self.at(t[k]).lerp(middle, 1e-3)).normal();
@@ -438,7 +425,7 @@ impl<'a> Edges<'a> {
         folded
     }
 
-    /// How far a chord of a curve of sides is from it in space, by its length.
+    /// The largest distance of a chord from its polygonal curve in space, divided by the length of the chord.
     fn bulge(&self, (id, k): DividedChord) -> f64 {
         let (curve, Some(spatial)) = (&self.domain.curves[id.index()], &self.domain.spatial) else { return 0.0 };
         let [from, to] = [k, k + 1].map(|k| self.divided.parameters[id.index()][k as usize]);
@@ -465,58 +452,15 @@ impl<'a> Edges<'a> {
         let names: Vec<String> =
             curves.iter().map(|id| format!("\"{}\"", self.domain.curves[id.index()].name)).collect();
         let fault = Fault::new(format!(
-            "The nodes {}, {} and {} of {} make a triangle that is {}",
+            "The nodes {}, {} and {} of {} form a triangle that is {}",
             point_text(a),
             point_text(b),
             point_text(c),
             names.join(", "),
             too_thin(a, b, c)
         ));
-        Box::new(Clash { chords, fault: fault.remedy("Keep the curves further apart there, or ask for smaller sizes") })
+        Box::new(Clash { chords, fault: fault.remedy("Move the curves apart there, or reduce the sizes") })
     }
-}
-
-/// What is amiss with a triangle that is not [`firm`], after "is".
-pub fn too_thin(a: DVec2, b: DVec2, c: DVec2) -> String {
-    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let ratio = orient(a, b, c) / longest / longest;
-    if ratio <= 0.0 {
-        "without area".to_owned()
-    } else if ratio < 1e-7 {
-        format!("only {} as high as it is long, where 1e-7 is the least", number(ratio))
-    } else {
-        "too small for coordinates so far from the origin".to_owned()
-    }
-}
-
-/// The chords that begin or end at the nodes, ascending.
-fn chords_at(divided: &DividedDomain, nodes: &[u32]) -> Vec<DividedChord> {
-    let mut chords = Vec::new();
-    for (chain, id) in divided.chains.iter().zip(0..) {
-        let at_one = chain.windows(2).zip(0..).filter(|(w, _)| w.iter().any(|n| nodes.contains(n)));
-        chords.extend(at_one.map(|(_, k)| (CurveId(id), k)));
-    }
-    chords
-}
-
-/// A clash of chords, the curves of the first of which are named.
-fn clash(domain: &Domain, chords: Vec<DividedChord>, verb: &str, at: DVec2) -> Box<Clash> {
-    let mut curves: Vec<CurveId> = Vec::new();
-    for (id, _) in &chords {
-        if !curves.contains(id) && curves.len() < 2 {
-            curves.push(*id);
-        }
-    }
-    let named = |id: &CurveId| format!("\"{}\"", domain.curves[id.index()].name);
-    let what = match curves.as_slice() {
-        [] => format!("Curves {verb}"),
-        [one] => format!("The curve {} {verb}", named(one)),
-        [one, other, ..] => format!("The curves {} and {} {verb} when divided into segments", named(one), named(other)),
-    };
-    let fault = Fault::new(what)
-        .at(format!("at {}", point_text(at)))
-        .remedy("Keep them further apart, ask for smaller sizes there, or fix larger numbers of segments");
-    Box::new(Clash { chords, fault })
 }
 
 #[cfg(test)]

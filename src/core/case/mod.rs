@@ -12,25 +12,28 @@ mod taking;
 pub mod built_in;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::DVec2;
 use toml::de::DeTable;
 
 use parameters::Parameters;
 use table::{Source, Table};
-pub use taking::{MeshUse, Taking};
+pub use taking::{MeshSource, MeshUse, Taking};
 
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::load;
 use crate::core::geometry::spec::ComplexSpec;
 use crate::core::geometry::spec::{CurveSpec, FaceSpec};
 use crate::core::metric::field::FieldSpec;
+use crate::core::soup::mesh_file::MeshFile;
 
 /// The version of case files that this program reads.
 pub const VERSION: u32 = 1;
 
 /// Where the domain of a case comes from.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum DomainSource {
     /// Curves and the faces that they bound.
     Curves {
@@ -50,12 +53,10 @@ pub enum DomainSource {
         /// Quadrilaterals that stand already.
         quads: Vec<[u32; 4]>,
     },
-    /// A triangle mesh in a file.
+    /// A triangle mesh.
     Mesh {
-        /// The mesh.
-        path: PathBuf,
-        /// Its metric at the nodes (Medit `.sol`).
-        sol: Option<PathBuf>,
+        /// Where it is.
+        source: MeshSource,
         /// How it is used.
         taking: Taking,
     },
@@ -63,6 +64,7 @@ pub enum DomainSource {
 
 /// A case: everything that a conversion starts from.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Case {
     /// Short name: that of the file without its extension.
     pub name: String,
@@ -104,6 +106,7 @@ impl Case {
     pub fn from_bytes(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             Fault::new(format!("The file is not text (byte {})", error.valid_up_to()))
+                .of_kind(FaultKind::Syntax)
                 .at(file)
                 .remedy("Name a TOML case file; meshes are known by their extension")
         })?;
@@ -116,6 +119,10 @@ impl Case {
     /// Text that is not TOML, another version, unknown or missing keys, values of the wrong kind or out of range, names
     /// that are not there: with file and line.
     pub fn parse(text: &str, name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
+        Case::parsed(text, name, file, folder).map_err(|fault| fault.of_kind(FaultKind::Syntax))
+    }
+
+    fn parsed(text: &str, name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
         // A byte order mark is what some editors write first.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let source = Source { file, text };
@@ -171,12 +178,34 @@ impl Case {
     /// The case that a mesh file without a case is: default parameters, the metric of `sol` or of its own triangles.
     pub fn of_mesh(path: PathBuf, sol: Option<PathBuf>) -> Case {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let title = format!("Mesh {}", path.file_name().unwrap_or_default().to_string_lossy());
+        Case::of_source(name, title, MeshSource::File { path, sol })
+    }
+
+    /// The case that a mesh in memory is, called `name`: default parameters, the metric at its points or that of its
+    /// own triangles. The same mesh in a file converts to the same quadrilaterals.
+    pub fn of_mesh_in_memory(name: impl Into<String>, mesh: impl Into<Arc<MeshFile>>) -> Case {
+        let name = name.into();
+        let title = format!("Mesh {name}");
+        Case::of_source(name, title, MeshSource::Memory(mesh.into()))
+    }
+
+    /// The case with its mesh taken so; a case without a mesh is as it was.
+    #[must_use]
+    pub fn with_taking(mut self, new: Taking) -> Case {
+        if let DomainSource::Mesh { taking, .. } = &mut self.domain {
+            *taking = new;
+        }
+        self
+    }
+
+    fn of_source(name: String, title: String, source: MeshSource) -> Case {
         Case {
-            title: format!("Mesh {}", path.file_name().unwrap_or_default().to_string_lossy()),
             name,
+            title,
             notes: String::new(),
             parameters: Parameters::default(),
-            domain: DomainSource::Mesh { path, sol, taking: Taking::default() },
+            domain: DomainSource::Mesh { source, taking: Taking::default() },
             fields: Vec::new(),
             gradation: None,
             split_odd: false,
@@ -218,7 +247,8 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
     }
     if let Some(path) = file("mesh")? {
         alone("mesh", &["surface", "curve", "face"])?;
-        return Ok(DomainSource::Mesh { path, sol: file("sol")?, taking: taking::taking(table)? });
+        let source = MeshSource::File { path, sol: file("sol")? };
+        return Ok(DomainSource::Mesh { source, taking: taking::taking(table)? });
     }
     for key in ["sol", "use", "feature_angle", "chart_stretch", "scale"] {
         if let Some(value) = table.get(key) {
@@ -249,7 +279,7 @@ fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) 
                 .fault("The case has no metric")
                 .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1"))
         }
-        DomainSource::Mesh { sol: Some(_), .. } if !fields.is_empty() => {
+        DomainSource::Mesh { source: MeshSource::File { sol: Some(_), .. }, .. } if !fields.is_empty() => {
             Err(table.fault("The case has sol and [[metric]]").remedy("Leave one of them out"))
         }
         _ => Ok(()),

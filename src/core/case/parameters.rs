@@ -1,7 +1,7 @@
 //! The parameters of a conversion: thresholds of the paper and limits. Radians here, degrees in files, on the
 //! command line and in [`Parameters::text_of`].
 
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::spelling::nearest;
 
 /// Which front segment the next quadrilateral grows from (docs/algorithm.md, "Selection of the base segment").
@@ -189,6 +189,10 @@ impl Parameters {
     /// # Errors
     /// An unknown key (with the nearest known one), a value of the wrong kind, a value out of range. Nothing is changed.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Fault> {
+        self.take(key, value).map_err(|fault| fault.of_kind(FaultKind::Parameter))
+    }
+
+    fn take(&mut self, key: &str, value: &str) -> Result<(), Fault> {
         let value = value.trim();
         match key {
             "size_scale" => self.size_scale = number(key, value, 1e-9, 1e9)?,

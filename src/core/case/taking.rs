@@ -1,11 +1,30 @@
-//! How the mesh of a case is used: its triangles or its shape, where it is folded, how far its charts may be stretched, its scale.
+//! Where the mesh of a case is, and how it is used: its triangles or its shape, where it is folded, how far its charts
+//! may be stretched, its scale.
+
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::table::Table;
 use crate::core::discrete::features::ANGLE;
-use crate::core::discrete::flat::Bound;
+use crate::core::discrete::planar_map::StretchBound;
 use crate::core::fault::Fault;
 use crate::core::kernel::tensor::Metric3;
 use crate::core::soup::mesh_file::MeshFile;
+
+/// Where a mesh is.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MeshSource {
+    /// In a file.
+    File {
+        /// The mesh.
+        path: PathBuf,
+        /// Its metric at the nodes (Medit `.sol`).
+        sol: Option<PathBuf>,
+    },
+    /// In memory; runs that start from it cannot be saved.
+    Memory(Arc<MeshFile>),
+}
 
 /// What a mesh is used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,14 +59,14 @@ impl Taking {
 
 impl Default for Taking {
     fn default() -> Self {
-        Taking { used: None, feature_angle: ANGLE, chart_stretch: Bound::default().shape, scale: 1.0 }
+        Taking { used: None, feature_angle: ANGLE, chart_stretch: StretchBound::default().shape, scale: 1.0 }
     }
 }
 
 impl Taking {
     /// The bound of charts.
-    pub fn bound(&self) -> Bound {
-        Bound { shape: self.chart_stretch, area: self.chart_stretch * self.chart_stretch }
+    pub fn bound(&self) -> StretchBound {
+        StretchBound { shape: self.chart_stretch, area: self.chart_stretch * self.chart_stretch }
     }
 
     /// Scales a mesh; metrics, which are of its own unit, with it.

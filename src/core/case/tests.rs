@@ -158,7 +158,7 @@ fn an_arc_keeps_its_sense_and_a_full_turn_is_exact() {
 #[test]
 fn a_mesh_lies_relative_to_its_case() {
     let case = parse("version = 1\nmesh = \"plate.msh\"\nsol = \"../plate.sol\"").unwrap();
-    let DomainSource::Mesh { path, sol, .. } = case.domain else { panic!() };
+    let DomainSource::Mesh { source: MeshSource::File { path, sol }, .. } = case.domain else { panic!() };
     assert_eq!(path, Path::new("cases/plate.msh"));
     assert_eq!(sol.unwrap(), Path::new("cases/../plate.sol"));
     assert_eq!(case.title, "plate");

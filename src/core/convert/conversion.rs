@@ -14,6 +14,7 @@ use crate::core::progress::Watch;
 
 /// The quadrilaterals of a case.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Converted {
     /// All quadrilaterals, where the conversion was taken to its end.
     pub mesh: Mesh,

@@ -142,6 +142,7 @@ pub enum Mending {
 /// What a step of the converter did or decided. Angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Event {
     /// A base segment was selected (4.3.3).
     BaseSelected {

@@ -73,6 +73,7 @@ pub enum FinishPart {
 
 /// Where the converter stands.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Phase {
     /// A base segment is to be selected.
     Select,

@@ -1,5 +1,4 @@
-//! What a surface of triangles is like, counted, and how its charts lie beside each other: what a person wants to see before it is
-//! converted.
+//! Counts and chart adjacency of a surface of triangles, for display before the conversion.
 
 use super::chart::Chart;
 use super::edges::{Edges, Triangles};
@@ -9,18 +8,18 @@ use crate::core::kernel::disjoint_sets::DisjointSets;
 /// Counts of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Census {
-    /// Points that triangles use.
+    /// Points used by triangles.
     pub nodes: usize,
     /// Triangles.
     pub triangles: usize,
-    /// Parts that hang together.
+    /// Connected components.
     pub components: usize,
-    /// Loops of its border; those that touch are one.
+    /// Loops of the border; loops that touch count as one.
     pub border_loops: usize,
 }
 
 impl Census {
-    /// That of a surface.
+    /// Counts a surface.
     pub fn of(mesh: &Triangles, edges: &Edges) -> Census {
         let points = mesh.points.len();
         let mut is_used = vec![false; points];
@@ -48,7 +47,7 @@ impl Census {
     }
 }
 
-/// How many edges are features of a kind.
+/// Number of feature edges of a kind.
 pub fn count_of(features: &[Option<Feature>], kind: Feature) -> usize {
     features.iter().filter(|feature| **feature == Some(kind)).count()
 }
@@ -56,18 +55,18 @@ pub fn count_of(features: &[Option<Feature>], kind: Feature) -> usize {
 /// A surface divided into charts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Division {
-    /// How many charts there are.
+    /// Number of charts.
     pub charts: usize,
     /// The chart of each triangle.
     pub chart_of: Vec<u32>,
-    /// A number for each chart, as small as can be and another than those of the charts beside it: for colours.
-    pub told_apart: Vec<u32>,
-    /// Edges at which it is cut for the plane alone, ascending: between charts, and where one is slit; no features.
+    /// A small number for each chart, different from those of adjacent charts.
+    pub colour: Vec<u32>,
+    /// Edges cut only for flattening, not features: between charts and along slits; ascending.
     pub seams: Vec<u32>,
 }
 
 impl Division {
-    /// That of a surface with these features and charts.
+    /// The division of a surface with these features and charts.
     pub fn of(mesh: &Triangles, edges: &Edges, features: &[Option<Feature>], charts: &[Chart]) -> Division {
         let mut chart_of = vec![0; mesh.triangles.len()];
         let mut nodes = vec![[0; 3]; mesh.triangles.len()];
@@ -100,12 +99,12 @@ impl Division {
                 }
             }
         }
-        let mut told_apart: Vec<u32> = Vec::with_capacity(charts.len());
+        let mut colour: Vec<u32> = Vec::with_capacity(charts.len());
         for near in &beside {
-            let taken: Vec<u32> = near.iter().filter_map(|&n| told_apart.get(n as usize).copied()).collect();
-            told_apart.push((0..).find(|number| !taken.contains(number)).unwrap_or(0));
+            let taken: Vec<u32> = near.iter().filter_map(|&n| colour.get(n as usize).copied()).collect();
+            colour.push((0..).find(|number| !taken.contains(number)).unwrap_or(0));
         }
-        Division { charts: charts.len(), chart_of, told_apart, seams }
+        Division { charts: charts.len(), chart_of, colour, seams }
     }
 }
 
@@ -115,20 +114,20 @@ mod tests {
     use crate::core::discrete::chart::charts;
     use crate::core::discrete::features::{ANGLE, features};
     use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
-    use crate::core::discrete::flat::Bound;
+    use crate::core::discrete::planar_map::StretchBound;
     use crate::core::progress::Nobody;
 
     fn divided(mesh: &Triangles) -> (Census, Vec<Option<Feature>>, Division) {
         let edges = Edges::of(&mesh.triangles);
         let features = features(mesh, &edges, ANGLE);
-        let charts = charts(mesh, &edges, &features, Bound::default(), &mut Nobody).unwrap();
+        let charts = charts(mesh, &edges, &features, StretchBound::default(), &mut Nobody).unwrap();
         let division = Division::of(mesh, &edges, &features, &charts);
         for edge in 0..edges.len() {
             let own: Vec<u32> =
                 edges.get(edge).sides.iter().map(|side| division.chart_of[*side as usize / 3]).collect();
             for pair in own.windows(2).filter(|pair| pair[0] != pair[1]) {
-                let [a, b] = [0, 1].map(|k| division.told_apart[pair[k] as usize]);
-                assert!(a != b || own.len() > 2, "charts beside each other are told apart");
+                let [a, b] = [0, 1].map(|k| division.colour[pair[k] as usize]);
+                assert!(a != b || own.len() > 2, "adjacent charts have different colours");
                 assert!(features[edge].is_some() || division.seams.contains(&(edge as u32)));
             }
         }
@@ -140,7 +139,7 @@ mod tests {
         let (census, features, division) = divided(&cube(2));
         assert_eq!((census.triangles, census.components, census.border_loops), (48, 1, 0));
         assert_eq!((count_of(&features, Feature::Fold), division.charts, division.seams.len()), (24, 6, 0));
-        assert!(division.told_apart.iter().all(|number| *number < 3), "a cube needs three colours");
+        assert!(division.colour.iter().all(|number| *number < 3), "a cube needs three colours");
         let (census, features, _) = divided(&plate(4, 0.0));
         assert_eq!((census.nodes, census.border_loops, count_of(&features, Feature::Boundary)), (25, 1, 16));
         let (_, features, _) = divided(&three_half_planes());

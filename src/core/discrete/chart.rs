@@ -1,53 +1,53 @@
 //! Charts: parts of a surface of triangles that can be laid into the plane one to one (docs/algorithm.md, "Charts of
 //! triangles").
 //!
-//! The features divide the surface into parts. A part with holes that does not lie flat enough is slit from one border to another
-//! along the shortest way; one that is no disc for another reason, or that the plane would stretch too much, is cut in two
-//! between the two of its triangles that lie farthest apart, until all are good. Where a chart is slit, or a feature ends within
-//! it, it has two nodes at each point. Where the file lays a part into the plane itself, and that is good enough, its charts are
-//! those of its texture.
+//! The features divide the surface into parts. A part with holes whose map stretches too much is slit from one border
+//! to another along the shortest path; a part that is not a disc for another reason, or that stretches too much, is cut
+//! in two between its two most distant triangles, recursively. Along a slit, or a feature that ends inside a chart, the
+//! chart has two nodes at each point. If the texture coordinates of the file are a good enough map of a part, they give
+//! its charts.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use glam::{DVec2, DVec3};
 
+use super::as_rigid_as_possible;
 use super::edges::{Corner, Edges, Groups, Triangles};
 use super::features::Feature;
-use super::flat::{Bound, Stretch, stretch};
-use super::rigid;
+use super::planar_map::{Stretch, StretchBound, stretch};
 use super::tutte;
 use crate::core::fault::Fault;
 use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::progress::{Cancel, Stage, Watch};
 
-/// Triangles and their map to the plane.
+/// Triangles with their map to the plane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
-    /// Its triangles, ascending, by their place in the surface.
+    /// Its triangles, as ascending indices into the surface.
     pub triangles: Vec<u32>,
-    /// Their corners by place in `points` and `uv`.
+    /// Their corners, as indices into `points` and `uv`.
     pub local: Vec<[u32; 3]>,
-    /// The point of the surface at which each node stands: twice the same at a slit.
+    /// The surface point of each node; two nodes at a slit share one.
     pub points: Vec<u32>,
-    /// How many nodes each border loop has: these come first, loop after loop, the chart to their left.
+    /// Number of nodes of each border loop. These nodes come first, loop after loop, with the chart to their left.
     pub loops: Vec<u32>,
-    /// Where each node lies in the plane: as rigidly as possible, or where that is not one to one within a circle.
+    /// Position of each node in the plane: as rigid as possible, or if that is not injective, Tutte's embedding.
     pub uv: Vec<DVec2>,
-    /// How much it is stretched.
+    /// The stretch of the map.
     pub stretch: Stretch,
 }
 
-/// A chart with holes is taken as it is up to here, and slit beyond.
-const WITH_HOLES: Bound = Bound { shape: 2.0, area: 4.0 };
+/// A chart with holes beyond this stretch is slit.
+const WITH_HOLES: StretchBound = StretchBound { shape: 2.0, area: 4.0 };
 
-/// A part of more triangles is cut without a look at whether it could be laid flat: its halves take less time and memory, and are
-/// converted at the same time.
+/// A part with more triangles is cut without an attempt to map it: its halves take less time and memory, and are
+/// converted in parallel.
 const MOST_TRIANGLES: usize = 1 << 18;
-/// Triangles that are looked at between two looks at whether to go on.
-const AT_A_TIME: usize = 1 << 12;
+/// Triangles processed between two checks for cancellation.
+const BATCH: usize = 1 << 12;
 
-/// Cuts a surface into charts, in the order of their first triangles.
+/// Cuts a surface into charts, sorted by their first triangles.
 ///
 /// # Errors
 /// [`Fault::stopped`].
@@ -55,17 +55,17 @@ pub fn charts(
     mesh: &Triangles,
     edges: &Edges,
     features: &[Option<Feature>],
-    bound: Bound,
+    bound: StretchBound,
     watch: &mut dyn Watch,
 ) -> Result<Vec<Chart>, Fault> {
     let cancel = watch.cancel();
     cancel.check()?;
     let total = mesh.triangles.len() as u64;
     watch.tell(Stage::Chart, 0, total);
-    let surface = Surface::new(mesh, edges, features, cancel.clone());
-    let all = Part::of((0..mesh.triangles.len() as u32).collect());
+    let surface = CutSurface::new(mesh, edges, features, cancel.clone());
+    let all = SurfacePart::of((0..mesh.triangles.len() as u32).collect());
     let mut waiting = surface.connected(&all);
-    let (mut charts, mut done, mut told) = (Vec::new(), 0, 0);
+    let (mut charts, mut done, mut shown) = (Vec::new(), 0, 0);
     waiting.retain(|part| match surface.textured(part, bound) {
         Some(found) => {
             done += part.triangles.len() as u64;
@@ -75,26 +75,26 @@ pub fn charts(
         None => true,
     });
     while let Some(part) = waiting.pop() {
-        // What comes from work that was told to end is of no use.
+        // The result of cancelled work is invalid.
         cancel.check()?;
-        told = told.max(done);
-        watch.tell(Stage::Chart, told, total);
+        shown = shown.max(done);
+        watch.tell(Stage::Chart, shown, total);
         let mut tell = |share: f64| {
-            // It may have to be cut yet; what was told once is not taken back.
-            told = told.max(done + (0.5 * share * part.triangles.len() as f64) as u64);
-            watch.tell(Stage::Chart, told, total);
+            // Half, since the part may still be cut; progress never goes back.
+            shown = shown.max(done + (0.5 * share * part.triangles.len() as f64) as u64);
+            watch.tell(Stage::Chart, shown, total);
         };
         let next = surface.chart(&part, bound, &mut tell);
         cancel.check()?;
         match next {
-            Next::Taken(chart) => {
+            Next::Accept(chart) => {
                 done += chart.triangles.len() as u64;
                 charts.push(*chart);
             }
-            Next::Slit(slits) => waiting.push(Part { slits, ..part }),
+            Next::Slit(slits) => waiting.push(SurfacePart { slits, ..part }),
             Next::Cut => {
                 for half in surface.halves(&part) {
-                    waiting.extend(surface.connected(&Part::of(half)));
+                    waiting.extend(surface.connected(&SurfacePart::of(half)));
                 }
             }
         }
@@ -104,40 +104,40 @@ pub fn charts(
     Ok(charts)
 }
 
-/// What is to become of a part.
+/// What to do with a part.
 enum Next {
-    /// It is a chart.
-    Taken(Box<Chart>),
-    /// It is to be slit along these sides.
+    /// Accept it as a chart.
+    Accept(Box<Chart>),
+    /// Slit it along these sides.
     Slit(Vec<Corner>),
-    /// It is to be cut in two.
+    /// Cut it in two.
     Cut,
 }
 
-/// Triangles that hang together, ascending, and the sides (both of an edge) along which they are slit, ascending.
+/// Connected triangles, ascending, and the sides (both of an edge) along which they are slit, ascending.
 #[derive(Debug)]
-pub(super) struct Part {
+pub(super) struct SurfacePart {
     pub triangles: Vec<u32>,
     pub slits: Vec<Corner>,
 }
 
-impl Part {
-    fn of(triangles: Vec<u32>) -> Part {
-        Part { triangles, slits: Vec::new() }
+impl SurfacePart {
+    fn of(triangles: Vec<u32>) -> SurfacePart {
+        SurfacePart { triangles, slits: Vec::new() }
     }
 }
 
-/// The surface with the triangles beyond each side that no feature parts from it.
-pub(super) struct Surface<'a> {
+/// A surface cut at its features: the side opposite each side across an edge that is no feature.
+pub(super) struct CutSurface<'a> {
     pub mesh: &'a Triangles,
     pub beyond: Vec<Option<Corner>>,
     centre: Vec<DVec3>,
-    /// Coordinates in the plane are multiples of this.
+    /// Coordinates in the plane are multiples of this power of two.
     pub grid: f64,
     cancel: Cancel,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> CutSurface<'a> {
     fn new(mesh: &'a Triangles, edges: &Edges, features: &[Option<Feature>], cancel: Cancel) -> Self {
         let mut beyond = vec![None; 3 * mesh.triangles.len()];
         for (edge, _) in features.iter().enumerate().filter(|(_, feature)| feature.is_none()) {
@@ -150,9 +150,9 @@ impl<'a> Surface<'a> {
         let (low, high) =
             mesh.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
         let size = (high - low).max_element();
-        // Ten thousand charts as wide as the surface still have exact coordinates side by side.
+        // Small enough for exact coordinates of ten thousand charts side by side, each as wide as the surface.
         let grid = if size > 0.0 { libm::ldexp(1.0, libm::ilogb(size) - 37) } else { 1.0 };
-        Surface { mesh, beyond, centre, grid, cancel }
+        CutSurface { mesh, beyond, centre, grid, cancel }
     }
 
     /// The sides of a triangle.
@@ -160,8 +160,8 @@ impl<'a> Surface<'a> {
         [3 * triangle, 3 * triangle + 1, 3 * triangle + 2]
     }
 
-    /// The pieces into which triangles fall, each ascending; the one with the least triangle comes last.
-    pub fn connected(&self, part: &Part) -> Vec<Part> {
+    /// The connected pieces of a part, each ascending; the one with the first triangle comes last.
+    pub fn connected(&self, part: &SurfacePart) -> Vec<SurfacePart> {
         let triangles = &part.triangles;
         let mut left = vec![true; triangles.len()];
         let mut pieces = Vec::new();
@@ -172,7 +172,7 @@ impl<'a> Surface<'a> {
             let mut piece = vec![first as u32];
             let mut next = 0;
             while next < piece.len() {
-                if next.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+                if next.is_multiple_of(BATCH) && self.cancel.is_asked() {
                     return pieces;
                 }
                 for side in Self::sides(triangles[piece[next] as usize]) {
@@ -187,58 +187,59 @@ impl<'a> Surface<'a> {
             piece.iter_mut().for_each(|at| *at = triangles[*at as usize]);
             let in_piece = |side: &Corner| piece.binary_search(&(side / 3)).is_ok();
             let slits = part.slits.iter().copied().filter(in_piece).collect();
-            pieces.push(Part { triangles: piece, slits });
+            pieces.push(SurfacePart { triangles: piece, slits });
         }
         pieces.reverse();
         pieces
     }
 
-    /// The chart of a part, or what else has to be done with it; tells how far it is, from 0 to 1.
-    fn chart(&self, part: &Part, bound: Bound, tell: &mut dyn FnMut(f64)) -> Next {
+    /// Maps a part to the plane; `tell` receives the progress, from 0 to 1.
+    fn chart(&self, part: &SurfacePart, bound: StretchBound, tell: &mut dyn FnMut(f64)) -> Next {
         if part.triangles.len() > MOST_TRIANGLES {
             return Next::Cut;
         }
         let mut chart = self.nodes(part);
-        // Also where the work is told to end, and nobody looks at what comes of it.
+        // When cancelled, the result is not used.
         let Ok(edges) = Edges::unless(&chart.local, &self.cancel) else { return Next::Cut };
         let euler = chart.points.len() as i64 - edges.len() as i64 + chart.local.len() as i64;
         let holes = chart.loops.len() as i64 - 1;
-        // A single triangle is its own map, whatever its shape.
+        // A single triangle is mapped as it is, whatever its shape.
         let is_single = part.triangles.len() == 1;
         if holes < 0 || euler != 1 - holes {
             return Next::Cut;
         }
         let xyz: Vec<DVec3> = chart.points.iter().map(|&p| self.mesh.points[p as usize]).collect();
-        let rigid = rigid::map(&xyz, &chart.local, &edges, &chart.loops, self.grid, &self.cancel, tell);
+        let rigid = as_rigid_as_possible::map(&xyz, &chart.local, &edges, &chart.loops, self.grid, &self.cancel, tell);
         let mapped = match rigid {
             None if holes == 0 && !self.cancel.is_asked() => {
                 tutte::map(&xyz, &chart.local, chart.loops[0] as usize, self.grid, &self.cancel)
             }
             found => found,
         };
-        // Taken as it is where nothing else can be done: what is mended before lets no triangle come to that.
+        // The last resort, which repaired surfaces do not need.
         let mapped = mapped.or_else(|| {
-            is_single.then(|| rigid::flattened([0, 1, 2].map(|k| xyz[chart.local[0][k] as usize])).to_vec())
+            is_single
+                .then(|| as_rigid_as_possible::flattened([0, 1, 2].map(|k| xyz[chart.local[0][k] as usize])).to_vec())
         });
         if let Some(uv) = mapped {
             chart.stretch = stretch(&xyz, &chart.local, &uv);
             chart.uv = uv;
             let bound = if holes == 0 { bound } else { WITH_HOLES };
             if is_single || bound.allows(chart.stretch) {
-                return Next::Taken(Box::new(chart));
+                return Next::Accept(Box::new(chart));
             }
         }
         if holes > 0 { Next::Slit(self.slit(part, &chart, &edges, &xyz)) } else { Next::Cut }
     }
 
-    /// The nodes of a part: corners that are held together by its edges; none where the work is told to end.
-    pub fn nodes(&self, part: &Part) -> Chart {
+    /// The nodes of a part: corners joined across its edges. An empty chart when cancelled.
+    pub fn nodes(&self, part: &SurfacePart) -> Chart {
         let triangles = &part.triangles;
         let mut nodes = DisjointSets::new(3 * triangles.len());
         let mut border_sides: Vec<Corner> = Vec::new();
         let after = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
         for (at, &t) in triangles.iter().enumerate() {
-            if at.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+            if at.is_multiple_of(BATCH) && self.cancel.is_asked() {
                 return Chart::default();
             }
             for side in Self::sides(t) {
@@ -257,7 +258,7 @@ impl<'a> Surface<'a> {
         if self.cancel.is_asked() {
             return Chart::default();
         }
-        // The border, loop after loop; then the nodes inside, from the border inwards.
+        // The border, loop after loop; then the interior nodes breadth first.
         let mut side_at = vec![u32::MAX; set.len()];
         border_sides.iter().for_each(|&side| side_at[set[side as usize] as usize] = side);
         let (mut order, mut loops) = (Vec::new(), Vec::new());
@@ -281,7 +282,7 @@ impl<'a> Surface<'a> {
         let corners = Groups::of(set.len(), set.len(), |corner| set[corner as usize]);
         let mut next = 0;
         while next < order.len() {
-            if next.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+            if next.is_multiple_of(BATCH) && self.cancel.is_asked() {
                 return Chart::default();
             }
             let node = set[order[next] as usize];
@@ -307,8 +308,8 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// The sides along which a part is slit already, and those of the shortest way from its first border loop to another one.
-    fn slit(&self, part: &Part, chart: &Chart, edges: &Edges, xyz: &[DVec3]) -> Vec<Corner> {
+    /// The present slits of a part, and the shortest path from its first border loop to another one.
+    fn slit(&self, part: &SurfacePart, chart: &Chart, edges: &Edges, xyz: &[DVec3]) -> Vec<Corner> {
         let mut near: Vec<Vec<u32>> = vec![Vec::new(); xyz.len()];
         let inner = (0..edges.len()).filter(|&edge| edges.get(edge).sides.len() == 2);
         for edge in inner {
@@ -354,8 +355,8 @@ impl<'a> Surface<'a> {
         slits
     }
 
-    /// Two parts of a part, divided half-way between two triangles that are far apart; of no use where the work is told to end.
-    fn halves(&self, part: &Part) -> [Vec<u32>; 2] {
+    /// Two halves of a part, divided half-way between two distant triangles; invalid when cancelled.
+    fn halves(&self, part: &SurfacePart) -> [Vec<u32>; 2] {
         let triangles = &part.triangles;
         let farthest = |from: u32| {
             let reached = self.reach(part, &[from]);
@@ -372,7 +373,7 @@ impl<'a> Surface<'a> {
             if self.cancel.is_asked() {
                 return [Vec::new(), Vec::new()];
             }
-            // Each from its own middle: the triangle farthest from where the two meet.
+            // Restart each half from its middle: the triangle farthest from the dividing line.
             let meeting = |at: usize| {
                 Self::sides(triangles[at])
                     .iter()
@@ -396,19 +397,19 @@ impl<'a> Surface<'a> {
         [half(0), half(1)]
     }
 
-    /// Where a triangle of the part lies beyond a side.
-    pub fn neighbour(&self, part: &Part, side: Corner) -> Option<usize> {
+    /// The index in the part of the triangle across a side.
+    pub fn neighbour(&self, part: &SurfacePart, side: Corner) -> Option<usize> {
         let beyond = self.beyond[side as usize]?;
         let at = part.triangles.binary_search(&(beyond / 3)).ok()?;
         (part.slits.is_empty() || part.slits.binary_search(&side).is_err()).then_some(at)
     }
 
-    /// Takes the teeth from the line along which two halves meet: a triangle with two neighbours in the other half goes to it.
-    fn shorten(&self, part: &Part, owner: &mut [u8]) {
+    /// Smooths the dividing line of two halves: a triangle with two neighbours in the other half moves to it.
+    fn shorten(&self, part: &SurfacePart, owner: &mut [u8]) {
         for _ in 0..3 {
             let mut moved = false;
             for at in 0..part.triangles.len() {
-                if at.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+                if at.is_multiple_of(BATCH) && self.cancel.is_asked() {
                     return;
                 }
                 let beyond = Self::sides(part.triangles[at]).map(|side| self.neighbour(part, side).map(|n| owner[n]));
@@ -425,11 +426,11 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Distance of each triangle of a part from the nearest of some, from centre to centre, and which of them that is (the first
-    /// 255; ties by their order). Triangles that cannot be reached belong to the first.
-    fn reach(&self, part: &Part, seeds: &[u32]) -> Vec<(f64, u8)> {
+    /// For each triangle of a part, the distance along centroids to the nearest seed, and which seed that is (at most
+    /// 255; ties by order). Unreachable triangles belong to the first seed.
+    fn reach(&self, part: &SurfacePart, seeds: &[u32]) -> Vec<(f64, u8)> {
         let mut reached = vec![(f64::INFINITY, 0_u8); part.triangles.len()];
-        // Non-negative numbers are ordered as their bits.
+        // Non-negative floats are ordered like their bits.
         let mut queue: BinaryHeap<Reverse<(u64, u8, u32)>> = BinaryHeap::new();
         for (i, seed) in seeds.iter().enumerate() {
             if let Ok(at) = part.triangles.binary_search(seed) {
@@ -443,7 +444,7 @@ impl<'a> Surface<'a> {
         let mut looked = 0_usize;
         while let Some(Reverse((bits, owner, at))) = queue.pop() {
             looked += 1;
-            if looked.is_multiple_of(AT_A_TIME) && self.cancel.is_asked() {
+            if looked.is_multiple_of(BATCH) && self.cancel.is_asked() {
                 break;
             }
             let at = at as usize;

@@ -1,5 +1,6 @@
-//! The curvature of a surface of triangles, as sizes at its points: each edge that is no feature turns the surface about itself, by
-//! its angle; the sum of that over an area around a point is the curvature there (Cohen-Steiner and Morvan 2003).
+//! The curvature of a surface of triangles, as sizes at its points: each edge that is no feature contributes its
+//! dihedral angle times its direction; the sum over a neighbourhood, divided by its area, is the curvature tensor
+//! (Cohen-Steiner & Morvan 2003).
 
 use glam::DVec3;
 
@@ -10,19 +11,20 @@ use crate::core::geometry::surface::Bend;
 use crate::core::kernel::tensor::Metric3;
 use crate::core::metric::curvature::Curvature;
 
-/// The symmetric tensors are summed as xx, xy, xz, yy, yz, zz.
+/// A symmetric tensor: xx, xy, xz, yy, yz, zz.
 type Sum = [f64; 6];
 
-/// Sizes by curvature at the points of a surface (as the field of kind "curvature"); folds beyond `angle` (radians) are no curvature.
+/// Sizes by curvature at the points of a surface (as the field of kind "curvature"); folds beyond `angle` (radians) do
+/// not count.
 ///
 /// # Errors
-/// A chord or sizes that are no positive numbers.
+/// A chord or sizes that are not positive.
 pub fn curvature_sizes(mesh: &Triangles, angle: f64, [chord, least, far]: [f64; 3]) -> Result<Vec<Metric3>, Fault> {
     let by = Curvature::new(chord, least, far)?;
     Ok(bends(mesh, angle).iter().map(|bend| by.metric(bend.as_ref())).collect())
 }
 
-/// The curvature at each point; none where no triangle has an area.
+/// The curvature at each point; `None` without a triangle of positive area.
 fn bends(mesh: &Triangles, angle: f64) -> Vec<Option<Bend>> {
     let edges = Edges::of(&mesh.triangles);
     let features = features(mesh, &edges, angle);
@@ -52,7 +54,7 @@ fn bends(mesh: &Triangles, angle: f64) -> Vec<Option<Bend>> {
             own[*end as usize].0.iter_mut().zip(tensor).for_each(|(sum, part)| *sum += weight * part);
         }
     }
-    // Over the neighbours too: a single ring has the noise of its few edges.
+    // Sum over the neighbours too: the few edges of one ring are noisy.
     let mut wide = own.clone();
     for Edge { ends: [a, b], .. } in &smooth {
         for (to, from) in [(*a, *b), (*b, *a)] {
@@ -64,8 +66,8 @@ fn bends(mesh: &Triangles, angle: f64) -> Vec<Option<Bend>> {
     wide.iter().zip(&normal).map(|((sum, area), normal)| bend(sum, *area, *normal)).collect()
 }
 
-/// The tensor of an area as curvatures in its tangent plane. Along an edge about which it turns a surface does not bend: the
-/// principal directions change places.
+/// The tensor of a neighbourhood as curvatures in its tangent plane. A surface bends across an edge, not along it, so
+/// the principal directions are swapped.
 fn bend(sum: &Sum, area: f64, normal: DVec3) -> Option<Bend> {
     let normal = normal.try_normalize()?;
     if area <= 0.0 {

@@ -1,4 +1,4 @@
-//! Edges of a list of triangles, with the triangles at each: no matter how many, and which way they turn.
+//! Edges of a list of triangles, with any number of triangles at each, in any orientation.
 
 use glam::{DVec2, DVec3};
 
@@ -6,70 +6,71 @@ use crate::core::fault::Fault;
 use crate::core::progress::Cancel;
 use crate::core::soup::counting::Elements;
 
-/// Triangles in space by the places of their corners in a list of points; whoever makes one has checked the places.
+/// Triangles in space by point index; whoever builds this has checked the indices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangles {
-    /// Corners.
+    /// The points.
     pub points: Vec<DVec3>,
-    /// Triangles, each with its outside on the side from which it is seen anticlockwise.
+    /// Triangles, anticlockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The region of each triangle.
     pub region: Vec<u32>,
-    /// Where the corners of each triangle lie on a texture, if they do; empty where there is none.
+    /// Texture coordinates of the corners of each triangle, if they have any; empty without a texture.
     pub texture: Vec<Option<[DVec2; 3]>>,
-    /// The element of the file that each triangle comes from ([`MeshFile::origins`](crate::core::soup::mesh_file::MeshFile::origins)); empty
-    /// where there is no file.
+    /// The element of the file that each triangle belongs to
+    /// ([`MeshFile::origins`](crate::core::soup::mesh_file::MeshFile::origins)); empty without a file.
     pub origin: Vec<u32>,
-    /// What the elements of the file are called.
+    /// The numbering of the file's elements, for messages.
     pub elements: Elements,
-    /// Edges on lines that are kept whatever the shape is there: their ends, the smaller one first, and the number of the line; by ascending ends.
+    /// Edges on lines of the file, which are kept whatever the shape: ends, the smaller first, and index of the line;
+    /// by ascending ends.
     pub lines: Vec<([u32; 2], u32)>,
 }
 
-/// A side of a triangle: the one that begins at corner `corner % 3` of triangle `corner / 3`.
+/// A side of a triangle: it begins at corner `corner % 3` of triangle `corner / 3`.
 pub type Corner = u32;
 
-/// An edge and the sides that lie on it.
+/// An edge and the triangle sides on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge<'a> {
-    /// Its ends, the smaller one first.
+    /// Its ends, the smaller first.
     pub ends: [u32; 2],
     /// The sides, by ascending corner.
     pub sides: &'a [Corner],
 }
 
-/// Things `0..n` by the group that each belongs to, groups and the things of each ascending: in one pass, where sorting so many
-/// would take as long as all the rest.
+/// Items `0..n` by group, both ascending: a counting sort, since sorting by comparison would take as long as all the
+/// rest.
 pub(super) struct Groups {
     start: Vec<u32>,
-    /// The things, group after group.
+    /// The items, group after group.
     pub items: Vec<u32>,
 }
 
 impl Groups {
-    /// Groups `0..groups` of so many things.
-    pub fn of(things: usize, groups: usize, group: impl Fn(u32) -> u32) -> Groups {
+    /// Sorts `count` items into groups `0..groups`.
+    pub fn of(count: usize, groups: usize, group: impl Fn(u32) -> u32) -> Groups {
         let mut start = vec![0; groups + 1];
-        (0..things as u32).for_each(|thing| start[group(thing) as usize + 1] += 1);
+        (0..count as u32).for_each(|item| start[group(item) as usize + 1] += 1);
         for k in 0..groups {
             start[k + 1] += start[k];
         }
         let mut free = start.clone();
-        let mut items = vec![0; things];
-        for thing in 0..things as u32 {
-            let place = &mut free[group(thing) as usize];
-            items[*place as usize] = thing;
-            *place += 1;
+        let mut items = vec![0; count];
+        for item in 0..count as u32 {
+            let next = &mut free[group(item) as usize];
+            items[*next as usize] = item;
+            *next += 1;
         }
         Groups { start, items }
     }
 
-    /// The things of a group.
+    /// The items of a group.
     pub fn get(&self, group: u32) -> &[u32] {
         &self.items[self.start[group as usize] as usize..self.start[group as usize + 1] as usize]
     }
 
-    /// Each group, to put its things into another order.
+    /// Each group, for sorting its items.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut [u32]> {
         let mut rest = &mut self.items[..];
         self.start.windows(2).map(move |range| {
@@ -84,7 +85,7 @@ impl Groups {
 #[derive(Clone, Debug, Default)]
 pub struct Edges {
     ends: Vec<[u32; 2]>,
-    /// Where the sides of each edge begin, and at last their number.
+    /// Offset of the sides of each edge, then their number.
     start: Vec<u32>,
     sides: Vec<Corner>,
     /// The edge of each side.
@@ -97,7 +98,7 @@ impl Edges {
         Edges::unless(triangles, &Cancel::default()).unwrap_or_default()
     }
 
-    /// As [`Edges::of`], unless the work is told to end.
+    /// As [`Edges::of`], with cancellation.
     ///
     /// # Errors
     /// [`Fault::stopped`].
@@ -127,7 +128,7 @@ impl Edges {
         Ok(edges)
     }
 
-    /// How many there are.
+    /// Number of edges.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
@@ -137,18 +138,18 @@ impl Edges {
         self.ends.is_empty()
     }
 
-    /// An edge by its place.
+    /// An edge by its index.
     pub fn get(&self, edge: usize) -> Edge<'_> {
         let sides = self.start[edge] as usize..self.start[edge + 1] as usize;
         Edge { ends: self.ends[edge], sides: &self.sides[sides] }
     }
 
-    /// The place of the edge between two points.
+    /// The index of the edge between two points.
     pub fn between(&self, [a, b]: [u32; 2]) -> Option<usize> {
         self.ends.binary_search(&[a.min(b), a.max(b)]).ok()
     }
 
-    /// The place of the edge on which a side lies.
+    /// The index of the edge of a side.
     pub fn of_side(&self, corner: Corner) -> usize {
         self.of_side[corner as usize] as usize
     }
@@ -160,19 +161,19 @@ impl Triangles {
         self.triangles[triangle].map(|k| self.points[k as usize])
     }
 
-    /// Twice the area of a triangle along its outer normal.
+    /// Twice the area vector of a triangle, along its outer normal.
     pub fn area_vector(&self, triangle: usize) -> DVec3 {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)
     }
 
-    /// What triangles are called, as the file counts its elements ([`Elements::told`]).
-    pub fn told(&self, triangles: &[u32]) -> String {
+    /// Names triangles for a message by the numbers of the file ([`Elements::describe`]).
+    pub fn describe(&self, triangles: &[u32]) -> String {
         let origin = |&triangle: &u32| self.origin.get(triangle as usize).copied().unwrap_or(triangle);
         self.elements.describe(&triangles.iter().map(origin).collect::<Vec<_>>())
     }
 
-    /// Where a side begins and ends.
+    /// The ends of a side, in its direction.
     pub fn side(&self, corner: Corner) -> [u32; 2] {
         let t = self.triangles[corner as usize / 3];
         [t[corner as usize % 3], t[(corner as usize + 1) % 3]]

@@ -5,34 +5,34 @@
 
 use super::edges::{Edge, Edges, Triangles};
 
-/// Why an edge is a feature.
+/// Kind of a feature edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Feature {
-    /// One triangle: the surface ends.
+    /// One triangle: the border of the surface.
     Boundary,
-    /// Three triangles or more: it branches.
+    /// Three or more triangles: the surface branches.
     Branching,
-    /// Two triangles that turn against each other.
+    /// Two triangles of opposite orientation.
     Conflict,
-    /// Two regions meet.
+    /// Between two regions.
     Region,
-    /// Folded by more than the angle.
+    /// Folded by more than the feature angle.
     Fold,
-    /// It lies on a line of the file.
+    /// On a line of the file.
     Line,
 }
 
 /// The folds that are features where nothing else is said (docs/algorithm.md, "Features").
 pub const ANGLE: f64 = 40.0 / 180.0 * std::f64::consts::PI;
 
-/// What kind of feature each edge is by the shape alone, if it is one; `angle` is the fold (in radians: 0 where the surface is plane) beyond
-/// which an edge is one.
+/// The kind of feature of each edge by the shape alone, `None` for edges that are no features; `angle` is the feature
+/// angle between normals, in radians (0 for a plane surface).
 pub fn features(mesh: &Triangles, edges: &Edges, angle: f64) -> Vec<Option<Feature>> {
     let least_cosine = libm::cos(angle);
     (0..edges.len()).map(|edge| feature(mesh, edges.get(edge), least_cosine)).collect()
 }
 
-/// Makes features of the edges that lie on lines.
+/// Adds the edges on lines of the file.
 pub fn with_lines(mut features: Vec<Option<Feature>>, mesh: &Triangles, edges: &Edges) -> Vec<Option<Feature>> {
     for edge in mesh.lines.iter().filter_map(|(ends, _)| edges.between(*ends)) {
         features[edge].get_or_insert(Feature::Line);
@@ -54,7 +54,7 @@ fn feature(mesh: &Triangles, edge: Edge, least_cosine: f64) -> Option<Feature> {
         return Some(Feature::Region);
     }
     let (n, m) = (mesh.area_vector(one), mesh.area_vector(other));
-    // A triangle without area has no direction, and says nothing of a fold.
+    // A degenerate triangle has no normal, so it is not a fold.
     (n.dot(m) < least_cosine * n.length() * m.length()).then_some(Feature::Fold)
 }
 
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn where_half_planes_branch_and_end_is_told_apart() {
+    fn branching_and_boundary_edges_of_half_planes_are_distinguished() {
         let mesh = three_half_planes();
         let edges = Edges::of(&mesh.triangles);
         let found = features(&mesh, &edges, ANGLE);
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn regions_and_triangles_that_turn_against_each_other_are_features() {
+    fn region_borders_and_orientation_conflicts_are_features() {
         let mut mesh = cube(1);
         mesh.region[0] = 1;
         let count = |mesh: &Triangles, kind| {

@@ -40,7 +40,7 @@ pub fn cube(n: u32) -> Triangles {
     whole(points, triangles)
 }
 
-/// A grid that is closed around (`u`), and closed or open along (`v`): a torus or a tube.
+/// A grid closed along `u`, and closed or open along `v`: a torus or a tube.
 fn wrapped(nu: u32, nv: u32, closed: bool, at: impl Fn(f64, f64) -> DVec3) -> Triangles {
     let rows = if closed { nv } else { nv + 1 };
     let points = (0..rows * nu).map(|k| at(f64::from(k % nu) / f64::from(nu), f64::from(k / nu) / f64::from(nv)));
@@ -67,7 +67,7 @@ pub fn tube(nu: u32, nv: u32, length: f64) -> Triangles {
     wrapped(nu, nv, false, |u, v| DVec3::new(libm::cos(TAU * u), libm::sin(TAU * u), length * v))
 }
 
-/// The unit sphere: a cube blown up.
+/// The unit sphere: a projected cube.
 pub fn sphere(n: u32) -> Triangles {
     let mut mesh = cube(n);
     mesh.points.iter_mut().for_each(|p| *p = (*p - 0.5).normalize());

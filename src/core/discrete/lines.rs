@@ -1,34 +1,34 @@
-//! Lines of a file on a surface that was mended: the edges that lie on them.
+//! Finds the edges of a repaired surface on the lines of its file.
 
 use glam::DVec3;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
 use super::edges::{Edges, Triangles};
-use super::mend::IN_SIDE;
+use super::stitch::ON_SIDE;
 
-/// The edges on line segments between points of the file: their ends, ascending, and the number of the line, by ascending ends and
-/// each once, on the first of its lines. A segment whose ends were made one with others, or got copies (`copied` has the points that
-/// those were), is where these are; one in whose side points were found runs along several edges. How many lie on no edge.
+/// The edges on line segments between points of the file, each once, sorted: ends, ascending, and index of its first
+/// line. Ends that were merged into other points or copied (`copied` has the originals) are replaced by these; a
+/// segment divided at hanging points runs along several edges. Also returns the number of segments on no edge.
 pub fn on_edges(segments: &[([u32; 2], u32)], mesh: &Triangles, copied: &[u32]) -> (Vec<([u32; 2], u32)>, usize) {
     if segments.is_empty() {
         return (Vec::new(), 0);
     }
-    let places = Places::of(mesh, copied);
+    let points = SurfacePoints::of(mesh, copied);
     let mut found: Vec<([u32; 2], u32)> = Vec::new();
     let mut lost = 0;
     for (ends, line) in segments {
-        let [from, to] = ends.map(|end| places.standing(end));
+        let [from, to] = ends.map(|end| points.current(end));
         let before = found.len();
         for (&a, &b) in from.iter().flat_map(|a| to.iter().map(move |b| (a, b))) {
-            if let Some(edge) = places.edges.between([a, b]) {
-                found.push((places.edges.get(edge).ends, *line));
+            if let Some(edge) = points.edges.between([a, b]) {
+                found.push((points.edges.get(edge).ends, *line));
             }
         }
         if found.len() == before {
-            let way = from.first().zip(to.first()).and_then(|(&a, &b)| places.way(a, b));
-            lost += usize::from(way.is_none());
-            found.extend(way.into_iter().flatten().map(|ends| (ends, *line)));
+            let path = from.first().zip(to.first()).and_then(|(&a, &b)| points.path(a, b));
+            lost += usize::from(path.is_none());
+            found.extend(path.into_iter().flatten().map(|ends| (ends, *line)));
         }
     }
     found.sort_unstable();
@@ -36,20 +36,20 @@ pub fn on_edges(segments: &[([u32; 2], u32)], mesh: &Triangles, copied: &[u32]) 
     (found, lost)
 }
 
-/// Where the points of a file are on the surface.
-struct Places<'a> {
+/// Finds the points of a file on the surface.
+struct SurfacePoints<'a> {
     mesh: &'a Triangles,
     edges: Edges,
-    /// Ends of the edges at each point, by point.
+    /// Edges as pairs of point and neighbour, sorted.
     near: Vec<[u32; 2]>,
     used: Vec<bool>,
-    /// Points that have copies, and these, ascending.
+    /// Pairs of point and copy, sorted.
     copies: Vec<[u32; 2]>,
     tree: RTree<GeomWithData<[f64; 3], u32>>,
     same: f64,
 }
 
-impl<'a> Places<'a> {
+impl<'a> SurfacePoints<'a> {
     fn of(mesh: &'a Triangles, copied: &[u32]) -> Self {
         let edges = Edges::of(&mesh.triangles);
         let mut near: Vec<[u32; 2]> =
@@ -62,16 +62,16 @@ impl<'a> Places<'a> {
         copies.sort_unstable();
         let own = || mesh.points.iter().zip(0_u32..).zip(&used).filter(|(_, used)| **used).map(|(point, _)| point);
         let tree = RTree::bulk_load(own().map(|(p, k)| GeomWithData::new(p.to_array(), k)).collect());
-        let [same, _] = mesh.same_place(&used);
-        Places { mesh, edges, near, used, copies, tree, same }
+        let [same, _] = mesh.weld_tolerance(&used);
+        SurfacePoints { mesh, edges, near, used, copies, tree, same }
     }
 
     fn at(&self, point: u32) -> DVec3 {
         self.mesh.points[point as usize]
     }
 
-    /// The points of the surface that a point of the file is now.
-    fn standing(&self, point: u32) -> Vec<u32> {
+    /// The points of the surface that replace a point of the file.
+    fn current(&self, point: u32) -> Vec<u32> {
         if self.used[point as usize] {
             return vec![point];
         }
@@ -89,13 +89,13 @@ impl<'a> Places<'a> {
             .collect()
     }
 
-    /// The edges along the straight way from one point to another.
-    fn way(&self, from: u32, to: u32) -> Option<Vec<[u32; 2]>> {
+    /// The edges along the straight line from one point to another.
+    fn path(&self, from: u32, to: u32) -> Option<Vec<[u32; 2]>> {
         let (a, along) = (self.at(from), self.at(to) - self.at(from));
         let share = |point: u32| (self.at(point) - a).dot(along) / along.length_squared();
         let is_on = |point: u32| {
             let t = share(point);
-            (self.at(point) - a - t * along).length() <= IN_SIDE * along.length() && t <= 1.0 + IN_SIDE
+            (self.at(point) - a - t * along).length() <= ON_SIDE * along.length() && t <= 1.0 + ON_SIDE
         };
         let (mut edges, mut here) = (Vec::new(), from);
         while here != to {
@@ -116,13 +116,13 @@ mod tests {
     use crate::core::discrete::fixtures::plate;
 
     #[test]
-    fn lines_are_found_on_edges_on_points_made_one_and_on_sides_that_were_divided() {
+    fn lines_are_found_on_edges_at_merged_points_and_on_divided_sides() {
         let mut mesh = plate(2, 0.0);
         let at = |mesh: &Triangles, x: f64, y: f64| {
             mesh.points.iter().position(|p| p.distance(DVec3::new(x, y, 0.0)) < 1e-9).unwrap() as u32
         };
         let [a, b, c] = [(0.0, 0.0), (0.5, 0.0), (1.0, 0.0)].map(|(x, y)| at(&mesh, x, y));
-        // A point of its own at the place of one that triangles have, and one that is nowhere.
+        // An unused point at a used one, and one off the surface.
         mesh.points.extend([DVec3::new(0.5, 0.0, 0.0), DVec3::new(7.0, 0.0, 0.0)]);
         let (same, far) = (mesh.points.len() as u32 - 2, mesh.points.len() as u32 - 1);
         let pair = |a: u32, b: u32| [a.min(b), a.max(b)];
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_at_points_that_were_parted_are_at_each_of_their_copies() {
+    fn lines_at_separated_points_follow_each_copy() {
         let mut mesh = plate(1, 0.0);
         let corner = mesh.triangles[0][0];
         mesh.points.push(mesh.points[corner as usize]);

@@ -2,23 +2,23 @@
 //! edges, their charts (discs of triangles), and a one-to-one map of each chart onto a disc of the plane, in which it
 //! is meshed.
 //!
-//! Deliberately absent: reading files (`core/io`), sizes (`core/metric`).
+//! Deliberately absent: reading files (`formats`), sizes (`metric`).
 
 pub mod edges;
-pub mod mend;
+pub mod stitch;
 pub mod lines;
-pub(in crate::core) mod refuse;
-pub mod sound;
+pub(in crate::core) mod defects;
+pub mod repair;
 pub mod features;
-pub mod flat;
+pub mod planar_map;
 pub mod chart;
 pub mod sparse;
 pub mod tutte;
-pub mod rigid;
+pub mod as_rigid_as_possible;
 pub mod texture;
 pub mod surface;
 pub mod curvature;
-pub mod given;
+pub mod own_triangles;
 pub mod census;
 #[cfg(test)]
 mod fixtures;

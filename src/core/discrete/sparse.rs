@@ -1,30 +1,30 @@
-//! Sparse linear systems whose rows are weighted means: x_i = sum_j w_ij x_j + b_i, with positive weights that add up to 1 at most,
-//! where x_j counts in row i where x_i counts in row j. Solved by the factors L and U, which such matrices have without pivots, row by
-//! row along the elimination tree (Davis, Direct Methods for Sparse Linear Systems, 2006, chapter 4, there for symmetric ones), in the
-//! order of a nested dissection (George 1973) by the places of the nodes. Plain loops in one order: the same numbers on every machine,
-//! which libraries that choose their arithmetic by the processor do not promise.
+//! Sparse linear systems of weighted means: x_i = sum_j w_ij x_j + b_i, with positive weights whose sum is at most 1
+//! and a symmetric pattern. Solved by LU factors, which need no pivoting here, row by row along the elimination tree
+//! (Davis, Direct Methods for Sparse Linear Systems, 2006, chapter 4, there for symmetric matrices), in the order of a
+//! geometric nested dissection (George 1973). Plain loops in a fixed order give the same numbers on every machine,
+//! unlike libraries that dispatch on the processor.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
-/// The matrix I - W, row by row: columns ascending, the diagonal among them.
+/// The matrix I - W in rows, with ascending columns including the diagonal.
 pub struct Means {
     start: Vec<u32>,
     column: Vec<u32>,
     value: Vec<f64>,
 }
 
-/// So few nodes are not dissected any more.
+/// Largest set of nodes that is not dissected.
 const LEAF: usize = 24;
-/// No more entries of L than this are taken for each row: on surfaces there are about 60 where they are large.
+/// Limit on the mean number of entries of L in a column; large surfaces need about 60.
 const MOST_FILLED: usize = 400;
-/// Rows that are eliminated between two looks at whether to go on.
-const AT_A_TIME: usize = 64;
+/// Rows eliminated between two checks for cancellation.
+const BATCH: usize = 64;
 const NONE: u32 = u32::MAX;
 
 impl Means {
-    /// The matrix of rows of columns with weights; the columns are numbered as the rows.
+    /// The matrix with the given rows of column and weight.
     pub fn new(rows: impl Iterator<Item = Vec<(u32, f64)>>) -> Means {
         let mut means = Means { start: vec![0], column: Vec::new(), value: Vec::new() };
         for (i, mut row) in rows.enumerate() {
@@ -46,14 +46,14 @@ impl Means {
         self.start[i] as usize..self.start[i + 1] as usize
     }
 
-    /// What `b` misses of the product with `x`.
+    /// The residual b - (I - W) x.
     fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
         let times = |i: usize| self.row(i).map(|k| self.value[k] * x[self.column[k] as usize]).sum::<f64>();
         b.iter().enumerate().map(|(i, b)| b - times(i)).collect()
     }
 
-    /// The matrix with its factors, ready to be solved again and again; `places` of the nodes say what is far from what. `None` where
-    /// they say so little that too much would be filled in, or where `goes_on`, which is asked now and then, does not want it any more.
+    /// Factors the matrix; `places` are the positions of the nodes, for the dissection. `None` if the fill-in exceeds
+    /// the limit, or when `goes_on`, called at intervals, returns false.
     pub fn factored(self, places: &[DVec3], goes_on: &dyn Fn() -> bool) -> Option<Solver> {
         let n = self.rows();
         let order = self.dissection(places);
@@ -61,10 +61,10 @@ impl Means {
         order.iter().zip(0..).for_each(|(&old, new)| position[old as usize] = new);
         let tree = self.tree(&order, &position);
         let mut reach = Reach { mark: vec![NONE; n], stack: vec![0; n], path: Vec::new() };
-        // How many entries each column of L has below the diagonal, and so many each row of U has behind it.
+        // Entries of each column of L below the diagonal, which is also the number in each row of U.
         let mut start = vec![0_usize; n + 1];
         for k in 0..n {
-            if k.is_multiple_of(AT_A_TIME) && !goes_on() {
+            if k.is_multiple_of(BATCH) && !goes_on() {
                 return None;
             }
             reach.of(k, self.before(&order, &position, k), &tree).iter().for_each(|&i| start[i as usize + 1] += 1);
@@ -79,7 +79,7 @@ impl Means {
         let (mut left, mut above) = (vec![0.0; n], vec![0.0; n]);
         reach.mark.fill(NONE);
         for k in 0..n {
-            if k.is_multiple_of(AT_A_TIME) && !goes_on() {
+            if k.is_multiple_of(BATCH) && !goes_on() {
                 return None;
             }
             let mut pivot = 0.0;
@@ -111,19 +111,19 @@ impl Means {
         Some(Solver { means: self, order, start, entries, diagonal })
     }
 
-    /// The entry of a row in a column, which is there.
+    /// The entry of a row in a column.
     fn value_at(&self, row: usize, column: u32) -> f64 {
         let row = self.row(row);
         self.column[row.clone()].binary_search(&column).map_or(0.0, |k| self.value[row.start + k])
     }
 
-    /// What a row, as they are ordered, has before its diagonal.
+    /// The positions of a row's entries before its diagonal, in elimination order.
     fn before<'a>(&'a self, order: &[u32], position: &'a [u32], k: usize) -> impl Iterator<Item = u32> + 'a {
         let columns = &self.column[self.row(order[k] as usize)];
         columns.iter().map(|&column| position[column as usize]).filter(move |&i| (i as usize) < k)
     }
 
-    /// The elimination tree: for each row the first later one that its elimination changes.
+    /// The elimination tree: for each row, the first later row that its elimination changes.
     fn tree(&self, order: &[u32], position: &[u32]) -> Vec<u32> {
         let n = self.rows();
         let (mut parent, mut ancestor) = (vec![NONE; n], vec![NONE; n]);
@@ -141,7 +141,7 @@ impl Means {
         parent
     }
 
-    /// The rows in an order in which little is filled in: halves by place first, what lies between them last.
+    /// An order with little fill-in: both halves by position, then their separator.
     fn dissection(&self, places: &[DVec3]) -> Vec<u32> {
         let mut nodes: Vec<u32> = (0..self.rows() as u32).collect();
         let mut order = Vec::with_capacity(nodes.len());
@@ -168,7 +168,7 @@ impl Means {
         let (left, right) = nodes.split_at_mut(half);
         *sides += 1;
         right.iter().for_each(|&node| side[node as usize] = *sides);
-        // Those of the left half that touch the right one part the rest of it from there.
+        // The separator: the nodes of the left half adjacent to the right one.
         let touches = |node: &u32| self.row(*node as usize).any(|k| side[self.column[k] as usize] == *sides);
         let (between, mut left): (Vec<u32>, Vec<u32>) = left.iter().partition(|node| touches(node));
         self.dissect(&mut left, places, side, sides, order);
@@ -177,7 +177,7 @@ impl Means {
     }
 }
 
-/// What of the rows before takes part in the elimination of a row: along the elimination tree.
+/// Finds the earlier rows that take part in the elimination of a row, along the elimination tree.
 struct Reach {
     mark: Vec<u32>,
     stack: Vec<u32>,
@@ -185,7 +185,7 @@ struct Reach {
 }
 
 impl Reach {
-    /// The rows, each before those that it changes.
+    /// The rows in topological order.
     fn of(&mut self, k: usize, before: impl Iterator<Item = u32>, parent: &[u32]) -> &[u32] {
         let mut top = self.stack.len();
         self.mark[k] = k as u32;
@@ -205,7 +205,7 @@ impl Reach {
     }
 }
 
-/// An entry of L and that of U across the diagonal.
+/// An entry of L and its mirror in U.
 #[derive(Clone, Copy, Default)]
 struct Entry {
     row: u32,
@@ -213,19 +213,19 @@ struct Entry {
     upper: f64,
 }
 
-/// A matrix with its factors.
+/// A factored matrix.
 pub struct Solver {
     means: Means,
-    /// Which row is eliminated when.
+    /// The rows in elimination order.
     order: Vec<u32>,
-    /// Where the entries of each column of L begin.
+    /// Offset of each column of L.
     start: Vec<usize>,
     entries: Vec<Entry>,
     diagonal: Vec<f64>,
 }
 
 impl Solver {
-    /// The solution for a right side, refined once; `None` where there is none.
+    /// The solution for a right-hand side, refined once; `None` if it is not finite.
     pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
         let mut x = self.once(b);
         let more = self.once(&self.means.residual(&x, b));
@@ -255,7 +255,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn means_along_a_line_between_two_fixed_ends_are_linear_or_as_the_weights_pull() {
+    fn means_between_two_fixed_ends_solve_their_equations() {
         let n = 1000;
         let places: Vec<DVec3> = (0..n).map(|i| DVec3::X * f64::from(i * 7 % n)).collect();
         for pull in [0.5, 0.45] {
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn means_on_a_grid_with_any_weights_are_met_and_the_factors_stay_few() {
+    fn means_on_a_grid_have_small_residual_and_little_fill_in() {
         const N: u32 = 60;
         let places: Vec<DVec3> = (0..N * N).map(|k| DVec3::new(f64::from(k % N), f64::from(k / N), 0.0)).collect();
         let weight = |i: u32, j: u32| f64::from(1 + (i * 31 + j * 17) % 97);

@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use super::chart::{Chart, charts};
 use super::edges::{Edge, Edges, Triangles};
 use super::features::{ANGLE, features, with_lines};
-use super::flat::Bound;
+use super::planar_map::StretchBound;
 use crate::core::fault::Fault;
 use crate::core::geometry::complex::{Lifted, assemble};
 use crate::core::geometry::domain::Domain;
@@ -26,16 +26,16 @@ use crate::core::metric::field::Field;
 use crate::core::metric::gradation::bound_gradation;
 use crate::core::progress::Watch;
 
-/// An element turns by no more than this where its size is not given (radians).
+/// Implied sizes: the largest angle by which the surface turns within an element (radians).
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
-/// Nor is it smaller than this part of the edges there, for that: the normals of slivers say little.
+/// Lower bound for that as a fraction of the edges there: the normals of slivers are unreliable.
 const LEAST_SIZE: f64 = 1.0 / 6.0;
-/// Such elements leave the surface by no more than about this part of its size.
+/// Implied sizes: the largest distance from the surface as a fraction of its size (approximate).
 const MOST_AWAY: f64 = 0.003;
 /// Growth of such sizes from one element to the next (docs/algorithm.md, "Sizes where none are given").
 const GRADATION: f64 = 1.3;
 
-/// A surface laid into the plane.
+/// A flattened surface.
 #[derive(Debug)]
 pub struct Surface {
     /// Its faces and curves.
@@ -43,37 +43,37 @@ pub struct Surface {
     pub(super) charts: Vec<Chart>,
     /// The region of each face, by its name.
     pub regions: Vec<names::Named>,
-    /// The line on which each curve of the domain lies, if on one.
+    /// The line of the file on which each curve of the domain lies, if any.
     pub lines: Vec<Option<u32>>,
 }
 
-/// Sides of triangles from one meeting point to the next, or all around.
+/// Border sides from one junction to the next, or a closed loop.
 struct Chain {
-    /// Points of the surface, the first again at the end of a closed one.
+    /// Points of the surface; a closed chain ends with its first point.
     points: Vec<u32>,
-    /// Whether they are features, and not only where the surface is cut for the plane.
+    /// Whether the sides are features, not only cuts for flattening.
     feature: bool,
-    /// The line on which they lie, if on one.
+    /// The line of the file on which they lie, if any.
     line: Option<u32>,
 }
 
-/// Where a side of the border lies in the chains.
+/// The chain of a border side, and its position in it.
 #[derive(Clone, Copy)]
 struct Link {
     chain: u32,
     at: u32,
 }
 
-/// Divides a surface at its features (folds beyond `angle`, in radians) into charts and makes a domain of them;
-/// `regions` are the names of its regions, and `bound` is how much a chart may be stretched.
+/// Divides a surface at its features (folds beyond `angle`, in radians) into charts with a stretch within `bound`, and
+/// makes a domain of them.
 ///
 /// # Errors
-/// What a domain is refused for; a surface that was made fit (`sound`) has seldom any of that. [`Fault::stopped`].
+/// Those of a domain, which are rare for a repaired surface; [`Fault::stopped`].
 pub fn surface(
     mesh: &Triangles,
     regions: &[names::Named],
     angle: f64,
-    bound: Bound,
+    bound: StretchBound,
     watch: &mut dyn Watch,
 ) -> Result<Surface, Fault> {
     let edges = Edges::unless(&mesh.triangles, &watch.cancel())?;
@@ -138,7 +138,7 @@ pub fn surface(
 }
 
 impl Surface {
-    /// A field of metrics given at the points of the surface.
+    /// The field of metrics given at the points of the surface.
     ///
     /// # Errors
     /// Metrics that are not positive definite.
@@ -155,13 +155,13 @@ impl Surface {
     }
 }
 
-/// The sizes at which a surface is meshed where nobody says any, at each of its points and alike in all directions: the
-/// mean length of the edges there, but no larger than what turns by 30 degrees (down to a sixth of it) and what leaves
-/// the surface by 0.3 % of its size, and growing by 1.3 at most from one element to the next.
+/// The isotropic sizes for a surface without given sizes, at each point: the mean length of the edges there, at most
+/// the size at which the surface turns by 30 degrees (but at least a sixth of the mean) or deviates by 0.3 % of its
+/// extent, and with a growth of at most 1.3 from one element to the next.
 pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     let edges = Edges::of(&mesh.triangles);
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
-    // Bounds by how the surface turns, and by how far an element may leave it.
+    // Upper bounds by turning and by deviation.
     let mut most = vec![(f64::INFINITY, f64::INFINITY); mesh.points.len()];
     let (low, high) =
         mesh.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
@@ -179,14 +179,14 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
         if let (None, &[one, other]) = (features[edge], sides) {
             let [n, m] = [one, other].map(|side| mesh.area_vector(side as usize / 3));
             let turn = libm::atan2(n.cross(m).length(), n.dot(m));
-            // Half of each triangle's height over the edge: the way on which the surface turns there.
+            // Half the height of each triangle over the edge: the length over which the surface turns.
             let way = 0.5 * (n.length() + m.length()) / long.max(f64::MIN_POSITIVE);
             let corners = [one, other].map(|side| mesh.triangles[side as usize / 3]);
             for node in corners.as_flattened() {
                 let (by_turn, by_distance) = &mut most[*node as usize];
                 let turn = turn.max(f64::MIN_POSITIVE);
                 *by_turn = by_turn.min(way * MOST_TURN / turn);
-                // An element with a fold across its middle leaves it by a quarter of its size times the turn.
+                // An element with a fold across its middle deviates by a quarter of its size times the angle.
                 *by_distance = by_distance.min(4.0 * away / turn);
             }
         }
@@ -211,9 +211,8 @@ pub(super) fn sides(chart: &Chart) -> impl Iterator<Item = Vec<[u32; 2]>> + '_ {
     })
 }
 
-/// The chains of all borders, and for each edge of the surface that lies on one where. A chain goes on through a point
-/// where just two border edges meet that are shared by the same charts, are both features or both not, and lie on the
-/// same line or on none.
+/// The chains of all borders, and the link of each edge on one. A chain continues through a point where exactly two
+/// border edges meet that have the same charts, are both features or both not, and lie on the same line or on none.
 fn chains(
     mesh: &Triangles,
     edges: &Edges,
@@ -278,7 +277,7 @@ fn chains(
     (chains, links)
 }
 
-/// Places along a chain at which it turns by more than an angle.
+/// Positions in a chain at which it turns by more than an angle.
 fn corners(mesh: &Triangles, points: &[u32], angle: f64) -> Vec<u32> {
     let least_cosine = libm::cos(angle);
     let p = |k: usize| mesh.points[points[k] as usize];
@@ -303,7 +302,7 @@ fn pieces(
         let uv = |node: u32| chart.uv[node as usize];
         let doubled: f64 =
             sides.iter().map(|side| (uv(side[0]) - uv(sides[0][0])).perp_dot(uv(side[1]) - uv(sides[0][0]))).sum();
-        // Each side with its chain, where along it, and which way.
+        // The chain of each side, the position in it, and whether it runs forward.
         let on: Vec<(u32, u32, bool)> = sides
             .iter()
             .map(|side| {
@@ -354,12 +353,12 @@ mod tests {
             (three_half_planes(), 3, 4),
             (plate(10, 0.1), 1, 1),
         ] {
-            let found = surface(&mesh, &names, ANGLE, Bound::default(), &mut Nobody).unwrap();
+            let found = surface(&mesh, &names, ANGLE, StretchBound::default(), &mut Nobody).unwrap();
             let domain = &found.domain;
             let own = domain.curves.iter().enumerate().filter(|(k, curve)| curve.first.index() == *k).count();
             assert_eq!((domain.faces.len(), own), (faces, curves));
             assert!(found.table(&implied_sizes(&mesh)).is_ok());
         }
-        assert!(surface(&torus(30, 20), &names, ANGLE, Bound::default(), &mut Nobody).is_ok());
+        assert!(surface(&torus(30, 20), &names, ANGLE, StretchBound::default(), &mut Nobody).is_ok());
     }
 }

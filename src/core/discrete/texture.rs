@@ -3,70 +3,70 @@
 
 use glam::{DVec2, DVec3};
 
-use super::chart::{Chart, Part, Surface};
+use super::chart::{Chart, CutSurface, SurfacePart};
 use super::edges::{Corner, Edges};
-use super::flat::{Bound, is_embedded, snapped, stands, stretch};
+use super::planar_map::{StretchBound, is_embedded, is_positive, snapped, stretch};
 
-/// A texture in more pieces than one for so many triangles, and one more, is no map of the surface: it would be cut to shreds.
-const TRIANGLES_A_PIECE: usize = 64;
+/// A texture with more than 1 + 1/64 pieces per triangle is too fragmented to give charts.
+const TRIANGLES_PER_PIECE: usize = 64;
 
 impl Chart {
-    /// Whether it has so many border loops, and is a part of the plane as to how it hangs together.
+    /// Whether it has this number of border loops and the topology of a plane region.
     fn is_planar_with(&self, loops: usize) -> bool {
         let edges = Edges::of(&self.local).len();
         self.loops.len() == loops && loops > 0 && self.points.len() + self.local.len() + loops == edges + 2
     }
 }
 
-impl Surface<'_> {
-    /// The charts of a part by its texture, cut where that is torn. None where a triangle lies nowhere on it, or in more pieces than
-    /// are of use, or a piece is not one to one or stretched beyond the bound; nor where it tears a disc, which is laid into the
-    /// plane whole without it.
-    pub fn textured(&self, part: &Part, bound: Bound) -> Option<Vec<Chart>> {
+impl CutSurface<'_> {
+    /// The charts of a part by its texture, cut at the texture's seams. `None` if a triangle has no texture
+    /// coordinates, if there are too many pieces, if a piece is not injective or stretches beyond the bound, or if the
+    /// texture cuts a disc, which can be mapped as a whole.
+    pub fn textured(&self, part: &SurfacePart, bound: StretchBound) -> Option<Vec<Chart>> {
         let triangles = &part.triangles;
-        if !triangles.iter().all(|&t| self.places(t).is_some()) {
+        if !triangles.iter().all(|&t| self.texture_of(t).is_some()) {
             return None;
         }
         let mut slits: Vec<Corner> =
-            triangles.iter().flat_map(|&t| Self::sides(t)).filter(|&side| self.is_torn(side)).collect();
+            triangles.iter().flat_map(|&t| Self::sides(t)).filter(|&side| self.is_seam(side)).collect();
         slits.sort_unstable();
         let is_whole = slits.iter().all(|&side| self.neighbour(part, side).is_none());
         if !is_whole && self.nodes(part).is_planar_with(1) {
             return None;
         }
-        let pieces = self.connected(&Part { triangles: triangles.clone(), slits });
-        if pieces.len() > 1 + triangles.len() / TRIANGLES_A_PIECE {
+        let pieces = self.connected(&SurfacePart { triangles: triangles.clone(), slits });
+        if pieces.len() > 1 + triangles.len() / TRIANGLES_PER_PIECE {
             return None;
         }
         pieces.iter().map(|piece| self.by_texture(piece, bound)).collect()
     }
 
-    fn places(&self, triangle: u32) -> Option<[DVec2; 3]> {
+    fn texture_of(&self, triangle: u32) -> Option<[DVec2; 3]> {
         *self.mesh.texture.get(triangle as usize)?
     }
 
-    /// Whether the two triangles at a side lie apart on the texture, or there is one only.
-    fn is_torn(&self, side: Corner) -> bool {
+    /// Whether a side is on a seam or the border of the texture.
+    fn is_seam(&self, side: Corner) -> bool {
         let ends = |side: Corner| {
-            let places = self.places(side / 3)?;
+            let places = self.texture_of(side / 3)?;
             Some([places[side as usize % 3], places[(side as usize + 1) % 3]])
         };
         let beyond = self.beyond[side as usize].and_then(ends);
         !matches!((ends(side), beyond), (Some([a, b]), Some([c, d])) if a == d && b == c)
     }
 
-    /// The chart of a piece that its texture does not tear.
-    fn by_texture(&self, piece: &Part, bound: Bound) -> Option<Chart> {
+    /// The chart of a piece without seams.
+    fn by_texture(&self, piece: &SurfacePart, bound: StretchBound) -> Option<Chart> {
         let mut chart = self.nodes(piece);
         if !chart.is_planar_with(chart.loops.len()) {
             return None;
         }
         let mut uv = vec![DVec2::ZERO; chart.points.len()];
         for (&t, local) in chart.triangles.iter().zip(&chart.local) {
-            let places = self.places(t)?;
+            let places = self.texture_of(t)?;
             (0..3).for_each(|k| uv[local[k] as usize] = places[k]);
         }
-        // As large as in space, beside the origin, and seen from outside: textures are often mirrored.
+        // Scaled to the area in space, moved to the origin, and mirrored back: textures are often mirrored.
         let xyz: Vec<DVec3> = chart.points.iter().map(|&p| self.mesh.points[p as usize]).collect();
         let doubled = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|k| uv[k as usize]);
@@ -81,7 +81,7 @@ impl Surface<'_> {
         let origin = uv.iter().fold(DVec2::INFINITY, |low, &p| low.min(p));
         let axes = DVec2::new(scale, scale * in_plane.signum());
         uv.iter_mut().for_each(|p| *p = snapped((*p - origin) * axes, self.grid));
-        if !stands(&chart.local, &uv) || !is_embedded(&uv, &chart.loops) {
+        if !is_positive(&chart.local, &uv) || !is_embedded(&uv, &chart.loops) {
             return None;
         }
         chart.stretch = stretch(&xyz, &chart.local, &uv);
@@ -101,10 +101,10 @@ mod tests {
 
     fn found(mesh: &Triangles) -> Vec<Chart> {
         let edges = Edges::of(&mesh.triangles);
-        charts(mesh, &edges, &features(mesh, &edges, ANGLE), Bound::default(), &mut Nobody).unwrap()
+        charts(mesh, &edges, &features(mesh, &edges, ANGLE), StretchBound::default(), &mut Nobody).unwrap()
     }
 
-    /// A texture by a function of place, and of the middle of the triangle.
+    /// Sets the texture by a function of position and the triangle's centroid.
     fn lay(mesh: &mut Triangles, at: impl Fn(DVec3, DVec3) -> DVec2) {
         mesh.texture = (0..mesh.triangles.len())
             .map(|t| {
@@ -115,7 +115,7 @@ mod tests {
             .collect();
     }
 
-    /// Once around the tube, torn where the angle is that of the x axis.
+    /// Once around the tube, with a seam at angle 0.
     fn around(p: DVec3, middle: DVec3) -> DVec2 {
         let angle = |p: DVec3| libm::atan2(p.y, p.x).rem_euclid(std::f64::consts::TAU);
         let (own, near) = (angle(p), angle(middle));
@@ -124,13 +124,13 @@ mod tests {
     }
 
     #[test]
-    fn a_tube_is_unrolled_as_its_texture_says_mirrored_or_not() {
+    fn a_tube_is_unrolled_by_its_texture_mirrored_or_not() {
         for mirrored in [1.0, -1.0] {
             let mut mesh = tube(24, 10, 4.0);
             lay(&mut mesh, |p, middle| around(p, middle) * DVec2::new(0.1 * mirrored, 0.1));
             let charts = found(&mesh);
             assert_eq!((charts.len(), charts[0].loops.len()), (1, 1));
-            // A row of points twice: along the tear.
+            // The points on the seam count twice.
             assert_eq!(charts[0].points.len(), mesh.points.len() + 11);
             let stretch = charts[0].stretch;
             assert!(stretch.shape < 1.01 && stretch.area < 1.01, "{stretch:?}");
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_texture_that_folds_overlaps_stretches_or_is_in_shreds_is_not_used() {
+    fn a_folded_overlapping_stretched_or_fragmented_texture_is_not_used() {
         let own = found(&plate(8, 0.1));
         let textures: [&dyn Fn(DVec3, DVec3) -> DVec2; 4] = [
             // Folded along the middle.

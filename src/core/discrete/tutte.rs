@@ -1,26 +1,27 @@
-//! A disc of triangles laid into the plane: the border on a circle by its length, every node inside at a weighted mean of its
-//! neighbours (Tutte 1963) with mean-value weights (Floater 2003). Positive weights and a convex border make it one to one.
+//! Tutte's embedding of a disc of triangles: the border on a circle by arc length, every interior node at a weighted
+//! mean of its neighbours (Tutte 1963) with mean-value weights (Floater 2003). Positive weights and a convex border
+//! make it injective.
 
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::flat::{snapped, stands};
+use super::planar_map::{is_positive, snapped};
 use super::sparse::Means;
 use crate::core::progress::Cancel;
 
-/// Weights are held within this factor of a node's greatest: triangles with nearly no area pull at nobody without end.
+/// Least weight relative to a node's largest, which bounds the influence of nearly degenerate triangles.
 const LEAST_WEIGHT: f64 = 1e-4;
 
-/// Where the nodes of a disc lie in the plane; those of the border are the first `border` ones, anticlockwise. `None` where rounding
-/// keeps a triangle from lying the right way round, or where the work is told to end.
+/// The nodes of a disc in the plane; the first `border` ones are on the border, anticlockwise. Coordinates are
+/// multiples of `grid`. `None` if rounding inverts a triangle, or when cancelled.
 pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, cancel: &Cancel) -> Option<Vec<DVec2>> {
     let lengths: Vec<f64> = (0..border).map(|k| xyz[k].distance(xyz[(k + 1) % border])).collect();
     let around: f64 = lengths.iter().sum();
     if around.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) || border < 3 {
         return None;
     }
-    // No piece of the border shrinks to nothing, however short it is.
+    // Bounds the shortest border segments from below.
     let least = 1e-3 * around / border as f64;
     let pieces: Vec<f64> = lengths.iter().map(|l| l.max(least)).collect();
     let all: f64 = pieces.iter().sum();
@@ -65,11 +66,11 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
         uv.extend(x.into_iter().zip(y).map(|(x, y)| DVec2::new(x, y) * radius));
     }
     uv.iter_mut().for_each(|p| *p = snapped(*p, grid));
-    stands(triangles, &uv).then_some(uv)
+    is_positive(triangles, &uv).then_some(uv)
 }
 
-/// For each node inside, its neighbours with their mean-value weights: (tan(alpha/2) + tan(beta/2)) / length, with the angles at
-/// the node on both sides of the edge. Neighbours ascend.
+/// For each interior node, its neighbours, ascending, with their mean-value weights: (tan(alpha/2) + tan(beta/2)) /
+/// length, with the angles at the node on both sides of the edge.
 fn weights(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize) -> Vec<Vec<(u32, f64)>> {
     let mut weights: Vec<Vec<(u32, f64)>> = vec![Vec::with_capacity(8); xyz.len() - border];
     for t in triangles {

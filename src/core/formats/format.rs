@@ -1,4 +1,4 @@
-//! Which format a file has, and the one way in and out for meshes.
+//! The mesh formats, and the entry points for reading and writing meshes.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -12,16 +12,17 @@ use super::ply;
 use super::save::{load_watched, save};
 use super::stl;
 use super::vtu;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::progress::{Nobody, Pace, Reading, Watch};
 use crate::core::soup::mesh_file::MeshFile;
 
-/// The formats of meshes, read and written.
+/// A mesh format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// Gmsh, `.msh`.
     Msh,
-    /// Medit, `.mesh`, with the metric in `.sol` beside it.
+    /// Medit, `.mesh`, with the metric in a `.sol` file of the same name.
     Medit,
     /// VTK XML, `.vtu`.
     Vtu,
@@ -33,21 +34,21 @@ pub enum Format {
     Ply,
     /// Stereolithography, `.stl`; read only, since it has no quadrilaterals.
     Stl,
-    /// Khronos, `.gltf`; read only, likewise.
+    /// Khronos glTF, `.gltf`; read only, likewise.
     Gltf,
-    /// The same in one binary file, `.glb`.
+    /// Binary glTF, `.glb`; read only.
     Glb,
 }
 
-/// How to write.
+/// Options for writing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WriteOptions {
-    /// Gmsh's version 2.2 instead of 4.1.
+    /// Writes Gmsh's version 2.2 instead of 4.1.
     pub msh2: bool,
 }
 
 impl Format {
-    /// All formats; those that are written come first.
+    /// All formats; the writable ones come first.
     pub const ALL: [Format; 9] = [
         Format::Msh,
         Format::Medit,
@@ -60,12 +61,12 @@ impl Format {
         Format::Glb,
     ];
 
-    /// The formats that are written: those that have quadrilaterals.
+    /// The writable formats: those with quadrilaterals.
     pub fn written() -> impl Iterator<Item = Format> {
         Format::ALL.into_iter().filter(|format| format.is_written())
     }
 
-    /// Whether it is written, and not only read.
+    /// Whether it can be written.
     pub fn is_written(self) -> bool {
         !matches!(self, Format::Stl | Format::Gltf | Format::Glb)
     }
@@ -85,11 +86,15 @@ impl Format {
         }
     }
 
-    /// The format of a file by its extension, in capitals or not.
+    /// The format of a file by its extension, ignoring case.
     ///
     /// # Errors
-    /// For an unknown extension, or none: the fault lists the known ones.
+    /// An unknown or missing extension: the fault lists the known ones.
     pub fn from_path(path: &Path) -> Result<Format, Fault> {
+        Format::of_extension(path).map_err(|fault| fault.of_kind(FaultKind::Syntax))
+    }
+
+    fn of_extension(path: &Path) -> Result<Format, Fault> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if let Some(&format) = Format::ALL.iter().find(|format| format.extension() == extension) {
             return Ok(format);
@@ -97,30 +102,30 @@ impl Format {
         let place = path.display().to_string();
         if extension == "meshb" || extension == "solb" {
             let text = &extension[..extension.len() - 1];
-            return Err(Fault::new("Medit's binary form is not read or written")
+            return Err(Fault::new("Medit's binary format is not supported")
                 .at(place)
-                .remedy(format!("Use its text form, .{text}")));
+                .remedy(format!("Use the text format, .{text}")));
         }
         let known: Vec<String> = Format::ALL.iter().map(|format| format!(".{}", format.extension())).collect();
         let what = if extension.is_empty() {
-            "The name has no extension to tell the format by".to_string()
+            "The file name has no extension, so its format is unknown".to_string()
         } else {
-            format!("The format \".{extension}\" is not known")
+            format!("Unknown format \".{extension}\"")
         };
-        Err(Fault::new(what).at(place).remedy(format!("Known are {}", known.join(", "))))
+        Err(Fault::new(what).at(place).remedy(format!("Use one of {}", known.join(", "))))
     }
 }
 
-/// Reads a mesh in the format of its extension. The metric comes from `sol` when given, which may be the `.sol` to a mesh
-/// of any format; otherwise a `.mesh` takes the `.sol` of the same stem beside it if there is one.
+/// Reads a mesh in the format of its extension. The metric comes from the file `sol` if given, for a mesh of any
+/// format; otherwise, for a `.mesh`, from the `.sol` of the same name in the same folder if it exists.
 ///
 /// # Errors
-/// One fault with file, line and remedy for whatever is wrong.
+/// A fault with file, line and remedy.
 pub fn read_mesh(path: &Path, sol: Option<&Path>) -> Result<MeshFile, Fault> {
     read_mesh_watched(path, sol, &mut Nobody)
 }
 
-/// As [`read_mesh`], while somebody watches.
+/// As [`read_mesh`], with progress and cancellation.
 ///
 /// # Errors
 /// As [`read_mesh`], and [`Fault::stopped`].
@@ -133,21 +138,21 @@ pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch)
     let sol = sol.or_else(|| (format == Format::Medit && beside.is_file()).then_some(beside.as_path()));
     if let Some(sol) = sol {
         let bytes = load_watched(sol, &pace)?;
-        let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace)?;
-        mesh.metric = Some(metric);
+        let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace);
+        mesh.metric = Some(metric.map_err(|fault| fault.of_kind(FaultKind::Syntax))?);
     }
     Ok(mesh)
 }
 
-/// Reads a mesh from bytes; `name` is how messages call them.
+/// Reads a mesh from bytes; `name` is the file's name in messages.
 ///
 /// # Errors
-/// One fault with name, line and remedy for whatever is wrong.
+/// A fault with name, line and remedy.
 pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
     read_in(name, bytes, format, None, &Reading::watched(&mut Nobody))
 }
 
-/// As [`read_bytes`], with the folder in which files lie that the mesh names.
+/// As [`read_bytes`]; `folder` holds the files that the mesh refers to.
 fn read_in(
     name: &str,
     bytes: &[u8],
@@ -156,7 +161,7 @@ fn read_in(
     pace: &dyn Pace,
 ) -> Result<MeshFile, Fault> {
     if bytes.trim_ascii().is_empty() {
-        return Err(Fault::new("The file is empty").at(name).remedy("Write it again"));
+        return Err(Fault::new("The file is empty").of_kind(FaultKind::Syntax).at(name).remedy("Export it again"));
     }
     let read = match format {
         Format::Msh => msh::read(name, bytes, pace),
@@ -168,14 +173,14 @@ fn read_in(
         Format::Stl => stl::read(name, bytes, pace),
         Format::Gltf | Format::Glb => gltf::read(name, bytes, folder, pace),
     };
-    // A reader that was told to end has seen a part of the file, and may have complained of that.
-    pace.cancel().check().and(read)
+    // A cancelled reader saw only part of the file, and may have reported that as a fault.
+    pace.cancel().check().and(read.map_err(|fault| fault.of_kind(FaultKind::Syntax)))
 }
 
-/// Writes a mesh to a stream. The metric of Medit, which is a file of its own, is not written.
+/// Writes a mesh to a stream. Medit's metric, a separate file, is not written.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`, and a format that cannot be written.
 pub fn write_to(out: &mut dyn Write, format: Format, mesh: &MeshFile, options: WriteOptions) -> io::Result<()> {
     match format {
         Format::Msh => msh::write(out, mesh, if options.msh2 { msh::Version::V2 } else { msh::Version::V4 }),
@@ -188,10 +193,10 @@ pub fn write_to(out: &mut dyn Write, format: Format, mesh: &MeshFile, options: W
     }
 }
 
-/// Writes a mesh to a file, whole or not at all; for Medit the metric goes to the `.sol` of the same stem.
+/// Writes a mesh to a file, atomically; for Medit, also the metric to the `.sol` of the same name.
 ///
 /// # Errors
-/// A fault that names the file and says why it cannot be written.
+/// A fault with the file and the reason.
 pub fn write_mesh(path: &Path, format: Format, mesh: &MeshFile, options: WriteOptions) -> Result<(), Fault> {
     save(path, |out| write_to(out, format, mesh, options))?;
     if let (Format::Medit, Some(metric)) = (format, &mesh.metric) {

@@ -1,8 +1,8 @@
-//! glTF 2.0, as text (`.gltf`, buffers within or beside it) or in one file (`.glb`); the crate `gltf` parses and
-//! validates the document. Triangles, strips and fans of the default scene (of all scenes where none is named) are
-//! read, with the nodes' transforms applied; each node with a mesh becomes a group. Points at one place are welded,
-//! since glTF repeats a point where its normal or texture differs. Deliberately absent: writing (glTF has no
-//! quadrilaterals), materials, skins, morph targets; points and lines are counted as skipped.
+//! glTF 2.0, as text (`.gltf`, with embedded or external buffers) or binary (`.glb`); the crate `gltf` parses and
+//! validates the document. Reads triangles, strips and fans of the default scene (without one, of all scenes), with the
+//! nodes' transforms applied; each node with a mesh becomes a group. Coincident points are welded, since glTF repeats a
+//! point where its normal or texture differs. Deliberately absent: writing (glTF has no quadrilaterals), materials,
+//! skins, morph targets; points and lines are counted as skipped.
 
 mod bytes;
 
@@ -16,7 +16,7 @@ use gltf::mesh::{Mode, Primitive};
 use gltf::scene::Transform;
 use gltf::{Document, Node, json};
 
-use super::scan::shown;
+use super::scan::{DAMAGED, TRUNCATED, shown};
 use crate::core::fault::Fault;
 use crate::core::progress::Pace;
 use crate::core::soup::counting::Count;
@@ -24,27 +24,26 @@ use crate::core::soup::mesh_file::{Group, MeshFile, Texture};
 use crate::core::soup::weld::{SINGLE, weld};
 use bytes::Buffers;
 
-/// Extensions that say nothing of where a triangle is, and may be required of a reader.
+/// Prefixes of extensions that do not change the geometry, so that a document may require them.
 const HARMLESS: [&str; 3] = ["KHR_materials_", "KHR_texture_", "KHR_lights_"];
 
-/// What a scene may take in memory, by the size of its files: a document can ask for one mesh at a million nodes.
+/// Limit on a scene's memory as a multiple of the size of its files, since a million nodes can share one mesh.
 const MOST_TIMES: usize = 12;
-/// Whatever the size of its files, this much it may take.
+/// Memory allowed for any scene, in bytes.
 const ALWAYS: usize = 64 << 20;
 
-/// Reads a mesh from the bytes of a glTF document; buffers beside it are looked for in `folder` only, and not at all
-/// without one.
+/// Reads a mesh from the bytes of a glTF document; external buffers are read from `folder` only, and not at all without
+/// one.
 ///
 /// # Errors
-/// Documents that are not valid glTF 2.0; extensions that are required and not known here (Draco and other compressed
-/// meshes), by name; buffers that are missing, lie elsewhere, or end too soon; nodes with two parents; indices that
-/// point nowhere.
+/// Documents that are not valid glTF 2.0; unsupported required extensions (Draco and other compressed meshes), by name;
+/// buffers that are missing, outside the folder, or too short; nodes with two parents; indices out of range.
 pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) -> Result<MeshFile, Fault> {
     pace.goes_on(0, bytes.len());
     let (document, blob) = document(name, bytes)?;
     pace.cancel().check()?;
     let buffers = Buffers::load(name, &document, blob, folder)?;
-    // Buffers within the document are not needed a second time as its text.
+    // Drop the text of embedded buffers: they are decoded now.
     let mut root = document.into_json();
     root.buffers.iter_mut().for_each(|buffer| buffer.uri = None);
     let document = Document::from_json_without_validation(root);
@@ -55,18 +54,18 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
         scene.nodes(&document, part.nodes())?;
     }
     if document.scenes().len() == 0 {
-        // A library of meshes: every one where it is.
+        // A library of meshes: all root nodes.
         let parented: Vec<usize> = document.nodes().flat_map(|node| node.children().map(|c| c.index())).collect();
         scene.nodes(&document, document.nodes().filter(|node| !parented.contains(&node.index())))?;
     }
     let mut mesh = scene.mesh;
-    // Their bytes are not needed beside what welding needs.
+    // Free the buffers before welding allocates.
     drop(scene.buffers);
-    let standing = weld(&mut mesh.points, SINGLE, pace.cancel());
+    let representative = weld(&mut mesh.points, SINGLE, pace.cancel());
     pace.cancel().check()?;
     mesh.counting.points = Count::Nothing;
-    mesh.triangles.iter_mut().flatten().for_each(|corner| *corner = standing[*corner as usize]);
-    // Strips turn corners with triangles of no area, which are no triangles.
+    mesh.triangles.iter_mut().flatten().for_each(|corner| *corner = representative[*corner as usize]);
+    // Strips contain degenerate triangles to change direction.
     let keep = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
     let mut of_triangle = mesh.triangles.iter();
     mesh.triangle_tags.retain(|_| of_triangle.next().is_some_and(keep));
@@ -80,17 +79,17 @@ pub fn read(name: &str, bytes: &[u8], folder: Option<&Path>, pace: &dyn Pace) ->
     Ok(mesh)
 }
 
-/// The binary part of a `.glb`, where it was read.
+/// The binary chunk of a `.glb`.
 type Blob<'b> = Option<Cow<'b, [u8]>>;
 
-/// The validated document and its binary part.
+/// The validated document and its binary chunk.
 fn document<'b>(name: &str, bytes: &'b [u8]) -> Result<(Document, Blob<'b>), Fault> {
     if bytes.starts_with(b"glTF") {
-        // The parser subtracts the header from the length without looking.
+        // The parser subtracts the header from the length unchecked.
         let length = bytes.get(8..12).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
         if length < 12 || length > bytes.len() {
-            let what = format!("It says that it has {length} bytes, and it has {}", bytes.len());
-            return Err(Fault::new(what).at(name).remedy("It seems to be cut off: write it again"));
+            let what = format!("The header declares {length} bytes, but the file has {}", bytes.len());
+            return Err(Fault::new(what).at(name).remedy(TRUNCATED));
         }
     }
     let refuse = |error: gltf::Error| {
@@ -107,21 +106,21 @@ fn document<'b>(name: &str, bytes: &'b [u8]) -> Result<(Document, Blob<'b>), Fau
     for extension in &root.extensions_required {
         if !HARMLESS.iter().any(|known| extension.starts_with(known)) {
             return Err(Fault::new(format!(
-                "It requires the extension {}, which is not read",
+                "It requires the extension {}, which is not supported",
                 shown(extension.as_bytes())
             ))
             .at(name)
             .remedy("Export it without compression and quantization"));
         }
     }
-    // The validation looks positions up before it has seen that they are there.
+    // The validation looks accessors up before it checks that they exist.
     let attributes =
         root.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|primitive| primitive.attributes.values());
     if let Some(lost) = attributes.map(|accessor| accessor.value()).find(|&accessor| accessor >= root.accessors.len()) {
-        let what = format!("A mesh has the accessor {lost}, and there are {}", root.accessors.len());
-        return Err(Fault::new(what).at(name).remedy("It seems to be damaged: write it again"));
+        let what = format!("A mesh refers to accessor {lost} of {}", root.accessors.len());
+        return Err(Fault::new(what).at(name).remedy(DAMAGED));
     }
-    // Looked at above: the validation knows none.
+    // Checked above; the validation would reject all of them.
     root.extensions_required.clear();
     Ok((Document::from_json(root).map_err(refuse)?, blob))
 }
@@ -137,32 +136,34 @@ struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Takes in nodes and what hangs below them.
+    /// Adds the meshes of nodes and their descendants.
     fn nodes<'d>(&mut self, document: &'d Document, roots: impl Iterator<Item = Node<'d>>) -> Result<(), Fault> {
         let mut seen = vec![false; document.nodes().len()];
         let mut waiting: Vec<(Node, DMat4)> = roots.map(|node| (node, DMat4::IDENTITY)).collect();
         waiting.reverse();
         while let Some((node, above)) = waiting.pop() {
             if std::mem::replace(&mut seen[node.index()], true) {
-                let what = format!("Node {} hangs below two others, or below itself", node.index());
-                return Err(Fault::new(what).at(self.name).remedy("The nodes of glTF are trees: export it again"));
+                let what = format!("Node {} has two parents, or is its own ancestor", node.index());
+                return Err(Fault::new(what)
+                    .at(self.name)
+                    .remedy("The nodes of glTF must form trees: export it again"));
             }
-            let placed = above * matrix(node.transform());
+            let to_world = above * matrix(node.transform());
             if let Some(mesh) = node.mesh() {
                 let tag = self.mesh.groups.len() as u32 + 1;
                 let name = node.name().or(mesh.name()).map_or_else(|| format!("node {}", node.index()), str::to_owned);
                 self.mesh.groups.push(Group { dimension: 2, tag, name });
                 for primitive in mesh.primitives() {
-                    self.primitive(&primitive, placed, tag)?;
+                    self.primitive(&primitive, to_world, tag)?;
                 }
             }
             let children: Vec<Node> = node.children().collect();
-            waiting.extend(children.into_iter().rev().map(|child| (child, placed)));
+            waiting.extend(children.into_iter().rev().map(|child| (child, to_world)));
         }
         Ok(())
     }
 
-    fn primitive(&mut self, primitive: &Primitive, placed: DMat4, tag: u32) -> Result<(), Fault> {
+    fn primitive(&mut self, primitive: &Primitive, to_world: DMat4, tag: u32) -> Result<(), Fault> {
         let kind = match primitive.mode() {
             Mode::Points => "point",
             Mode::Lines | Mode::LineLoop | Mode::LineStrip => "line",
@@ -182,14 +183,14 @@ impl Scene<'_> {
         let bytes = positions.count().saturating_add(first).saturating_mul(48);
         let bytes = bytes.saturating_add(count.saturating_add(self.mesh.triangles.len()).saturating_mul(16));
         if bytes > self.most || first + positions.count() > i32::MAX as usize {
-            return Err(Fault::new("Its nodes repeat its meshes until they take more memory than such a file should")
+            return Err(Fault::new("The nodes repeat the meshes so often that the scene needs too much memory")
                 .at(self.name)
                 .remedy("Export fewer copies"));
         }
         for point in &mut self.mesh.points[first..] {
-            let p = placed.transform_point3(*point);
+            let p = to_world.transform_point3(*point);
             if !p.is_finite() {
-                let what = format!("A vertex of \"{}\" lies at {}, {}, {}", group(), p.x, p.y, p.z);
+                let what = format!("A vertex of \"{}\" is at ({}, {}, {})", group(), p.x, p.y, p.z);
                 return Err(Fault::new(what).at(self.name).remedy("Coordinates must be finite numbers"));
             }
             *point = p;
@@ -198,29 +199,29 @@ impl Scene<'_> {
             Some(indices) => Box::new(self.buffers.indices(self.name, &indices)?),
             None => Box::new(0..positions.count() as u32),
         };
-        let first_place = self.texture.uv.len();
+        let first_uv = self.texture.uv.len();
         if let Some(accessor) = primitive.get(&gltf::Semantic::TexCoords(0)) {
             self.buffers.texture(&accessor, &mut self.texture.uv);
         }
-        let places = self.texture.uv.len() - first_place;
+        let uv_count = self.texture.uv.len() - first_uv;
         let most = if primitive.mode() == Mode::Triangles { count / 3 } else { count };
         self.mesh.triangles.reserve(most);
         self.mesh.triangle_tags.reserve(most);
-        // A mirroring transform turns triangles over.
-        let mirrored = placed.determinant() < 0.0;
+        // A mirroring transform inverts triangles.
+        let mirrored = to_world.determinant() < 0.0;
         let mut add = |[a, b, c]: [u32; 3]| {
             let t = if mirrored { [a, c, b] } else { [a, b, c] };
             self.mesh.triangles.push(t.map(|corner| first as u32 + corner));
             self.mesh.triangle_tags.push(tag);
-            let place = |corner: u32| {
-                if (corner as usize) < places { first_place as u32 + corner } else { Texture::NONE }
+            let corner_uv = |corner: u32| {
+                if (corner as usize) < uv_count { first_uv as u32 + corner } else { Texture::NONE }
             };
-            self.texture.set_triangle(self.mesh.triangles.len() - 1, t.map(place));
+            self.texture.set_triangle(self.mesh.triangles.len() - 1, t.map(corner_uv));
         };
         let [mut first_corner, mut a, mut b] = [0; 3];
         for (i, corner) in corners.enumerate() {
             if corner as usize >= positions.count() {
-                let what = format!("A triangle of \"{}\" has the vertex {corner} of {}", group(), positions.count());
+                let what = format!("A triangle of \"{}\" refers to vertex {corner} of {}", group(), positions.count());
                 return Err(Fault::new(what).at(self.name));
             }
             match primitive.mode() {

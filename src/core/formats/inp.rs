@@ -1,4 +1,5 @@
-//! Abaqus input files (`.inp`): nodes, shell elements, sets of them and surfaces of their edges, without materials or steps.
+//! Abaqus input files (`.inp`): nodes, shell elements, element and node sets, and surfaces of element edges.
+//! Deliberately absent: materials and steps.
 
 mod read;
 
@@ -10,11 +11,12 @@ pub use read::read;
 use crate::core::kernel::decimal::Shortest;
 use crate::core::soup::mesh_file::{MeshFile, tag_of};
 
-/// Writes nodes (numbered from 1), triangles as S3 and quadrilaterals as S4 (numbered from 1, triangles first), an ELSET
-/// for each group of elements; for each group of lines an NSET, and a SURFACE of the elements' edges that are its lines.
+/// Writes nodes (numbered from 1), triangles as S3 and quadrilaterals as S4 (numbered from 1, triangles first); an
+/// ELSET for each group of elements; and for each group of lines an NSET and a SURFACE of the element edges along its
+/// lines.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     writeln!(out, "*HEADING\nquadfront\n*NODE")?;
     for (p, number) in mesh.points.iter().zip(1u64..) {
@@ -74,7 +76,7 @@ fn write_elements<const N: usize>(out: &mut dyn Write, kind: &str, first: usize,
     Ok(())
 }
 
-/// A set: lines of at most sixteen numbers.
+/// Writes a set, with at most 16 numbers on a line.
 fn write_set(out: &mut dyn Write, keyword: &str, name: &str, numbers: &[u64]) -> io::Result<()> {
     writeln!(out, "*{keyword}, {keyword}={name}")?;
     for line in numbers.chunks(16) {
@@ -84,8 +86,8 @@ fn write_set(out: &mut dyn Write, keyword: &str, name: &str, numbers: &[u64]) ->
     Ok(())
 }
 
-/// A label as Abaqus takes it: a letter first, then letters, digits and `_`; unique by its tag where a name had to be
-/// changed.
+/// A valid Abaqus label: a letter, then letters, digits and `_`. A name that must be changed gets the tag, to stay
+/// unique.
 fn set_name(name: Option<&str>, kind: &str, tag: u32) -> String {
     let Some(name) = name else { return format!("{kind}_{tag}") };
     let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).take(60).collect();

@@ -1,7 +1,7 @@
-//! Medit's text formats: meshes (`.mesh`) and the metrics that lie beside them (`.sol`).
+//! Medit's text formats: meshes (`.mesh`) and their metrics (`.sol`).
 //!
-//! Deliberately absent: the binary forms (`.meshb`, `.solb`), refused by the dispatcher; what a mesh knows besides
-//! vertices, edges, triangles and quadrilaterals (corners, ridges, required vertices) is skipped.
+//! Deliberately absent: the binary formats (`.meshb`, `.solb`), rejected by [`Format`](super::format::Format); sections
+//! other than vertices, edges, triangles and quadrilaterals (corners, ridges, required vertices) are ignored.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -15,23 +15,23 @@ use crate::core::kernel::tensor::Metric3;
 use crate::core::progress::{Nobody, Pace, Reading};
 use crate::core::soup::mesh_file::{MeshFile, positive_definite, tag_of};
 
-/// Reads a mesh from the bytes of a `.mesh` file; `name` is how messages call it. References become tags.
+/// Reads a mesh from the bytes of a `.mesh` file; `name` is the file's name in messages. References become tags.
 ///
 /// # Errors
-/// A fault with the line for what is not such a file.
+/// With the line: anything that is not such a file.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes).with_comments(b'#').watched(pace);
     let dimension = header(&mut s)?;
     let mut mesh = MeshFile::default();
     let mut skipped = BTreeMap::new();
-    // Elements may stand before the vertices: the largest index and where it stands are checked at the end.
+    // Elements may precede the vertices: the largest index, with its position in the file, is checked at the end.
     let mut largest = (0, 0);
     while let Some(word) = s.word() {
         match word {
             b"End" => break,
             b"Vertices" => {
                 if !mesh.points.is_empty() {
-                    return Err(s.fault("Vertices come twice"));
+                    return Err(s.fault("There are two sections Vertices"));
                 }
                 let count = s.count("a number of vertices", 2 * dimension + 2)?;
                 mesh.points.reserve_exact(count);
@@ -64,47 +64,45 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 let higher = [&b"P2"[..], b"Q2", b"P3", b"Q3", b"P4", b"Q4"].iter().any(|order| word.ends_with(order));
                 if higher && [&b"Edges"[..], b"Triangles", b"Quadri"].iter().any(|kind| word.starts_with(kind)) {
                     return Err(s
-                        .fault(format!("Elements of higher order ({}) are not read", shown(word)))
+                        .fault(format!("Elements of higher order ({}) are not supported", shown(word)))
                         .remedy("Save the mesh with elements of order 1"));
                 }
                 to_keyword(&mut s);
             }
             _ => {
                 return Err(s
-                    .fault(format!("\"{}\" stands where a keyword (Vertices, ...) is expected", shown(word)))
-                    .remedy("The count of the section before it may be wrong"));
+                    .unexpected(word, "a keyword (Vertices, ...)")
+                    .remedy("The count of the previous section may be wrong"));
             }
         }
     }
     if largest.0 > mesh.points.len() {
-        let what = format!("An element has the vertex {}, and there are {}", largest.0, mesh.points.len());
+        let what = format!("An element refers to vertex {} of {}", largest.0, mesh.points.len());
         return Err(s.fault_at(largest.1, what));
     }
-    for tags in [&mut mesh.line_tags, &mut mesh.triangle_tags, &mut mesh.quad_tags] {
-        if tags.iter().all(|&tag| tag == 0) {
-            *tags = Vec::new();
-        }
-    }
+    mesh.clear_zero_tags();
     mesh.skipped = skipped.into_iter().collect();
     Ok(mesh)
 }
 
-/// The version and the dimension, which is given back.
+/// Reads version and dimension; returns the dimension.
 fn header(s: &mut Scanner) -> Result<usize, Fault> {
     if s.need("MeshVersionFormatted")? != b"MeshVersionFormatted" {
-        return Err(s.fault("The file does not begin with MeshVersionFormatted").remedy("Is it a text file of Medit?"));
+        return Err(s
+            .fault("The file does not begin with MeshVersionFormatted")
+            .remedy("Check that it is a Medit text file"));
     }
     s.whole("a version")?;
     if s.need("Dimension")? != b"Dimension" {
-        return Err(s.fault("Dimension is expected behind the version"));
+        return Err(s.fault("Expected Dimension after the version"));
     }
     match s.whole("a dimension")? {
         dimension @ (2 | 3) => Ok(dimension as usize),
-        other => Err(s.fault(format!("The dimension is {other} and not 2 or 3"))),
+        other => Err(s.fault(format!("The dimension is {other} instead of 2 or 3"))),
     }
 }
 
-/// Goes to the next keyword: over all words that begin like a number.
+/// Moves to the next keyword, past all words that do not start with a letter.
 fn to_keyword(s: &mut Scanner) {
     while s.peek().is_some_and(|word| !word[0].is_ascii_alphabetic()) {
         s.word();
@@ -126,7 +124,7 @@ fn elements<const N: usize>(
             let index = s.whole("a vertex")?;
             *corner = match u32::try_from(index) {
                 Ok(index @ 1..) => index - 1,
-                _ => return Err(s.fault(format!("An element has the vertex {index}, which does not exist"))),
+                _ => return Err(s.fault(format!("An element refers to vertex {index}, which does not exist"))),
             };
             if index as usize > largest.0 {
                 *largest = (index as usize, s.mark());
@@ -134,23 +132,23 @@ fn elements<const N: usize>(
         }
         list.push(corners);
         let tag = s.integer("a reference")?;
-        // A reference that is negative or too large says nothing to us.
+        // Negative or large references have no meaning here.
         tags.push(u32::try_from(tag).unwrap_or(0));
     }
     Ok(())
 }
 
-/// Reads the metric at `count` vertices from the bytes of a `.sol` file: a size h, which becomes the tensor 1/h^2, or a
-/// tensor (in the plane m11 m12 m22, in space m11 m12 m22 m13 m23 m33).
+/// Reads the metric at `count` vertices from the bytes of a `.sol` file: at each a size h, which becomes the tensor
+/// 1/h^2, or a tensor (in the plane m11 m12 m22, in space m11 m12 m22 m13 m23 m33).
 ///
 /// # Errors
-/// A fault with the line for what is not such a file, for another number of vertices, and for a tensor that is not
-/// positive definite.
+/// With the line: anything that is not such a file, another number of vertices, and a tensor that is not positive
+/// definite.
 pub fn read_metric(name: &str, bytes: &[u8], count: usize) -> Result<Vec<Metric3>, Fault> {
     read_metric_watched(name, bytes, count, &Reading::watched(&mut Nobody))
 }
 
-/// As [`read_metric`], while somebody watches.
+/// As [`read_metric`], with progress and cancellation.
 ///
 /// # Errors
 /// As [`read_metric`], and [`Fault::stopped`].
@@ -164,15 +162,15 @@ pub fn read_metric_watched(name: &str, bytes: &[u8], count: usize, pace: &dyn Pa
         }
         let values = s.count("a number of values", 2)?;
         if values != count {
-            let what = format!("The metric has {values} values, and the mesh {count} vertices");
-            return Err(s.fault(what).remedy("The two files do not belong together"));
+            let what = format!("The metric has {values} values, but the mesh has {count} vertices");
+            return Err(s.fault(what).remedy("Use the .sol that belongs to this mesh"));
         }
         let fields = s.whole("a number of fields")?;
         let kind = s.whole("a type of field")?;
         if fields != 1 || !matches!(kind, 1 | 3) {
             return Err(s
-                .fault(format!("{fields} field(s), the first of type {kind}, are no metric"))
-                .remedy("One field of type 1 (a size) or 3 (a tensor) is read"));
+                .fault(format!("{fields} field(s), the first of type {kind}, do not form a metric"))
+                .remedy("Give one field, of type 1 (sizes) or 3 (tensors)"));
         }
         let components = if kind == 1 { 1 } else { dimension * (dimension + 1) / 2 };
         s.fits(values as u64, 2 * components, "a number of values")?;
@@ -180,7 +178,7 @@ pub fn read_metric_watched(name: &str, bytes: &[u8], count: usize, pace: &dyn Pa
         return pace.cancel().check().and(read);
     }
     pace.cancel().check()?;
-    Err(Fault::new("There is no section SolAtVertices").at(name).remedy("A metric is given at the vertices"))
+    Err(Fault::new("There is no section SolAtVertices").at(name).remedy("Give the metric at the vertices"))
 }
 
 fn tensor(s: &mut Scanner, components: usize, vertex: usize) -> Result<Metric3, Fault> {
@@ -197,8 +195,7 @@ fn tensor(s: &mut Scanner, components: usize, vertex: usize) -> Result<Metric3, 
             Metric3 { xx: inverse, xy: 0.0, xz: 0.0, yy: inverse, yz: 0.0, zz: inverse }
         }
         3 => {
-            // Nothing is said about z: its size is the geometric mean of the others, so that no length in the plane
-            // and no volume is distorted.
+            // The file has no entry for z: its size is the geometric mean of the others.
             let zz = (m[0] * m[2] - m[1] * m[1]).sqrt();
             Metric3 { xx: m[0], xy: m[1], xz: 0.0, yy: m[2], yz: 0.0, zz }
         }
@@ -210,10 +207,10 @@ fn tensor(s: &mut Scanner, components: usize, vertex: usize) -> Result<Metric3, 
     })
 }
 
-/// Writes a mesh as `.mesh`: in dimension 2 where all z are zero, else 3. Tags become references.
+/// Writes a mesh as `.mesh`, in dimension 2 if all z are zero, otherwise 3. Tags become references.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     let dimension = dimension(mesh);
     writeln!(out, "MeshVersionFormatted 2\nDimension {dimension}\n\nVertices\n{}", mesh.points.len())?;
@@ -243,10 +240,10 @@ fn write_elements<const N: usize>(out: &mut dyn Write, name: &str, list: &[[u32;
     Ok(())
 }
 
-/// Writes the metric at the points of a mesh as `.sol`, in the dimension in which [`write`](fn@write) writes the mesh.
+/// Writes the metric at the points of a mesh as `.sol`, in the same dimension as [`write`](fn@write).
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn write_metric(out: &mut dyn Write, mesh: &MeshFile, metric: &[Metric3]) -> io::Result<()> {
     let dimension = dimension(mesh);
     writeln!(out, "MeshVersionFormatted 2\nDimension {dimension}\n\nSolAtVertices\n{}\n1 3", metric.len())?;

@@ -1,4 +1,4 @@
-//! Mesh files: one module a format, read and written whole. Every file is written beside its place and renamed.
+//! Mesh files: one module for each format, read and written as a whole. Files are replaced atomically.
 
 pub mod save;
 pub mod scan;

@@ -1,7 +1,7 @@
 //! Gmsh's MSH format, versions 2.2 and 4.1.
 //!
-//! Read in text and binary of either byte order; written as text. Deliberately absent: partitions, periodicity,
-//! elements of higher order (refused), volumes (counted in [`MeshFile::skipped`]).
+//! Reads text and binary of either byte order; writes text. Deliberately absent: partitions, periodicity, elements of
+//! higher order (rejected), volume elements (counted in [`MeshFile::skipped`]).
 //!
 //! [`MeshFile::skipped`]: crate::core::soup::mesh_file::MeshFile::skipped
 
@@ -13,19 +13,19 @@ mod write;
 pub use read::read;
 pub use write::{Version, write};
 
-/// The name of the node data that holds a metric, nine components a node in rows.
+/// The name of the node data that holds a metric: nine components for each node, row by row.
 const METRIC: &str = "metric";
 
-/// What an element type of Gmsh is to us.
+/// How an element type of Gmsh is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shape {
     Point,
     Line,
     Triangle,
     Quad,
-    /// A line or a surface element with nodes besides its corners.
+    /// A line or surface element with nodes other than its corners.
     HigherOrder,
-    /// A volume element: its name and its number of nodes.
+    /// A volume element: name and number of nodes.
     Volume(&'static str, usize),
 }
 

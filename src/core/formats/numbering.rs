@@ -1,24 +1,24 @@
-//! The numbers that files give to nodes and elements: sparse, in any order, from anywhere.
+//! The numbers of nodes and elements in a file, which may be sparse and in any order.
 
-/// From a file's numbers to indices.
+/// Maps a file's numbers to indices.
 #[derive(Clone, Debug)]
 pub enum Numbering {
-    /// Thing `i` is called `first + i`, as nearly always.
+    /// Item `i` has the number `first + i`: the usual case.
     Run {
-        /// The number of the first.
+        /// Number of the first item.
         first: u64,
-        /// How many there are.
+        /// Number of items.
         count: u32,
     },
-    /// Number and index of each, by number.
+    /// Pairs of number and index, sorted by number.
     Sparse(Vec<(u64, u32)>),
 }
 
 impl Numbering {
-    /// The numbering in which thing `i` is called `numbers[i]`.
+    /// The numbering in which item `i` has the number `numbers[i]`.
     ///
     /// # Errors
-    /// The first number that is used twice.
+    /// The smallest number that is used twice.
     pub fn new(numbers: &[u64]) -> Result<Self, u64> {
         let first = numbers.first().copied().unwrap_or(0);
         if numbers.iter().zip(0..).all(|(&number, i)| number.checked_sub(first) == Some(i)) {
@@ -29,12 +29,12 @@ impl Numbering {
             pairs.sort_unstable();
         }
         match pairs.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            Some(twice) => Err(twice[0].0),
+            Some(repeated) => Err(repeated[0].0),
             None => Ok(Numbering::Sparse(pairs)),
         }
     }
 
-    /// The index of the thing called `number`.
+    /// The index of the item with a number.
     #[inline]
     pub fn index(&self, number: u64) -> Option<u32> {
         match self {
@@ -49,7 +49,7 @@ impl Numbering {
     }
 }
 
-/// Puts `items` (and `tags`, unless empty) into the order of their numbers, which files may give in any order.
+/// Sorts `items` (and `tags`, unless empty) by their numbers.
 pub fn sort_by_number<T: Copy>(numbers: &mut [u64], items: &mut [T], tags: &mut [u32]) {
     if numbers.is_sorted() {
         return;
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn things_are_put_in_the_order_of_their_numbers() {
+    fn items_are_sorted_by_their_numbers() {
         let (mut numbers, mut items, mut tags) = ([3, 1, 2], ['c', 'a', 'b'], [30, 10, 20]);
         sort_by_number(&mut numbers, &mut items, &mut tags);
         assert_eq!((numbers, items, tags), ([1, 2, 3], ['a', 'b', 'c'], [10, 20, 30]));

@@ -1,79 +1,61 @@
-//! Wavefront OBJ: vertices, faces with their texture coordinates and lines, and their groups or objects. Deliberately
-//! absent: everything else (normals, materials) is passed over.
+//! Wavefront OBJ: vertices, faces with texture coordinates, lines, and their groups or objects. Deliberately absent:
+//! everything else (normals, materials) is ignored.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use glam::{DVec2, DVec3};
 
-use super::scan::{Scanner, parse_integer, parse_real, shown};
+use super::scan::{Scanner, parse_integer, parse_real};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::Shortest;
 use crate::core::progress::Pace;
 use crate::core::soup::mesh_file::{Group, MeshFile, Texture, tag_of};
 
-/// Reads vertices, triangles, quadrilaterals and polygons.
+/// Reads vertices, triangles, quadrilaterals, polygons and lines.
 ///
 /// # Errors
-/// A fault with the line for a malformed vertex or face and for a face whose vertex does not exist.
+/// With the line: a malformed vertex, face or line, or a reference to a missing vertex.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes).watched(pace);
     let mut mesh = MeshFile::default();
     let mut corners: Vec<u32> = Vec::new();
     let mut faces = 0;
-    // A face may stand before its vertices: the largest vertex and where it stands are checked at the end.
+    // A face may precede its vertices: the largest index, with its position in the file, is checked at the end.
     let mut largest = (0, 0);
-    let (mut names, mut line_names) = (Names::of(2), Names::of(1));
+    let (mut names, mut line_names) = (GroupNames::of(2), GroupNames::of(1));
     let mut texture = Texture::default();
-    let mut places: Vec<u32> = Vec::new();
+    let mut corners_uv: Vec<u32> = Vec::new();
     while let Some(line) = s.line() {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         match words.next() {
             Some(b"v") => {
                 let mut p = DVec3::ZERO;
                 for axis in 0..3 {
-                    let word = words.next().unwrap_or_default();
-                    p[axis] = match parse_real(word) {
-                        Some(x) if x.is_finite() => x,
-                        _ => return Err(s.fault(format!("\"{}\" stands where a coordinate is expected", shown(word)))),
-                    };
+                    p[axis] = s.coordinate(words.next().unwrap_or_default())?;
                 }
                 mesh.points.push(p);
             }
             Some(b"vt") => {
-                // One that is no place on a texture is none: the faces there have no texture then.
+                // A malformed coordinate becomes NaN, and its faces have no texture.
                 let mut coordinate = || words.next().and_then(parse_real).unwrap_or(f64::NAN);
                 texture.uv.push(DVec2::new(coordinate(), coordinate()));
             }
             Some(b"f") => {
-                places.clear();
-                places.extend(words.clone().map(|word| place(word, texture.uv.len())));
+                corners_uv.clear();
+                corners_uv.extend(words.clone().map(|word| texture_corner(word, texture.uv.len())));
                 take_corners(&s, words, mesh.points.len(), "face", &mut largest, &mut corners)?;
                 let tag = names.tag(&mut mesh);
                 faces += 1;
-                match corners[..] {
-                    [a, b, c] => {
-                        mesh.counting.triangles.push(mesh.triangles.len(), faces);
-                        mesh.triangles.push([a, b, c]);
-                        mesh.triangle_tags.push(tag);
-                        texture.set_triangle(mesh.triangles.len() - 1, [places[0], places[1], places[2]]);
-                    }
-                    [a, b, c, d] => {
-                        mesh.counting.quads.push(mesh.quads.len(), faces);
-                        mesh.quads.push([a, b, c, d]);
-                        mesh.quad_tags.push(tag);
-                        texture.set_quad(mesh.quads.len() - 1, [places[0], places[1], places[2], places[3]]);
-                    }
-                    [] | [_] | [_, _] => return Err(s.fault("A face has fewer than three vertices")),
-                    _ => {
-                        mesh.counting.polygons.push(mesh.polygons.len(), faces);
-                        mesh.polygons.push(corners.clone());
-                        mesh.polygon_tags.push(tag);
-                        texture.polygons.push(places.clone());
-                    }
+                let tags = mesh.push_face(&corners, faces);
+                tags.ok_or_else(|| s.fault("A face has fewer than three vertices"))?.push(tag);
+                match corners_uv[..] {
+                    [a, b, c] => texture.set_triangle(mesh.triangles.len() - 1, [a, b, c]),
+                    [a, b, c, d] => texture.set_quad(mesh.quads.len() - 1, [a, b, c, d]),
+                    _ => texture.polygons.push(corners_uv.clone()),
                 }
             }
-            // A group within an object is the finer of the two; a face in several groups is in the first.
+            // A group within an object overrides it; a face in several groups belongs to the first.
             Some(b"g" | b"o") => {
                 names.next = words.next().map(|name| String::from_utf8_lossy(name).into_owned());
                 line_names.next.clone_from(&names.next);
@@ -90,7 +72,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         }
     }
     if largest.0 > mesh.points.len() {
-        let what = format!("A face or line has the vertex {}, and there are {}", largest.0, mesh.points.len());
+        let what = format!("A face or line refers to vertex {} of {}", largest.0, mesh.points.len());
         return Err(s.fault_at(largest.1, what));
     }
     mesh.counting.shared = true;
@@ -109,34 +91,34 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     Ok(mesh)
 }
 
-/// The groups that have faces, or lines, by the order of their first ones.
-struct Names {
+/// The groups of faces, or of lines, in the order of their first members.
+struct GroupNames {
     dimension: u8,
     tags: BTreeMap<String, u32>,
-    /// The group of those that follow, until the first of them is read.
+    /// The group of the following elements, until the first of them is read.
     next: Option<String>,
-    now: u32,
+    current: u32,
 }
 
-impl Names {
+impl GroupNames {
     fn of(dimension: u8) -> Self {
-        Names { dimension, tags: BTreeMap::new(), next: None, now: 0 }
+        GroupNames { dimension, tags: BTreeMap::new(), next: None, current: 0 }
     }
 
-    /// The tag of a face or line; a group that had none comes to the mesh's groups.
+    /// The tag of the next face or line; adds its group to the mesh if this is its first member.
     fn tag(&mut self, mesh: &mut MeshFile) -> u32 {
         if let Some(name) = self.next.take() {
             let new = self.tags.len() as u32 + 1;
-            self.now = *self.tags.entry(name.clone()).or_insert(new);
-            if self.now == new {
+            self.current = *self.tags.entry(name.clone()).or_insert(new);
+            if self.current == new {
                 mesh.groups.push(Group { dimension: self.dimension, tag: new, name });
             }
         }
-        self.now
+        self.current
     }
 }
 
-/// The vertices of a face or line; the largest so far, with the place of its line, grows with them.
+/// Reads the vertices of a face or line into `corners`; `largest` keeps the largest number so far and its line's mark.
 fn take_corners<'w>(
     s: &Scanner,
     words: impl Iterator<Item = &'w [u8]>,
@@ -147,8 +129,7 @@ fn take_corners<'w>(
 ) -> Result<(), Fault> {
     corners.clear();
     for word in words {
-        let vertex = corner(word, so_far)
-            .ok_or_else(|| s.fault(format!("\"{}\" stands where a vertex of the {of} is expected", shown(word))))?;
+        let vertex = corner(word, so_far).ok_or_else(|| s.unexpected(word, &format!("a vertex of the {of}")))?;
         if vertex as usize >= largest.0 {
             *largest = (vertex as usize + 1, s.mark());
         }
@@ -157,25 +138,23 @@ fn take_corners<'w>(
     Ok(())
 }
 
-/// The zero-based vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative ones count back from the last vertex so far.
+/// The zero-based vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`; a negative number counts back from the last vertex so
+/// far.
 fn corner(word: &[u8], so_far: usize) -> Option<u32> {
     let vertex = parse_integer(word.split(|&b| b == b'/').next()?)?;
     let index = if vertex < 0 { vertex.checked_add(so_far as i64)? } else { vertex - 1 };
     u32::try_from(index).ok().filter(|&index| index < u32::MAX)
 }
 
-/// The zero-based texture coordinate of `v/vt` or `v/vt/vn`; [`Texture::NONE`] where there is none.
-fn place(word: &[u8], so_far: usize) -> u32 {
-    let place = word.split(|&b| b == b'/').nth(1).unwrap_or_default();
-    // Numbered as vertices are.
-    corner(place, so_far).unwrap_or(Texture::NONE)
+/// The zero-based texture coordinate of `v/vt` or `v/vt/vn`, numbered like vertices; [`Texture::NONE`] without one.
+fn texture_corner(word: &[u8], so_far: usize) -> u32 {
+    corner(word.split(|&b| b == b'/').nth(1).unwrap_or_default(), so_far).unwrap_or(Texture::NONE)
 }
 
-/// Writes points, triangles and quadrilaterals, and the lines that are in a group of their own, in groups where they
-/// have names.
+/// Writes points, triangles and quadrilaterals, and the lines of named groups, with the names of their groups.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     for p in &mesh.points {
         writeln!(out, "v {} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
@@ -195,11 +174,11 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     Ok(())
 }
 
-/// Begins a group, unless it is the one at hand.
+/// Starts a group, unless it is the current one.
 fn enter<'n>(out: &mut dyn Write, group: &mut Option<&'n str>, name: Option<&'n str>) -> io::Result<()> {
     if let Some(name) = name.filter(|name| *group != Some(*name)) {
         *group = Some(name);
-        // White space would part it into several groups.
+        // White space would separate several group names.
         writeln!(out, "g {}", name.split_whitespace().collect::<Vec<_>>().join("_"))?;
     }
     Ok(())

@@ -13,28 +13,28 @@ use ply_rs_bw::ply::{
 };
 use rustc_hash::FxHashMap;
 
-use super::scan::shown;
+use super::scan::{TRUNCATED, shown};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::Shortest;
 use crate::core::progress::Pace;
 use crate::core::soup::counting::Count;
 use crate::core::soup::mesh_file::{Group, MeshFile, tag_of};
 
-/// So many elements are parsed at a time, so that what the parser makes of them does not add up.
-const AT_A_TIME: usize = 256;
-/// Dimensions of groups and how comments call them.
+/// Elements parsed at a time, which bounds the parser's memory.
+const BATCH: usize = 256;
+/// Dimensions of groups and their keywords in comments.
 const KINDS: [(u8, &str); 2] = [(1, "line"), (2, "region")];
-/// Properties of faces with the tags of lines along their sides.
+/// Face properties: the tags of lines along the sides.
 const SIDES: [&str; 4] = ["line1", "line2", "line3", "line4"];
 
 /// Reads a mesh from the bytes of a PLY file: points, triangles, quadrilaterals and polygons, with the lines, tags and
 /// names that [`write`](fn@write) writes.
 ///
 /// # Errors
-/// What is wrong with the file, with the line where it is text; and faces whose vertex does not exist.
+/// What is wrong with the file, with the line of a text file; and faces that refer to a missing vertex.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut reader = Reader::new(bytes);
-    let header = Parser::<Passed>::new().read_header(&mut reader).map_err(|error| told(name, &error, true))?;
+    let header = Parser::<Ignored>::new().read_header(&mut reader).map_err(|error| parse_fault(name, &error, true))?;
     check_counts(name, &header, reader.get_ref().len())?;
     let mut mesh =
         MeshFile { groups: header.comments.iter().filter_map(|text| group(text)).collect(), ..MeshFile::default() };
@@ -44,9 +44,9 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
             "vertex" => {
                 for axis in ["x", "y", "z"] {
                     if !element.properties.contains_key(axis) {
-                        return Err(Fault::new(format!("Its vertices have no property \"{axis}\""))
+                        return Err(Fault::new(format!("The vertices have no property \"{axis}\""))
                             .at(name)
-                            .remedy("Write it again, with x, y and z"));
+                            .remedy("Export them with x, y and z"));
                     }
                 }
                 mesh.points.reserve_exact(element.count);
@@ -55,7 +55,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                         mesh.points.push(vertex.0);
                         return Ok(());
                     }
-                    let what = format!("Vertex {} has a coordinate that is not a finite number", mesh.points.len() + 1);
+                    let what = format!("Vertex {} has a non-finite coordinate", mesh.points.len() + 1);
                     Err(Fault::new(what).at(name))
                 })?;
             }
@@ -69,7 +69,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 })?;
             }
             _ => {
-                each(name, &header, element, &mut reader, &mut go_on, |_: Passed| Ok(()))?;
+                each(name, &header, element, &mut reader, &mut go_on, |_: Ignored| Ok(()))?;
                 if kind == "tristrips" {
                     mesh.skipped.push(("triangle strip".to_owned(), element.count));
                 }
@@ -83,35 +83,34 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         mesh.triangles.as_flattened().iter().chain(mesh.quads.as_flattened()).chain(mesh.polygons.iter().flatten());
     let corners = elements.chain(mesh.lines.as_flattened());
     if let Some(corner) = corners.copied().find(|&corner| corner as usize >= points) {
-        return Err(
-            Fault::new(format!("A face has the vertex {corner}, and the last one is {}", points as i64 - 1)).at(name)
-        );
+        return Err(Fault::new(format!(
+            "A face refers to vertex {corner}, but the last vertex is {}",
+            points as i64 - 1
+        ))
+        .at(name));
     }
     Ok(mesh)
 }
 
-/// Refuses counts that the rest of the file cannot hold.
+/// Checks that the rest of the file can hold the counts of the header.
 fn check_counts(name: &str, header: &Header, left: usize) -> Result<(), Fault> {
     for (kind, element) in &header.elements {
         let least: usize = match header.encoding {
-            // A digit and what parts it from the next one.
+            // A digit and a separator.
             Encoding::Ascii => 2 * element.properties.len(),
             _ => element.properties.values().map(|property| size(&property.data_type)).sum(),
         };
-        // The last line of a text may end without an end of line.
+        // The last line of a text file may have no line break.
         if element.count.checked_mul(least).is_none_or(|bytes| bytes > left + 1) || (least == 0 && element.count > 0) {
-            let what = format!(
-                "{} elements \"{}\" are announced, and {left} bytes follow",
-                element.count,
-                shown(kind.as_bytes())
-            );
-            return Err(Fault::new(what).at(name).remedy("It seems to be cut off: write it again"));
+            let (count, kind) = (element.count, shown(kind.as_bytes()));
+            let what = format!("The header declares {count} elements \"{kind}\", but only {left} bytes follow");
+            return Err(Fault::new(what).at(name).remedy(TRUNCATED));
         }
     }
     Ok(())
 }
 
-/// Bytes that a property takes at least in a binary file.
+/// Least number of bytes of a property in a binary file.
 fn size(kind: &PropertyType) -> usize {
     let (PropertyType::Scalar(scalar) | PropertyType::List(scalar, _)) = kind;
     match scalar {
@@ -135,22 +134,23 @@ fn each<E: PropertyAccess>(
     let mut part = element.clone();
     let mut left = element.count;
     while left > 0 && go_on(reader) {
-        part.count = left.min(AT_A_TIME);
+        part.count = left.min(BATCH);
         left -= part.count;
         let text = header.encoding == Encoding::Ascii;
         let parsed =
-            parser.read_payload_for_element(reader, &part, header).map_err(|error| told(name, &error, text))?;
+            parser.read_payload_for_element(reader, &part, header).map_err(|error| parse_fault(name, &error, text))?;
         parsed.into_iter().try_for_each(&mut take)?;
     }
     Ok(())
 }
 
-/// What the parser says, in one line.
-fn told(name: &str, error: &ParseError, text: bool) -> Fault {
-    let said = error.to_string();
-    let said = said.rsplit("Error: ").next().unwrap_or_default().lines().next().unwrap_or_default();
-    let said = said.split_once(": ").filter(|(line, _)| line.starts_with("Line ")).map_or(said, |(_, said)| said);
-    let mut what: String = said.chars().filter(|c| !c.is_control()).take(160).collect();
+/// The parser's error as a fault of one line, without the parser's own prefixes.
+fn parse_fault(name: &str, error: &ParseError, text: bool) -> Fault {
+    let message = error.to_string();
+    let message = message.rsplit("Error: ").next().unwrap_or_default().lines().next().unwrap_or_default();
+    let message =
+        message.split_once(": ").filter(|(line, _)| line.starts_with("Line ")).map_or(message, |(_, rest)| rest);
+    let mut what: String = message.chars().filter(|c| !c.is_control()).take(160).collect();
     if what.is_empty() {
         what = "This is not PLY".to_owned();
     }
@@ -161,12 +161,12 @@ fn told(name: &str, error: &ParseError, text: bool) -> Fault {
     Fault::new(what.trim_end_matches('.')).at(place)
 }
 
-/// An element that is not used.
-struct Passed;
+/// An element that is not read.
+struct Ignored;
 
-impl PropertyAccess for Passed {
+impl PropertyAccess for Ignored {
     fn new() -> Self {
-        Passed
+        Ignored
     }
 }
 
@@ -233,38 +233,21 @@ impl PropertyAccess for Face {
 impl Face {
     fn into_mesh(self, mesh: &mut MeshFile, tagged: bool, number: u64) -> Result<(), String> {
         let corners: Option<Vec<u32>> = self.corners.iter().map(|&corner| u32::try_from(corner).ok()).collect();
-        let corners = corners.ok_or("has a negative vertex")?;
+        let corners = corners.ok_or("refers to a negative vertex")?;
         for (k, line) in self.lines.into_iter().enumerate().filter(|(k, line)| *line >= 1.0 && *k < corners.len()) {
             mesh.lines.push([corners[k], corners[(k + 1) % corners.len()]]);
             mesh.line_tags.push(line as u32);
         }
-        let tags = match corners[..] {
-            [a, b, c] => {
-                mesh.counting.triangles.push(mesh.triangles.len(), number);
-                mesh.triangles.push([a, b, c]);
-                &mut mesh.triangle_tags
-            }
-            [a, b, c, d] => {
-                mesh.counting.quads.push(mesh.quads.len(), number);
-                mesh.quads.push([a, b, c, d]);
-                &mut mesh.quad_tags
-            }
-            [] | [_] | [_, _] => return Err("has fewer than three vertices".to_owned()),
-            _ => {
-                mesh.counting.polygons.push(mesh.polygons.len(), number);
-                mesh.polygons.push(corners);
-                &mut mesh.polygon_tags
-            }
-        };
+        let tags = mesh.push_face(&corners, number).ok_or("has fewer than three vertices")?;
         if tagged {
-            // As any number that is none: the cast bounds it.
+            // The cast saturates.
             tags.push(self.region as u32);
         }
         Ok(())
     }
 }
 
-/// The group that a comment names.
+/// The group declared by a comment.
 fn group(comment: &str) -> Option<Group> {
     let (kind, rest) = comment.trim().split_once(' ')?;
     let dimension = KINDS.iter().find(|(_, word)| *word == kind)?.0;
@@ -286,11 +269,11 @@ fn number(value: &Property) -> Option<f64> {
     })
 }
 
-/// Writes points, triangles and quadrilaterals as text, in double precision, with the tag of each as `region`; lines
-/// that are in a group of their own as tags of the first face's side there; and the names of these groups as comments.
+/// Writes points, triangles and quadrilaterals as text, in double precision, with tags as `region`; lines of named
+/// groups as tags of the side of their first face; and the names of the groups as comments.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     let lines = mesh.own_lines();
     writeln!(out, "ply\nformat ascii 1.0")?;

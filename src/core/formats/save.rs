@@ -1,17 +1,18 @@
-//! Files are written beside their place and renamed: whoever looks sees the old file or the whole new one.
+//! Files replaced atomically: written to a temporary file and renamed, so that a reader sees the old file or the
+//! complete new one.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::progress::{Nobody, Pace, Reading};
 
-/// So much of a file is read before that is told.
-const AT_A_TIME: u64 = 1 << 22;
+/// Bytes read between two reports of progress.
+const BATCH: u64 = 1 << 22;
 
-/// Files that are being written, and whether writing has been given up.
+/// Temporary files in use, and whether [`abandon`] was called.
 struct Unfinished {
     files: Vec<PathBuf>,
     abandoned: bool,
@@ -23,27 +24,27 @@ fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the temporary files of every [`save`] that is under way and lets no other begin or end: for the handler of
-/// Ctrl-C, just before it ends the process.
+/// Removes the temporary files of every [`save`] in progress, and makes every later start or end of one fail: for the
+/// handler of Ctrl-C, just before the process exits.
 pub fn abandon() {
     let mut unfinished = unfinished();
     unfinished.abandoned = true;
     for file in unfinished.files.drain(..) {
-        // The process is about to end and nobody could be told.
+        // The process is about to exit: there is nobody to report an error to.
         let _ = fs::remove_file(file);
     }
 }
 
-/// Writes the file `path` by `write`: into a temporary file in the same folder, which takes the place of `path` only when
-/// all is written and on the disk. An existing file keeps its permissions, a symbolic link stays and its target is
-/// replaced. What is no regular file (a pipe, `/dev/stdout`) is written straight.
+/// Writes the file `path` with `write`: into a temporary file in the same folder, which replaces `path` only when it is
+/// complete and flushed to disk. An existing file keeps its permissions; through a symbolic link, the target is
+/// replaced. Anything but a regular file (a pipe, `/dev/stdout`) is written directly.
 ///
 /// # Errors
-/// A fault that names the path: it is a folder, its folder is missing, no permission, no space, or what `write` says.
-/// Nothing is left behind and an existing file is as it was.
+/// A fault with the path: it is a folder, its folder is missing, no permission, no space, or an error of `write`. An
+/// existing file is unchanged, and no temporary file remains.
 pub fn save(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Fault> {
     let explain = |error: io::Error| explain(path, "written", &error);
-    // The file behind a link is replaced, not the link.
+    // Replace the target of a link, not the link.
     let (target, old) = match fs::metadata(path) {
         Ok(meta) if meta.is_dir() => return Err(explain(ErrorKind::IsADirectory.into())),
         Ok(meta) if !meta.is_file() => {
@@ -51,7 +52,7 @@ pub fn save(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
             return buffered(out, write).map(drop).map_err(explain);
         }
         Ok(meta) => {
-            // Renaming over a file that may not be written would succeed all the same.
+            // Renaming over a write-protected file would succeed.
             OpenOptions::new().write(true).open(path).map_err(explain)?;
             (fs::canonicalize(path).map_err(explain)?, Some(meta.permissions()))
         }
@@ -72,7 +73,7 @@ pub fn save(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
         file.sync_all()?;
         let unfinished = unfinished();
         if unfinished.abandoned {
-            return Err(io::Error::other("writing was given up"));
+            return Err(io::Error::other("writing was cancelled"));
         }
         temporary.persist(&target).map_err(|refused| refused.error)?;
         drop(unfinished);
@@ -86,14 +87,14 @@ pub fn save(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
 fn begin(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut unfinished = unfinished();
     if unfinished.abandoned {
-        return Err(io::Error::other("writing was given up"));
+        return Err(io::Error::other("writing was cancelled"));
     }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".quadfront-").suffix(".part");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any new file: the umask takes away what it takes away.
+        // As for any new file; the umask applies.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let temporary = builder.tempfile_in(folder)?;
@@ -107,7 +108,7 @@ fn buffered<W: Write>(out: W, write: impl FnOnce(&mut dyn Write) -> io::Result<(
     out.into_inner().map_err(|unwritten| unwritten.into_error())
 }
 
-/// Whether there is such a file and it may be read.
+/// Checks that a file exists and can be read.
 ///
 /// # Errors
 /// As [`load`].
@@ -122,12 +123,12 @@ pub fn find(path: &Path) -> Result<(), Fault> {
 /// Reads a whole file.
 ///
 /// # Errors
-/// A fault that names the path: it is missing, a folder, not permitted, or empty.
+/// A fault with the path: it is missing, a folder, or not permitted.
 pub fn load(path: &Path) -> Result<Vec<u8>, Fault> {
     load_watched(path, &Reading::watched(&mut Nobody))
 }
 
-/// As [`load`], while somebody watches.
+/// As [`load`], with progress and cancellation.
 ///
 /// # Errors
 /// As [`load`], and [`Fault::stopped`].
@@ -139,9 +140,9 @@ pub fn load_watched(path: &Path, pace: &dyn Pace) -> Result<Vec<u8>, Fault> {
                 return Err(ErrorKind::IsADirectory.into());
             }
             let mut bytes = Vec::new();
-            // A guess, which the system may have made up.
+            // Only a hint: for special files, the system reports any size.
             bytes.try_reserve_exact(meta.len() as usize)?;
-            while pace.goes_on(0, meta.len() as usize) && (&mut file).take(AT_A_TIME).read_to_end(&mut bytes)? > 0 {}
+            while pace.goes_on(0, meta.len() as usize) && (&mut file).take(BATCH).read_to_end(&mut bytes)? > 0 {}
             Ok(bytes)
         })
         .map_err(|error| explain(path, "read", &error))?;
@@ -149,33 +150,33 @@ pub fn load_watched(path: &Path, pace: &dyn Pace) -> Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
-/// What an error of the system means for whoever named `path`.
+/// A fault for a system error; `done` is "read" or "written".
 fn explain(path: &Path, done: &str, error: &io::Error) -> Fault {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (what, remedy) = match error.kind() {
         ErrorKind::NotFound if done == "written" => (
             format!("The folder \"{}\" does not exist", folder.display()),
-            "Make it first, or name another place".to_string(),
+            "Create it first, or choose another path".to_string(),
         ),
-        ErrorKind::NotFound => ("There is no such file".to_string(), "Check its name and folder".to_string()),
-        ErrorKind::IsADirectory => ("This is a folder".to_string(), "Name a file in it".to_string()),
+        ErrorKind::NotFound => ("No such file".to_string(), "Check its name and folder".to_string()),
+        ErrorKind::IsADirectory => ("This is a folder".to_string(), "Give the path of a file in it".to_string()),
         ErrorKind::NotADirectory => {
-            (format!("\"{}\" is not a folder", folder.display()), "Name a file in a folder".to_string())
+            (format!("\"{}\" is not a folder", folder.display()), "Give the path of a file in a folder".to_string())
         }
         ErrorKind::PermissionDenied => (
-            format!("There is no permission for this to be {done}"),
-            "Change its permissions, or name another place".to_string(),
+            format!("Permission denied: it cannot be {done}"),
+            "Change its permissions, or choose another path".to_string(),
         ),
-        ErrorKind::ReadOnlyFilesystem => ("The disk can only be read".to_string(), "Name another place".to_string()),
+        ErrorKind::ReadOnlyFilesystem => ("The disk is read-only".to_string(), "Choose another path".to_string()),
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            ("The disk is full".to_string(), "Make room, or name another place".to_string())
+            ("The disk is full".to_string(), "Free some space, or choose another path".to_string())
         }
         ErrorKind::InvalidFilename => {
-            ("This is no name for a file".to_string(), "Name it shorter and plainer".to_string())
+            ("Invalid file name".to_string(), "Use a shorter name without special characters".to_string())
         }
         _ => (format!("It cannot be {done}: {error}"), String::new()),
     };
-    Fault::new(what).at(path.display().to_string()).remedy(remedy)
+    Fault::new(what).of_kind(FaultKind::Io).at(path.display().to_string()).remedy(remedy)
 }
 
 #[cfg(test)]
@@ -198,21 +199,21 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_a_missing_folder_and_a_missing_file_are_told_apart() {
+    fn a_folder_a_missing_folder_and_a_missing_file_have_different_faults() {
         let folder = tempfile::tempdir().unwrap();
-        let told = |path: &Path| save(path, |_| Ok(())).unwrap_err().to_string();
-        assert!(told(folder.path()).contains("This is a folder"));
-        assert!(told(&folder.path().join("no/a.msh")).contains("does not exist. Make it first"));
+        let message = |path: &Path| save(path, |_| Ok(())).unwrap_err().to_string();
+        assert!(message(folder.path()).contains("This is a folder"));
+        assert!(message(&folder.path().join("no/a.msh")).contains("does not exist. Create it first"));
         let file = folder.path().join("file");
         save(&file, |_| Ok(())).unwrap();
-        assert!(told(&file.join("a.msh")).contains("is not a folder"));
-        assert!(load(&folder.path().join("b")).unwrap_err().to_string().contains("no such file"));
+        assert!(message(&file.join("a.msh")).contains("is not a folder"));
+        assert!(load(&folder.path().join("b")).unwrap_err().to_string().contains("No such file"));
         assert!(load(folder.path()).unwrap_err().to_string().contains("This is a folder"));
     }
 
     #[cfg(unix)]
     #[test]
-    fn permissions_and_links_stay_and_what_is_no_file_is_written_straight() {
+    fn permissions_and_links_are_kept_and_devices_are_written_directly() {
         use std::os::unix::fs::PermissionsExt;
         let folder = tempfile::tempdir().unwrap();
         let (path, link) = (folder.path().join("a"), folder.path().join("link"));

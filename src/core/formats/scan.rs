@@ -1,15 +1,20 @@
-//! Numbers and words out of a buffer of bytes, with the line in every complaint: what all readers stand on.
+//! The scanner under all readers: words and numbers from a buffer of bytes, with the line number in every fault.
 //!
-//! Nothing here allocates. A count that a file announces is checked against the bytes that are left before anybody
-//! makes room for it, so that a lying header costs an error and not the memory.
+//! Nothing here allocates. A count declared by a file is checked against the remaining bytes before memory is reserved
+//! for it, so that a wrong header gives an error instead of exhausting memory.
 
 use crate::core::fault::Fault;
 use crate::core::progress::Pace;
 
-/// How often a reader tells how far it is, in bytes.
-const TELL: usize = 1 << 16;
+/// Bytes between two reports of progress.
+const REPORT_EVERY: usize = 1 << 16;
 
-/// How the numbers of a binary file are laid out.
+/// The remedy for a file that ends too early.
+pub const TRUNCATED: &str = "The file seems to be truncated: export it again";
+/// The remedy for a file that contradicts itself.
+pub const DAMAGED: &str = "The file seems to be damaged: export it again";
+
+/// Byte order of the numbers in a binary file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ByteOrder {
     /// Least significant byte first.
@@ -18,89 +23,104 @@ pub enum ByteOrder {
     Big,
 }
 
-/// A place in a buffer, moving forward over words, lines or binary numbers. Where it is watched it tells how far it is; told to end
-/// it stands at the end of the file, and whoever watches knows why.
+/// A cursor that moves forward through a buffer over words, lines or binary numbers. Given a [`Pace`], it reports
+/// progress; when cancelled, it jumps to the end of the file.
 #[derive(Clone)]
 pub struct Scanner<'a> {
     name: &'a str,
     bytes: &'a [u8],
     at: usize,
-    /// Where the last word, line or number began: complaints name its line.
+    /// Start of the last word, line or number, for faults.
     last: usize,
     comment: Option<u8>,
-    /// Whether there are no lines to speak of.
+    /// Whether faults give a byte offset instead of a line.
     binary: bool,
     pace: Option<&'a dyn Pace>,
-    /// The length of the whole file.
+    /// Length of the file in bytes.
     whole: usize,
-    /// Where it tells next.
-    tell: usize,
+    /// Offset of the next report of progress.
+    report_at: usize,
 }
 
 impl<'a> Scanner<'a> {
-    /// A scanner at the start of `bytes` (after a byte order mark, if there is one); `name` is how messages call it.
+    /// A scanner at the start of `bytes` (after a byte order mark, if any); `name` is the file's name in messages.
     pub fn new(name: &'a str, bytes: &'a [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Scanner { name, bytes, at, last: at, comment: None, binary: false, pace: None, whole: bytes.len(), tell: TELL }
+        Scanner {
+            name,
+            bytes,
+            at,
+            last: at,
+            comment: None,
+            binary: false,
+            pace: None,
+            whole: bytes.len(),
+            report_at: REPORT_EVERY,
+        }
     }
 
-    /// The same scanner, watched.
+    /// Enables progress and cancellation.
     #[must_use]
     pub fn watched(mut self, pace: &'a dyn Pace) -> Self {
         self.pace = Some(pace);
         self
     }
 
-    /// Tells how far it is, now and then.
+    /// Reports progress when due; when cancelled, jumps to the end.
     #[inline]
-    fn go_on(&mut self) {
-        if self.at >= self.tell {
-            self.tell = self.at + TELL;
+    fn check_pace(&mut self) {
+        if self.at >= self.report_at {
+            self.report_at = self.at + REPORT_EVERY;
             if self.pace.is_some_and(|pace| !pace.goes_on(self.at, self.whole)) {
                 self.at = self.bytes.len();
             }
         }
     }
 
-    /// The same scanner, to which words that begin with `mark` are comments up to the end of their line.
+    /// Treats a word that starts with `mark` as a comment up to the end of its line.
     #[must_use]
     pub fn with_comments(mut self, mark: u8) -> Self {
         self.comment = Some(mark);
         self
     }
 
-    /// From now on complaints count bytes instead of lines.
+    /// From now on, faults give a byte offset instead of a line.
     pub fn set_binary(&mut self) {
         self.binary = true;
     }
 
-    /// How messages call the file.
+    /// The file's name in messages.
     pub fn name(&self) -> &'a str {
         self.name
     }
 
-    /// How many bytes are left.
+    /// Number of bytes left.
     pub fn left(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    /// Where the last word, line or number began, for [`Scanner::fault_at`].
+    /// Start of the last word, line or number, for [`Scanner::fault_at`].
     pub fn mark(&self) -> usize {
         self.last
     }
 
-    /// A complaint about the last word, line or number.
+    /// A fault at the last word, line or number.
     pub fn fault(&self, what: impl Into<String>) -> Fault {
         self.fault_at(self.last, what)
     }
 
-    /// A complaint about what stands at a mark. Lines are counted only now: who reads a good file pays nothing.
+    /// A fault at a mark. Lines are counted only here, so that reading a valid file does not pay for it.
     pub fn fault_at(&self, mark: usize, what: impl Into<String>) -> Fault {
         if self.binary {
             return Fault::new(what).at(format!("{}, byte {mark}", self.name));
         }
         let line = 1 + self.bytes[..mark.min(self.bytes.len())].iter().filter(|&&b| b == b'\n').count();
         Fault::new(what).at(format!("{}, line {line}", self.name))
+    }
+
+    /// The fault of the last word, `found` where `expected` ("a coordinate") must be.
+    pub fn unexpected(&self, found: &[u8], expected: &str) -> Fault {
+        self.fault(format!("Expected {expected}, found \"{}\"", shown(found)))
     }
 
     fn skip_space(&mut self) {
@@ -115,9 +135,9 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The next word, on this line or a later one.
+    /// The next word, on this line or a later one; `None` at the end.
     pub fn word(&mut self) -> Option<&'a [u8]> {
-        self.go_on();
+        self.check_pace();
         self.skip_space();
         let rest = &self.bytes[self.at..];
         let long = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
@@ -131,9 +151,9 @@ impl<'a> Scanner<'a> {
         self.clone().word()
     }
 
-    /// The rest of this line, without the space around it, and on to the next one; `None` at the end.
+    /// The rest of this line, trimmed; moves to the next line. `None` at the end.
     pub fn line(&mut self) -> Option<&'a [u8]> {
-        self.go_on();
+        self.check_pace();
         if self.left() == 0 {
             return None;
         }
@@ -144,7 +164,7 @@ impl<'a> Scanner<'a> {
         Some(rest[..long].trim_ascii())
     }
 
-    /// A scanner over what stands before the next `end` (or all of the rest), which is where this one goes.
+    /// A scanner over everything before the next `end` (or the whole rest); this scanner moves there.
     pub fn part_before(&mut self, end: u8) -> Scanner<'a> {
         let mut part = self.clone();
         let long = self.bytes[self.at..].iter().position(|&b| b == end).unwrap_or(self.left());
@@ -153,7 +173,7 @@ impl<'a> Scanner<'a> {
         part
     }
 
-    /// What stands before the next `end`, and on behind it; `None` when there is none.
+    /// Everything before the next `end`; moves past it. `None` without one.
     pub fn until(&mut self, end: u8) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         let long = rest.iter().position(|&b| b == end)?;
@@ -162,9 +182,9 @@ impl<'a> Scanner<'a> {
         Some(&rest[..long])
     }
 
-    /// Moves behind the next `needle`; says whether there was one.
+    /// Moves past the next `needle`; returns whether there is one.
     pub fn skip_past(&mut self, needle: &[u8]) -> bool {
-        self.go_on();
+        self.check_pace();
         let Some((&first, _)) = needle.split_first() else { return true };
         let mut from = self.at;
         while let Some(step) = self.bytes[from..].iter().position(|&b| b == first) {
@@ -178,19 +198,14 @@ impl<'a> Scanner<'a> {
         false
     }
 
-    fn ended(&self, what: &str) -> Fault {
-        self.fault_at(self.bytes.len(), format!("The file ends where {what} is expected"))
-            .remedy("It seems to be cut off: write it again")
+    fn ended(&self, expected: &str) -> Fault {
+        self.fault_at(self.bytes.len(), format!("Expected {expected}, found the end of the file")).remedy(TRUNCATED)
     }
 
-    fn unlike(&self, word: &[u8], what: &str) -> Fault {
-        self.fault(format!("\"{}\" stands where {what} is expected", shown(word)))
-    }
-
-    /// The next word, which must be there.
+    /// The next word, which is required.
     ///
     /// # Errors
-    /// At the end of the file.
+    /// The end of the file.
     pub fn need(&mut self, what: &str) -> Result<&'a [u8], Fault> {
         self.word().ok_or_else(|| self.ended(what))
     }
@@ -198,83 +213,89 @@ impl<'a> Scanner<'a> {
     /// The next word as an integer.
     ///
     /// # Errors
-    /// When it is none, or at the end.
+    /// Another word, or the end of the file.
     pub fn integer(&mut self, what: &str) -> Result<i64, Fault> {
         let word = self.need(what)?;
-        parse_integer(word).ok_or_else(|| self.unlike(word, what))
+        parse_integer(word).ok_or_else(|| self.unexpected(word, what))
     }
 
-    /// The next word as a number of things or a tag, not negative.
+    /// The next word as a non-negative integer.
     ///
     /// # Errors
-    /// When it is none, or at the end.
+    /// Another word, or the end of the file.
     pub fn whole(&mut self, what: &str) -> Result<u64, Fault> {
         let word = self.need(what)?;
-        parse_integer(word).and_then(|n| u64::try_from(n).ok()).ok_or_else(|| self.unlike(word, what))
+        parse_whole(word).ok_or_else(|| self.unexpected(word, what))
     }
 
-    /// The next word as a count of things that take `least` bytes each, at least.
+    /// The next word as a count of items of at least `least` bytes each.
     ///
     /// # Errors
-    /// When that is more than the file has left.
+    /// As [`Scanner::whole`], and a count that the rest of the file cannot hold.
     pub fn count(&mut self, what: &str, least: usize) -> Result<usize, Fault> {
         let count = self.whole(what)?;
         self.fits(count, least, what)
     }
 
-    /// `count` as an index, if so many things of `least` bytes each can still come.
+    /// `count` as an index, if the rest of the file can hold that many items of `least` bytes each.
     ///
     /// # Errors
-    /// When that is more than the file has left.
+    /// A count that the rest of the file cannot hold.
     pub fn fits(&self, count: u64, least: usize, what: &str) -> Result<usize, Fault> {
-        // The last word of a file needs no space behind it.
+        // The last word of a file needs no space after it.
         let room = (self.left() as u64 + 1) / least.max(1) as u64;
-        // Half-edges are numbered by 32 bits, four to an element.
+        // Half-edges have 32-bit numbers, four for each element.
         if count > room || count >= 1 << 30 {
-            return Err(self
-                .fault(format!("{count} as {what} is more than the file can hold"))
-                .remedy("It is cut off or damaged: write it again"));
+            return Err(self.fault(format!("{count} as {what} is more than the file can hold")).remedy(DAMAGED));
         }
         Ok(count as usize)
     }
 
-    /// The next word as a number of any kind, exactly rounded.
+    /// The next word as a number, correctly rounded, possibly infinite or NaN.
     ///
     /// # Errors
-    /// When it is none, or at the end.
+    /// Another word, or the end of the file.
     pub fn real(&mut self, what: &str) -> Result<f64, Fault> {
         let word = self.need(what)?;
-        parse_real(word).ok_or_else(|| self.unlike(word, what))
+        parse_real(word).ok_or_else(|| self.unexpected(word, what))
     }
 
-    /// The next word as a number of any kind, where there is one.
+    /// As [`Scanner::real`], or `None` at the end.
     ///
     /// # Errors
-    /// When it is no number.
+    /// Another word.
     pub fn real_if_any(&mut self) -> Result<Option<f64>, Fault> {
         let Some(word) = self.word() else { return Ok(None) };
-        parse_real(word).map(Some).ok_or_else(|| self.unlike(word, "a number"))
+        parse_real(word).map(Some).ok_or_else(|| self.unexpected(word, "a number"))
     }
 
     /// The next word as a finite number.
     ///
     /// # Errors
-    /// When it is none, not finite, or at the end.
+    /// Another word, a number that is not finite, or the end of the file.
     pub fn finite(&mut self, what: &str) -> Result<f64, Fault> {
         let value = self.real(what)?;
         self.must_be_finite(value, what)
     }
 
-    /// `value` back, unless it is infinite or not a number.
+    /// A word of the last line as a finite coordinate.
     ///
     /// # Errors
-    /// When it is.
+    /// Another word, or a number that is not finite.
+    pub fn coordinate(&self, word: &[u8]) -> Result<f64, Fault> {
+        parse_real(word).filter(|x| x.is_finite()).ok_or_else(|| self.unexpected(word, "a coordinate"))
+    }
+
+    /// `value`, if it is finite.
+    ///
+    /// # Errors
+    /// An infinite or NaN value.
     pub fn must_be_finite(&self, value: f64, what: &str) -> Result<f64, Fault> {
-        if value.is_finite() { Ok(value) } else { Err(self.fault(format!("{value} stands where {what} is expected"))) }
+        if value.is_finite() { Ok(value) } else { Err(self.fault(format!("Expected {what}, found {value}"))) }
     }
 
     fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Fault> {
-        self.go_on();
+        self.check_pace();
         match self.bytes[self.at..].first_chunk::<N>() {
             Some(chunk) => {
                 self.last = self.at;
@@ -288,16 +309,16 @@ impl<'a> Scanner<'a> {
     /// The next four bytes as an integer.
     ///
     /// # Errors
-    /// At the end.
+    /// The end of the file.
     pub fn binary_i32(&mut self, order: ByteOrder, what: &str) -> Result<i32, Fault> {
         let bytes = self.take(what)?;
         Ok(if order == ByteOrder::Little { i32::from_le_bytes(bytes) } else { i32::from_be_bytes(bytes) })
     }
 
-    /// The next eight bytes as a number that is not negative.
+    /// The next eight bytes as a non-negative integer.
     ///
     /// # Errors
-    /// At the end.
+    /// The end of the file.
     pub fn binary_u64(&mut self, order: ByteOrder, what: &str) -> Result<u64, Fault> {
         let bytes = self.take(what)?;
         Ok(if order == ByteOrder::Little { u64::from_le_bytes(bytes) } else { u64::from_be_bytes(bytes) })
@@ -306,14 +327,14 @@ impl<'a> Scanner<'a> {
     /// The next eight bytes as a real number.
     ///
     /// # Errors
-    /// At the end.
+    /// The end of the file.
     pub fn binary_f64(&mut self, order: ByteOrder, what: &str) -> Result<f64, Fault> {
         let bytes = self.take(what)?;
         Ok(if order == ByteOrder::Little { f64::from_le_bytes(bytes) } else { f64::from_be_bytes(bytes) })
     }
 }
 
-/// A word of a file, fit for a message: at most 40 characters, nothing that a terminal would act on.
+/// A word of a file for a message: at most 40 characters, without control characters.
 pub fn shown(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(160)]);
     let mut out: String = text.chars().take(40).map(|c| if c.is_control() { '?' } else { c }).collect();
@@ -343,6 +364,11 @@ pub fn parse_integer(word: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
+/// A non-negative decimal integer, or `None`.
+pub fn parse_whole(word: &[u8]) -> Option<u64> {
+    parse_integer(word).and_then(|value| u64::try_from(value).ok())
+}
+
 /// A real number, correctly rounded, or `None`.
 pub fn parse_real(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok()
@@ -353,17 +379,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_complaint_names_the_file_and_the_line_of_the_word() {
+    fn a_fault_names_the_file_and_the_line_of_the_word() {
         let mut s = Scanner::new("a.msh", b"one\n\n  two 3x\n");
         s.word();
         s.word();
         let fault = s.integer("a count").unwrap_err();
-        assert_eq!(fault.to_string(), "a.msh, line 3: \"3x\" stands where a count is expected.");
-        assert!(s.real("a number").unwrap_err().to_string().contains("line 4: The file ends"));
+        assert_eq!(fault.to_string(), "a.msh, line 3: Expected a count, found \"3x\".");
+        assert!(s.real("a number").unwrap_err().to_string().contains("line 4: Expected a number, found the end"));
     }
 
     #[test]
-    fn a_count_that_the_file_cannot_hold_is_refused_before_anything_is_made() {
+    fn a_count_that_the_file_cannot_hold_is_refused() {
         let mut s = Scanner::new("a", b"18446744073709551615 1 2 3");
         assert!(s.count("a number of nodes", 2).is_err());
         let mut s = Scanner::new("a", b"4 1 2 3");
@@ -373,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_come_back_to_the_last_bit_and_infinite_ones_are_refused() {
+    fn numbers_are_read_exactly_and_infinite_ones_are_refused() {
         let mut s = Scanner::new("a", b"0.1 1e-300 -2.2250738585072014e-308 nan 1e999");
         assert_eq!(s.finite("x").unwrap().to_bits(), 0.1f64.to_bits());
         assert_eq!(s.finite("x").unwrap().to_bits(), 1e-300f64.to_bits());

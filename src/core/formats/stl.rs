@@ -1,41 +1,41 @@
-//! STL: triangles one by one, in text or binary. Points at one place are welded, since STL has no other way to say that
-//! triangles share them. Several solids of a text become groups. Deliberately absent: writing (STL has no quadrilaterals),
-//! normals, and the attribute bytes, of which no two programs think alike.
+//! STL, text or binary. Coincident points are welded, since STL cannot share points between triangles. The solids of a
+//! text file become groups. Deliberately absent: writing (STL has no quadrilaterals), normals, and the attribute bytes,
+//! whose meaning differs between programs.
 
 use glam::DVec3;
 
-use super::scan::{Scanner, shown};
+use super::scan::{Scanner, TRUNCATED};
 use crate::core::fault::Fault;
 use crate::core::progress::Pace;
 use crate::core::soup::counting::{Count, Counting};
 use crate::core::soup::mesh_file::{Group, MeshFile};
 use crate::core::soup::weld::{SINGLE, Welder, weld};
 
-/// What stands before the triangles of a binary file: 80 bytes of anything and their number.
+/// Header of a binary file: 80 free bytes and the number of triangles.
 const HEADER: usize = 84;
 /// A triangle of a binary file: normal and three corners in single precision, two bytes of attributes.
 const TRIANGLE: usize = 50;
-/// So many triangles are welded before that is told.
-const AT_A_TIME: usize = 1 << 12;
+/// Triangles welded between two reports of progress.
+const BATCH: usize = 1 << 12;
 
 /// Reads a mesh from the bytes of an STL file.
 ///
 /// # Errors
-/// With the line or the byte: words that are not STL's, numbers that are none or not finite, a file that is cut off.
+/// With the line or byte: an unexpected word, a number that is malformed or not finite, a truncated file.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
-    // A binary file may begin with the word "solid" too: its length tells.
+    // A binary file may begin with "solid" too, so its length decides.
     if bytes.len() >= HEADER && is_binary(bytes) {
         return read_binary(name, bytes, pace);
     }
     if bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
         return read_text(Scanner::new(name, bytes).watched(pace), pace);
     }
-    Err(Fault::new("This is not STL: it does not begin with \"solid\", and its length is not that of binary STL")
+    Err(Fault::new("This is not STL: it does not begin with \"solid\", and its length does not fit binary STL")
         .at(name)
-        .remedy("It may be cut off: write it again"))
+        .remedy(TRUNCATED))
 }
 
-/// Whether the length is that of the number of triangles which a binary file announces.
+/// Whether the length fits the number of triangles in the header of a binary file.
 fn is_binary(bytes: &[u8]) -> bool {
     let count = u32::from_le_bytes([bytes[80], bytes[81], bytes[82], bytes[83]]) as usize;
     bytes.len() - HEADER == count.saturating_mul(TRIANGLE)
@@ -56,7 +56,7 @@ fn read_binary(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fa
     for (i, triangle) in triangles.iter().enumerate() {
         for p in [0, 1, 2].map(|k| corner(triangle, k)) {
             if !p.is_finite() {
-                let what = format!("Triangle {} has a corner at {}, {}, {}", i + 1, p.x, p.y, p.z);
+                let what = format!("Triangle {} has a corner at ({}, {}, {})", i + 1, p.x, p.y, p.z);
                 return Err(s.fault_at(HEADER + i * TRIANGLE, what).remedy("Coordinates must be finite numbers"));
             }
             largest = largest.max(p.abs().max_element());
@@ -64,7 +64,7 @@ fn read_binary(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fa
     }
     let (mut welder, mut points) = (Welder::new(SINGLE, largest), Vec::new());
     let mut welded = Vec::with_capacity(triangles.len());
-    for part in triangles.chunks(AT_A_TIME) {
+    for part in triangles.chunks(BATCH) {
         if !pace.goes_on(HEADER + welded.len() * TRIANGLE, bytes.len()) {
             break;
         }
@@ -79,7 +79,7 @@ fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut solid: u32 = 0;
     while let Some(word) = s.word() {
         if !word.eq_ignore_ascii_case(b"solid") {
-            return Err(s.fault(format!("\"{}\" stands where \"solid\" is expected", shown(word))));
+            return Err(s.unexpected(word, "\"solid\""));
         }
         solid += 1;
         let name = String::from_utf8_lossy(s.line().unwrap_or_default()).into_owned();
@@ -89,16 +89,16 @@ fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
         loop {
             let word = s.need("\"facet\" or \"endsolid\"")?;
             if word.eq_ignore_ascii_case(b"endsolid") {
-                // Its name follows, or nothing.
+                // The name may follow.
                 s.line();
                 break;
             }
             if !word.eq_ignore_ascii_case(b"facet") {
-                return Err(s.fault(format!("\"{}\" stands where \"facet\" or \"endsolid\" is expected", shown(word))));
+                return Err(s.unexpected(word, "\"facet\" or \"endsolid\""));
             }
             keyword(&mut s, "normal")?;
             for _ in 0..3 {
-                // It is not used, and programs write what is no number there.
+                // Ignored: some programs write words that are not numbers.
                 s.need("a normal")?;
             }
             keyword(&mut s, "outer")?;
@@ -120,9 +120,7 @@ fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
 }
 
 fn keyword(s: &mut Scanner, keyword: &str) -> Result<(), Fault> {
-    let word = s.need(&format!("\"{keyword}\""))?;
-    if word.eq_ignore_ascii_case(keyword.as_bytes()) {
-        return Ok(());
-    }
-    Err(s.fault(format!("\"{}\" stands where \"{keyword}\" is expected", shown(word))))
+    let expected = format!("\"{keyword}\"");
+    let word = s.need(&expected)?;
+    if word.eq_ignore_ascii_case(keyword.as_bytes()) { Ok(()) } else { Err(s.unexpected(word, &expected)) }
 }

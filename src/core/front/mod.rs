@@ -1,8 +1,8 @@
 //! The merging front: its segments with lengths, frontal angles and H-values (paper 4.1.2, 4.3.2), and the selection of
 //! the base segment (4.3.3).
 //!
-//! What is on the front is implied by the mesh: a side of a live triangle that has no live triangle beyond. The linked
-//! list of the paper is a walk in the half-edge structure; only what orders the segments is cached.
+//! The mesh determines the front: the sides of live triangles without a live triangle beyond. The linked list of the
+//! paper is a walk in the half-edge structure; only the keys that order the segments are cached.
 
 pub mod segment;
 pub mod sector;

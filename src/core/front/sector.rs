@@ -1,5 +1,5 @@
-//! The live sector between two front segments at a node, walked from a front segment (docs/algorithm.md, "Front, loops
-//! and frontal angles"): frontal angles are stored per end of a segment and not per node, since a pinched node has
+//! The live sector between two front segments at a node, traversed from a front segment (docs/algorithm.md, "Front,
+//! loops and frontal angles"). Frontal angles belong to the ends of segments and not to nodes, since a pinched node has
 //! several sectors.
 
 use serde::Serialize;
@@ -9,11 +9,11 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::metric::measure::angle;
 
-/// Left or right end of a front segment AB: A or B. Everything about sides is one function over this.
+/// The left or right end of a front segment AB: A or B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// At A, to the left when one looks from the base into the live region.
+    /// At A, on the left seen from the base into the live region.
     Left,
     /// At B.
     Right,
@@ -38,18 +38,18 @@ impl Side {
     }
 }
 
-/// An edge that leaves one end of a base segment into its live sector; the last one is the next front segment.
+/// An edge from one end of a base segment into its live sector; the last one is the next front segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spoke {
     /// Its far end.
     pub node: NodeId,
-    /// A half-edge of it that lies in a live triangle of the sector.
+    /// Its half-edge in a live triangle of the sector.
     pub h: HalfEdgeId,
     /// Whether it is the front segment that ends the sector.
     pub is_front: bool,
 }
 
-/// Spokes of a sector, in the order in which they are met from the base segment.
+/// The spokes of a sector, in order from the base segment.
 pub type Spokes = SmallVec<[Spoke; 10]>;
 
 impl Mesh {
@@ -79,12 +79,12 @@ impl Mesh {
         self.front_between(a, b).is_some() || self.front_between(b, a).is_some()
     }
 
-    /// The segments of the merging front, by their triangles.
+    /// The segments of the merging front, in the order of their triangles.
     pub fn front(&self) -> impl Iterator<Item = HalfEdgeId> + '_ {
         self.elements().flat_map(|e| self.half_edges(e)).filter(|h| self.is_front(*h))
     }
 
-    /// The front segment before `h` on its loop: that which ends where `h` starts, over the same live sector.
+    /// The front segment before `h` on its loop: it ends at the origin of `h`, in the same live sector.
     #[inline]
     pub fn front_before(&self, h: HalfEdgeId) -> HalfEdgeId {
         let mut p = self.previous(h);
@@ -109,12 +109,13 @@ impl Mesh {
         std::iter::successors(Some(start), move |&h| Some(self.front_after(h)).filter(|&h| h != start))
     }
 
-    /// The front segment from one node to another, where there is one.
+    /// The front segment from one node to another, if there is one.
     pub fn front_between(&self, from: NodeId, to: NodeId) -> Option<HalfEdgeId> {
         self.half_edge_between(from, to).filter(|&h| self.is_front(h))
     }
 
-    /// The edges of the live sector at one end of a front segment, from the segment on; the last is the next segment.
+    /// The edges of the live sector at one end of a front segment, in order from the segment; the last is the next
+    /// segment.
     pub fn spokes(&self, base: HalfEdgeId, side: Side) -> Spokes {
         let mut spokes = Spokes::new();
         let step = |h| match side {
@@ -149,8 +150,8 @@ impl Mesh {
             Side::Right => (other_end, base_end),
         };
         let theta = angle(self.metric_ref(at), self.uv(from) - p, self.uv(to) - p);
-        // Both directions equal: the tip of a crack, where the sector is a full turn. (A sector of positive triangles
-        // that closes to nothing does not exist; one that is thinner than this would need them to be needles.)
+        // Equal directions: the tip of a crack, where the sector is a full turn. (Positive triangles cannot form a
+        // sector of zero angle, and only needles form a thinner one than this.)
         if theta < 1e-9 || from == to { std::f64::consts::TAU } else { theta }
     }
 }

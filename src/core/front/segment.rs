@@ -1,4 +1,5 @@
-//! What orders the front segments: H-value (eq. 6), metric and physical length, frontal angles, class of table 1.
+//! The quantities that order the front segments: H-value (eq. 6), metric and physical length, frontal angles, class of
+//! table 1.
 
 use std::cmp::Ordering;
 
@@ -7,7 +8,7 @@ use crate::core::case::parameters::{Parameters, Selection, SelectionWindow};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 
-/// A front segment AB with everything that its selection depends on.
+/// A front segment AB with all quantities on which its selection depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     /// The half-edge from A to B in its live triangle.
@@ -20,15 +21,16 @@ pub struct Segment {
     pub h_value: f64,
     /// Length in the metric.
     pub length_metric: f64,
-    /// Length as it is: in the plane, or in space.
+    /// Euclidean length: in the plane, or in space.
     pub length_physical: f64,
     /// Frontal angles at A and B, radians.
     pub theta: [f64; 2],
-    /// Class of table 1: 1 both angles below theta_rect, 2 only that at A, 3 only that at B, 4 neither.
+    /// Class of table 1: 1 if both angles are below theta_rect, 2 if only that at A is, 3 if only that at B is, 4
+    /// otherwise.
     pub class: u8,
     /// Rows from the boundary.
     pub level: u16,
-    /// On surfaces its face: faces are converted one after the other (paper 5.4). 0 in the plane, where all are one.
+    /// On surfaces its face, since faces are converted one after another (paper 5.4); in the plane 0 for all.
     pub face: u32,
 }
 
@@ -53,12 +55,12 @@ impl Segment {
             theta,
             class,
             level: front_level(mesh, h),
-            face: if mesh.ground().is_some() { mesh.region(h.element()) } else { 0 },
+            face: if mesh.embedding().is_some() { mesh.region(h.element()) } else { 0 },
         }
     }
 
-    /// What must be below c Hmin for the segment to be within reach (4.3.3, step ii; the readings of docs/algorithm.md,
-    /// "The selection window").
+    /// The quantity that must be below c Hmin for the segment to be within reach (4.3.3, step ii; the readings of
+    /// docs/algorithm.md, "The selection window").
     pub fn window(&self, window: SelectionWindow) -> f64 {
         match window {
             SelectionWindow::HValue => self.h_value,
@@ -67,8 +69,8 @@ impl Segment {
         }
     }
 
-    /// What comes before everything else: the face at hand, and the rows that are offset first (4.3.3, point 3); levels beyond
-    /// those are alike.
+    /// The primary sorting key: the current face, then the rows that are offset first (4.3.3, point 3); all levels
+    /// beyond those are equal.
     pub fn layer(&self, parameters: &Parameters) -> u32 {
         layer(self.face, self.level, parameters)
     }
@@ -78,14 +80,14 @@ impl Segment {
         self.theta[0] + self.theta[1]
     }
 
-    /// The key by which the segment waits in its heap: smaller comes first.
+    /// The key of the segment in its heap: smaller keys come first.
     pub fn key(&self, parameters: &Parameters) -> Key {
         let first = match parameters.selection {
             Selection::Table1 => self.window(parameters.selection_window),
             Selection::Shortest => self.length_physical,
             Selection::SmallestAngle => self.theta_sum(),
             Selection::Level => {
-                // Q-Morph: state (number of ends that have a side already), then level, then length.
+                // Q-Morph: by state (from the number of ends that already have a side), then level, then length.
                 let state = match self.class {
                     1 => 0.0,
                     2 | 3 => 1.0,
@@ -103,8 +105,8 @@ pub fn layer(face: u32, level: u16, parameters: &Parameters) -> u32 {
     face.saturating_mul(parameters.layers + 1).saturating_add(u32::from(level).min(parameters.layers))
 }
 
-/// Rows from the boundary: 0 on it (where rows are offset from other loops only, as many as those), else one more than the
-/// quadrilateral beyond.
+/// The level of a front segment: one more than the quadrilateral beyond; on the boundary 0, or the number of offset
+/// rows if rows are offset from other loops only.
 pub fn front_level(mesh: &Mesh, h: HalfEdgeId) -> u16 {
     match mesh.twin(h) {
         Some(t) => mesh.level(t.element()).saturating_add(1),
@@ -112,7 +114,7 @@ pub fn front_level(mesh: &Mesh, h: HalfEdgeId) -> u16 {
     }
 }
 
-/// Numbers that order front segments, compared one after the other.
+/// A sorting key of front segments, compared lexicographically.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key(pub [f64; 3]);
 

@@ -1,7 +1,8 @@
 //! Selection of the base segment (paper 4.3.3, table 1) in O(log n): lazy heaps over the front segments.
 //!
-//! The heaps are a cache. They hold every front segment that is not put off, with keys that are a pure function of the
-//! mesh; rebuilt from a state they choose the same. An entry counts only while its stamp is that of its half-edge.
+//! The heaps are a cache. They contain every front segment that is not deferred, with keys that are a pure function of
+//! the mesh; heaps rebuilt from a state select the same segments. An entry is valid only while its stamp is that of its
+//! half-edge.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -14,7 +15,7 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::journal::{Entry, Mark};
 
-/// A segment that waits to be chosen.
+/// A segment in the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Waiting {
     key: Key,
@@ -22,19 +23,19 @@ struct Waiting {
     stamp: u32,
 }
 
-/// The chosen base segment and why.
+/// The selected base segment and the reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseChoice {
     /// The base segment.
     pub segment: Segment,
-    /// Smallest H-value on the front (step i); on surfaces on that of the face at hand.
+    /// Smallest H-value on the front (step i); on surfaces, on the front of the current face.
     pub h_min: f64,
-    /// Whether the segment was within c Hmin; else it is the one with the smallest H-value (step iii).
+    /// Whether the segment is within c Hmin; otherwise it is the one with the smallest H-value (step iii).
     pub within_reach: bool,
 }
 
 impl BaseChoice {
-    /// The choice of a segment that a person picked in place of what the rules choose.
+    /// The choice of a segment that a person picked instead of the one that the rules select.
     pub fn of_person(segment: Segment, by_rule: Option<BaseChoice>, parameters: &Parameters) -> BaseChoice {
         let h_min = by_rule.map_or(segment.h_value, |choice| choice.h_min);
         let within_reach = segment.class < 4 && segment.window(parameters.selection_window) < parameters.c * h_min;
@@ -45,17 +46,17 @@ impl BaseChoice {
 /// All front segments, ordered for selection.
 #[derive(Clone, Debug, Default)]
 pub struct Queue {
-    /// Classes 1 to 3 by the selection window, and all segments by H-value; other criteria use the last heap alone.
+    /// Classes 1 to 3 by the selection window, and all segments by H-value; other criteria use only the last heap.
     heaps: [BinaryHeap<Reverse<Waiting>>; 4],
     stamp: Vec<u32>,
     node_epoch: Vec<u32>,
     epoch: u32,
-    /// The face whose segments it holds; none: all.
+    /// The face of its segments; `None` for all.
     face: Option<u32>,
 }
 
 impl Queue {
-    /// The queue of a state, of one face or of all.
+    /// The queue of a state, for one face or for all.
     pub fn of(mesh: &Mesh, face: Option<u32>, parameters: &Parameters) -> Queue {
         let mut queue = Queue { face, ..Queue::default() };
         queue.grow(mesh);
@@ -87,12 +88,12 @@ impl Queue {
             put(3, Key([layer, segment.h_value, segment.theta_sum()]));
         } else {
             let Key([first, second, third]) = segment.key(parameters);
-            // Face by face, and offsetting goes before everything else.
+            // Face by face, and offsetting before everything else.
             put(3, Key([layer * 1e9 + first, second, third]));
         }
     }
 
-    /// The best entry of a heap that still counts.
+    /// The best valid entry of a heap.
     fn top(&mut self, heap: usize, mesh: &Mesh) -> Option<Waiting> {
         let stamp = &self.stamp;
         let heap = &mut self.heaps[heap];
@@ -106,8 +107,8 @@ impl Queue {
         None
     }
 
-    /// Selects the base segment (4.3.3, steps i to iii, or the criterion that the parameters name). The segment stays in
-    /// the queue; it leaves by being put off, or by what its quadrilateral changes. None where every segment is put off.
+    /// Selects the base segment (4.3.3, steps i to iii, or the criterion of the parameters). The segment remains in the
+    /// queue until it is deferred or changed by its quadrilateral. `None` if every segment is deferred.
     pub fn select(&mut self, mesh: &Mesh, parameters: &Parameters) -> Option<BaseChoice> {
         let smallest = self.top(3, mesh)?;
         let measured = |waiting: Waiting| Segment::measure(mesh, waiting.h, parameters);
@@ -126,14 +127,15 @@ impl Queue {
         Some(BaseChoice { segment: measured(smallest), h_min, within_reach: false })
     }
 
-    /// Puts a segment off until something near it changes.
+    /// Defers a segment until something near it changes.
     pub fn defer(&mut self, mesh: &mut Mesh, h: HalfEdgeId) {
         mesh.set_deferred(h, true);
         self.stamp[h.index()] = self.stamp[h.index()].wrapping_add(1);
     }
 
-    /// Brings the queue up to date with everything that the journal holds since the mark: segments at nodes that moved
-    /// or whose elements changed, and their neighbours on the loop, two where a node moved. Those are taken up again where they were put off.
+    /// Updates the queue after the changes in the journal since the mark: segments at nodes that moved or whose
+    /// elements changed, and their neighbours on the loop (two of them if a node moved). Deferred segments among them
+    /// become active again.
     pub fn refresh(&mut self, mesh: &mut Mesh, mark: Mark, parameters: &Parameters) {
         self.grow(mesh);
         self.epoch = self.epoch.wrapping_add(1);
@@ -185,16 +187,16 @@ impl Queue {
                 }
             }
         }
-        // A node of the front that moves turns the segments beside it, and so the angles at their other ends.
+        // A moved front node rotates the segments beside it, and so changes the angles at their other ends.
         for &node in moved.iter().filter(|&&n| mesh.has_node(n)) {
             for h in mesh.fan(node) {
                 let p = mesh.previous(h);
-                // One that is put off stays so: its own ends are where they were.
+                // A deferred segment remains deferred: its own ends have not moved.
                 for (segment, beyond) in [(h, Mesh::front_after as fn(&Mesh, _) -> _), (p, Mesh::front_before)] {
                     if mesh.is_front(segment) {
-                        let turned = beyond(mesh, segment);
-                        if !mesh.is_deferred(turned) {
-                            segments.push(turned);
+                        let neighbour = beyond(mesh, segment);
+                        if !mesh.is_deferred(neighbour) {
+                            segments.push(neighbour);
                         }
                     }
                 }
@@ -212,17 +214,13 @@ impl Queue {
         }
     }
 
-    /// Takes up every segment that was put off; says whether there was one.
+    /// Reactivates every deferred segment; returns whether there was one.
     pub fn take_up_all(&mut self, mesh: &mut Mesh, parameters: &Parameters) -> bool {
-        let put_off: Vec<HalfEdgeId> = mesh
-            .elements()
-            .flat_map(|e| mesh.half_edges(e))
-            .filter(|&h| mesh.is_front(h) && mesh.is_deferred(h))
-            .collect();
-        for &h in &put_off {
+        let deferred: Vec<HalfEdgeId> = mesh.front().filter(|&h| mesh.is_deferred(h)).collect();
+        for &h in &deferred {
             mesh.set_deferred(h, false);
             self.push(mesh, h, parameters);
         }
-        !put_off.is_empty()
+        !deferred.is_empty()
     }
 }

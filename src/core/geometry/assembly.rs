@@ -12,9 +12,9 @@ use crate::core::fault::Fault;
 use crate::core::kernel::decimal::point_text;
 use crate::core::kernel::spelling::suggestion;
 
-/// The name of loop `i` of a face in messages.
-pub fn loop_name(spec: &FaceSpec, i: usize) -> String {
-    if i == 0 { format!("outer loop of \"{}\"", spec.name) } else { format!("hole {i} of \"{}\"", spec.name) }
+/// The name of loop `i` of a face in messages: 0 is the outer loop.
+pub fn loop_name(face: &str, i: usize) -> String {
+    if i == 0 { format!("outer loop of \"{face}\"") } else { format!("hole {i} of \"{face}\"") }
 }
 
 /// A fault with the place in the case that it is about, if that is known.
@@ -63,7 +63,7 @@ pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCur
     }
     for face in faces {
         if let Some(i) = std::iter::once(&face.outer).chain(&face.holes).position(Vec::is_empty) {
-            let what = format!("The {} has no curves", loop_name(face, i));
+            let what = format!("The {} has no curves", loop_name(&face.name, i));
             return Err(placed(Fault::new(what).remedy("Name the curves of a closed loop"), &face.place));
         }
     }

@@ -1,7 +1,7 @@
 //! Faces on surfaces that share curves (paper 3.1; docs/algorithm.md, "Charts and the atlas", "Curves shared by
 //! faces"): each face gets a chart, each curve an image in the chart of every face that it bounds, and all charts lie
-//! side by side in the plane of an [`Atlas`]. What comes out is a [`Domain`] of that plane, which knows what its curves
-//! and vertices are in space.
+//! side by side in the plane of an [`Atlas`]. The result is a [`Domain`] of that plane, with the geometry of its curves
+//! and vertices in space.
 //!
 //! This module chooses the chart of each face and places the charts side by side. `lifting` chains images into loops,
 //! `whole_surface` makes a face of a surface without loops.
@@ -173,7 +173,7 @@ fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
     for chart in charts {
         let chart = Arc::new(chart);
         let mut lift = Lift::new(&chart, curves, &spec.name);
-        let found = lift.chain(&outer, &loop_name(spec, 0));
+        let found = lift.chain(&outer, &loop_name(&spec.name, 0));
         let outer = match found {
             Ok(outer) => outer,
             Err(fault) => {
@@ -184,7 +184,8 @@ fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
         let around = Lift::polygon(&outer);
         let mut loops = vec![outer];
         for (i, hole) in spec.holes.iter().enumerate() {
-            let chained = lift.chain(&numbers(hole)?, &loop_name(spec, i + 1)).map_err(|f| placed(f, &spec.place))?;
+            let chained =
+                lift.chain(&numbers(hole)?, &loop_name(&spec.name, i + 1)).map_err(|f| placed(f, &spec.place))?;
             loops.push(lift.brought_inside(chained, &around));
         }
         let mut lines = |names: &[String]| -> Result<Vec<Piece>, Fault> {

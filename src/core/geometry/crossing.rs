@@ -4,6 +4,7 @@
 use glam::DVec2;
 use rstar::RTree;
 
+use super::assembly::placed;
 use super::curve::distance_to_segment;
 use super::domain_curve::{CurveId, DomainCurve};
 use super::inside::Chord;
@@ -255,5 +256,5 @@ fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits, f
         Some(face) => fault.at(format!("face \"{face}\"")),
         None => fault,
     };
-    if b.place.is_empty() { fault } else { fault.at(b.place.clone()) }
+    placed(fault, &b.place)
 }

@@ -337,7 +337,8 @@ pub(super) fn corners_of_polyline<const N: usize, P: Vector + Into<[f64; N]>>(
     if corners.len() < if close { 4 } else { 2 } {
         let kind = if close { "A closed" } else { "An open" };
         let count = corners.len().saturating_sub(usize::from(close));
-        return Err(Fault::new(format!("{kind} polyline needs more than {count} points")));
+        let least = if close { 3 } else { 2 };
+        return Err(Fault::new(format!("{kind} polyline needs at least {least} points and has {count}")));
     }
     if let Some(i) = (1..corners.len()).find(|&i| corners[i] == corners[i - 1]) {
         let at = point_text(corners[i]);
@@ -467,8 +468,8 @@ mod tests {
         assert!(says(arc(p, 1.0, 0.0, 7.0)).contains("more than a full turn"));
         assert!(says(arc(p, 1.0, f64::NAN, 7.0)).contains("angles"));
         assert!(says(polyline(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.0)], false)).contains("points 2 and 3"));
-        assert!(says(polyline(&[(0.0, 0.0)], false)).contains("1 points"));
-        assert!(says(polyline(&[(0.0, 0.0), (1.0, 0.0)], true)).contains("2 points"));
-        assert!(says(polyline(&[], true)).contains("0 points"));
+        assert!(says(polyline(&[(0.0, 0.0)], false)).contains("has 1"));
+        assert!(says(polyline(&[(0.0, 0.0), (1.0, 0.0)], true)).contains("has 2"));
+        assert!(says(polyline(&[], true)).contains("has 0"));
     }
 }

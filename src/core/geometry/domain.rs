@@ -25,7 +25,7 @@ pub struct DomainFace {
     /// The outer loop, anticlockwise, then the holes, clockwise: the face lies on the left of each.
     pub loops: Vec<Vec<DirectedCurve>>,
     /// Its topological loops (docs/algorithm.md, "Even loops"): boundary walks with the face on their left, with the
-    /// cracks and repeated lines that hang on them; each must get an even number of segments.
+    /// cracks and repeated lines attached to them; each must have an even number of segments.
     pub walks: Vec<Vec<DirectedCurve>>,
 }
 
@@ -96,7 +96,7 @@ impl Domain {
         for (spec, list) in faces.iter().zip(&lists) {
             let mut chain = Vec::with_capacity(list.len());
             for (i, ids) in list.iter().enumerate() {
-                chain.push(loops::chain(&curves, ids, &loop_name(spec, i)).map_err(|f| placed(f, &spec.place))?);
+                chain.push(loops::chain(&curves, ids, &spec.name, i).map_err(|f| placed(f, &spec.place))?);
             }
             chains.push(chain);
         }
@@ -130,7 +130,7 @@ impl Domain {
                 let area = loops::doubled_area(&loops::polygon(&curves, steps));
                 if borders == Borders::Unchecked && area.abs() <= tolerance * tolerance {
                     return Err(placed(
-                        Fault::new(format!("The {} encloses no area", loop_name(spec, i))),
+                        Fault::new(format!("The {} encloses no area", loop_name(&spec.name, i))),
                         &spec.place,
                     ));
                 }
@@ -199,16 +199,12 @@ impl Domain {
             for &(f, i) in &loops_of[c] {
                 let name = &self.faces[f].name;
                 if i > 0 && !around.contains(&(f, 0)) {
-                    let what = format!(
-                        "The curve \"{}\" of {} lies outside the outer loop",
-                        curve.name,
-                        loop_name(&specs[f], i)
-                    );
+                    let what =
+                        format!("The curve \"{}\" of {} lies outside the outer loop", curve.name, loop_name(name, i));
                     return refuse(f, what, "Move the hole inside, or remove it");
                 }
                 if let Some(&(_, j)) = around.iter().find(|&&(g, j)| g == f && j > 0 && j != i) {
-                    let what =
-                        format!("The curve \"{}\" of \"{name}\" lies within {}", curve.name, loop_name(&specs[f], j));
+                    let what = format!("The curve \"{}\" of \"{name}\" lies within {}", curve.name, loop_name(name, j));
                     return refuse(f, what, "Make the part inside the hole a separate face");
                 }
             }

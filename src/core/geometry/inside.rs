@@ -42,7 +42,8 @@ impl Crossing {
     }
 }
 
-/// The chords that the horizontal line at `y` crosses between the two abscissas, and possibly some beyond the second.
+/// The chords that the horizontal line at `y` crosses between the two abscissas, and possibly some to the right of
+/// them.
 pub fn crossings(tree: &RTree<Chord>, curves: &[DomainCurve], y: f64, [left, right]: [f64; 2]) -> Crossings {
     let mut crossings = Crossings::new();
     if right < left {

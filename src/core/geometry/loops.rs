@@ -4,17 +4,20 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use super::assembly::loop_name;
 use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::orient;
 
-/// Chains curves, given in any order and direction, into one closed loop that begins with the first of them.
+/// Chains curves, given in any order and direction, into one closed loop that begins with the first of them: loop `i`
+/// of a face, where 0 is the outer loop.
 ///
 /// # Errors
-/// A list that is empty, names a curve twice, leaves loose ends, touches itself at a vertex, or makes several loops;
-/// `what` is the loop's name for the message ("outer loop of \"plate\"").
-pub fn chain(curves: &[DomainCurve], list: &[CurveId], what: &str) -> Result<Vec<DirectedCurve>, Fault> {
+/// A list that is empty, names a curve twice, leaves loose ends, touches itself at a vertex, or makes several loops.
+pub fn chain(curves: &[DomainCurve], list: &[CurveId], face: &str, i: usize) -> Result<Vec<DirectedCurve>, Fault> {
+    let what = loop_name(face, i);
+    let is_outer = i == 0;
     let Some(&first) = list.first() else {
         return Err(Fault::new(format!("The {what} has no curves")).remedy("Name at least one closed curve"));
     };
@@ -48,7 +51,7 @@ pub fn chain(curves: &[DomainCurve], list: &[CurveId], what: &str) -> Result<Vec
                 names.join(", ")
             ))
             .at(format!("at {}", point_text(spot(&group[0]))))
-            .remedy(if what.starts_with("outer") {
+            .remedy(if is_outer {
                 "Make a face of each closed part, or move the parts apart"
             } else {
                 "List each closed part as a separate hole, or move the parts apart"
@@ -102,8 +105,8 @@ pub fn doubled_area(points: &[DVec2]) -> f64 {
     (1..points.len()).map(|i| (points[i - 1] - o).perp_dot(points[i] - o)).sum()
 }
 
-/// The boundary walks of every face: each runs with the face on its left and turns at each vertex into the first curve
-/// clockwise, so that what hangs on a loop (cracks, repeated lines, loops that touch at a vertex) belongs to the same
+/// The boundary walks of every face: each has the face on its left and continues at each vertex with the first curve
+/// clockwise, so that all that is attached to a loop (cracks, repeated lines, loops that touch it) belongs to the same
 /// walk, an internal line twice. These are the topological loops that have to be even (docs/algorithm.md, "Even
 /// loops").
 ///

@@ -1,8 +1,8 @@
 //! Nearest-neighbour search in the plane or in space by a tree of bounding boxes.
 //!
 //! It promises what a size field needs and a general index does not: the answer is a pure function of the query (ties
-//! go to the lowest number, whatever was asked before), a query allocates nothing, and strongly graded sets cost no
-//! more than uniform ones.
+//! go to the lowest number, independent of earlier queries), a query allocates nothing, and strongly graded sets cost
+//! no more than uniform ones.
 
 use std::ops::{Add, Mul, Sub};
 

@@ -11,7 +11,7 @@
 mod copies;
 mod difference;
 mod faces;
-mod ground;
+mod embedding;
 mod setters;
 mod slots;
 mod permission;
@@ -19,8 +19,8 @@ mod taking_back;
 pub mod touched;
 
 pub use difference::{Difference, FreeLists};
+pub use embedding::Embedding;
 pub use faces::FaceMesh;
-pub use ground::Ground;
 pub use taking_back::Undone;
 
 use std::sync::Arc;
@@ -63,7 +63,7 @@ pub struct Mesh {
     journal: Journal,
     pub(super) refusals: Option<Refusals>,
     /// The surfaces on which it lies; `None` in the plane.
-    ground: Option<Arc<Ground>>,
+    embedding: Option<Arc<Embedding>>,
 }
 
 /// An element to be created: its nodes anticlockwise (three or four) and its region.
@@ -140,7 +140,7 @@ impl Mesh {
             closed: [0; 2],
             journal: Journal::default(),
             refusals: None,
-            ground: None,
+            embedding: None,
         };
         let mut by_side: Vec<(u64, u32)> = Vec::with_capacity(3 * elements);
         for (element, nodes) in set.triangles.iter().enumerate() {

@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
-use super::half_edge::{Ground, Mesh};
+use super::half_edge::{Embedding, Mesh};
 use super::ids::{ElementId, NodeId};
 
 /// The corners of an element, anticlockwise: in the plane and in space.
@@ -23,18 +23,18 @@ impl Corners {
     /// The least corner sine relative to the surface normal at the corner and, on triangulated surfaces, whose normals
     /// jump, also to the element's own normal; at most 0 if a side is no longer than `near`. In the plane the normal is
     /// z. A result that is not above `floor` may be any number not above `floor`.
-    pub fn least_sine(&self, ground: Option<&Ground>, near: f64, floor: f64) -> f64 {
+    pub fn least_sine(&self, embedding: Option<&Embedding>, near: f64, floor: f64) -> f64 {
         let count = self.xyz.len();
         if (0..count).any(|k| self.xyz[k].distance(self.xyz[(k + 1) % count]) <= near) {
             return 0.0;
         }
         let mut least = f64::INFINITY;
-        if ground.is_some_and(|ground| ground.atlas.is_of_facets(self.uv[0])) {
+        if embedding.is_some_and(|embedding| embedding.atlas.is_of_facets(self.uv[0])) {
             // The area vector of the element, times two.
             let own = (self.xyz[2] - self.xyz[0]).cross(self.xyz[count - 1] - self.xyz[1]).normalize_or_zero();
             least = (0..count).map(|k| self.corner(k).dot(own)).fold(least, f64::min);
         }
-        for sine in self.surface_sines(ground) {
+        for sine in self.surface_sines(embedding) {
             if least <= floor {
                 break;
             }
@@ -44,12 +44,12 @@ impl Corners {
     }
 
     /// The sine of each corner relative to the surface normal there.
-    fn surface_sines(&self, ground: Option<&Ground>) -> impl Iterator<Item = f64> {
+    fn surface_sines(&self, embedding: Option<&Embedding>) -> impl Iterator<Item = f64> {
         let middle = self.uv.iter().sum::<DVec2>() / self.uv.len() as f64;
         (0..self.uv.len()).map(move |k| {
             // The normal is not unique at an apex: take that of a point slightly inside the element.
             let within = self.uv[k].lerp(middle, 1e-3);
-            self.corner(k).dot(ground.map_or(DVec3::Z, |ground| ground.atlas.at(within).normal()))
+            self.corner(k).dot(embedding.map_or(DVec3::Z, |embedding| embedding.atlas.at(within).normal()))
         })
     }
 
@@ -71,13 +71,13 @@ impl Mesh {
     /// The elements on surfaces with a corner, between straight sides in space, that is inverted relative to the
     /// surface normal: they fold over, as in a mesh too coarse for the curvature. None in the plane.
     pub fn folded(&self) -> Vec<ElementId> {
-        let Some(ground) = self.ground() else { return Vec::new() };
+        let Some(embedding) = self.embedding() else { return Vec::new() };
         let folds = |sine: f64| sine.is_nan() || sine <= 0.0;
-        self.elements().filter(|&e| self.corners_in_space(e).surface_sines(Some(ground)).any(folds)).collect()
+        self.elements().filter(|&e| self.corners_in_space(e).surface_sines(Some(embedding)).any(folds)).collect()
     }
 
     /// The least sine of an element's corners in space; see [`Corners::least_sine`].
     pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
-        self.corners_in_space(e).least_sine(self.ground().map(|ground| &**ground), near, f64::NEG_INFINITY)
+        self.corners_in_space(e).least_sine(self.embedding().map(|embedding| &**embedding), near, f64::NEG_INFINITY)
     }
 }

@@ -11,7 +11,7 @@ use super::boundary_layer::{BoundaryLayer, Distance};
 use super::curvature::Curvature;
 use super::place::MetricPlace;
 use super::table::Table;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::assembly::placed;
 use crate::core::geometry::atlas::Atlas;
 use crate::core::geometry::domain::Line;
@@ -35,7 +35,8 @@ impl From<Box<BadMetric>> for Fault {
         } else {
             format!("({}, {}, {}), u = {}, v = {}", p.x, p.y, p.z, uv.x, uv.y)
         };
-        Fault::new(bad.what).at(place).remedy("The metric must be positive and finite on the whole domain")
+        let fault = Fault::new(bad.what).of_kind(FaultKind::Metric).at(place);
+        fault.remedy("The metric must be positive and finite on the whole domain")
     }
 }
 
@@ -65,6 +66,7 @@ impl<T: MetricSource + ?Sized> MetricSource for Arc<T> {
 /// The specification of a field in a case; several fields are intersected.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a case has a handful of them")]
+#[non_exhaustive]
 pub enum FieldSpec {
     /// The same size everywhere, in all directions.
     Uniform {
@@ -149,6 +151,10 @@ impl Field {
     /// An invalid size, a formula that does not compile or is incomplete, an unknown curve; the fault carries the place
     /// of the specification.
     pub fn compile(spec: &FieldSpec, curves: &dyn Fn(&str) -> Option<Line>) -> Result<Field, Fault> {
+        Field::kind(spec, curves).map(Field).map_err(|fault| fault.of_kind(FaultKind::Metric))
+    }
+
+    fn kind(spec: &FieldSpec, curves: &dyn Fn(&str) -> Option<Line>) -> Result<Kind, Fault> {
         let lines = |names: &[String], field: &str, place: &String| -> Result<Vec<Line>, Fault> {
             let line = |name: &String| {
                 curves(name).ok_or_else(|| {
@@ -157,7 +163,7 @@ impl Field {
             };
             names.iter().map(line).collect()
         };
-        let kind = match spec {
+        Ok(match spec {
             FieldSpec::Uniform { h } => {
                 check_sizes(&[*h]).map_err(|what| Fault::new(what.replace("h1", "h")))?;
                 Kind::Uniform(Metric3::isotropic(*h))
@@ -179,8 +185,7 @@ impl Field {
                 let field = Curvature::new(*chord, *least, *far);
                 Kind::Curvature(field.map_err(|fault| placed(fault, place))?)
             }
-        };
-        Ok(Field(kind))
+        })
     }
 
     /// A field by a table at the nodes of a triangle mesh in the parametric plane, log-Euclidean between them
@@ -189,7 +194,8 @@ impl Field {
     /// # Errors
     /// Different lengths, indices out of range, a triangle without area, a metric that is not positive definite.
     pub fn table(points: &[DVec2], triangles: &[[u32; 3]], metrics: Vec<Metric3>) -> Result<Field, Fault> {
-        Ok(Field(Kind::Table(Box::new(Table::new(points, triangles, &metrics)?))))
+        let table = Table::new(points, triangles, &metrics).map_err(|fault| fault.of_kind(FaultKind::Metric))?;
+        Ok(Field(Kind::Table(Box::new(table))))
     }
 
     /// Whether it defines a tensor by itself; a boundary layer without a size along its curves only limits other

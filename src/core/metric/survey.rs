@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::field::{MetricSource, Sizing};
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::tensor::Metric2;
 
 /// The extremes that a survey found.
@@ -95,6 +95,7 @@ impl Sizing {
         if survey.smallest < nothing {
             let p = survey.smallest_at;
             return Err(Fault::new(format!("The size falls to {:e}, which is practically zero", survey.smallest))
+                .of_kind(FaultKind::Metric)
                 .at(format!("({}, {})", p.x, p.y))
                 .remedy("Give the size a lower bound, such as max(h, 0.001)"));
         }

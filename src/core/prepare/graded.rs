@@ -17,7 +17,7 @@ pub(super) fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, 
     let mut metrics = points.iter().map(|&uv| sizing.metric3_at(uv)).collect::<Result<Vec<_>, _>>()?;
     let edges: Vec<[u32; 2]> = mesh.edges().map(|h| mesh.ends(h).map(|n| place[n.index()])).collect();
     let triangles: Vec<[u32; 3]> = mesh.elements().map(|e| mesh.triangle(e).map(|n| place[n.index()])).collect();
-    let Some(ground) = mesh.ground() else {
+    let Some(embedding) = mesh.embedding() else {
         let in_space: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
         bound_gradation(&in_space, &edges, &mut metrics, beta);
         return Field::table(&points, &triangles, metrics);
@@ -25,7 +25,7 @@ pub(super) fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, 
     // On surfaces, places of different charts may be one point in space; the sizes spread over it from face to face.
     let mut space_of: Vec<u32> = vec![0; points.len()];
     let (mut in_space, mut shared): (Vec<DVec3>, Vec<Metric3>) = (Vec::new(), Vec::new());
-    let mut of_point: Vec<Option<u32>> = vec![None; ground.points.len()];
+    let mut of_point: Vec<Option<u32>> = vec![None; embedding.points.len()];
     for node in mesh.nodes() {
         let here = place[node.index()] as usize;
         let known = mesh.point(node).and_then(|p| of_point[p.index()]);

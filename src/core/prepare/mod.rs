@@ -1,5 +1,5 @@
-//! From a case to its background mesh with its metric: which parts of `geometry`, `metric`, `discrete` and `background`
-//! make it, in which order.
+//! From a case to its background mesh with its metric: which parts of `geometry`, `metric`, `discrete` and `background` make it,
+//! in which order.
 
 mod graded;
 pub(in crate::core) mod layers;
@@ -13,7 +13,7 @@ use of_mesh::from_mesh;
 
 use crate::core::background::adapt::Adapted;
 use crate::core::case::{Case, DomainSource};
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::complex;
 use crate::core::geometry::domain::Domain;
 use crate::core::kernel::predicates::firm;
@@ -25,6 +25,7 @@ use crate::core::progress::Watch;
 
 /// The background triangle mesh of a case with its metric.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Background {
     /// Triangles; every node with its metric.
     pub mesh: Mesh,
@@ -46,23 +47,27 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     let has_curves = matches!(case.domain, DomainSource::Curves { .. } | DomainSource::Surfaces(_));
     if !has_curves && !case.parameters.layered_loops.is_empty() {
         return Err(Fault::new("layered_loops names curves, and the case has none")
+            .of_kind(FaultKind::Parameter)
             .remedy("Leave it out: layers then holds for every loop"));
     }
-    let made = match &case.domain {
+    let whole = |domain| from_domain(case, domain, None, FileLines::default(), watch);
+    let (made, kind) = match &case.domain {
         DomainSource::Curves { curves, faces } => {
-            from_domain(case, Domain::build(curves.clone(), faces.clone())?, None, FileLines::default(), watch)?
+            (Domain::build(curves.clone(), faces.clone()).and_then(whole), FaultKind::Geometry)
         }
-        DomainSource::Surfaces(spec) => from_domain(case, complex::build(spec)?, None, FileLines::default(), watch)?,
-        DomainSource::Elements { points, triangles, quads } => from_elements(case, points, triangles, quads)?,
-        DomainSource::Mesh { path, sol, taking } => from_mesh(case, path, sol.as_deref(), taking, watch)?,
+        DomainSource::Surfaces(spec) => (complex::build(spec).and_then(whole), FaultKind::Geometry),
+        DomainSource::Elements { points, triangles, quads } => {
+            (from_elements(case, points, triangles, quads), FaultKind::Mesh)
+        }
+        DomainSource::Mesh { source, taking } => (from_mesh(case, source, taking, watch), FaultKind::Mesh),
     };
-    refuse_needles(&made.mesh)?;
+    let sound = made.and_then(|made| refuse_needles(&made.mesh).map(|()| made));
+    let made = sound.map_err(|fault| fault.of_kind(kind))?;
     watch.cancel().check()?;
     chosen_faces(made, &case.parameters.faces)
 }
 
-/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for
-/// all faces.
+/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for all faces.
 fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault> {
     if names.is_empty() {
         return Ok(made);
@@ -75,6 +80,7 @@ fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault>
         regions.extend(own.map(|(_, number)| number));
         if regions.len() == before {
             let fault = Fault::new(format!("There is no face \"{}\"", name.escape_debug()));
+            let fault = fault.of_kind(FaultKind::Parameter);
             let known = faces().map(String::as_str).collect::<Vec<_>>();
             return Err(fault.remedy(
                 suggestion(name, known.iter().copied())

@@ -8,9 +8,9 @@ use crate::core::background::adapt::{Adapted, adapt};
 use crate::core::background::discretise::DividedDomain;
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::case::Case;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::domain::Domain;
-use crate::core::mesh::half_edge::{Ground, Mesh};
+use crate::core::mesh::half_edge::{Embedding, Mesh};
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::names::{Named, Names};
 use crate::core::mesh::triangle_set::TriangleSet;
@@ -39,7 +39,8 @@ pub(super) fn from_domain(
     };
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
-    let layered = layers::layered_curves(&domain, &case.parameters)?;
+    let layered =
+        layers::layered_curves(&domain, &case.parameters).map_err(|fault| fault.of_kind(FaultKind::Parameter))?;
     let mut made = adapted_mesh(case, &domain, &sizing, watch)?;
     if let Some(beta) = case.gradation {
         sizing = Sizing::new(vec![bounded(&made.mesh, &sizing, beta)?], 1.0).on(atlas);
@@ -85,7 +86,7 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
     let mut mesh = Mesh::from_triangles(&set, metric);
     if let Some(spatial) = &domain.spatial {
-        mesh.set_ground(Arc::new(Ground { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
+        mesh.set_embedding(Arc::new(Embedding { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
     }
     let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
     Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines })
@@ -104,5 +105,6 @@ fn refuse_the_endless(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Res
         return Ok(());
     }
     Err(Fault::new(format!("The metric asks for about {quads:.1e} quadrilaterals, and max_quads is {max_quads}"))
+        .of_kind(FaultKind::Limit)
         .remedy("Make the sizes larger, or allow more by max_quads"))
 }

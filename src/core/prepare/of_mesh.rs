@@ -1,6 +1,5 @@
 //! The background mesh of a mesh that was given: its triangles as they are, or its shape meshed anew.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -9,35 +8,41 @@ use super::Background;
 use super::graded::bounded;
 use super::of_domain::{FileLines, from_domain};
 use crate::core::background::adapt::Adapted;
-use crate::core::background::import::{implied_metric, import};
-use crate::core::case::{Case, MeshUse, Taking};
+use crate::core::background::implied_metric::implied_metric;
+use crate::core::background::import::import;
+use crate::core::case::{Case, MeshSource, MeshUse, Taking};
 use crate::core::discrete::curvature::curvature_sizes;
 use crate::core::discrete::edges::Triangles;
-use crate::core::discrete::given::implied_metric_in_space;
-use crate::core::discrete::sound::{Sound, sound};
+use crate::core::discrete::own_triangles::implied_metric_in_space;
+use crate::core::discrete::repair::{Repaired, repair};
 use crate::core::discrete::surface::{Surface, implied_sizes, surface};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::{Ground, Mesh};
+use crate::core::mesh::half_edge::{Embedding, Mesh};
 use crate::core::mesh::names::Names;
 use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
 use crate::core::soup::mesh_file::MeshFile;
 
-/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The metric is that
-/// of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
+/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The
+/// metric is that of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
 pub(super) fn from_mesh(
     case: &Case,
-    path: &Path,
-    sol: Option<&Path>,
+    source: &MeshSource,
     taking: &Taking,
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     watch.tell(Stage::Read, 0, 0);
-    let mut file = read_mesh_watched(path, sol, watch)?;
+    let (mut file, place) = match source {
+        MeshSource::File { path, sol } => (read_mesh_watched(path, sol.as_deref(), watch)?, path.display().to_string()),
+        MeshSource::Memory(mesh) => {
+            let place = format!("the mesh \"{}\"", case.name);
+            mesh.check_lists().map_err(|fault| fault.at(place.clone()))?;
+            (MeshFile::clone(mesh), place)
+        }
+    };
     taking.scale(&mut file);
-    let place = path.display().to_string();
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
         return from_surface(case, &file, &place, taking, watch);
     }
@@ -58,7 +63,8 @@ pub(super) fn from_mesh(
     }
     let mut sizing = Sizing::new(fields, case.parameters.size_scale);
     if given {
-        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be asked for.
+        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be
+        // asked for.
         let middle = |t: &[u32; 3]| t.iter().map(|&n| set.uv[n as usize]).sum::<DVec2>() / 3.0;
         let points: Vec<DVec2> = set.uv.iter().copied().chain(set.triangles.iter().map(middle)).collect();
         sizing.survey(&points, &|_| false)?;
@@ -77,7 +83,7 @@ pub(super) fn from_mesh(
 }
 
 /// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
-/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is the file's name.
+/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is what messages call it.
 fn from_surface(
     case: &Case,
     file: &MeshFile,
@@ -86,8 +92,8 @@ fn from_surface(
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     // What the case says of sizes has a place of its own.
-    let here = |fault: Fault| if fault.is_stop { fault } else { fault.at(place) };
-    let Sound { mesh, copied, regions, lines, mut repairs } = sound(file, watch).map_err(here)?;
+    let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
+    let Repaired { mesh, copied, regions, lines, mut repairs } = repair(file, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
@@ -138,14 +144,14 @@ fn from_laid_out(
         n => repairs.push(format!("{n} sides of triangles were divided to make counts even")),
     }
     let atlas = laid.domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
-    let ground = atlas.clone().map(|atlas| Arc::new(Ground { atlas, points: set.xyz.clone() }));
+    let embedding = atlas.clone().map(|atlas| Arc::new(Embedding { atlas, points: set.xyz.clone() }));
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&set.uv, &|_| false)?;
     let meshed = |sizing: &Sizing| -> Result<Mesh, Fault> {
         let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
         let mut mesh = Mesh::from_triangles(&set, metric);
-        if let Some(ground) = &ground {
-            mesh.set_ground(Arc::clone(ground));
+        if let Some(embedding) = &embedding {
+            mesh.set_embedding(Arc::clone(embedding));
         }
         Ok(mesh.reordered())
     };

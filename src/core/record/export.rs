@@ -28,6 +28,7 @@ const NONE: u32 = u32::MAX;
 
 /// The arrays of a mesh.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Export {
     /// Coordinates of each node.
     pub uv: Vec<DVec2>,
@@ -113,7 +114,7 @@ impl Export {
 
     /// The arrays, and the place in them of each node.
     fn with_nodes(mesh: &Mesh, names: &Names) -> (Export, Vec<u32>) {
-        let atlas = mesh.ground().map(|ground| Arc::clone(&ground.atlas));
+        let atlas = mesh.embedding().map(|embedding| Arc::clone(&embedding.atlas));
         let mut export = Export { atlas, ..Export::default() };
         let mut node_at = vec![NONE; mesh.node_slots()];
         let mut point_at: Vec<u32> = Vec::new();

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::run_file;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::load;
 use crate::core::run::run::Run;
 
@@ -28,6 +28,10 @@ pub fn is_figure(path: &Path) -> bool {
 /// # Errors
 /// What the system says of the file; a figure without a run, cut off or damaged; and as [`run_file::parse`].
 pub fn read(path: &Path) -> Result<Run, Fault> {
+    run_in(path).map_err(|fault| fault.of_kind(FaultKind::Syntax))
+}
+
+fn run_in(path: &Path) -> Result<Run, Fault> {
     let place = path.display().to_string();
     if std::fs::metadata(path).is_ok_and(|meta| meta.len() > LARGEST) {
         return Err(Fault::new("The file is too large for a figure").at(place));

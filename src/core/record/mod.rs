@@ -2,6 +2,7 @@
 
 pub mod statistics;
 pub mod export;
+mod flaw;
 pub mod report;
 pub mod run_file;
 pub mod figure;

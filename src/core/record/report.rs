@@ -1,5 +1,7 @@
 //! The report of a conversion: as JSON for programs (keys in a fixed order), as a summary for people.
 
+mod counts;
+
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::io;
@@ -8,13 +10,17 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
 
+use super::export::Export;
 use super::statistics::{Angles, Range, Statistics};
 use crate::core::case::Case;
 use crate::core::case::parameters::Parameters;
+use crate::core::convert::conversion::Converted;
+use crate::core::fault::Fault;
 use crate::core::progress::Stage;
 
 /// Everything that is told about a conversion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Who made it.
     pub program: Program,
@@ -47,6 +53,7 @@ pub struct Report {
 
 /// Name and version of the program.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Program {
     /// Its name.
     pub name: String,
@@ -56,6 +63,7 @@ pub struct Program {
 
 /// A case as a report tells it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct CaseTold {
     /// Short name.
     pub name: String,
@@ -67,6 +75,7 @@ pub struct CaseTold {
 
 /// What the last resort made (docs/algorithm.md, "The last resort").
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LastResort {
     /// Quadrilaterals made by it.
     pub quads: usize,
@@ -98,6 +107,37 @@ impl LastResort {
 }
 
 impl Report {
+    /// The report of a conversion that was taken to its end; its mesh is checked and measured.
+    ///
+    /// # Errors
+    /// Where the metric fails.
+    pub fn of(case: &Case, converted: &Converted) -> Result<Report, Fault> {
+        let export = Export::of(&converted.mesh, &converted.names);
+        Report::of_export(case, converted, &export, export.flaw(&converted.mesh, false).is_none())
+    }
+
+    /// As [`Report::of`], also on the way, of arrays that were checked: whether they are `valid`.
+    ///
+    /// # Errors
+    /// Where the metric fails.
+    pub fn of_export(case: &Case, converted: &Converted, export: &Export, valid: bool) -> Result<Report, Fault> {
+        let resort = converted.last_resort.quads();
+        Ok(Report {
+            program: Program::this(),
+            case: CaseTold::of(case),
+            parameters: case.parameters.clone(),
+            background_triangles: converted.triangles,
+            regions: converted.names.faces.len(),
+            valid,
+            mesh: Statistics::measure(export.measured(), &converted.sizing)?,
+            on_surfaces: converted.mesh.embedding().is_some(),
+            last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
+            repairs: converted.repairs.clone(),
+            events: counts::events(converted),
+            timing: Vec::new(),
+        })
+    }
+
     /// The report as indented JSON, lists of numbers on one line, with a final line break.
     pub fn json(&self) -> String {
         let mut bytes = Vec::new();
@@ -221,7 +261,7 @@ pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], ti
 fn word(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "read",
-        Stage::Mend => "mend",
+        Stage::Repair => "mend",
         Stage::Chart => "chart",
         Stage::Divide => "divide",
         Stage::Triangulate => "triangulate",

@@ -39,8 +39,8 @@ use toml::de::DeTable;
 
 use crate::core::case::parameters::Parameters;
 use crate::core::case::table::{Source, Table, Value};
-use crate::core::case::{Case, DomainSource};
-use crate::core::fault::Fault;
+use crate::core::case::{Case, DomainSource, MeshSource};
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::{load, save};
 use crate::core::kernel::decimal::Shortest;
 use crate::core::kernel::fingerprint::Fingerprint;
@@ -76,7 +76,8 @@ pub fn is_run(text: &str) -> bool {
 pub fn read(path: &Path) -> Result<Run, Fault> {
     let place = path.display().to_string();
     let bytes = load(path)?;
-    let text = String::from_utf8(bytes).map_err(|_| Fault::new("The file is not text").at(place.clone()))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Fault::new("The file is not text").of_kind(FaultKind::Syntax).at(place.clone()))?;
     parse(&text, &place, path.parent().unwrap_or(Path::new("")))
 }
 
@@ -86,6 +87,10 @@ pub fn read(path: &Path) -> Result<Run, Fault> {
 /// Text that is not TOML, another version, unknown or missing keys, values of the wrong kind or out of range: with file and
 /// line; and a mesh that is not there, or not as it was.
 pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
+    parsed(text, file, folder).map_err(|fault| fault.of_kind(FaultKind::Syntax))
+}
+
+fn parsed(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
     let source = Source { file, text };
     let document = DeTable::parse(text).map_err(|error| {
         let place = error.span().map_or(file.to_owned(), |span| source.place(span.start));
@@ -139,7 +144,7 @@ fn case(table: &Table<'_>, file: &str, folder: &Path) -> Result<Case, Fault> {
         (None, None) => return Err(table.fault("The case has neither text nor mesh").remedy("Write one of them")),
     };
     match (&mut case.domain, mesh) {
-        (DomainSource::Mesh { path, sol: own, .. }, Some(mesh)) => (*path, *own) = (mesh, sol),
+        (DomainSource::Mesh { source, .. }, Some(path)) => *source = MeshSource::File { path, sol },
         (DomainSource::Mesh { .. }, None) => {
             return Err(table.fault("The mesh of the case is missing").remedy("Write mesh = { path = \"...\", ... }"));
         }
@@ -222,7 +227,14 @@ fn camera(table: &Table<'_>) -> Result<Camera, Fault> {
 
 impl Links {
     fn of(run: &Run) -> Result<Links, Fault> {
-        let DomainSource::Mesh { path, sol, .. } = &run.case.domain else { return Ok(Links::default()) };
+        let (path, sol) = match &run.case.domain {
+            DomainSource::Mesh { source: MeshSource::File { path, sol }, .. } => (path, sol),
+            DomainSource::Mesh { source: MeshSource::Memory(_), .. } => {
+                let fault = Fault::new("The run starts from a mesh in memory, which a run file cannot name");
+                return Err(fault.of_kind(FaultKind::Mesh).remedy("Write the mesh to a file and begin from that"));
+            }
+            _ => return Ok(Links::default()),
+        };
         let link = |path: &Path| -> Result<Link, Fault> {
             let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
             Ok(Link { fingerprint: Fingerprint::of(&load(path)?), path: absolute })

@@ -36,6 +36,7 @@ pub struct Measured<'a> {
 
 /// Everything that is measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Statistics {
     /// Output points in use.
     pub nodes: usize,

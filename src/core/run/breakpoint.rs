@@ -18,7 +18,7 @@ use super::front_count::FrontCount;
 use super::history::History;
 use super::log::Angles;
 use crate::core::convert::event::Event;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::spelling::nearest;
 
 /// What a condition is asked of.
@@ -68,6 +68,10 @@ impl Condition {
     /// # Errors
     /// Where it is not one: with the position of the first character (from 1) that is wrong, and the nearest known name.
     pub fn parse(text: &str) -> Result<Condition, Fault> {
+        Condition::parsed(text).map_err(|fault| fault.of_kind(FaultKind::Syntax))
+    }
+
+    fn parsed(text: &str) -> Result<Condition, Fault> {
         let mut reader = Reader { text, at: 0 };
         let tree = reader.any()?;
         reader.skip_blanks();

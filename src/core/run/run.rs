@@ -6,7 +6,7 @@ use super::shown::Shown;
 use crate::core::case::Case;
 use crate::core::case::parameters::Parameters;
 use crate::core::convert::converter::Converter;
-use crate::core::fault::Fault;
+use crate::core::fault::{Fault, FaultKind};
 use crate::core::mesh::ids::NodeId;
 use crate::core::prepare::{Background, background};
 use crate::core::progress::Watch;
@@ -25,6 +25,7 @@ pub struct Edit {
 
 /// What an edit changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum EditKind {
     /// A parameter is given another value, both as [`Parameters::set`] takes them.
     Parameter {
@@ -52,6 +53,7 @@ impl EditKind {
         parameters.set(key, value)?;
         if OF_BACKGROUND.contains(&key) {
             return Err(Fault::new(format!("{key} belongs to the background mesh and cannot change at a step"))
+                .of_kind(FaultKind::Parameter)
                 .remedy("Change it for the whole run"));
         }
         // As it is written everywhere else, so that a run reads back as it was.

@@ -244,6 +244,38 @@ impl MeshFile {
         Elements::new([triangles, quads, polygons], self.counting.clone())
     }
 
+    /// Appends a triangle, quadrilateral or polygon with its number in the file. Returns the tags of its kind, to which
+    /// the caller may append one; `None`, and no element, with fewer than three corners.
+    pub(in crate::core) fn push_face(&mut self, corners: &[u32], number: u64) -> Option<&mut Vec<u32>> {
+        match *corners {
+            [a, b, c] => {
+                self.counting.triangles.push(self.triangles.len(), number);
+                self.triangles.push([a, b, c]);
+                Some(&mut self.triangle_tags)
+            }
+            [a, b, c, d] => {
+                self.counting.quads.push(self.quads.len(), number);
+                self.quads.push([a, b, c, d]);
+                Some(&mut self.quad_tags)
+            }
+            [] | [_] | [_, _] => None,
+            _ => {
+                self.counting.polygons.push(self.polygons.len(), number);
+                self.polygons.push(corners.to_vec());
+                Some(&mut self.polygon_tags)
+            }
+        }
+    }
+
+    /// Clears the tags of each kind of element that has no tag but 0.
+    pub(in crate::core) fn clear_zero_tags(&mut self) {
+        for tags in [&mut self.line_tags, &mut self.triangle_tags, &mut self.quad_tags] {
+            if tags.iter().all(|&tag| tag == 0) {
+                *tags = Vec::new();
+            }
+        }
+    }
+
     /// Names elements for a message: see [`Elements::describe`].
     pub fn describe_elements(&self, indices: &[u32]) -> String {
         self.elements().describe(indices)

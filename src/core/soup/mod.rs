@@ -3,6 +3,8 @@
 
 pub mod mesh_file;
 pub mod counting;
+mod in_memory;
 pub mod polygons;
 pub(in crate::core) mod weld;
 pub mod soundness;
+pub mod repairs;

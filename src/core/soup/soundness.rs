@@ -21,6 +21,7 @@ use faces::Faces;
 /// Everything that can be wrong with a mesh, in the order of the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Defect {
     /// No triangles and no quadrilaterals.
     NoElements,

@@ -64,8 +64,8 @@ impl Spot {
 
     /// The surface over a place of the plane.
     fn over(mesh: &Mesh, p: DVec2) -> Spot {
-        let Some(ground) = mesh.ground() else { return Spot { at: p.extend(0.0), normal: DVec3::Z } };
-        let at = ground.atlas.at(p);
+        let Some(embedding) = mesh.embedding() else { return Spot { at: p.extend(0.0), normal: DVec3::Z } };
+        let at = embedding.atlas.at(p);
         Spot { at: at.xyz, normal: at.normal() }
     }
 }

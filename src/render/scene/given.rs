@@ -85,7 +85,7 @@ impl Scene {
         let at = |k: u32| relative(mesh.points[k as usize], scene.anchor);
         let fill = |t: usize| match division {
             Some(division) => {
-                let number = division.told_apart[division.chart_of[t] as usize] as usize;
+                let number = division.colour[division.chart_of[t] as usize] as usize;
                 palette.charts[number % palette.charts.len()]
             }
             None => palette.live,
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
     use crate::core::discrete::chart::charts;
     use crate::core::discrete::features::{ANGLE, features};
-    use crate::core::discrete::flat::Bound;
+    use crate::core::discrete::planar_map::StretchBound;
     use crate::core::progress::Nobody;
     use crate::core::soup::mesh_file::MeshFile;
     use crate::render::palette::{DARK, LIGHT};
@@ -184,7 +184,7 @@ mod tests {
             quads: vec![[0, 1, 4, 3], [1, 2, 5, 4]],
             ..MeshFile::default()
         };
-        crate::core::discrete::sound::sound(&file, &mut Nobody).unwrap().mesh
+        crate::core::discrete::repair::repair(&file, &mut Nobody).unwrap().mesh
     }
 
     #[test]
@@ -192,7 +192,7 @@ mod tests {
         let mesh = tent();
         let edges = Edges::of(&mesh.triangles);
         let found = features(&mesh, &edges, ANGLE);
-        let charts = charts(&mesh, &edges, &found, Bound::default(), &mut Nobody).unwrap();
+        let charts = charts(&mesh, &edges, &found, StretchBound::default(), &mut Nobody).unwrap();
         let division = Division::of(&mesh, &edges, &found, &charts);
         let draw = |division, palette| {
             let given = Given { mesh: &mesh, edges: &edges, features: &found, division, marks: &[], palette };

@@ -1,5 +1,5 @@
-//! The thread that reads a mesh, mends it, finds its features and charts, and makes the picture of them. Of several
-//! wishes the newest counts: what is under way for another one is ended.
+//! The thread that reads a mesh, repairs it, finds its features and charts, and draws them. Of several requests the
+//! latest counts: work on an earlier one is stopped.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,21 +15,21 @@ use crate::core::discrete::census::{Census, Division, count_of};
 use crate::core::discrete::chart::charts;
 use crate::core::discrete::edges::{Edges, Triangles};
 use crate::core::discrete::features::{Feature, features, with_lines};
-use crate::core::discrete::flat::Bound;
-use crate::core::discrete::sound::{Sound, as_given, sound};
+use crate::core::discrete::planar_map::StretchBound;
+use crate::core::discrete::repair::{Repaired, repair, unrepaired};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::render::scene::{Given, Scene};
 
-/// Kinds of features, in the order in which they are told.
+/// Kinds of features, in the order in which they are listed.
 pub const KINDS: [Feature; 6] =
     [Feature::Fold, Feature::Region, Feature::Line, Feature::Boundary, Feature::Branching, Feature::Conflict];
 
-/// A surface of more triangles than this is shown with its features before its charts are known.
+/// A surface with more triangles than this is shown with its features before its charts are known.
 const LARGE: usize = 20_000;
 
-/// A mesh that has been read and mended.
+/// A mesh that has been read and repaired.
 pub struct Loaded {
     pub mesh: Triangles,
     edges: Edges,
@@ -40,24 +40,24 @@ pub struct Loaded {
     pub has_metric: bool,
     /// How many regions it has.
     pub regions: usize,
-    /// What was mended, and what was passed over.
+    /// What was repaired, and what was skipped.
     pub repairs: Vec<String>,
     /// The mean length of its edges.
     pub mean_edge: f64,
     /// Its extent along the axes.
     pub extent: DVec3,
-    /// Why it cannot be converted, however it is taken: then it is as the file has it.
+    /// Why it cannot be converted with any options; then the mesh is as in the file.
     pub fault: Option<Fault>,
 }
 
-/// What a picture is to show.
+/// The options of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
     /// In radians.
     pub feature_angle: f64,
-    /// How far charts may be stretched; none where it has no charts.
-    pub bound: Option<Bound>,
-    /// Elements that it is refused for, by their corners.
+    /// How far charts may be stretched; none if it has no charts.
+    pub bound: Option<StretchBound>,
+    /// The elements for which it is refused, by their corners.
     pub marks: Arc<[Vec<DVec3>]>,
     pub dark: bool,
 }
@@ -67,17 +67,17 @@ pub struct Shown {
     pub wanted: Wanted,
     /// How many edges are features of each kind, as [`KINDS`] has them.
     pub counts: [usize; KINDS.len()],
-    /// The charts; none where they are not known yet, or there are none.
+    /// The charts; none if they are not known yet or do not exist.
     pub division: Option<Arc<Division>>,
     pub scene: Arc<Scene>,
 }
 
-/// What the thread tells.
-pub enum Told {
+/// What the thread reports.
+pub enum PreviewNews {
     Progress(Progress),
     Loaded(Result<Arc<Loaded>, Fault>),
     Shown(Arc<Shown>),
-    /// It cannot be shown as it was wished.
+    /// It cannot be shown with these options.
     Refused(Fault),
 }
 
@@ -90,13 +90,13 @@ struct Ask {
 /// The thread.
 pub struct Preview {
     ask: Sender<Ask>,
-    told: Receiver<Told>,
+    told: Receiver<PreviewNews>,
     /// Ends what is under way.
     cancel: Cancel,
 }
 
 impl Preview {
-    /// Begins to read a mesh; `wake` is called when there is something to be told.
+    /// Starts to read a mesh; `wake` is called when the thread has something to report.
     pub fn of(path: PathBuf, wake: Wake) -> Preview {
         let (ask, asked) = channel();
         let (tell, told) = channel();
@@ -106,8 +106,8 @@ impl Preview {
             let mut voice = Voice { tell, wake, cancel: reading, last: None };
             let loaded = load(&path, &mut voice).map(Arc::new);
             let read = loaded.as_ref().ok().cloned();
-            if !matches!(&loaded, Err(fault) if fault.is_stop) {
-                voice.say(Told::Loaded(loaded));
+            if !matches!(&loaded, Err(fault) if fault.is_stop()) {
+                voice.say(PreviewNews::Loaded(loaded));
             }
             if let Some(loaded) = read {
                 Work { loaded, features: None, division: None }.serve(&asked, &mut voice);
@@ -116,17 +116,17 @@ impl Preview {
         Preview { ask, told, cancel }
     }
 
-    /// Asks for a picture in place of what was asked for before; it has this generation, and one on the way to it the
-    /// one before.
+    /// Asks for a picture in place of the one asked for before. It has this generation; an interim picture has the one
+    /// before.
     pub fn ask(&mut self, wanted: Wanted, generation: u64) {
         self.cancel.ask();
         self.cancel = Cancel::new();
-        // A thread that has ended has told why.
+        // A thread that has ended has reported why.
         let _ = self.ask.send(Ask { wanted, generation, cancel: self.cancel.clone() });
     }
 
-    /// What has been told since the last time.
-    pub fn hear(&self) -> Vec<Told> {
+    /// What has been reported since the last call.
+    pub fn hear(&self) -> Vec<PreviewNews> {
         self.told.try_iter().collect()
     }
 }
@@ -138,15 +138,15 @@ impl Drop for Preview {
 }
 
 struct Voice {
-    tell: Sender<Told>,
+    tell: Sender<PreviewNews>,
     wake: Wake,
     cancel: Cancel,
     last: Option<(Stage, Instant)>,
 }
 
 impl Voice {
-    fn say(&self, told: Told) {
-        // Nobody listens any more: the window has given it up.
+    fn say(&self, told: PreviewNews) {
+        // Nobody listens any more: the window has given up the import.
         let _ = self.tell.send(told);
         (self.wake)();
     }
@@ -158,7 +158,7 @@ impl Watch for Voice {
             return;
         }
         self.last = Some((stage, Instant::now()));
-        self.say(Told::Progress(Progress { words: words_of(stage), done, total }));
+        self.say(PreviewNews::Progress(Progress { words: words_of(stage), done, total }));
     }
 
     fn cancel(&self) -> Cancel {
@@ -168,19 +168,19 @@ impl Watch for Voice {
 
 fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
     let file = read_mesh_watched(path, None, voice)?;
-    let place = |fault: Fault| if fault.is_stop { fault } else { fault.at(path.display().to_string()) };
+    let place = |fault: Fault| if fault.is_stop() { fault } else { fault.at(path.display().to_string()) };
     let (is_plane, has_metric) = (file.is_plane(), file.metric.is_some());
     let skipped: Vec<String> =
         file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
-    let (mut found, fault) = match sound(&file, voice) {
+    let (mut found, fault) = match repair(&file, voice) {
         Ok(found) => (found, None),
-        Err(fault) if fault.is_stop => return Err(fault),
+        Err(fault) if fault.is_stop() => return Err(fault),
         Err(fault) => {
-            let mesh = as_given(&file);
+            let mesh = unrepaired(&file);
             if mesh.triangles.is_empty() {
                 return Err(place(fault));
             }
-            let nothing = Sound { mesh, copied: vec![], regions: vec![], lines: vec![], repairs: vec![] };
+            let nothing = Repaired { mesh, copied: vec![], regions: vec![], lines: vec![], repairs: vec![] };
             (nothing, Some(fault))
         }
     };
@@ -202,11 +202,11 @@ fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
     Ok(Loaded { mesh: found.mesh, edges, census, is_plane, has_metric, regions, repairs, mean_edge, extent, fault })
 }
 
-/// What is known of the mesh beside its triangles, and what it was found for.
+/// What is known of the mesh, and for which options it was computed.
 struct Work {
     loaded: Arc<Loaded>,
     features: Option<(f64, Arc<[Option<Feature>]>)>,
-    division: Option<(f64, Bound, Arc<Division>)>,
+    division: Option<(f64, StretchBound, Arc<Division>)>,
 }
 
 impl Work {
@@ -214,11 +214,11 @@ impl Work {
         while let Ok(first) = asked.recv() {
             let ask = asked.try_iter().last().unwrap_or(first);
             voice.cancel = ask.cancel.clone();
-            // What was ended has no picture: another one is asked for.
+            // A request that was stopped has no picture: there is a later one.
             if let Err(fault) = self.show(&ask, voice)
-                && !fault.is_stop
+                && !fault.is_stop()
             {
-                voice.say(Told::Refused(fault));
+                voice.say(PreviewNews::Refused(fault));
             }
         }
     }
@@ -255,10 +255,10 @@ impl Work {
             (Some((of, bound, division)), Some(wanted)) if (*of, *bound) == (angle, wanted) => Some(division.clone()),
             (_, Some(bound)) => {
                 if mesh.triangles.len() > LARGE {
-                    // One of which the charts are still to come is not that of the wish.
+                    // An interim picture, without charts, does not answer the request.
                     let mut first = picture(None, generation - 1)?;
                     first.wanted.bound = None;
-                    voice.say(Told::Shown(Arc::new(first)));
+                    voice.say(PreviewNews::Shown(Arc::new(first)));
                 }
                 let charts = charts(mesh, edges, &features, bound, voice)?;
                 let division = Arc::new(Division::of(mesh, edges, &features, &charts));
@@ -267,7 +267,7 @@ impl Work {
             }
         };
         let shown = picture(division, *generation)?;
-        voice.say(Told::Shown(Arc::new(shown)));
+        voice.say(PreviewNews::Shown(Arc::new(shown)));
         Ok(())
     }
 }
@@ -280,11 +280,11 @@ mod tests {
 
     fn wish(degrees: f64) -> Wanted {
         let marks = Arc::default();
-        Wanted { feature_angle: degrees.to_radians(), bound: Some(Bound::default()), marks, dark: true }
+        Wanted { feature_angle: degrees.to_radians(), bound: Some(StretchBound::default()), marks, dark: true }
     }
 
     /// What comes within a while.
-    fn next(preview: &Preview, mut is_it: impl FnMut(&Told) -> bool) -> Option<Told> {
+    fn next(preview: &Preview, mut is_it: impl FnMut(&PreviewNews) -> bool) -> Option<PreviewNews> {
         let begin = Instant::now();
         while begin.elapsed() < Duration::from_secs(60) {
             match preview.told.recv_timeout(Duration::from_millis(500)) {
@@ -309,16 +309,19 @@ mod tests {
     fn of_many_wishes_the_last_one_is_shown() {
         let folder = tempfile::tempdir().unwrap();
         let mut preview = Preview::of(tetrahedron(folder.path()), Arc::new(|| {}));
-        assert!(next(&preview, |told| matches!(told, Told::Loaded(Ok(loaded)) if loaded.census.nodes == 4)).is_some());
+        assert!(
+            next(&preview, |told| matches!(told, PreviewNews::Loaded(Ok(loaded)) if loaded.census.nodes == 4))
+                .is_some()
+        );
         for k in 1..=150 {
             preview.ask(wish(f64::from(k)), 2 * k as u64);
         }
         let mut shown = 0;
         let last = next(&preview, |told| {
-            shown += usize::from(matches!(told, Told::Shown(_)));
-            matches!(told, Told::Shown(shown) if shown.wanted == wish(150.0))
+            shown += usize::from(matches!(told, PreviewNews::Shown(_)));
+            matches!(told, PreviewNews::Shown(shown) if shown.wanted == wish(150.0))
         });
-        let Some(Told::Shown(last)) = last else { panic!("no picture of the last wish") };
+        let Some(PreviewNews::Shown(last)) = last else { panic!("no picture of the last wish") };
         assert_eq!((last.scene.generation, last.division.as_ref().unwrap().charts > 1), (300, true));
         assert_eq!(last.counts, [0; KINDS.len()], "no fold is beyond 150 degrees");
         assert!(shown < 150, "{shown}");
@@ -330,8 +333,8 @@ mod tests {
         let path = folder.path().join("b.obj");
         std::fs::write(&path, "v 0 0 0\nf 1 2 3\n").unwrap();
         let preview = Preview::of(path, Arc::new(|| {}));
-        let told = next(&preview, |told| matches!(told, Told::Loaded(Err(_))));
-        let Some(Told::Loaded(Err(fault))) = told else { panic!("no complaint") };
+        let told = next(&preview, |told| matches!(told, PreviewNews::Loaded(Err(_))));
+        let Some(PreviewNews::Loaded(Err(fault))) = told else { panic!("no complaint") };
         assert!(fault.place.contains("b.obj, line 2") && fault.what.contains("vertex 3"), "{fault}");
     }
 }

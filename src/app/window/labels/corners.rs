@@ -1,17 +1,17 @@
-//! Frontal angles: wedges at corners that are sides already, arcs with their values at the base.
+//! Frontal angles: wedges at corners where the front is the side, arcs with their values at the base.
 
 use eframe::egui::{Align2, Pos2, Shape, Stroke, Vec2};
 
-use super::{Over, Which};
+use super::{Labels, ViewRole};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::front::sector::Side;
 use crate::core::front::segment::Segment;
 use crate::render::scene::Decision;
 
-impl Over<'_> {
-    /// Wedges at corners that are sides already, arcs with their values where there is room.
-    pub(super) fn wedges_and_arcs(&mut self, decision: &Decision, which: Which) {
+impl Labels<'_> {
+    /// Wedges at corners where the front is the side, arcs with their values if there is room.
+    pub(super) fn wedges_and_arcs(&mut self, decision: &Decision, which: ViewRole) {
         let moment = self.moment;
         let rect = self.frame.rect.expand(40.0);
         for segment in &moment.front {
@@ -23,7 +23,7 @@ impl Over<'_> {
             for side in Side::BOTH {
                 let at = [segment.a, segment.b][side.index()];
                 let has_arc = decision.base.is_some_and(|base| base.contains(&at));
-                if is_base && which != Which::Whole {
+                if is_base && which != ViewRole::Whole {
                     self.arc(segment, side);
                 } else if !has_arc && segment.theta[side.index()] < moment.parameters.theta_rect {
                     self.wedge(segment, side);
@@ -43,7 +43,7 @@ impl Over<'_> {
         };
         let centre = self.place(at)?;
         let legs = [self.place(from)? - centre, self.place(to)? - centre];
-        // Seen from behind, the mesh runs the other way round.
+        // Seen from behind, the mesh turns the other way.
         Some((centre, if self.is_behind(at) { [legs[1], legs[0]] } else { legs }))
     }
 

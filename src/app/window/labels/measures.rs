@@ -1,19 +1,19 @@
-//! What is measured against: metric ellipses, the unit grid of the lens, the frame of the main view, scale bar and
-//! axes, and the legend of colours.
+//! Measures: metric ellipses, the unit grid of the lens, the frame of the main view, scale bar and axes, and the legend
+//! of colours.
 
 use eframe::egui::{Align2, Pos2, Rect, Shape, Stroke, Ui, Vec2};
 use glam::DVec2;
 
-use super::{ELLIPSE, MOST_ELLIPSES, Over};
-use crate::app::window::state::{Place, State};
+use super::{ELLIPSE, Labels, MOST_ELLIPSES};
+use crate::app::window::state::{State, SurfaceView, ViewCamera};
 use crate::app::window::theme::{self, ink};
-use crate::app::window::viewport::{self, Frame};
+use crate::app::window::viewport::{self, ViewFrame};
 use crate::app::window::words;
 use crate::core::mesh::ids::NodeId;
 use crate::render::palette::Palette;
 use crate::render::scene::{ColourBy, Shading};
 
-impl Over<'_> {
+impl Labels<'_> {
     pub(super) fn ellipses(&self) {
         let mesh = &self.moment.mesh;
         let mut shown = 0;
@@ -33,16 +33,16 @@ impl Over<'_> {
         }
     }
 
-    /// The metric ellipse of a node on the screen, at a share of the unit length; in space it lies in the tangent
+    /// The metric ellipse of a node on the screen, at a fraction of the unit length; in space it lies in the tangent
     /// plane.
     fn ellipse(&self, node: NodeId, share: f64) -> Vec<Pos2> {
         let mesh = &self.moment.mesh;
         let p = mesh.uv(node);
         let ([small, large], [along, across]) = mesh.metric(node).eigen();
         let axes = [along * (share / small.sqrt()), across * (share / large.sqrt())];
-        let (centre, axes) = match mesh.ground() {
-            Some(ground) if self.scene.form().is_in_space() => {
-                let at = ground.atlas.at(p);
+        let (centre, axes) = match mesh.embedding() {
+            Some(embedding) if self.scene.form().is_in_space() => {
+                let at = embedding.atlas.at(p);
                 (at.xyz, axes.map(|axis| at.j[0] * axis.x + at.j[1] * axis.y))
             }
             _ => (p.extend(0.0), axes.map(|axis| axis.extend(0.0))),
@@ -58,7 +58,7 @@ impl Over<'_> {
         (0..48).map(point).collect()
     }
 
-    /// What the metric lens shows as a unit circle, at its place on the surface.
+    /// The unit circle of the metric lens, at its place on the surface.
     pub(super) fn lens_in_space(&self, state: &State) {
         let Some((node, _)) = viewport::lens_node(state, self.moment).filter(|lens| self.place(lens.0).is_some())
         else {
@@ -95,11 +95,11 @@ impl Over<'_> {
         self.painter.extend(Shape::dashed_line(&circle, stroke, 4.0, 4.0));
     }
 
-    /// What the main view shows, as a frame; only where it is smaller than this view.
+    /// A frame around the part in the main view, if that is not the whole mesh.
     pub(super) fn main_frame(&self, state: &State) {
-        let in_plane = !(state.is_in_space() && state.space.place == Place::Space);
-        let Some(camera) = state.camera.filter(|_| in_plane && !state.fitted) else { return };
-        let size = state.view_size;
+        let in_plane = !(state.is_in_space() && state.workspace().surfaces.view == SurfaceView::Space);
+        let ViewCamera { camera, is_fitted, size } = state.view().plane;
+        let Some(camera) = camera.filter(|_| in_plane && !is_fitted) else { return };
         let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), size, DVec2::new(0.0, size.y)];
         let corners = corners.map(|at| camera.unproject(at, size).map(|p| self.frame.place(p)));
         if let [Some(a), Some(b), Some(c), Some(d)] = corners {
@@ -144,8 +144,8 @@ impl Over<'_> {
     }
 }
 
-/// The legend of what elements are coloured by.
-pub fn shading(ui: &Ui, frame: &Frame, shading: &Shading, palette: &Palette) {
+/// The legend of the colours of elements.
+pub fn shading(ui: &Ui, frame: &ViewFrame, shading: &Shading, palette: &Palette) {
     let Some(map) = shading.by.map() else { return };
     let painter = ui.painter_at(frame.rect);
     let (width, height) = (160.0, 8.0);

@@ -1,40 +1,41 @@
-//! Shows each panel where egui_tiles wants it, with tabs and bars in the manner of the window.
+//! Shows each panel where egui_tiles puts it, with tabs and bars in the style of the window.
 
 use eframe::egui::{self, Color32, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo};
 use egui_tiles::{Behavior, EditAction, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, UiResponse};
 
 use super::Pane;
 use crate::app::window::command::Command;
-use crate::app::window::panels;
+use crate::app::window::panels::{self, PanelStates};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::viewport::{Lens, Views};
 use crate::render::palette::Palette;
 
-/// All panels with what they show.
+/// All panels and what they need.
 pub struct Docks<'a> {
-    pub state: &'a mut State,
+    pub state: &'a State,
+    pub local: &'a mut PanelStates,
     pub views: &'a mut Views,
     pub commands: &'a mut Vec<Command>,
     pub palette: &'static Palette,
-    /// Whether a person has moved something.
+    /// Whether the user has moved something.
     pub edited: bool,
 }
 
 impl Behavior<Pane> for Docks<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
-        let Docks { state, views, commands, palette, .. } = self;
+        let Docks { state, local, views, commands, palette, .. } = self;
         match pane {
             Pane::Space => views.space(ui, state, commands, palette),
             Pane::MetricLens => views.other(ui, state, Lens::Metric, palette),
             Pane::Parametric => views.other(ui, state, Lens::Whole, palette),
-            Pane::Front => panels::front::show(ui, state, commands, palette),
-            Pane::Breakpoints => panels::breakpoints::show(ui, state, commands, palette),
+            Pane::Front => panels::front::show(ui, state, &mut local.front, commands, palette),
+            Pane::Breakpoints => panels::breakpoints::show(ui, state, &mut local.breakpoints, commands, palette),
             Pane::Bookmarks => panels::breakpoints::bookmarks(ui, state, commands, palette),
             Pane::Quality => panels::plots::show(ui, state, commands, palette),
             Pane::Inspector => panels::inspector::show(ui, state, commands, palette),
             Pane::History => panels::history::show(ui, state, commands, palette),
-            Pane::Parameters => panels::parameters::show(ui, state, commands, palette),
+            Pane::Parameters => panels::parameters::show(ui, state, &mut local.parameters, commands, palette),
             Pane::Layers => panels::layers::show(ui, state, commands, palette),
         }
         UiResponse::None
@@ -81,7 +82,7 @@ impl Behavior<Pane> for Docks<'_> {
         let active = tabs.active.and_then(|id| tiles.get_pane(&id));
         match active {
             Some(Pane::Space) => {
-                // The tabs come first: what the legend has no room for is in the help.
+                // The tabs come first; the legend shows as much as there is room for.
                 let font = theme::medium(theme::BODY);
                 let width = |id: &TileId| {
                     let name = tiles.get_pane(id).map_or("", |pane| pane.name());

@@ -1,11 +1,11 @@
-//! The docks as text and back: names of panels, in tabs, in rows and columns with their shares.
+//! Writes and reads the docks: names of panels in tabs, rows and columns with their shares.
 
 use egui_tiles::{Container, Linear, LinearDir, Tabs, Tile, TileId, Tiles, Tree};
 use serde_json::{Value, json};
 
 use super::Pane;
 
-/// Docks inside of each other, no deeper than this.
+/// The greatest depth of nested docks.
 const DEPTH: usize = 12;
 
 /// The docks as a value.
@@ -25,7 +25,7 @@ fn write_tile(tiles: &Tiles<Pane>, id: TileId) -> Value {
             let share = |id: &TileId| linear.shares.iter().find(|share| share.0 == id).map_or(1.0, |share| *share.1);
             let shares: Vec<f64> = linear.children.iter().map(|id| f64::from(share(id).round())).collect();
             let total: f64 = shares.iter().sum();
-            // Shares are points in a row of columns, and parts elsewhere.
+            // Shares are points in the row of columns, and fractions elsewhere.
             let shares = if total > 8.0 {
                 shares
             } else {
@@ -35,7 +35,7 @@ fn write_tile(tiles: &Tiles<Pane>, id: TileId) -> Value {
             let name = if linear.dir == LinearDir::Horizontal { "row" } else { "column" };
             json!({ name: children, "shares": shares })
         }
-        // A grid becomes tabs: nothing of it is lost but its places.
+        // A grid becomes tabs: nothing is lost but the arrangement.
         Some(Tile::Container(Container::Grid(grid))) => {
             let children: Vec<Value> = grid.children().map(|child| write_tile(tiles, *child)).collect();
             json!({ "tabs": children, "active": 0 })
@@ -44,8 +44,8 @@ fn write_tile(tiles: &Tiles<Pane>, id: TileId) -> Value {
     }
 }
 
-/// The docks of a value, and the tile that has the main view; none where it is no such value, or where a panel is
-/// missing or there twice.
+/// The docks of a value, and the tile with the main view; none if the value has another form, or a panel is missing or
+/// occurs twice.
 pub fn read(value: &Value) -> Option<(Tree<Pane>, TileId)> {
     let mut tiles = Tiles::default();
     let root = read_tile(&mut tiles, value, 0)?;

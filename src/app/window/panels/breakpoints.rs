@@ -1,4 +1,4 @@
-//! Conditions and things to stop at, and steps that a person has marked.
+//! Breakpoints, watchpoints and bookmarks.
 
 use eframe::egui::{
     self, Align, Id, Key, Label, Layout, Modifiers, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo,
@@ -15,17 +15,24 @@ use crate::core::run::watch::Watched;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
-/// Fields and words that are offered at once.
+/// The greatest number of completions.
 const OFFERED: usize = 6;
 
+/// What the panel keeps for itself.
+#[derive(Default)]
+pub struct BreakpointsState {
+    /// The condition that is being typed.
+    field: String,
+}
+
 /// Shows the breakpoints and watchpoints.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, local: &mut BreakpointsState, commands: &mut Vec<Command>, palette: &Palette) {
     inset().show(ui, |ui| {
-        let offers = offers(&state.breakpoint_field);
-        let below = 34.0 + if state.breakpoint_field.is_empty() { 0.0 } else { 20.0 * (offers.len() as f32 + 1.5) };
+        let offers = offers(&local.field);
+        let below = 34.0 + if local.field.is_empty() { 0.0 } else { 20.0 * (offers.len() as f32 + 1.5) };
         let room = (ui.available_height() - below).max(30.0);
         ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
-            if state.kept.breakpoints.is_empty() && state.kept.watches.is_empty() {
+            if state.document().breakpoints.is_empty() && state.document().watches.is_empty() {
                 ui.add(Label::new(note("None yet. Try quad.min_angle < 30.", palette)).wrap());
                 let text = "Or select a node, an edge or an element and press Watch in the inspector.";
                 ui.add(Label::new(note(text, palette)).wrap());
@@ -33,15 +40,15 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
             conditions(ui, state, commands, palette);
             watches(ui, state, commands, palette);
         });
-        field(ui, state, &offers, commands, palette);
+        field(ui, &mut local.field, &offers, commands, palette);
     });
 }
 
 fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    for (k, (text, on)) in state.kept.breakpoints.iter().enumerate() {
+    for (k, breakpoint) in state.document().breakpoints.iter().enumerate() {
         ui.horizontal(|ui| {
-            let mut on = *on;
-            if ui.checkbox(&mut on, text).on_hover_text("Switch it on or off").changed() {
+            let mut on = breakpoint.is_on;
+            if ui.checkbox(&mut on, &breakpoint.condition).on_hover_text("Switch it on or off").changed() {
                 commands.push(Command::SwitchBreakpoint(k));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -49,16 +56,16 @@ fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: 
                 if icon_button(ui, icons::X, 13.0, &command, true).clicked() {
                     commands.push(command);
                 }
-                if let Some(hits) = state.hits.get(k) {
+                if let Some(hits) = state.run().hits.get(k) {
                     let text = format!("{} in this run", words::grouped(*hits as u64));
-                    ui.label(note(text, palette)).on_hover_text("How often it holds in what is known of the run");
+                    ui.label(note(text, palette)).on_hover_text("How often it holds in the recorded part of the run");
                 }
             });
         });
     }
 }
 
-/// What is watched, as the view knows it.
+/// Something that is watched, as the views know it.
 pub fn outlined(watched: Watched) -> Outlined {
     match watched {
         Watched::Node(node) => Outlined::Node(node),
@@ -67,20 +74,20 @@ pub fn outlined(watched: Watched) -> Outlined {
     }
 }
 
-fn watches(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    for (k, (watched, on)) in state.kept.watches.clone().into_iter().enumerate() {
-        let what = outlined(watched);
+fn watches(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    for (k, watch) in state.document().watches.iter().enumerate() {
+        let what = outlined(watch.watched);
         ui.horizontal(|ui| {
-            let mut on = on;
+            let mut on = watch.is_on;
             let name = format!("{}  {}", icons::EYE, words::thing(what));
             let response = ui.checkbox(&mut on, name);
             response.widget_info(|| {
                 WidgetInfo::selected(Role::CheckBox, true, on, format!("Watch {}", words::thing(what)))
             });
             if response.hovered() {
-                state.hover(Some(what));
+                commands.push(Command::Hover(what));
             }
-            if response.on_hover_text("Stops where it is touched, forward and backward").changed() {
+            if response.on_hover_text("Stop where it is touched, forward and back").changed() {
                 commands.push(Command::SwitchWatch(k));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -91,8 +98,8 @@ fn watches(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette:
                 if response.on_hover_text(&label).clicked() {
                     commands.push(Command::Watch(what));
                 }
-                let touched = ui.add(Label::new(note("touched last", palette)).sense(Sense::click()).selectable(false));
-                if touched.on_hover_text("Goes back to the step that touched it last").clicked() {
+                let touched = ui.add(Label::new(note("last touch", palette)).sense(Sense::click()).selectable(false));
+                if touched.on_hover_text("Go back to the step that touched it last").clicked() {
                     commands.push(Command::LastTouch(what));
                 }
             });
@@ -100,7 +107,7 @@ fn watches(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette:
     }
 }
 
-/// What could stand in place of the word that is being typed, with what it means.
+/// Completions of the word that is being typed, with their meaning.
 fn offers(text: &str) -> Vec<(String, String)> {
     if text.trim().is_empty() {
         return Vec::new();
@@ -131,12 +138,12 @@ fn word_start(text: &str) -> usize {
     text.rfind(|c| !is_word(c)).map_or(0, |at| at + text[at..].chars().next().map_or(1, char::len_utf8))
 }
 
-fn field(ui: &mut Ui, state: &mut State, offers: &[(String, String)], commands: &mut Vec<Command>, palette: &Palette) {
+fn field(ui: &mut Ui, text: &mut String, offers: &[(String, String)], commands: &mut Vec<Command>, palette: &Palette) {
     let id = Id::unique("condition");
-    // Tab takes the first offer; it must not leave the field.
+    // Tab takes the first completion; it must not leave the field.
     let has_focus = ui.memory(|memory| memory.has_focus(id));
     let taken = has_focus && !offers.is_empty() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab));
-    let field = TextEdit::singleline(&mut state.breakpoint_field)
+    let field = TextEdit::singleline(text)
         .id(id)
         .lock_focus(true)
         .hint_text("a condition, e.g. kind == seamed")
@@ -145,36 +152,35 @@ fn field(ui: &mut Ui, state: &mut State, offers: &[(String, String)], commands: 
     response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Condition of a new breakpoint"));
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let mut chosen = taken.then(|| offers[0].0.clone());
-    let parsed = Condition::parse(&state.breakpoint_field);
+    let parsed = Condition::parse(text);
     if entered && parsed.is_ok() {
-        commands.push(Command::AddBreakpoint(std::mem::take(&mut state.breakpoint_field)));
+        commands.push(Command::AddBreakpoint(std::mem::take(text)));
         return;
     }
     for (k, (name, doc)) in offers.iter().enumerate() {
-        let text = RichText::new(format!("{name}   {doc}")).font(theme::regular(theme::TABLE));
-        let text = text.color(ink(if k == 0 { palette.strong } else { palette.text }));
-        let offer = ui.add(Label::new(text).sense(Sense::click()).selectable(false).truncate());
+        let line = RichText::new(format!("{name}   {doc}")).font(theme::regular(theme::TABLE));
+        let line = line.color(ink(if k == 0 { palette.strong } else { palette.text }));
+        let offer = ui.add(Label::new(line).sense(Sense::click()).selectable(false).truncate());
         offer.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Use {name}")));
         if offer.on_hover_text(if k == 0 { "Tab takes it" } else { doc }).clicked() {
             chosen = Some(name.clone());
         }
     }
     if let Some(chosen) = chosen {
-        let start = word_start(&state.breakpoint_field);
-        state.breakpoint_field.truncate(start);
-        state.breakpoint_field += &chosen;
-        state.breakpoint_field.push(' ');
+        text.truncate(word_start(text));
+        *text += &chosen;
+        text.push(' ');
         response.request_focus();
         if let Some(mut edit) = egui::TextEdit::load_state(ui.ctx(), id) {
-            let end = egui::text::CCursor::new(state.breakpoint_field.chars().count());
+            let end = egui::text::CCursor::new(text.chars().count());
             edit.cursor.set_char_range(Some(egui::text::CCursorRange::one(end)));
             edit.store(ui.ctx(), id);
         }
-    } else if let (Err(fault), false) = (&parsed, state.breakpoint_field.trim().is_empty()) {
-        // While one types it is a hint; after Enter, and until it is mended, an error.
+    } else if let (Err(fault), false) = (&parsed, text.trim().is_empty()) {
+        // While the user types it is a hint; after Enter, until it is corrected, an error.
         let colour = if response.has_focus() { palette.weak } else { palette.broken };
-        let text = RichText::new(fault.to_string()).font(theme::regular(theme::TABLE)).color(ink(colour));
-        ui.add(Label::new(text).wrap());
+        let fault = RichText::new(fault.to_string()).font(theme::regular(theme::TABLE)).color(ink(colour));
+        ui.add(Label::new(fault).wrap());
     }
     if entered {
         response.request_focus();
@@ -184,14 +190,14 @@ fn field(ui: &mut Ui, state: &mut State, offers: &[(String, String)], commands: 
 /// Shows the bookmarks.
 pub fn bookmarks(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     inset().show(ui, |ui| {
-        if state.kept.bookmarks.is_empty() {
-            ui.label(note("None yet. Ctrl+B marks the step at hand.", palette));
+        if state.document().bookmarks.is_empty() {
+            ui.label(note("None yet. Ctrl+B bookmarks the current step.", palette));
         }
-        for step in &state.kept.bookmarks {
-            let what = step.checked_sub(1).and_then(|k| state.track.get(k as usize));
+        for step in &state.document().bookmarks {
+            let what = step.checked_sub(1).and_then(|k| state.run().track.get(k as usize));
             let what = what.map_or(String::new(), |tracked| words::kind(tracked.kind));
             let text = format!("{}  step {}   {what}", icons::BOOKMARK, words::grouped(*step));
-            if ui.button(text).on_hover_text("Goes to that step").clicked() {
+            if ui.button(text).on_hover_text("Go to that step").clicked() {
                 commands.push(Command::Go(Goal::Step(*step)));
             }
         }

@@ -1,4 +1,4 @@
-//! The panel for figures: what is shown, how, how large.
+//! The panel for figures: what they show, their look and their size.
 
 use eframe::egui::{
     self, Align2, ComboBox, Context, DragValue, Grid, RichText, TextEdit, Ui, Vec2, WidgetInfo, Window,
@@ -8,15 +8,15 @@ use crate::app::window::command::Command;
 use crate::app::window::figures::{Content, Formats};
 use crate::app::window::state::State;
 use crate::app::window::theme::ink;
-use crate::render::look::Layer;
+use crate::render::look::{Ink, Layer};
 use crate::render::palette::Palette;
 
-/// Shows the panel over the view, where it is wanted.
-pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let mut open = state.figures.shown;
-    if !open {
+/// Shows the panel over the view, if it is open.
+pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    if !state.view().figure_panel {
         return;
     }
+    let mut open = true;
     Window::new("Figure")
         .open(&mut open)
         .collapsible(false)
@@ -26,7 +26,9 @@ pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, p
         .pivot(Align2::CENTER_CENTER)
         .default_pos(context.content_rect().center() - Vec2::new(0.0, 60.0))
         .show(context, |ui| form(ui, state, commands, palette));
-    state.figures.shown = open;
+    if !open {
+        commands.push(Command::Figures);
+    }
 }
 
 /// A text field with its name for screen readers.
@@ -35,73 +37,76 @@ fn field(ui: &mut Ui, text: &mut String, name: &str, hint: &str) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, name));
 }
 
-fn form(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let figures = &mut state.figures;
+fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let mut figure = state.workspace().figure.clone();
     let head = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).color(ink(palette.weak)));
     Grid::new("figure").num_columns(2).spacing(Vec2::new(12.0, 6.0)).show(ui, |ui| {
         head(ui, "shows");
-        let chosen = ComboBox::from_id_salt("content").selected_text(figures.content.name()).width(196.0);
+        let chosen = ComboBox::from_id_salt("content").selected_text(figure.content.name()).width(196.0);
         let shown = chosen.show_ui(ui, |ui| {
             for content in Content::ALL {
-                ui.selectable_value(&mut figures.content, content, content.name());
+                ui.selectable_value(&mut figure.content, content, content.name());
             }
         });
         shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::ComboBox, true, "What the figure shows"));
         ui.end_row();
-        if figures.content == Content::Stops {
+        if figure.content == Content::Stops {
             head(ui, "NQ");
-            field(ui, &mut figures.stops, "NQ of the strip", "50,100,150,end");
+            field(ui, &mut figure.stops, "NQ of the strip", "50,100,150,end");
             ui.end_row();
         }
         head(ui, "size");
-        let usual = if figures.is_strip() { "174mm" } else { "84mm" };
-        field(ui, &mut figures.size, "Size of the figure", &format!("{usual}, or 1920x1080"));
+        let usual = if figure.is_strip() { "174mm" } else { "84mm" };
+        field(ui, &mut figure.size, "Size of the figure", &format!("{usual}, or 1920x1080"));
         ui.end_row();
-        head(ui, "dots an inch");
-        let dots = ui.add(DragValue::new(&mut figures.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
-        dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Dots an inch"));
+        head(ui, "dots per inch");
+        let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
+        dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Dots per inch"));
         ui.end_row();
         head(ui, "ink");
         ui.horizontal(|ui| {
-            ui.radio_value(&mut figures.grey, false, "colour");
-            ui.radio_value(&mut figures.grey, true, "grey");
+            ui.radio_value(&mut figure.ink, Ink::Colour, "colour");
+            ui.radio_value(&mut figure.ink, Ink::Grey, "grey");
         });
         ui.end_row();
         head(ui, "ground");
         ui.horizontal(|ui| {
-            ui.radio_value(&mut figures.transparent, false, "white");
-            ui.radio_value(&mut figures.transparent, true, "transparent");
+            ui.radio_value(&mut figure.transparent, false, "white");
+            ui.radio_value(&mut figure.transparent, true, "transparent");
         });
         ui.end_row();
         head(ui, "part");
         ui.horizontal(|ui| {
-            ui.radio_value(&mut figures.in_view, false, "the whole mesh");
-            ui.radio_value(&mut figures.in_view, true, "what is in view");
+            ui.radio_value(&mut figure.in_view, false, "the whole mesh");
+            ui.radio_value(&mut figure.in_view, true, "what is in view");
         });
         ui.end_row();
         head(ui, "name");
-        field(ui, &mut figures.name, "Name of the figure", "after case and step");
+        field(ui, &mut figure.name, "Name of the figure", "from case and step");
         ui.end_row();
     });
-    if !matches!(figures.content, Content::Lengths | Content::Angles) {
+    if !matches!(figure.content, Content::Lengths | Content::Angles) {
         ui.add_space(6.0);
         Grid::new("figure layers").num_columns(4).spacing(Vec2::new(10.0, 3.0)).show(ui, |ui| {
             for (k, layer) in Layer::ALL.into_iter().enumerate() {
-                let mut on = figures.has(layer);
-                // Layers of the view have the same names elsewhere.
+                let mut on = figure.has(layer);
+                // The layers of the views have the same names.
                 let name = if layer == Layer::H { "H-values" } else { layer.name() };
                 let response = ui.checkbox(&mut on, name);
                 response.widget_info(|| {
                     WidgetInfo::selected(egui::Role::CheckBox, true, on, format!("{} in the figure", layer.name()))
                 });
                 if response.changed() {
-                    figures.switch(layer, on);
+                    figure.switch(layer, on);
                 }
                 if k % 4 == 3 {
                     ui.end_row();
                 }
             }
         });
+    }
+    if figure != state.workspace().figure {
+        commands.push(Command::SetFigure(Box::new(figure)));
     }
     ui.add_space(8.0);
     ui.horizontal(|ui| {
@@ -111,7 +116,7 @@ fn form(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &P
                 commands.push(Command::SaveFigure(formats));
             }
         }
-        if figures.is_busy() {
+        if state.run().is_making_figure() {
             ui.spinner();
         }
     });

@@ -1,4 +1,4 @@
-//! The table of the front: every segment that waits, sortable, with virtual rows; linked with the view.
+//! The table of the front: all segments, sortable and linked with the view. Only the rows in sight are laid out.
 
 use std::cmp::Ordering;
 
@@ -9,7 +9,7 @@ use super::inspector;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::Moment;
-use crate::app::window::state::{FrontColumn, State};
+use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::front::segment::Segment;
@@ -18,10 +18,45 @@ use crate::render::scene::{Decision, Outlined};
 
 const ROW: f32 = 20.0;
 
-/// Heads with their widths and what is said about them.
+/// A column of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FrontColumn {
+    Rank,
+    Nodes,
+    Class,
+    HValue,
+    Length,
+    ThetaA,
+    ThetaB,
+    Level,
+    Loop,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
+    Ascending,
+    Descending,
+}
+
+/// What the panel keeps for itself.
+pub struct FrontState {
+    sort: (FrontColumn, Order),
+    /// Whether segments of each class are shown.
+    classes: [bool; 4],
+    /// The last request to scroll that it has followed.
+    scrolled: u64,
+}
+
+impl Default for FrontState {
+    fn default() -> Self {
+        FrontState { sort: (FrontColumn::Rank, Order::Ascending), classes: [true; 4], scrolled: 0 }
+    }
+}
+
+/// Columns with their heads, widths and tooltips.
 const COLUMNS: [(FrontColumn, &str, f32, &str); 9] = [
-    (FrontColumn::Rank, "#", 28.0, "Rank: the order in which segments come by table 1"),
-    (FrontColumn::Nodes, "A → B", 71.0, "Nodes of the segment, the live triangles to its left"),
+    (FrontColumn::Rank, "#", 28.0, "Rank: the order of selection by table 1"),
+    (FrontColumn::Nodes, "A → B", 71.0, "Nodes of the segment; live triangles lie to its left"),
     (FrontColumn::Class, "cl", 26.0, "Class of table 1"),
     (FrontColumn::HValue, "H", 53.0, "H-value, eq. 6, in units of the case"),
     (FrontColumn::Length, "len", 31.0, "Length in the metric"),
@@ -32,23 +67,23 @@ const COLUMNS: [(FrontColumn, &str, f32, &str); 9] = [
 ];
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = state.moment.clone() else { return };
-    chips(ui, state, &moment, palette);
+pub fn show(ui: &mut Ui, state: &State, local: &mut FrontState, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = state.run().moment.as_deref() else { return };
+    chips(ui, local, moment, palette);
     if moment.front.is_empty() {
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             ui.add_space(14.0);
             let quads = words::grouped(moment.mesh.element_count() as u64);
-            ui.label(super::note(format!("The front is gone: {quads} quads stand."), palette));
+            ui.label(super::note(format!("The front is closed: the mesh has {quads} quads."), palette));
         });
         return;
     }
-    let rows = rows(state, &moment);
-    table(ui, state, &moment, &rows, commands, palette);
+    let rows = rows(local, moment);
+    table(ui, state, local, moment, &rows, commands, palette);
 }
 
-fn chips(ui: &mut Ui, state: &mut State, moment: &Moment, palette: &Palette) {
+fn chips(ui: &mut Ui, local: &mut FrontState, moment: &Moment, palette: &Palette) {
     ui.add_space(7.0);
     ui.horizontal(|ui| {
         ui.add_space(8.0);
@@ -56,7 +91,7 @@ fn chips(ui: &mut Ui, state: &mut State, moment: &Moment, palette: &Palette) {
         for class in 1..=4_u8 {
             let k = usize::from(class) - 1;
             let count = moment.front.iter().filter(|s| s.class == class).count() as u64;
-            let shown = state.classes[k];
+            let shown = local.classes[k];
             let text = format!("{class}  {}", words::grouped(count));
             let colour = ink(if shown { palette.strong } else { palette.hint });
             let galley = ui.painter().layout_no_wrap(text, theme::medium(theme::TABLE), colour);
@@ -71,7 +106,7 @@ fn chips(ui: &mut Ui, state: &mut State, moment: &Moment, palette: &Palette) {
             let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + Vec2::new(25.0, 0.0), galley.size()).min;
             ui.painter().galley(at, galley, colour);
             if response.on_hover_text("Show or hide segments of this class in the table").clicked() {
-                state.classes[k] = !shown;
+                local.classes[k] = !shown;
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -83,11 +118,11 @@ fn chips(ui: &mut Ui, state: &mut State, moment: &Moment, palette: &Palette) {
     ui.add_space(5.0);
 }
 
-/// Places in the front of the segments that are shown, in their order; each with its rank, from 1.
-fn rows(state: &State, moment: &Moment) -> Vec<(usize, usize)> {
+/// The segments that are shown, in their order: their places in the front, with their ranks from 1.
+fn rows(local: &FrontState, moment: &Moment) -> Vec<(usize, usize)> {
     let mut rows: Vec<(usize, usize)> = (0..moment.front.len()).map(|i| (i, i + 1)).collect();
-    rows.retain(|row| state.classes[usize::from(moment.front[row.0].class) - 1]);
-    let (column, ascending) = state.sort;
+    rows.retain(|row| local.classes[usize::from(moment.front[row.0].class) - 1]);
+    let (column, order) = local.sort;
     let by = |a: &Segment, b: &Segment| match column {
         FrontColumn::Rank => Ordering::Equal,
         FrontColumn::Nodes => (a.a, a.b).cmp(&(b.a, b.b)),
@@ -103,7 +138,7 @@ fn rows(state: &State, moment: &Moment) -> Vec<(usize, usize)> {
     } else if column != FrontColumn::Rank {
         rows.sort_by(|a, b| by(&moment.front[a.0], &moment.front[b.0]).then(a.1.cmp(&b.1)));
     }
-    if !ascending {
+    if order == Order::Descending {
         rows.reverse();
     }
     rows
@@ -111,7 +146,8 @@ fn rows(state: &State, moment: &Moment) -> Vec<(usize, usize)> {
 
 fn table(
     ui: &mut Ui,
-    state: &mut State,
+    state: &State,
+    local: &mut FrontState,
     moment: &Moment,
     rows: &[(usize, usize)],
     commands: &mut Vec<Command>,
@@ -123,7 +159,7 @@ fn table(
         Some(Outlined::Edge(ends)) => Some(ends),
         _ => None,
     };
-    let (picked, hovered) = (edge(state.kept.picked), edge(state.hovered));
+    let (picked, hovered) = (edge(state.document().picked), edge(state.frame().hovered));
     let decimals = words::decimals(moment.front.iter().map(|s| s.h_value));
     ui.spacing_mut().item_spacing = Vec2::new(1.0, 0.0);
     let mut builder = TableBuilder::new(ui)
@@ -133,7 +169,7 @@ fn table(
         .auto_shrink(false)
         .animate_scrolling(false)
         .cell_layout(Layout::right_to_left(Align::Center));
-    // Node numbers of large meshes need more room; the loop is told elsewhere where there is only one.
+    // Node numbers of large meshes need more room; a single loop needs no column.
     let most = moment.front.iter().map(|s| s.a.max(s.b).0).max().unwrap_or(0);
     let digits = most.max(1).ilog10() as f32 + 1.0;
     let one_loop = moment.loops.len() < 2;
@@ -147,16 +183,15 @@ fn table(
         }));
     }
     builder = builder.column(Column::remainder().at_least(2.0));
-    let wanted = edge(state.scroll_to.take());
+    let wanted = edge(state.view().scroll.take(&mut local.scrolled).flatten());
     if let Some(row) = wanted.and_then(|ends| rows.iter().position(|r| is(&moment.front[r.0], ends))) {
         builder = builder.scroll_to_row(row, None);
     }
-    let mut pointed = None;
     let table = builder.header(22.0, |mut header| {
         for (column, name, _, tip) in COLUMNS {
             header.col(|ui| {
                 if !(one_loop && column == FrontColumn::Loop) {
-                    head(ui, state, column, name, tip, palette);
+                    head(ui, local, column, name, tip, palette);
                 }
             });
         }
@@ -207,7 +242,7 @@ fn table(
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_picked, name.clone()));
             let ends = [segment.a, segment.b];
             if response.hovered() {
-                pointed = Some(Outlined::Edge(ends));
+                commands.push(Command::Hover(Outlined::Edge(ends)));
             }
             response.context_menu(|ui| {
                 inspector::past::actions(ui, state, Outlined::Edge(ends), commands);
@@ -219,21 +254,19 @@ fn table(
             }
         });
     });
-    if pointed.is_some() {
-        state.hover(pointed);
-    }
 }
 
-fn head(ui: &mut Ui, state: &mut State, column: FrontColumn, name: &str, tip: &str, palette: &Palette) {
-    let sorted = state.sort.0 == column;
-    let arrow = if state.sort.1 { icons::CARET_UP } else { icons::CARET_DOWN };
+fn head(ui: &mut Ui, local: &mut FrontState, column: FrontColumn, name: &str, tip: &str, palette: &Palette) {
+    let (sorted, order) = (local.sort.0 == column, local.sort.1);
+    let arrow = if order == Order::Ascending { icons::CARET_UP } else { icons::CARET_DOWN };
     let text = if sorted { format!("{arrow}{name}") } else { name.to_owned() };
     let colour = ink(if sorted { palette.strong } else { palette.weak });
     let text = RichText::new(text).font(theme::regular(theme::HEAD)).color(colour);
     let response = ui.add(egui::Label::new(text).selectable(false).sense(Sense::click()));
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Sort by {name}")));
     if response.on_hover_text(tip).clicked() {
-        state.sort = (column, if sorted { !state.sort.1 } else { true });
+        let turned = sorted && order == Order::Ascending;
+        local.sort = (column, if turned { Order::Descending } else { Order::Ascending });
     }
 }
 

@@ -1,4 +1,4 @@
-//! The last steps before the state at hand, and what a person has changed.
+//! The steps around the current one, and the changes of the user.
 
 use eframe::egui::{RichText, ScrollArea, Ui};
 
@@ -13,14 +13,14 @@ use crate::render::palette::Palette;
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = &state.moment else { return };
+    let Some(moment) = &state.run().moment else { return };
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         inset().show(ui, |ui| {
             heading(ui, "Changes of this run", "", palette);
-            if state.kept.edits.is_empty() {
-                ui.label(note("None: it is the case's own.", palette));
+            if state.document().edits.is_empty() {
+                ui.label(note("None: the run has the parameters of the case.", palette));
             }
-            for edit in &state.kept.edits {
+            for edit in &state.document().edits {
                 let what = match &edit.kind {
                     EditKind::Parameter { key, value } => format!("{key} = {value}"),
                     EditKind::Base { a, b } => format!("base {}", words::segment(*a, *b)),
@@ -31,8 +31,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             }
             heading(ui, "Steps around this one", "", palette);
             let now = moment.step as usize;
-            for k in (now.saturating_sub(20)..(now + 8).min(state.track.len())).rev() {
-                let tracked = &state.track[k];
+            for k in (now.saturating_sub(20)..(now + 8).min(state.run().track.len())).rev() {
+                let tracked = &state.run().track[k];
                 let text = format!("{}   {}", words::grouped(k as u64 + 1), words::kind(tracked.kind));
                 let colour = if k + 1 == now {
                     palette.accent

@@ -1,4 +1,4 @@
-//! How a mesh file is taken, and what it is like: the words of the command line as a form, counts, what was mended.
+//! The import of a mesh file: the options of the command line as a form, what the mesh is like, and what was repaired.
 
 use eframe::egui::{
     self, Align, Button, ComboBox, DragValue, Frame, Grid, Layout, Panel, ProgressBar, Response, RichText, Role,
@@ -6,10 +6,9 @@ use eframe::egui::{
 };
 
 use super::{heading, inset, note};
-use crate::app::command_line::MeshOptions;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
-use crate::app::window::import::{Import, KINDS, UNITS};
+use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, UNITS};
 use crate::app::window::state::{Progress, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -19,21 +18,30 @@ use crate::core::kernel::decimal::Shortest;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{feature_line, seam_line};
 
-/// Width of the panel, and of what its rows are called.
+/// Width of the panel, and of the names of its rows.
 const WIDTH: f32 = 344.0;
 const NAMES: f32 = 92.0;
-/// What the ways to use a mesh are called, and the leave to divide a side.
+/// The names of the uses of a mesh, and of the permission to divide a side.
 const REMESH: &str = "remesh its shape";
 const TRIANGLES: &str = "convert its triangles";
 const SPLIT_ODD: &str = "divide a side of odd borders";
-/// How far a chord is from its arc, over the radius, where a person asks for sizes by curvature first.
+/// The first chord error when the user asks for sizes by curvature: the distance of a chord from its arc, over the
+/// radius.
 const CHORD: f64 = 0.01;
+
+/// How the sizes of elements are given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sizing {
+    OfMesh,
+    Uniform,
+    ByCurvature,
+}
 
 /// Shows it at the left of the view.
 pub fn show(ui: &mut Ui, state: &State, plain: Frame, commands: &mut Vec<Command>, palette: &Palette) {
-    let is_opening = state.is_opening();
-    let opening = state.progress.clone().filter(|_| is_opening);
-    let Some(import) = &state.import else { return };
+    let is_opening = state.run().is_opening();
+    let opening = state.run().progress.clone().filter(|_| is_opening);
+    let Some(import) = &state.run().import else { return };
     let progress = if is_opening { opening } else { import.progress.clone() };
     Panel::left("import").exact_size(WIDTH).resizable(false).frame(plain).show(ui, |ui| {
         Panel::bottom("import buttons").resizable(false).frame(inset()).show(ui, |ui| {
@@ -57,7 +65,7 @@ fn title(ui: &mut Ui, import: &Import, palette: &Palette) {
     ui.add_space(2.0);
     let text = RichText::new(name).font(theme::semibold(theme::TITLE)).color(ink(palette.strong));
     ui.add(egui::Label::new(text).truncate()).on_hover_text(import.path.display().to_string());
-    ui.label(note("A mesh without CAD: how shall it be taken?", palette));
+    ui.label(note("A mesh without CAD: choose how to import it.", palette));
 }
 
 /// Why the mesh was refused, and what to do.
@@ -80,17 +88,17 @@ fn refusal(ui: &mut Ui, import: &Import, palette: &Palette) {
         });
     });
     if !fault.shapes.is_empty() {
-        swatch(ui, (palette.broken, 3.2), "what it is refused for".to_owned(), palette);
+        swatch(ui, (palette.broken, 3.2), "offending elements".to_owned(), palette);
     }
 }
 
-/// What to do, with options of the command line called as the panel calls them.
+/// A remedy, with the panel's names in place of the command line's options.
 fn in_the_panel(remedy: &str) -> String {
     let words = [("(--use shape)", REMESH), ("(--split-odd)", SPLIT_ODD)];
     words.into_iter().fold(remedy.to_owned(), |text, (option, word)| text.replace(option, &format!("(below: {word})")))
 }
 
-/// A row of the form: what it is called, and its widgets.
+/// A row of the form: its name and its widgets.
 fn row(ui: &mut Ui, name: &str, tip: &str, palette: &Palette, widgets: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
         ui.set_height(24.0);
@@ -102,7 +110,7 @@ fn row(ui: &mut Ui, name: &str, tip: &str, palette: &Palette, widgets: impl FnOn
     });
 }
 
-/// A number that can be dragged and typed; tells whether it is being dragged.
+/// A number that can be dragged and typed.
 fn number(ui: &mut Ui, value: &mut f64, [least, most]: [f64; 2], speed: f64, unit: &str, name: &str) -> Response {
     let field = DragValue::new(value)
         .range(least..=most)
@@ -137,7 +145,7 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
                 options.feature_angle = unless_default(degrees, hundredths(defaults.feature_angle.to_degrees()));
             }
         });
-        let tip = "How far shapes may be stretched where the surface is laid into the plane (--chart-stretch)";
+        let tip = "How far shapes may be stretched when the surface is flattened (--chart-stretch)";
         row(ui, "chart stretch", tip, palette, |ui| {
             let before = hundredths(taking.chart_stretch);
             let mut stretch = before;
@@ -148,15 +156,19 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
         });
     });
     if !charted && import.loaded.is_some() {
-        ui.label(note("Triangles in the plane are converted as they lie: without features and charts.", palette));
+        ui.label(note(
+            "Triangles in the plane are converted as they are: features and charts are not needed.",
+            palette,
+        ));
     }
-    // It is told too when a drag has ended.
-    if options != import.options || import.is_dragging() != dragging {
-        commands.push(Command::SetImport(Box::new(options), dragging));
+    // The end of a drag is reported too.
+    let gesture = if dragging { Gesture::Dragging } else { Gesture::Done };
+    if options != import.options || import.gesture() != gesture {
+        commands.push(Command::SetImport(Box::new(options), gesture));
     }
 }
 
-/// A slider with its number; whether one of them is being dragged.
+/// A slider with its number. Returns whether one of them is being dragged.
 fn measure(ui: &mut Ui, value: &mut f64, range: [f64; 2], logarithmic: bool, unit: &str, name: &str) -> bool {
     ui.spacing_mut().slider_width = 104.0;
     let slider = ui.add(Slider::new(value, range[0]..=range[1]).logarithmic(logarithmic).show_value(false));
@@ -170,15 +182,15 @@ fn hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// What is as it is where nobody says it is not said.
+/// A default needs no option.
 fn unless_default(value: f64, default: f64) -> Option<f64> {
     (value != default).then_some(value)
 }
 
-fn unit(ui: &mut Ui, options: &mut MeshOptions, taking: &Taking, dragging: &mut bool, palette: &Palette) {
+fn unit(ui: &mut Ui, options: &mut ImportOptions, taking: &Taking, dragging: &mut bool, palette: &Palette) {
     let mut scale = taking.scale;
-    row(ui, "unit", "What the file's lengths become (--scale)", palette, |ui| {
-        // As many as differ in their scale; all by which a person thinks.
+    row(ui, "unit", "The unit of lengths after scaling (--scale)", palette, |ui| {
+        // The conversions that users think of; some have the same scale.
         let mut known: Vec<(String, f64)> = vec![("as in the file".to_owned(), 1.0)];
         for (to, metres) in [UNITS[2], UNITS[0]] {
             let others = UNITS.iter().filter(|unit| unit.0 != to);
@@ -197,17 +209,17 @@ fn unit(ui: &mut Ui, options: &mut MeshOptions, taking: &Taking, dragging: &mut 
     });
     if scale != taking.scale {
         options.scale = unless_default(scale, 1.0);
-        // Sizes are those of the mesh as it is scaled.
+        // Sizes are in the scaled unit.
         options.mesh_size = options.mesh_size.map(|size| rounded(size * scale / taking.scale));
     }
 }
 
-/// To twelve digits: what a person would have written.
+/// Rounds to twelve digits, as a person would write the number.
 fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-fn used(ui: &mut Ui, options: &mut MeshOptions, import: &Import, palette: &Palette) {
+fn used(ui: &mut Ui, options: &mut ImportOptions, import: &Import, palette: &Palette) {
     let now = import.used();
     let words = [(MeshUse::Shape, "shape", REMESH), (MeshUse::Triangles, "triangles", TRIANGLES)];
     for (k, (use_, word, text)) in words.into_iter().enumerate() {
@@ -218,8 +230,8 @@ fn used(ui: &mut Ui, options: &mut MeshOptions, import: &Import, palette: &Palet
         });
     }
     if now == MeshUse::Triangles {
-        let tip = "Quadrilaterals need an even number of sides around the mesh and around each hole. Where the number is odd, the \
-                   longest side is divided in two; otherwise such a mesh is refused (--split-odd)";
+        let tip = "Quadrilaterals need an even number of sides around the mesh and around each hole. If the number is \
+                   odd, the longest side is divided in two; otherwise such a mesh is refused (--split-odd)";
         row(ui, "", tip, palette, |ui| {
             ui.checkbox(&mut options.split_odd, SPLIT_ODD).on_hover_text(tip);
         });
@@ -228,39 +240,43 @@ fn used(ui: &mut Ui, options: &mut MeshOptions, import: &Import, palette: &Palet
 
 fn sizes(
     ui: &mut Ui,
-    options: &mut MeshOptions,
+    options: &mut ImportOptions,
     import: &Import,
     taking: &Taking,
     dragging: &mut bool,
     palette: &Palette,
 ) {
     let Some(loaded) = &import.loaded else { return };
-    let way = match (options.mesh_size, options.curvature) {
-        (None, _) => 0,
-        (Some(_), None) => 1,
-        (Some(_), Some(_)) => 2,
+    let before = match (options.mesh_size, options.curvature) {
+        (None, _) => Sizing::OfMesh,
+        (Some(_), None) => Sizing::Uniform,
+        (Some(_), Some(_)) => Sizing::ByCurvature,
     };
-    let own = if loaded.has_metric { "as the mesh says" } else { "as its triangles" };
-    let mut wanted = way;
-    row(ui, "size", "How large elements shall be (--mesh-size, --curvature)", palette, |ui| {
-        let names = [own, "the same everywhere", "finer where it is curved"];
-        let shown = ComboBox::from_id_salt("size").selected_text(names[way]).width(180.0).show_ui(ui, |ui| {
-            for (k, name) in names.into_iter().enumerate() {
-                ui.selectable_value(&mut wanted, k, name);
+    let own = if loaded.has_metric { "as given in the mesh" } else { "as its triangles" };
+    let mut wanted = before;
+    row(ui, "size", "The size of elements (--mesh-size, --curvature)", palette, |ui| {
+        let name = |sizing: Sizing| match sizing {
+            Sizing::OfMesh => own,
+            Sizing::Uniform => "the same everywhere",
+            Sizing::ByCurvature => "finer where it is curved",
+        };
+        let shown = ComboBox::from_id_salt("size").selected_text(name(before)).width(180.0).show_ui(ui, |ui| {
+            for sizing in [Sizing::OfMesh, Sizing::Uniform, Sizing::ByCurvature] {
+                ui.selectable_value(&mut wanted, sizing, name(sizing));
             }
         });
         shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Size of elements"));
     });
-    if wanted != way {
-        // Two digits are enough to begin from.
+    if wanted != before {
+        // Two digits are enough to start from.
         let mean = loaded.mean_edge * taking.scale;
         let plain: f64 = format!("{mean:.1e}").parse().unwrap_or(mean);
-        options.mesh_size = (wanted > 0).then(|| options.mesh_size.unwrap_or(plain));
-        options.curvature = (wanted > 1).then_some(CHORD);
+        options.mesh_size = (wanted != Sizing::OfMesh).then(|| options.mesh_size.unwrap_or(plain));
+        options.curvature = (wanted == Sizing::ByCurvature).then_some(CHORD);
     }
     if let Some(size) = &mut options.mesh_size {
         let name = if options.curvature.is_some() { "where flat" } else { "edge length" };
-        row(ui, name, "In the unit that the mesh is scaled to", palette, |ui| {
+        row(ui, name, "In the unit of the scaled mesh", palette, |ui| {
             let speed = 0.01 * *size;
             *dragging |= number(ui, size, [1e-12, 1e12], speed, "", "Edge length").dragged();
         });
@@ -274,7 +290,7 @@ fn sizes(
 
 fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     let Some(loaded) = &import.loaded else { return };
-    heading(ui, "What it is like", "", palette);
+    heading(ui, "The mesh", "", palette);
     let grouped = |n: usize| words::grouped(n as u64);
     let census = loaded.census;
     let extent = loaded.extent * import.taking().scale;
@@ -307,7 +323,7 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
             Feature::Line => ("edge on a line of the file", "edges on lines of the file"),
             Feature::Boundary => ("edge of the boundary", "edges of the boundary"),
             Feature::Branching => ("edge of three triangles or more", "edges of three triangles or more"),
-            Feature::Conflict => ("edge whose triangles disagree", "edges whose triangles disagree"),
+            Feature::Conflict => ("edge with inconsistent triangles", "edges with inconsistent triangles"),
         };
         if count > 0 || kind == Feature::Fold {
             swatch(ui, feature_line(palette, kind), named(count, one, several), palette);
@@ -337,12 +353,12 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
             });
         }
         None if import.has_charts() && import.refused.is_none() => {
-            ui.label(note("The charts are being sought.", palette));
+            ui.label(note("The charts are being computed.", palette));
         }
         None => {}
     }
     if !loaded.repairs.is_empty() {
-        heading(ui, "Mended", "", palette);
+        heading(ui, "Repaired", "", palette);
         for repair in &loaded.repairs {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK).font(theme::regular(theme::TABLE)).color(ink(palette.holds)));
@@ -356,7 +372,7 @@ fn line_text(text: String, palette: &Palette) -> RichText {
     RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text))
 }
 
-/// A line as the view draws it, and what it is.
+/// A line as the view draws it, with its meaning.
 fn swatch(ui: &mut Ui, (colour, width): (Rgba, f32), text: String, palette: &Palette) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::new(30.0, 16.0), Sense::hover());
@@ -369,8 +385,7 @@ fn three_digits(value: f64) -> String {
     Shortest(format!("{value:.2e}").parse().unwrap_or(value)).to_string()
 }
 
-/// How far the work is. The room is there when nothing is under way too, so that no button moves from under the
-/// pointer.
+/// The progress of the work. It always takes its room, so that no button moves from under the pointer.
 fn under_way(ui: &mut Ui, import: &Import, is_opening: bool, progress: Option<&Progress>, palette: &Palette) {
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 30.0), Sense::hover());
     let text = match progress {
@@ -386,7 +401,7 @@ fn under_way(ui: &mut Ui, import: &Import, is_opening: bool, progress: Option<&P
     ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
         ui.label(note(text, palette));
         let bar = ProgressBar::new(share).desired_height(3.0).corner_radius(0.0).fill(ink(palette.base));
-        ui.add(bar).widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, "How far it is"));
+        ui.add(bar).widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, "Progress"));
     });
 }
 
@@ -398,7 +413,7 @@ fn buttons(ui: &mut Ui, import: &Import, is_opening: bool, commands: &mut Vec<Co
             commands.push(Command::Convert);
         }
         let cancel = Button::new("Cancel").min_size(Vec2::new(84.0, 28.0));
-        let tip = if is_opening { "Back to how the mesh is taken" } else { "Leave the mesh alone  (Esc)" };
+        let tip = if is_opening { "Back to the import" } else { "Do not import this mesh  (Esc)" };
         if ui.add(cancel).on_hover_text(tip).clicked() {
             commands.push(Command::CancelImport);
         }

@@ -1,4 +1,4 @@
-//! What is picked or pointed at, or else the decision at hand, with the numbers put into the paper's formulas.
+//! The selection, or else the current decision or what is under the pointer, with numbers in the paper's formulas.
 
 mod segment;
 mod why;
@@ -21,31 +21,32 @@ use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Decision, Outlined};
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = state.moment.clone() else { return };
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = state.run().moment.as_deref() else { return };
     let decision = Decision::of(&moment.phase).base.map(Outlined::Edge);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         inset().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 3.0;
-            let shown = state.kept.picked.or(decision).or(state.hovered);
+            let shown = state.document().picked.or(decision).or(state.frame().hovered);
             match shown {
                 None => {
-                    ui.label(note("Point at anything to see it; click to keep it.", palette));
+                    ui.label(note("Point at anything to inspect it; click to select it.", palette));
                     if moment.step == 0 {
-                        let text = "Right goes on by one quadrilateral, Ctrl+Right by one operation; Left and Ctrl+Left go back. \
-                                    While one is made, this panel says why its base was chosen.";
+                        let text = "Right goes forward by one quadrilateral, Ctrl+Right by one operation; Left and \
+                                    Ctrl+Left go back. While a quadrilateral is made, this panel says why its base \
+                                    was selected.";
                         ui.add_space(6.0);
                         ui.add(Label::new(note(text, palette)).wrap());
                     }
                 }
                 Some(Outlined::Edge(ends)) => {
                     match moment.front.iter().position(|s| [s.a, s.b] == ends || [s.b, s.a] == ends) {
-                        Some(place) => segment::show(ui, state, &moment, place, commands, palette),
-                        None => edge::show(ui, state, &moment, ends, commands, palette),
+                        Some(place) => segment::show(ui, state, moment, place, commands, palette),
+                        None => edge::show(ui, state, moment, ends, commands, palette),
                     }
                 }
-                Some(Outlined::Node(n)) => node::show(ui, state, &moment, n, commands, palette),
-                Some(Outlined::Element(e)) => element::show(ui, state, &moment, e, commands, palette),
+                Some(Outlined::Node(n)) => node::show(ui, state, moment, n, commands, palette),
+                Some(Outlined::Element(e)) => element::show(ui, state, moment, e, commands, palette),
             }
             if let Some(what) = shown {
                 past::show(ui, state, what, commands, palette);
@@ -58,18 +59,18 @@ fn title(ui: &mut Ui, text: String, palette: &Palette) {
     ui.label(RichText::new(text).font(theme::semibold(theme::TITLE)).color(ink(palette.strong)));
 }
 
-/// What can be done with what is shown.
+/// Actions on what is shown.
 fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Command>) {
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| past::actions(ui, state, what, commands));
 }
 
-/// A line of formulas: `_{x}` is set low, `**x**` stands out.
+/// A line of formulas: `_{x}` is a subscript, `**x**` is emphasised.
 fn formula(ui: &mut Ui, text: &str, palette: &Palette) -> Response {
     ui.label(theme::formula(text, theme::FORMULA, ink(palette.text), ink(palette.strong)))
 }
 
-/// The same as a note in a sentence.
+/// The same for a sentence.
 fn sentence(ui: &mut Ui, text: &str, colour: Rgba, palette: &Palette) -> Response {
     ui.add(Label::new(theme::formula(text, theme::TABLE, ink(colour), ink(palette.strong))).wrap())
 }
@@ -78,13 +79,12 @@ fn gone(ui: &mut Ui, what: &str, palette: &Palette) {
     ui.label(note(format!("{what} does not exist at this step."), palette));
 }
 
-/// Points between columns.
+/// The gap between columns in points.
 const GAP: f32 = 7.0;
 
-/// One row of a table in columns of fixed widths, the last one taking the rest; what does not fit is cut and told on
-/// hover.
+/// One row of a table in columns of fixed widths; the last one takes the rest. Long texts are cut and shown on hover.
 fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground: Option<Rgba>) -> Response {
-    // Numbers stand to the right, words to the left.
+    // Numbers are aligned to the right, words to the left.
     let left_last = texts.last().is_some_and(|text| text.contains(char::is_alphabetic) && !text.ends_with('°'));
     let full = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(Vec2::new(full, 20.0), Sense::click());
@@ -107,19 +107,19 @@ fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground
     response
 }
 
-/// The head of such a table.
+/// The headings of such a table.
 fn table_head(ui: &mut Ui, widths: &[f32], texts: &[&str], palette: &Palette) {
     let texts: Vec<String> = texts.iter().map(|text| (*text).to_owned()).collect();
     table_row(ui, widths, &texts, palette.weak, None);
 }
 
-/// A thing that can be picked, as a link.
-fn link(ui: &mut Ui, text: String, what: Outlined, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+/// A link that selects something.
+fn link(ui: &mut Ui, text: String, what: Outlined, commands: &mut Vec<Command>, palette: &Palette) {
     let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text));
     let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false));
     let response = response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand);
     if response.hovered() {
-        state.hover(Some(what));
+        commands.push(Command::Hover(what));
     }
     if response.clicked() {
         commands.push(Command::Pick(Some(what)));
@@ -127,34 +127,20 @@ fn link(ui: &mut Ui, text: String, what: Outlined, state: &mut State, commands: 
 }
 
 /// Elements as links.
-fn elements(
-    ui: &mut Ui,
-    name: &str,
-    ids: &[ElementId],
-    state: &mut State,
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+fn elements(ui: &mut Ui, name: &str, ids: &[ElementId], commands: &mut Vec<Command>, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(note(format!("{name} ({})", ids.len()), palette));
         for &e in ids {
-            link(ui, e.0.to_string(), Outlined::Element(e), state, commands, palette);
+            link(ui, e.0.to_string(), Outlined::Element(e), commands, palette);
         }
     });
 }
 
-/// Nodes with their places and what their metrics ask for.
-fn ends(
-    ui: &mut Ui,
-    state: &mut State,
-    moment: &Moment,
-    nodes: &[(&str, NodeId)],
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+/// Nodes with their places and the sizes of their metrics.
+fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut Vec<Command>, palette: &Palette) {
     let widths = [38.0, 44.0, 44.0, 48.0, 44.0];
-    let axes = if moment.mesh.ground().is_some() { ["u", "v"] } else { ["x", "y"] };
+    let axes = if moment.mesh.embedding().is_some() { ["u", "v"] } else { ["x", "y"] };
     table_head(ui, &widths, &["", axes[0], axes[1], "h\u{2081}", "h\u{2082}", "axis °"], palette);
     for (k, (name, node)) in nodes.iter().enumerate() {
         let p = moment.mesh.uv(*node);
@@ -170,7 +156,7 @@ fn ends(
         let ground = (k % 2 == 0).then_some(palette.stripe);
         let response = table_row(ui, &widths, &texts, palette.text, ground);
         if response.hovered() {
-            state.hover(Some(Outlined::Node(*node)));
+            commands.push(Command::Hover(Outlined::Node(*node)));
         }
         let tip = format!(
             "node {}: h\u{2081} runs along the axis; M = ({}, {}, {}), \u{3bb} = {} and {}; click to select it",
@@ -185,11 +171,11 @@ fn ends(
             commands.push(Command::Pick(Some(Outlined::Node(*node))));
         }
     }
-    if moment.mesh.ground().is_none() {
+    if moment.mesh.embedding().is_none() {
         ui.label(note("Plane case: u = x, v = y, z = 0.", palette));
         return;
     }
-    // On surfaces the columns are places in the chart; where that is in space stands below.
+    // On surfaces the columns are coordinates in the chart; those in space follow.
     for (name, node) in nodes {
         let [x, y, z] = moment.mesh.xyz(*node).to_array().map(words::size);
         ui.label(note(format!("{name} {} in space: {x}, {y}, {z}.", node.0), palette));

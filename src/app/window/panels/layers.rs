@@ -3,9 +3,9 @@
 use eframe::egui::{ScrollArea, Ui};
 
 use super::{heading, inset, note};
-use crate::app::window::apply::layer;
-use crate::app::window::command::{Command, LAYERS};
+use crate::app::window::command::Command;
 use crate::app::window::state::State;
+use crate::app::window::view_layer::ViewLayer;
 use crate::render::palette::Palette;
 use crate::render::scene::ColourBy;
 
@@ -16,21 +16,21 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
 
 /// Check boxes for layers, buttons for colours.
 pub fn list(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    for (k, name) in LAYERS.iter().enumerate() {
-        let mut layers = state.kept.layers;
+    for (digit, layer) in (1..).zip(ViewLayer::ALL) {
+        let mut on = layer.is_on(state.document().layers);
         ui.horizontal(|ui| {
-            if ui.checkbox(layer(&mut layers, k), *name).changed() {
-                commands.push(Command::Layer(k));
+            if ui.checkbox(&mut on, layer.name()).changed() {
+                commands.push(Command::Layer(layer));
             }
-            ui.label(note(format!("{}", k + 1), palette));
-            if k == 7 {
+            ui.label(note(format!("{digit}"), palette));
+            if layer == ViewLayer::MetricEllipses {
                 ui.label(note("at a quarter of their size", palette));
             }
         });
     }
     heading(ui, "Colour by", "", palette);
     for by in ColourBy::ALL {
-        if ui.radio(state.kept.colour_by == by, by.name()).clicked() {
+        if ui.radio(state.document().colour_by == by, by.name()).clicked() {
             commands.push(Command::ColourBy(by));
         }
     }

@@ -1,4 +1,4 @@
-//! What the lines of the view are, in the bar above it.
+//! The legend of the view's lines, in the bar above it.
 
 use eframe::egui::{Align2, Rect, Sense, Ui, Vec2};
 
@@ -13,7 +13,7 @@ use crate::render::palette::{Palette, Rgba};
 pub fn show(ui: &mut Ui, kept: f32, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for (icon, command) in [(icons::CORNERS_OUT, Command::Fit), (icons::CROSSHAIR, Command::ShowDecision)] {
-        if icon_button(ui, icon, theme::ICON, &command, state.moment.is_some()).clicked() {
+        if icon_button(ui, icon, theme::ICON, &command, state.run().moment.is_some()).clicked() {
             commands.push(command);
         }
     }
@@ -30,7 +30,7 @@ pub fn show(ui: &mut Ui, kept: f32, state: &State, commands: &mut Vec<Command>, 
     ];
     let font = theme::regular(theme::HEAD);
     let texts = entries.map(|entry| ui.painter().layout_no_wrap(entry.2.to_owned(), font.clone(), ink(palette.weak)));
-    // As many as there is room for, the first ones first; they are laid down from the right.
+    // As many as there is room for; they are laid out from the right.
     let mut room = ui.available_width() - kept;
     let count = texts
         .iter()

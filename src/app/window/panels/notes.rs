@@ -1,14 +1,16 @@
-//! What a case is about, in its own words: open from the start for the small cases that show a figure of the paper.
+//! The notes of a case: open from the start for the small cases that show a figure of the paper.
 
 use eframe::egui::{Align2, Context, RichText, ScrollArea, Vec2, Window};
 
+use crate::app::window::command::Command;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::render::palette::Palette;
 
-/// Shows the notes, where they are wanted.
-pub fn show(context: &Context, state: &mut State, palette: &Palette) {
-    let Some(case) = state.opened.as_ref().map(|opened| &opened.case).filter(|_| state.notes) else { return };
+/// Shows the notes, if they are open.
+pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let opened = state.run().opened.as_ref().filter(|_| state.view().notes);
+    let Some(case) = opened.map(|opened| &opened.case) else { return };
     let mut open = true;
     Window::new("Notes")
         .open(&mut open)
@@ -16,7 +18,7 @@ pub fn show(context: &Context, state: &mut State, palette: &Palette) {
         .resizable(false)
         .default_width(304.0)
         .frame(super::floating(palette))
-        // Over the left column, where it covers nothing of the mesh; from there it can be moved.
+        // It starts over the left column, where it does not cover the mesh.
         .pivot(Align2::LEFT_BOTTOM)
         .default_pos(context.content_rect().left_bottom() + Vec2::new(8.0, -224.0))
         .show(context, |ui| {
@@ -24,12 +26,14 @@ pub fn show(context: &Context, state: &mut State, palette: &Palette) {
             ui.label(RichText::new(&case.title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
             ui.add_space(4.0);
             ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
-                // Lines of the file are not lines of the screen.
+                // Lines are broken anew.
                 for paragraph in case.notes.split("\n\n") {
                     let text = paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
                     ui.label(RichText::new(if text.is_empty() { "This case has no notes." } else { &text }));
                 }
             });
         });
-    state.notes = open;
+    if !open {
+        commands.push(Command::Notes);
+    }
 }

@@ -1,4 +1,4 @@
-//! The run that was left behind, offered; never modal.
+//! The offer to recover an autosaved run. Never modal.
 
 use eframe::egui::{Frame, Margin, Panel, RichText, Ui};
 
@@ -8,9 +8,9 @@ use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::render::palette::Palette;
 
-/// Shows it under the menus.
+/// Shows the offer under the menus.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some((offer, more)) = state.autosave.as_ref().and_then(|autosave| autosave.offer()) else { return };
+    let Some((offer, more)) = state.run().autosave.as_ref().and_then(|autosave| autosave.offer()) else { return };
     let frame = Frame::NONE.fill(ink(palette.button)).inner_margin(Margin::symmetric(14, 5));
     Panel::top("offer").frame(frame).resizable(false).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {

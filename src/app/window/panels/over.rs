@@ -1,21 +1,36 @@
-//! What opens over the window: every command by name, keys, and fields for a step or a path.
+//! What opens over the window: all commands by name, all keys, and fields for a step or a path.
 
 use eframe::egui::{
     self, Align2, Area, Button, Context, Frame, Key, Label, Margin, Order, RichText, ScrollArea, TextEdit, Ui, Vec2,
 };
 
 use crate::app::window::command::{Command, keys};
-use crate::app::window::state::{Over, State};
+use crate::app::window::mesh_out;
+use crate::app::window::session::Source;
+use crate::app::window::state::{Overlay, State};
 use crate::app::window::theme::{self, ink};
 use crate::core::formats::format::Format;
 use crate::render::palette::Palette;
 
 const WIDTH: f32 = 460.0;
 
+/// What the overlay keeps for itself.
+#[derive(Default)]
+pub struct OverState {
+    /// What was shown in the frame before.
+    shown: Overlay,
+    /// The text of its field.
+    field: String,
+}
+
 /// Shows what is open.
-pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let over = state.overlay;
-    if over == Over::Nothing {
+pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &mut Vec<Command>, palette: &Palette) {
+    let over = state.view().overlay;
+    if over != local.shown {
+        local.field = if over == Overlay::Mesh { mesh_out::suggested_path(state) } else { String::new() };
+        local.shown = over;
+    }
+    if over == Overlay::Nothing {
         return;
     }
     let frame = Frame::NONE
@@ -30,26 +45,28 @@ pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, p
         frame.show(ui, |ui| {
             ui.set_width(WIDTH);
             match over {
-                Over::Palette => palette_list(ui, state, commands, palette),
-                Over::Help => help(ui, palette),
-                Over::GoTo => {
-                    if field(ui, state, "A step such as 812, or nq=100", "Step or NQ") {
-                        state.go_to_field();
+                Overlay::Palette => palette_list(ui, &mut local.field, commands, palette),
+                Overlay::Help => help(ui, palette),
+                Overlay::GoTo => {
+                    if field(ui, &mut local.field, "A step such as 812, or nq=100", "Step or NQ") {
+                        commands.push(Command::GoToText(local.field.clone()));
                     }
                 }
-                Over::Path => {
-                    if field(ui, state, "The path of a case (.toml) or a mesh, or the name of a built-in case", "Path")
-                    {
-                        state.open_field();
+                Overlay::Path => {
+                    let hint = "The path of a case (.toml) or a mesh, or the name of a built-in case";
+                    if field(ui, &mut local.field, hint, "Path") {
+                        let source = Source::named(local.field.trim());
+                        commands.extend([Command::CloseOverlay, Command::Open(source)]);
                     }
                 }
-                Over::Mesh => {
-                    if field(ui, state, "A name such as part.vtu: the extension says the format", "Path of the mesh") {
-                        state.save_mesh_field();
+                Overlay::Mesh => {
+                    let hint = "A name such as part.vtu; its extension chooses the format";
+                    if field(ui, &mut local.field, hint, "Path of the mesh") {
+                        commands.push(Command::SaveMeshAs(local.field.clone()));
                     }
-                    about_the_mesh(ui, state.is_at_the_end(), palette);
+                    about_the_mesh(ui, state.run().is_at_the_end(), palette);
                 }
-                Over::Nothing => {}
+                Overlay::Nothing => {}
             }
         });
     });
@@ -57,13 +74,13 @@ pub fn show(context: &Context, state: &mut State, commands: &mut Vec<Command>, p
         input.pointer.any_pressed() && input.pointer.interact_pos().is_some_and(|at| !shown.response.rect.contains(at))
     });
     if elsewhere {
-        state.overlay = Over::Nothing;
+        commands.push(Command::CloseOverlay);
     }
 }
 
-/// A field with the focus; true where it was ended by Enter.
-fn field(ui: &mut Ui, state: &mut State, hint: &str, name: &str) -> bool {
-    let field = TextEdit::singleline(&mut state.field).hint_text(hint).desired_width(WIDTH);
+/// A field with the focus. Returns whether the user has pressed Enter.
+fn field(ui: &mut Ui, text: &mut String, hint: &str, name: &str) -> bool {
+    let field = TextEdit::singleline(text).hint_text(hint).desired_width(WIDTH);
     let response = ui.add(field);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, name));
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
@@ -73,16 +90,16 @@ fn field(ui: &mut Ui, state: &mut State, hint: &str, name: &str) -> bool {
     entered
 }
 
-/// What is saved, how and where.
+/// What is saved, in which format and where.
 fn about_the_mesh(ui: &mut Ui, is_at_the_end: bool, palette: &Palette) {
     let known: Vec<&str> = Format::written().map(Format::extension).collect();
     let mut lines =
-        vec![format!("Enter saves the mesh at hand, in the format of the extension: .{}", known.join(", ."))];
+        vec![format!("Enter saves the current mesh in the format of the extension: .{}", known.join(", ."))];
     if !is_at_the_end {
-        lines.push("It is on the way and has triangles yet; Esc, then End, goes to the finished one".to_owned());
+        lines.push("It is not finished and still has triangles; Esc, then End, goes to the finished mesh".to_owned());
     }
     if let Ok(folder) = std::env::current_dir() {
-        lines.push(format!("A name without a folder is one in {}", folder.display()));
+        lines.push(format!("A name without a folder is saved in {}", folder.display()));
     }
     for line in lines {
         ui.add_space(4.0);
@@ -90,9 +107,9 @@ fn about_the_mesh(ui: &mut Ui, is_at_the_end: bool, palette: &Palette) {
     }
 }
 
-fn palette_list(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let entered = field(ui, state, "Every command by name", "Name of a command");
-    let wanted: Vec<String> = state.field.to_lowercase().split_whitespace().map(str::to_owned).collect();
+fn palette_list(ui: &mut Ui, text: &mut String, commands: &mut Vec<Command>, palette: &Palette) {
+    let entered = field(ui, text, "All commands by name", "Name of a command");
+    let wanted: Vec<String> = text.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let fits = |name: &str| wanted.iter().all(|word| name.to_lowercase().contains(word));
     let found: Vec<Command> = Command::all().into_iter().filter(|c| *c != Command::Escape && fits(&c.name())).collect();
     let mut chosen = found.first().filter(|_| entered).cloned();
@@ -100,8 +117,8 @@ fn palette_list(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, pal
     ScrollArea::vertical().max_height(380.0).min_scrolled_height(380.0).show(ui, |ui| {
         for (k, command) in found.iter().enumerate() {
             let colour = if k == 0 { palette.strong } else { palette.text };
-            let text = RichText::new(command.name()).color(ink(colour));
-            let button = Button::new(text)
+            let name = RichText::new(command.name()).color(ink(colour));
+            let button = Button::new(name)
                 .shortcut_text(command.key().unwrap_or_default())
                 .frame_when_inactive(k == 0)
                 .min_size(Vec2::new(WIDTH - 12.0, 22.0));
@@ -110,12 +127,12 @@ fn palette_list(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, pal
             }
         }
         if found.is_empty() {
-            ui.label(super::note("No command has these words.", palette));
+            ui.label(super::note("No command matches.", palette));
         }
     });
     if let Some(command) = chosen {
-        state.overlay = Over::Nothing;
-        commands.push(command);
+        text.clear();
+        commands.extend([Command::CloseOverlay, command]);
     }
 }
 
@@ -132,7 +149,7 @@ fn help(ui: &mut Ui, palette: &Palette) {
             for (keys, what) in [
                 ("drag, middle drag", "Move the mesh"),
                 ("wheel, pinch", "Zoom at the pointer"),
-                ("second button, drag", "Turn the mesh; F looks straight down again"),
+                ("right drag", "Turn the mesh; F looks straight down again"),
                 ("click, double click", "Select; show in the middle"),
             ] {
                 ui.label(RichText::new(keys).color(ink(palette.strong)));

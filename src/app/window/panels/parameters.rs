@@ -1,4 +1,4 @@
-//! The parameters at the step at hand, live: a change holds from this step on.
+//! The parameters at the current step: a change takes effect from this step on.
 
 use eframe::egui::{self, Align, ComboBox, Layout, RichText, Role, ScrollArea, Slider, Ui, Vec2, WidgetInfo};
 
@@ -10,7 +10,7 @@ use crate::app::window::theme::{self, ink};
 use crate::core::case::parameters::Parameters;
 use crate::render::palette::Palette;
 
-/// A number: key, name, range, decimals, unit, what the paper says, and what it does.
+/// A number: key, name, range, decimals, unit, the paper's value, and its effect.
 struct Number {
     key: &'static str,
     name: &'static str,
@@ -51,12 +51,12 @@ const NUMBERS: [Number; 7] = [
     },
     Number {
         key: "side_deviation",
-        name: "side off",
+        name: "side dev.",
         range: [0.0, 90.0],
         decimals: 1,
         unit: "°",
         paper: "paper 30",
-        tip: "A side edge may be off the direction aimed at by this (eq. 8).",
+        tip: "The greatest deviation of a side edge from its target direction (eq. 8).",
     },
     Number {
         key: "side_split",
@@ -74,7 +74,7 @@ const NUMBERS: [Number; 7] = [
         decimals: 0,
         unit: "",
         paper: "none",
-        tip: "Rows that are offset from the boundary before anything else.",
+        tip: "Rows that are offset from the boundary before the front starts.",
     },
     Number {
         key: "theta_revr",
@@ -83,7 +83,7 @@ const NUMBERS: [Number; 7] = [
         decimals: 1,
         unit: "°",
         paper: "225; classifies only",
-        tip: "Above this a corner is a reversal (fig. 12). It classifies only: changing it changes nothing in the mesh.",
+        tip: "Above this a corner is a reversal (fig. 12). It only classifies and does not change the mesh.",
     },
 ];
 
@@ -103,14 +103,21 @@ const SELECTION: [(&str, &str); 4] = [
     ("level", "rows, as Q-Morph"),
 ];
 
+/// What the panel keeps for itself.
+#[derive(Default)]
+pub struct ParametersState {
+    /// The parameter that is being dragged: it takes effect when the user lets go.
+    dragged: Option<(&'static str, f64)>,
+}
+
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = state.moment.clone() else { return };
+pub fn show(ui: &mut Ui, state: &State, local: &mut ParametersState, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = &state.run().moment else { return };
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         inset().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 5.0;
             for number in &NUMBERS {
-                row(ui, state, &moment.parameters, number, commands, palette);
+                row(ui, state, local, &moment.parameters, number, commands, palette);
             }
             selection(ui, &moment.parameters, commands, palette);
             for (key, name, tip) in SWITCHES {
@@ -126,7 +133,7 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
 /// The button in the panel's bar.
 pub fn reset(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let command = Command::ResetParameters;
-    let changed = !state.kept.edits.is_empty();
+    let changed = !state.document().edits.is_empty();
     if icon_button(ui, icons::RESET, theme::ICON, &command, changed).clicked() {
         commands.push(command);
     }
@@ -134,15 +141,15 @@ pub fn reset(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 
 fn row(
     ui: &mut Ui,
-    state: &mut State,
+    state: &State,
+    local: &mut ParametersState,
     parameters: &Parameters,
     number: &Number,
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
     let in_force: f64 = parameters.text_of(number.key).and_then(|text| text.parse().ok()).unwrap_or(f64::NAN);
-    // What is being dragged is not in force until it is let go.
-    let mut value = state.tentative.filter(|t| t.0 == number.key).map_or(in_force, |t| t.1);
+    let mut value = local.dragged.filter(|t| t.0 == number.key).map_or(in_force, |t| t.1);
     let before = value;
     ui.horizontal(|ui| {
         ui.set_height(24.0);
@@ -168,12 +175,12 @@ fn row(
         let changed_here = state.parameters_of_case().and_then(|case| case.text_of(number.key));
         let changed = changed_here.is_some_and(|case| parameters.text_of(number.key).as_ref() != Some(&case));
         let busy = dragged.dragged() || typed.dragged();
-        if value != before || (state.tentative.is_some_and(|t| t.0 == number.key) && !busy) {
+        if value != before || (local.dragged.is_some_and(|t| t.0 == number.key) && !busy) {
             let value = rounded(value, number.decimals);
             if busy {
-                state.tentative = Some((number.key, value));
+                local.dragged = Some((number.key, value));
             } else {
-                state.tentative = None;
+                local.dragged = None;
                 commands.push(Command::Set(number.key, value.to_string()));
             }
         }
@@ -186,12 +193,12 @@ fn row(
     });
 }
 
-/// A button that gives a parameter the value of the case again.
+/// A button that resets a parameter to the value of the case.
 fn back(ui: &mut Ui, state: &State, key: &'static str, commands: &mut Vec<Command>) {
     let Some(value) = state.parameters_of_case().and_then(|case| case.text_of(key)) else { return };
     let response = ui.add(egui::Button::new(format!("{} {value}", icons::RESET)).small());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {key}")));
-    if response.on_hover_text("Back to the value of the case, from this step on").clicked() {
+    if response.on_hover_text("Reset to the value of the case, from this step on").clicked() {
         commands.push(Command::Set(key, value));
     }
 }

@@ -1,4 +1,4 @@
-//! Figs. 23 and 24 of the state at hand: edge lengths in the metric, least and greatest angles of the elements.
+//! Figs. 23 and 24 of the current state: edge lengths in the metric, least and greatest angles of the elements.
 
 use eframe::egui::{RichText, Ui, Vec2b};
 use egui_plot::{Bar, BarChart, Legend, Plot};
@@ -12,15 +12,15 @@ use crate::core::mesh::ids::ElementId;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Outlined, angles};
 
-/// Bars of edge lengths up to this, and of angles over 180 degrees.
+/// The greatest edge length of the bars, and how many bars there are.
 const LONGEST: f64 = 3.0;
 const BARS: usize = 36;
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = state.moment.clone() else { return };
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = state.run().moment.as_deref() else { return };
     let half = 0.5 * (ui.available_height() - 60.0);
-    let (edges, mean) = lengths(&moment);
+    let (edges, mean) = lengths(moment);
     head(ui, "Edge lengths in the metric (fig. 23)", format!("mean {}, unit is 1", words::fixed(mean, 3)), palette);
     let [dead, live] = edges;
     let series = [("quads", dead, palette.front[1]), ("triangles", live, palette.hint)];
@@ -29,9 +29,9 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         let fits = |length: f64| length >= low && (length < high || high >= LONGEST);
         let edges = mesh.edges().filter(|h| fits(mesh.length(*h)));
         let lit = edges.map(|h| Outlined::Edge(mesh.ends(h))).collect();
-        light(state, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
+        light(commands, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
     }
-    let (least, greatest, worst) = corner_angles(&moment);
+    let (least, greatest, worst) = corner_angles(moment);
     let note = match worst {
         Some((e, angle)) => format!("smallest {}°, of element {}", words::degrees(angle), e.0),
         None => String::new(),
@@ -48,21 +48,20 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && angles(mesh, *e).into_iter().any(fits));
         let lit = quads.map(Outlined::Element).collect();
         light(
-            state,
+            commands,
             lit,
             &format!("quads with such an angle of {}° to {}°", words::fixed(low, 0), words::fixed(high, 0)),
         );
     }
 }
 
-/// Lights up what a bar stands for.
-fn light(state: &mut State, lit: Vec<Outlined>, what: &str) {
-    state.notice(format!("{} {what} are lit up in the views.", words::grouped(lit.len() as u64)));
-    state.lit = lit;
-    state.over_epoch += 1;
+/// Highlights what a bar stands for.
+fn light(commands: &mut Vec<Command>, lit: Vec<Outlined>, what: &str) {
+    let notice = format!("{} {what} are highlighted in the views.", words::grouped(lit.len() as u64));
+    commands.push(Command::LightUp(lit, notice));
 }
 
-/// The head of a plot; true where its note was clicked.
+/// The heading of a plot. Returns whether its note was clicked.
 fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
     let mut clicked = false;
     ui.horizontal(|ui| {
@@ -77,7 +76,7 @@ fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
     clicked
 }
 
-/// Shows bars; tells the ends of one that was clicked.
+/// Shows bars. Returns the ends of one that was clicked.
 fn chart(
     ui: &mut Ui,
     id: &str,

@@ -1,40 +1,51 @@
-//! Going through time: the row of buttons with the status line, and the timeline below it.
+//! The transport: a row of buttons with the status line, and the timeline below it.
 
 use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
 
 use super::{icon_button, timeline};
 use crate::app::window::command::{Command, KINDS};
 use crate::app::window::icons;
-use crate::app::window::session::{Goal, Verdict};
+use crate::app::window::measure::Times;
+use crate::app::window::session::{Direction, Goal, Verdict};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::render::palette::Palette;
 
-/// Quadrilaterals a second that can be chosen.
+/// The speeds to choose from, in quadrilaterals a second.
 const SPEEDS: [f32; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 30.0, 60.0];
 
+/// What the panel keeps for itself.
+#[derive(Default)]
+pub struct TimeState {
+    timeline: timeline::TimelineState,
+    /// How long frames take.
+    pub times: Times,
+}
+
 /// Shows both.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, local: &mut TimeState, commands: &mut Vec<Command>, palette: &Palette) {
     let rect = ui.max_rect();
     let row = Rect::from_min_size(rect.min, Vec2::new(rect.width(), 40.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(row.shrink2(Vec2::new(8.0, 0.0))), |ui| {
-        ui.horizontal_centered(|ui| transport(ui, state, commands, palette));
+        ui.horizontal_centered(|ui| transport(ui, state, &local.times, commands, palette));
     });
     ui.painter().hline(rect.x_range(), row.bottom(), (1.0, ink(palette.line)));
     progress(ui, row, state, palette);
     let below = Rect::from_min_max(row.left_bottom(), rect.max);
-    ui.scope_builder(egui::UiBuilder::new().max_rect(below), |ui| timeline::show(ui, state, commands, palette));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(below), |ui| {
+        timeline::show(ui, state, &mut local.timeline, commands, palette);
+    });
     ui.advance_cursor_after_rect(rect);
 }
 
-fn transport(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    let open = state.moment.is_some();
+fn transport(ui: &mut Ui, state: &State, times: &Times, commands: &mut Vec<Command>, palette: &Palette) {
+    let open = state.run().moment.is_some();
     ui.spacing_mut().item_spacing.x = 3.0;
-    let step = state.moment.as_ref().map_or(0, |moment| moment.step);
-    let at_end = state.recorded && step == state.track.len() as u64;
+    let step = state.run().moment.as_ref().map_or(0, |moment| moment.step);
+    let at_end = state.run().recorded && step == state.run().track.len() as u64;
     let (back, on) = (open && step > 0, open && !at_end);
-    let play = if state.playing.is_some() { icons::PAUSE } else { icons::PLAY };
+    let play = if state.run().playing.is_some() { icons::PAUSE } else { icons::PLAY };
     for (icon, command, enabled) in [
         (icons::SKIP_BACK, Command::Go(Goal::Step(0)), back),
         (icons::CARET_DOUBLE_LEFT, Command::Go(Goal::Quads(-1)), back),
@@ -49,9 +60,11 @@ fn transport(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &
         }
     }
     rule(ui, palette);
-    for (icon, forward) in [(icons::ARROW_LINE_LEFT, false), (icons::ARROW_LINE_RIGHT, true)] {
-        let command = Command::ToBreakpoint(forward);
-        if icon_button(ui, icon, theme::TRANSPORT_ICON, &command, if forward { on } else { back }).clicked() {
+    for (icon, direction, enabled) in
+        [(icons::ARROW_LINE_LEFT, Direction::Back, back), (icons::ARROW_LINE_RIGHT, Direction::Forward, on)]
+    {
+        let command = Command::ToBreakpoint(direction);
+        if icon_button(ui, icon, theme::TRANSPORT_ICON, &command, enabled).clicked() {
             commands.push(command);
         }
     }
@@ -70,12 +83,12 @@ fn transport(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &
         if icon_button(ui, icons::BOOKMARK, theme::TRANSPORT_ICON, &command, open).clicked() {
             commands.push(command);
         }
-        if state.is_busy() && state.since.is_some_and(|since| since.elapsed().as_millis() > 150) {
+        if state.run().is_busy() && state.run().since.is_some_and(|since| since.elapsed().as_millis() > 150) {
             if ui.button("Stop").clicked() {
                 commands.push(Command::Stop);
             }
         } else {
-            verdict(ui, state, palette);
+            verdict(ui, state, times, palette);
         }
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| status(ui, state, palette));
     });
@@ -90,15 +103,15 @@ fn rule(ui: &mut Ui, palette: &Palette) {
 
 fn speed(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let text = |speed: f32| format!("{speed} quads/s");
-    let combo = ComboBox::from_id_salt("speed").selected_text(text(state.speed)).width(92.0);
+    let combo = ComboBox::from_id_salt("speed").selected_text(text(state.workspace().speed)).width(92.0);
     let shown = combo.show_ui(ui, |ui| {
         for speed in SPEEDS {
-            if ui.selectable_label(state.speed == speed, text(speed)).clicked() {
+            if ui.selectable_label(state.workspace().speed == speed, text(speed)).clicked() {
                 commands.push(Command::Speed(speed));
             }
         }
     });
-    shown.response.on_hover_text("How fast it plays");
+    shown.response.on_hover_text("How fast to play");
 }
 
 fn kinds(ui: &mut Ui, commands: &mut Vec<Command>, open: bool) {
@@ -111,8 +124,10 @@ fn kinds(ui: &mut Ui, commands: &mut Vec<Command>, open: bool) {
             ui.separator();
             for kind in KINDS {
                 ui.horizontal(|ui| {
-                    for (icon, forward) in [(icons::CARET_LEFT, false), (icons::CARET_RIGHT, true)] {
-                        let command = Command::Go(Goal::Kind(kind, forward));
+                    for (icon, direction) in
+                        [(icons::CARET_LEFT, Direction::Back), (icons::CARET_RIGHT, Direction::Forward)]
+                    {
+                        let command = Command::Go(Goal::Kind(kind, direction));
                         if icon_button(ui, icon, theme::ICON, &command, true).clicked() {
                             commands.push(command);
                         }
@@ -125,11 +140,9 @@ fn kinds(ui: &mut Ui, commands: &mut Vec<Command>, open: bool) {
     });
 }
 
-fn verdict(ui: &mut Ui, state: &State, palette: &Palette) {
-    if state.moment.is_none() {
-        return;
-    }
-    let (icon, text, colour) = match &state.verdict {
+fn verdict(ui: &mut Ui, state: &State, times: &Times, palette: &Palette) {
+    let Some(moment) = &state.run().moment else { return };
+    let (icon, text, colour) = match &state.run().verdict {
         Verdict::Holds | Verdict::Looking => (icons::CHECK_CIRCLE, "invariants hold".to_owned(), palette.holds),
         Verdict::Broken(what) => (icons::X_CIRCLE, what.clone(), palette.broken),
     };
@@ -137,34 +150,34 @@ fn verdict(ui: &mut Ui, state: &State, palette: &Palette) {
     ui.label(text).on_hover_text(
         "The mesh is sound: twins agree, every element is positive, and every loop of the front is even",
     );
-    if state.show_times {
-        ui.label(super::note(state.times.told(), palette)).on_hover_text(
-            "From asking for the state at hand to having it, and from one frame to the next while something moves",
+    if state.view().times {
+        ui.label(super::note(times.told(moment.took), palette)).on_hover_text(
+            "From the request for a state to its arrival, and from one frame to the next while something moves",
         );
     }
 }
 
 fn status(ui: &mut Ui, state: &State, palette: &Palette) {
-    if state.is_busy() && state.since.is_some_and(|since| since.elapsed().as_millis() > 150) {
-        let text = match &state.progress {
+    if state.run().is_busy() && state.run().since.is_some_and(|since| since.elapsed().as_millis() > 150) {
+        let text = match &state.run().progress {
             Some(progress) => words::progress(progress),
             None => "Working".to_owned(),
         };
         ui.label(text);
         return;
     }
-    let Some(moment) = &state.moment else { return };
-    let (quads, all) = (words::grouped(moment.standing), state.track.last().map(|t| u64::from(t.standing)));
-    let more = if state.recorded { "" } else { "…" };
+    let Some(moment) = &state.run().moment else { return };
+    let (quads, all) = (words::grouped(moment.standing), state.run().track.last().map(|t| u64::from(t.standing)));
+    let more = if state.run().recorded { "" } else { "…" };
     let strong = |text: String| RichText::new(text).font(theme::semibold(theme::BODY)).color(ink(palette.strong));
     let weak = |text: String| RichText::new(text).color(ink(palette.weak));
     ui.spacing_mut().item_spacing.x = 5.0;
     ui.label(strong(format!("step {}", words::grouped(moment.step))));
-    ui.label(weak(format!("/ {}{more}", words::grouped(state.track.len() as u64))));
+    ui.label(weak(format!("/ {}{more}", words::grouped(state.run().track.len() as u64))));
     ui.label(strong(format!("  quad {quads}")));
     ui.label(weak(format!("/ {}{more}", words::grouped(all.unwrap_or(0)))));
     let text = match &moment.event {
-        None => "the front is the boundary; the first step chooses a base".to_owned(),
+        None => "the front is the boundary; the first step selects a base".to_owned(),
         Some(event) => words::event(event),
     };
     let text = RichText::new(format!("·  {text}")).color(ink(palette.text));
@@ -173,7 +186,7 @@ fn status(ui: &mut Ui, state: &State, palette: &Palette) {
 
 /// A thin bar over the row while work is under way.
 fn progress(ui: &Ui, row: Rect, state: &State, palette: &Palette) {
-    let Some(progress) = &state.progress else { return };
+    let Some(progress) = &state.run().progress else { return };
     let share = if progress.total > 0 { progress.done as f32 / progress.total as f32 } else { 0.0 };
     let bar = Rect::from_min_size(row.min, Vec2::new(row.width() * share.clamp(0.0, 1.0), 3.0));
     ui.painter().rect_filled(bar, 0.0, ink(palette.base));

@@ -5,8 +5,6 @@ mod columns;
 
 use eframe::egui::{self, Align2, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
 
-pub use columns::Columns;
-
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::{Goal, Moment, Verdict};
@@ -14,22 +12,35 @@ use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::render::palette::{Palette, Rgba};
-use columns::{Curve, Lane};
+use columns::{Columns, Curve, Lane};
 
 /// The label column and the counts, in points.
 const LABELS: f32 = 118.0;
 const COUNTS: f32 = 92.0;
 const LANE: f32 = 12.0;
 const GAP: f32 = 2.0;
-/// Heights of a curve: of those that always stand, and of those that stand where there is room.
+/// Height of a curve.
 const CURVE: f32 = 24.0;
-/// Opacity of what is past and what is to come.
+/// Opacity before and after the current step.
 const TIMES: [f32; 2] = [0.8, 0.38];
-/// How near to a bookmark a click must be.
+/// How near to a bookmark a click must be, in points.
 const NEAR: f32 = 6.0;
 
+/// What the timeline keeps for itself.
+#[derive(Default)]
+pub struct TimelineState {
+    columns: Columns,
+    /// The row whose kinds have rows of their own.
+    open_row: Option<usize>,
+    /// The steps that are shown, unless those are all, and the number of the run that they belong to.
+    span: Option<[f64; 2]>,
+    run: u64,
+    /// The step that a drag has asked for.
+    seeking: Option<u64>,
+}
+
 /// Shows the timeline.
-pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, local: &mut TimelineState, commands: &mut Vec<Command>, palette: &Palette) {
     let rect = ui.max_rect();
     let plot = Rect::from_min_max(
         Pos2::new(rect.left() + LABELS, rect.top() + 4.0),
@@ -37,13 +48,16 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
     );
     let response =
         ui.interact(plot.expand2(Vec2::new(6.0, 4.0)), ui.scope_id().with("timeline"), Sense::click_and_drag());
-    let Some(moment) = state.moment.clone() else { return };
-    let spoken = format!("Timeline: step {} of {}", moment.step, state.track.len());
+    if std::mem::replace(&mut local.run, state.run().number) != state.run().number {
+        local.span = None;
+    }
+    let Some(moment) = &state.run().moment else { return };
+    let spoken = format!("Timeline: step {} of {}", moment.step, state.run().track.len());
     response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, spoken.clone()));
-    let axis = Axis { plot, span: turn(ui, &response, plot, state) };
-    seek(&response, &axis, state, &moment, commands);
-    let mut columns = std::mem::take(&mut state.columns);
-    columns.update(state, axis.span, plot.width());
+    let axis = Axis { plot, span: turn(ui, &response, plot, state, local) };
+    seek(&response, &axis, state, local, moment, commands);
+    let TimelineState { columns, open_row, .. } = local;
+    columns.update(state, *open_row, axis.span, plot.width());
     let painter = ui.painter_at(rect);
     let drawing = Drawing { painter, axis, palette, now: moment.step };
     let mut y = drawing.ruler(state, plot.top());
@@ -54,32 +68,31 @@ pub fn show(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette
         }
         drawing.lane(lane, y);
         if let Some(group) = label_button(ui, &drawing.axis, lane, y) {
-            state.open_lanes = if state.open_lanes == Some(group) { None } else { Some(group) };
+            *open_row = if *open_row == Some(group) { None } else { Some(group) };
         }
         y += LANE + GAP;
     }
     if fits(y, LANE) {
-        drawing.invariants(&columns, y, state);
+        drawing.invariants(columns, y, state);
         y += LANE + GAP;
     }
     for curve in columns.curves() {
         if !fits(y, CURVE) {
             break;
         }
-        drawing.curve(curve, &columns, y);
+        drawing.curve(curve, columns, y);
         y += CURVE + GAP;
     }
     drawing.head(y.min(plot.bottom()));
     if let Some(at) = response.hover_pos() {
-        response.on_hover_text_at_pointer(hovered(&drawing.axis, state, &columns, at));
+        response.on_hover_text_at_pointer(hovered(&drawing.axis, state, columns, at));
     }
-    state.columns = columns;
 }
 
-/// The steps that are shown, after what was asked by the wheel.
-fn turn(ui: &Ui, response: &Response, plot: Rect, state: &mut State) -> [f64; 2] {
-    let all = state.track.len().max(1) as f64;
-    let mut span = state.timeline.filter(|span| span[1] <= all).unwrap_or([0.0, all]);
+/// The steps that are shown, after zooming and scrolling.
+fn turn(ui: &Ui, response: &Response, plot: Rect, state: &State, local: &mut TimelineState) -> [f64; 2] {
+    let all = state.run().track.len().max(1) as f64;
+    let mut span = local.span.filter(|span| span[1] <= all).unwrap_or([0.0, all]);
     if let Some(at) = response.hover_pos() {
         let scroll = ui.input(|input| input.smooth_scroll_delta());
         if scroll.y != 0.0 {
@@ -95,41 +108,48 @@ fn turn(ui: &Ui, response: &Response, plot: Rect, state: &mut State) -> [f64; 2]
     if response.double_clicked() {
         span = [0.0, all];
     }
-    state.timeline = (span[1] - span[0] < all).then_some(span);
+    local.span = (span[1] - span[0] < all).then_some(span);
     span
 }
 
-/// Click and drag go to the step under the pointer; a click beside a bookmark to that.
-fn seek(response: &Response, axis: &Axis, state: &mut State, moment: &Moment, commands: &mut Vec<Command>) {
+/// A click or a drag goes to the step under the pointer; a click near a bookmark goes to the bookmark.
+fn seek(
+    response: &Response,
+    axis: &Axis,
+    state: &State,
+    local: &mut TimelineState,
+    moment: &Moment,
+    commands: &mut Vec<Command>,
+) {
     let pointer = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked());
     let Some(at) = pointer else {
-        state.seeking = None;
+        local.seeking = None;
         return;
     };
-    let mut step = axis.step(at.x).round().clamp(0.0, state.track.len() as f64) as u64;
+    let mut step = axis.step(at.x).round().clamp(0.0, state.run().track.len() as f64) as u64;
     if at.y < axis.plot.top() + 24.0 {
         let away = |mark: &u64| (axis.x(*mark as f64) - at.x).abs();
-        let nearest = state.kept.bookmarks.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)));
+        let nearest = state.document().bookmarks.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)));
         step = nearest.filter(|mark| away(mark) < NEAR).unwrap_or(step);
     }
-    if step != moment.step && state.seeking != Some(step) {
-        state.seeking = Some(step);
+    if step != moment.step && local.seeking != Some(step) {
+        local.seeking = Some(step);
         commands.push(Command::Go(Goal::Step(step)));
     }
 }
 
-/// What stands under the pointer.
+/// The text for the step under the pointer.
 fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
-    let step = axis.step(at.x).round().clamp(0.0, state.track.len() as f64) as u64;
-    let Some(tracked) = step.checked_sub(1).and_then(|k| state.track.get(k as usize)) else {
+    let step = axis.step(at.x).round().clamp(0.0, state.run().track.len() as f64) as u64;
+    let Some(tracked) = step.checked_sub(1).and_then(|k| state.run().track.get(k as usize)) else {
         return "step 0".to_owned();
     };
     let mut text = format!("step {}  \u{b7}  {}", words::grouped(step), words::kind(tracked.kind));
     let [loops, odd] = tracked.loops;
     text += &format!("\nfront: {} segments, {loops} loops, {odd} odd", words::grouped(tracked.front.into()));
     text += &format!("\n{} live triangles", words::grouped(tracked.live.into()));
-    let next = state.samples.partition_point(|sample| sample.step < step);
-    if let Some(sample) = state.samples.get(next.min(state.samples.len().saturating_sub(1))) {
+    let next = state.run().samples.partition_point(|sample| sample.step < step);
+    if let Some(sample) = state.run().samples.get(next.min(state.run().samples.len().saturating_sub(1))) {
         let verdict = columns.broken(sample).unwrap_or_else(|| "invariants hold".to_owned());
         let at = words::grouped(sample.step);
         text += &format!(
@@ -142,7 +162,7 @@ fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
     text
 }
 
-/// The name of a row with several kinds is a button that gives each its own row, and back.
+/// The name of a row with several kinds is a button that gives each kind its own row, and back.
 fn label_button(ui: &Ui, axis: &Axis, lane: &Lane, y: f32) -> Option<usize> {
     let group = lane.group?;
     let rect =
@@ -209,7 +229,7 @@ impl Drawing<'_> {
             }
             tick += every;
         }
-        for step in &state.kept.bookmarks {
+        for step in &state.document().bookmarks {
             let x = axis.x(*step as f64);
             if axis.plot.x_range().contains(x) {
                 self.text(Pos2::new(x, top + 12.0), Align2::CENTER_TOP, icons::BOOKMARK, palette.text);
@@ -224,7 +244,7 @@ impl Drawing<'_> {
         self.text(Pos2::new(plot.right() + COUNTS - 32.0, y), Align2::RIGHT_CENTER, count, colour);
     }
 
-    /// One tick for each event; a density strip where there are more than one a column.
+    /// One tick for each event, or a density strip if there are several in many columns.
     fn lane(&self, lane: &Lane, y: f32) {
         let plot = self.axis.plot;
         let ground = Rect::from_min_size(Pos2::new(plot.left(), y), Vec2::new(plot.width(), LANE));
@@ -250,7 +270,7 @@ impl Drawing<'_> {
     fn invariants(&self, columns: &Columns, y: f32, state: &State) {
         let Drawing { axis, palette, .. } = self;
         let middle = y + 0.5 * LANE;
-        let known = axis.x(state.track.len() as f64).min(axis.plot.right());
+        let known = axis.x(state.run().track.len() as f64).min(axis.plot.right());
         let line = Stroke::new(3.0, ink(palette.holds.faded(0.8)));
         self.painter.hline(axis.plot.left()..=known.max(axis.plot.left()), middle, line);
         for [from, until] in columns.broken_spans() {
@@ -258,7 +278,7 @@ impl Drawing<'_> {
             let [a, b] = [*from, *until].map(|step| axis.x(step as f64).clamp(axis.plot.left(), axis.plot.right()));
             self.painter.hline(a..=b.max(a + 2.0), middle, red);
         }
-        let is_broken = matches!(state.verdict, Verdict::Broken(_)) || !columns.broken_spans().is_empty();
+        let is_broken = matches!(state.run().verdict, Verdict::Broken(_)) || !columns.broken_spans().is_empty();
         let (text, colour) = if is_broken { ("broken", palette.broken) } else { ("hold", palette.holds) };
         self.label(middle, "invariants", text, colour);
     }

@@ -1,22 +1,23 @@
-//! The bar of menus, what is open, and the field for commands.
+//! The bar with the menus, the name of the case, and the field for commands.
 
 use eframe::egui::{
     self, Align, Align2, Button, Layout, MenuBar, RichText, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo,
 };
 
-use crate::app::window::command::{Command, LAYERS};
+use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::{Goal, Source};
-use crate::app::window::state::{Place, State};
+use crate::app::window::state::{State, SurfaceView};
 use crate::app::window::theme::{self, ink};
+use crate::app::window::view_layer::ViewLayer;
 use crate::core::case::built_in;
 use crate::render::camera::Bearing;
 use crate::render::palette::Palette;
 use crate::render::scene::ColourBy;
 
-/// What a list in a menu leaves of the height of the window.
+/// How much of the window's height a list in a menu leaves free.
 const ROOM: f32 = 120.0;
-/// How wide the longest name of a built-in case is.
+/// The width of the longest name of a built-in case.
 const NAMES: f32 = 176.0;
 
 /// Shows the bar.
@@ -34,8 +35,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         ui.add_space(8.0);
         field(ui, bar.width(), commands, palette);
     });
-    // What is about to be converted has its name in its panel.
-    if let Some(opened) = state.opened.as_ref().filter(|_| state.import.is_none()) {
+    // The panel of an import shows its name.
+    if let Some(opened) = state.run().opened.as_ref().filter(|_| state.run().import.is_none()) {
         let painter = ui.painter_at(bar);
         let name = painter.layout_no_wrap(opened.case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
         let room = (bar.width() - 720.0).max(0.0);
@@ -80,7 +81,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         ui.separator();
         let open = |name: &str| Command::Open(Source::BuiltIn(name.to_owned()));
         ui.menu_button("Built-in cases", |ui| {
-            // More than a small window has room for.
+            // A small window has no room for all of them.
             let height = ui.ctx().content_rect().height() - ROOM;
             ui.set_min_width(NAMES);
             ScrollArea::vertical().max_height(height).show(ui, |ui| {
@@ -107,7 +108,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         item(ui, Command::ResetLayout, commands);
         ui.separator();
         ui.menu_button("Surfaces", |ui| {
-            Place::ALL.into_iter().for_each(|place| item(ui, Command::Place(place), commands));
+            SurfaceView::ALL.into_iter().for_each(|place| item(ui, Command::SurfaceView(place), commands));
             ui.separator();
             for bearing in [Bearing::Iso, Bearing::X, Bearing::Y, Bearing::Z] {
                 item(ui, Command::LookFrom(bearing), commands);
@@ -117,8 +118,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             item(ui, Command::ToggleCurved, commands);
         });
         ui.separator();
-        for k in 0..LAYERS.len() {
-            item(ui, Command::Layer(k), commands);
+        for layer in ViewLayer::ALL {
+            item(ui, Command::Layer(layer), commands);
         }
         ui.separator();
         for by in ColourBy::ALL {
@@ -126,7 +127,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         }
     });
     ui.menu_button("Figure", |ui| {
-        ui.add_enabled_ui(state.moment.is_some(), |ui| {
+        ui.add_enabled_ui(state.run().moment.is_some(), |ui| {
             item(ui, Command::Figures, commands);
             item(ui, Command::Export, commands);
             item(ui, Command::Screenshot, commands);
@@ -139,7 +140,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     });
 }
 
-/// Looks like a field and opens the palette.
+/// A button that looks like a field and opens the palette.
 fn field(ui: &mut Ui, room: f32, commands: &mut Vec<Command>, palette: &Palette) {
     let width = if room > 800.0 { 250.0 } else { 60.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, 22.0), Sense::click());

@@ -1,27 +1,41 @@
-//! Where to go, and which step that is.
+//! Goals of a walk through the run, and the steps that they stand for.
 
 use crate::core::run::log::Log;
+
+/// A direction along the steps of a run, or along the changes of the user.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// To what comes later.
+    Forward,
+    /// To what came before.
+    Back,
+}
+
+impl Direction {
+    /// Both of them.
+    pub const BOTH: [Direction; 2] = [Direction::Forward, Direction::Back];
+}
 
 /// Where to go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// To a step.
     Step(u64),
-    /// So many steps on, or back.
+    /// A number of steps forward, or back if it is negative.
     Steps(i64),
-    /// So many quadrilaterals on, or back: to where they stand and their local post-processing is done.
+    /// A number of quadrilaterals forward, or back if it is negative: to where their local post-processing is done.
     Quads(i64),
-    /// To where so many quadrilaterals stand.
+    /// To where there are so many quadrilaterals.
     ToQuads(u64),
     /// To the next event of a kind, or the one before.
-    Kind(&'static str, bool),
+    Kind(&'static str, Direction),
     /// To the end.
     End,
 }
 
 impl Goal {
-    /// The step of the goal, seen from `step`; `None` where it is not known yet. `end` is the last step of the run,
-    /// once it is known.
+    /// The step of the goal, seen from `step`; `None` if it is not known yet. `end` is the last step of the run, once
+    /// it is known.
     pub fn resolve(self, log: &Log, step: u64, end: Option<u64>) -> Option<u64> {
         let known = |target: u64| if target <= log.known() { Some(target) } else { end };
         let with = |quads: u64, after: u64| if quads == 0 { Some(0) } else { log.first_with(quads, after).or(end) };
@@ -33,14 +47,16 @@ impl Goal {
                 Err(_) => Some(back(log, step, by.unsigned_abs())),
             },
             Goal::ToQuads(quads) => with(quads, 0),
-            Goal::Kind(wanted, true) => log.next_of(step, |kind| kind == wanted).or(end),
-            Goal::Kind(wanted, false) => Some(log.last_of(step.saturating_sub(1), |kind| kind == wanted).unwrap_or(0)),
+            Goal::Kind(wanted, Direction::Forward) => log.next_of(step, |kind| kind == wanted).or(end),
+            Goal::Kind(wanted, Direction::Back) => {
+                Some(log.last_of(step.saturating_sub(1), |kind| kind == wanted).unwrap_or(0))
+            }
             Goal::End => end,
         }
     }
 }
 
-/// The step so many quadrilaterals back: the first step back goes to where the last one stood, if that was before.
+/// The step so many quadrilaterals back. From within a quadrilateral, the first of them leads to where it began.
 fn back(log: &Log, step: u64, by: u64) -> u64 {
     let first = |quads: u64| if quads == 0 { Some(0) } else { log.first_with(quads, 0) };
     let here = log.nq(step);
@@ -87,11 +103,11 @@ mod tests {
     fn events_of_a_kind_are_met_forward_and_backward() {
         let history = history();
         let (log, end) = (history.log(), history.end());
-        let first = Goal::Kind("formed", true).resolve(log, 0, end).unwrap();
-        let second = Goal::Kind("formed", true).resolve(log, first, end).unwrap();
+        let first = Goal::Kind("formed", Direction::Forward).resolve(log, 0, end).unwrap();
+        let second = Goal::Kind("formed", Direction::Forward).resolve(log, first, end).unwrap();
         assert!(log.kind(first) == Some("formed") && log.kind(second) == Some("formed"));
-        assert_eq!(Goal::Kind("formed", false).resolve(log, second, end), Some(first));
-        assert_eq!(Goal::Kind("formed", false).resolve(log, first, end), Some(0));
+        assert_eq!(Goal::Kind("formed", Direction::Back).resolve(log, second, end), Some(first));
+        assert_eq!(Goal::Kind("formed", Direction::Back).resolve(log, first, end), Some(0));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! A state of the run, for looking at: what of it the window shows, shared with the thread that has the run.
+//! A state of the run as the window shows it, shared with the thread that owns the run.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,11 +15,12 @@ use crate::core::run::front_table::{Loop, Row};
 use crate::core::run::history::Changes;
 
 /// Whether the invariants hold.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Verdict {
     /// They do.
     Holds,
-    /// After a leap the whole mesh is looked at when there is time.
+    /// Not known yet: after a leap the whole mesh is checked when there is time.
+    #[default]
     Looking,
     /// What does not hold.
     Broken(String),
@@ -33,29 +34,29 @@ pub struct Moment {
     pub event: Option<Event>,
     pub mesh: Arc<Mesh>,
     pub parameters: Parameters,
-    /// What is other than in the moment that was told before.
+    /// The differences from the moment that was reported before.
     pub changes: Changes,
-    /// What the last three steps that changed anything changed, the newest first.
+    /// The changes of the last three steps that changed anything, the latest first.
     pub changed: [Arc<[ElementId]>; 3],
-    /// What the very last one changed.
+    /// The changes of the very last step.
     pub just_changed: Arc<[ElementId]>,
-    /// The front in the order in which a selection would take it.
+    /// The front in the order of selection.
     pub front: Vec<Segment>,
     /// The same segments with their loops, and whether they are put off.
     pub rows: Vec<Row>,
     /// The loops of the front.
     pub loops: Vec<Loop>,
-    /// What the step that led here chose a side edge from.
+    /// The candidates for a side edge of the last step.
     pub candidates: Option<Candidates>,
     /// Why the base is the base.
     pub base: Option<SegmentTold>,
     /// Whether the invariants hold.
     pub verdict: Verdict,
-    /// From asking to telling.
+    /// The time from the request to the report.
     pub took: Duration,
 }
 
-/// A row of the table as the renderer wants it.
+/// A row of the table in the form that the renderer takes.
 pub(super) fn segment(row: &Row) -> Segment {
     let Row { h, a, b, class, h_value, length_metric, length_physical, theta, level, face, .. } = *row;
     Segment { h, a, b, h_value, length_metric, length_physical, theta, class, level, face }

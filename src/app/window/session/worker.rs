@@ -1,5 +1,5 @@
-//! The thread that has the history of the run: it goes where it is asked to go, answers what is asked of the state at
-//! hand, and lends another thread the recorder that runs ahead.
+//! The thread that owns the history of the run: it goes to the requested steps, answers questions about the current
+//! state, and lends another thread the recorder that runs ahead.
 
 mod arriving;
 
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
-use super::{Ask, Explained, Goal, Opened, Past, Told, Tracked, Voice};
+use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, Tracked, Voice};
 use crate::core::convert::event::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::{ElementId, NodeId};
@@ -22,14 +22,15 @@ use crate::core::run::run::{Edit, Run};
 use crate::core::run::sample::Sample;
 use crate::core::run::watch::Watched;
 
-/// Steps that the recorder does before it hands them over: few at first, since somebody may be waiting.
+/// How many steps the recorder does before it hands them over, least and most: few at first, since the window may be
+/// waiting.
 const STRETCH: [u64; 2] = [64, 8192];
-/// Steps back to which what they changed is sought.
+/// How many steps back to look for changes.
 const RECENT: u64 = 12;
-/// Touches that are told.
+/// How many touches to report.
 const TOUCHES: usize = 40;
 
-/// Where breakpoints stop: where a condition holds, or where something that is watched is touched.
+/// Where to stop: where a condition holds, or where something that is watched is touched.
 #[derive(Clone, Debug, Default)]
 pub struct Stops {
     pub conditions: Vec<Condition>,
@@ -40,41 +41,41 @@ pub struct Stops {
 #[derive(Clone)]
 enum Aim {
     Goal(Goal),
-    Break(Stops, bool),
+    Break(Stops, Direction),
 }
 
 /// An aim that is not reached yet.
 #[derive(Clone)]
 struct Pending {
     aim: Aim,
-    /// How many asks it answers.
+    /// How many requests it answers.
     asks: usize,
-    /// Asked then.
+    /// The time of the request.
     since: Instant,
 }
 
-/// The thread that has the history.
+/// The thread that owns the history.
 pub(super) struct Worker {
     history: History,
     own: Sender<Ask>,
     voice: Voice,
     stop: Arc<AtomicBool>,
-    /// Where to go as soon as that is known.
+    /// Where to go as soon as the step is known.
     pending: Option<Pending>,
     conditions: Vec<Condition>,
-    /// Tells the recorder's thread that what it does is of no use any more.
+    /// Tells the recorder's thread to stop.
     cancel: Arc<AtomicBool>,
-    /// Steps that the window has been told of.
+    /// How many steps have been reported to the window.
     tracked: u64,
     triangles: u64,
     copies: Copies,
-    /// What changed since the last moment that was told.
+    /// The changes since the last moment that was reported.
     since: Since,
-    /// What recent steps changed, by step.
+    /// The changes of recent steps, by step.
     recent: VecDeque<(u64, Arc<[ElementId]>)>,
     /// Whether the whole mesh is still to be checked.
     unchecked: bool,
-    /// Whether something did not hold in the moment that was told before: then it may not hold elsewhere either.
+    /// Whether an invariant was broken in the moment before: then a check around the changes is not enough.
     was_broken: bool,
     /// Whether the loops of the front at step 0 are even.
     even: bool,
@@ -97,7 +98,7 @@ impl Worker {
             Err(fault) => return Err((voice, Box::new(fault))),
         };
         let triangles = background.mesh.element_count() as u64;
-        voice.say(Told::Opened(Arc::new(Opened {
+        voice.say(SessionNews::Opened(Arc::new(Opened {
             case: history.run().case.clone(),
             run: history.run().clone(),
             background,
@@ -127,7 +128,7 @@ impl Worker {
         self.lend(STRETCH[0]);
         self.arrive();
         loop {
-            // What can wait is done when nobody asks for anything.
+            // Checks of the whole mesh wait until there are no requests.
             let ask = match asked.try_recv() {
                 Err(TryRecvError::Empty) if self.unchecked => {
                     self.check();
@@ -140,14 +141,14 @@ impl Worker {
             match ask {
                 Ask::Gone => break,
                 Ask::Go(goal, since) => self.go(Aim::Goal(goal), since),
-                Ask::Break(stops, forward) => self.go(Aim::Break(stops, forward), Instant::now()),
+                Ask::Break(stops, direction) => self.go(Aim::Break(stops, direction), Instant::now()),
                 Ask::Touch(watched) => {
                     let found = self.history.last_touch(watched, false);
                     self.go_back(found, "Nothing has touched it before this step.");
                 }
                 Ask::Made(element) => {
                     let found = self.history.made(element);
-                    self.go_back(found, "It was there from the beginning.");
+                    self.go_back(found, "It exists from the beginning.");
                 }
                 Ask::Past(watched) => self.past(watched),
                 Ask::Count(conditions) => {
@@ -161,7 +162,7 @@ impl Worker {
             if self.stop.swap(false, Ordering::Relaxed)
                 && let Some(pending) = self.pending.take()
             {
-                // Everything up to here can be looked at.
+                // The steps up to here are known.
                 let aim = Aim::Goal(Goal::Step(self.history.log().known()));
                 self.pending = Some(Pending { aim, ..pending });
             }
@@ -170,7 +171,7 @@ impl Worker {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// A goal replaces one that still waits; its asker is answered with the new one's.
+    /// A goal replaces one that still waits; the arrival at the new one answers both requests.
     fn go(&mut self, aim: Aim, since: Instant) {
         let before = self.pending.take().map_or(0, |pending| pending.asks);
         self.pending = Some(Pending { aim, asks: before + 1, since });
@@ -179,8 +180,8 @@ impl Worker {
     fn go_back(&mut self, found: Result<Option<u64>, Fault>, nothing: &'static str) {
         match found {
             Ok(Some(step)) => self.go(Aim::Goal(Goal::Step(step)), Instant::now()),
-            Ok(None) => self.voice.say(Told::Nothing(nothing, 1)),
-            Err(fault) => self.voice.say(Told::Fault(fault, 1)),
+            Ok(None) => self.voice.say(SessionNews::Nothing(nothing, 1)),
+            Err(fault) => self.voice.say(SessionNews::Fault(fault, 1)),
         }
     }
 
@@ -207,18 +208,18 @@ impl Worker {
             Ok(Past { step: history.step(), watched, touches, more, made, killed })
         };
         match told() {
-            Ok(past) => self.voice.say(Told::Past(Arc::new(past))),
-            Err(fault) => self.voice.say(Told::Fault(fault, 0)),
+            Ok(past) => self.voice.say(SessionNews::Past(Arc::new(past))),
+            Err(fault) => self.voice.say(SessionNews::Fault(fault, 0)),
         }
     }
 
     fn explain(&self, a: NodeId, b: NodeId) {
         let Some(told) = SegmentTold::of(self.history.state(), a, b) else { return };
         let put_off = if told.row.is_put_off { self.put_off(a, b) } else { None };
-        self.voice.say(Told::Explained(self.history.step(), Arc::new(Explained { told, put_off })));
+        self.voice.say(SessionNews::Explained(self.history.step(), Arc::new(Explained { told, put_off })));
     }
 
-    /// The last step that put a segment off, with what spoke against its last attempt, as far as events are kept.
+    /// The last step that put a segment off, with the reason of its last failure, as far as events are kept.
     fn put_off(&self, a: NodeId, b: NodeId) -> Option<(u64, Option<Why>)> {
         let log = self.history.log();
         let deferred = Event::Deferred { a, b };
@@ -230,7 +231,7 @@ impl Worker {
         Some((step, why))
     }
 
-    /// Counts how often the conditions hold, in what is known and still kept of the run.
+    /// Counts how often the conditions hold in the recorded events.
     fn count(&self) {
         let log = self.history.log();
         let mut hits = vec![0; self.conditions.len()];
@@ -242,7 +243,7 @@ impl Worker {
                 *hit += usize::from(condition.holds(&moment));
             }
         }
-        self.voice.say(Told::Hits(hits));
+        self.voice.say(SessionNews::Hits(hits));
     }
 
     fn edit(&mut self, edits: Vec<Edit>) {
@@ -253,7 +254,7 @@ impl Worker {
         let same = before.iter().zip(&edits).take_while(|(a, b)| a == b).count();
         let first = [before.get(same), edits.get(same)].into_iter().flatten().map(|edit| edit.step).min();
         if let Err(fault) = self.history.set_edits(edits) {
-            return self.voice.say(Told::Fault(fault, 1));
+            return self.voice.say(SessionNews::Fault(fault, 1));
         }
         self.tracked = self.tracked.min(first.unwrap_or(u64::MAX)).min(self.history.log().known());
         self.recent.clear();
@@ -263,7 +264,7 @@ impl Worker {
         self.count();
     }
 
-    /// Lets another thread run ahead for a stretch.
+    /// Has another thread run ahead for some steps.
     fn lend(&mut self, steps: u64) {
         let Some(mut recorder) = self.history.lend() else { return };
         let (own, cancel) = (self.own.clone(), self.cancel.clone());
@@ -277,7 +278,7 @@ impl Worker {
     fn found(&mut self, stretch: Stretch, recorder: Recorder) {
         self.history.accept(stretch);
         if let Err(fault) = self.history.take_back(recorder) {
-            return self.voice.say(Told::Fault(fault, 0));
+            return self.voice.say(SessionNews::Fault(fault, 0));
         }
         self.tell_track();
         if self.history.end().is_some() && !self.conditions.is_empty() {
@@ -307,26 +308,26 @@ impl Worker {
         // The first sample is that of step 0.
         let fresh = |sample: &&Sample| sample.step > self.tracked || self.tracked == 0;
         let samples = log.samples().iter().filter(fresh).copied().collect();
-        let told = Told::Track { from: self.tracked, steps: steps.collect(), samples, end };
+        let told = SessionNews::Track { from: self.tracked, steps: steps.collect(), samples, end };
         self.tracked = log.known();
         self.voice.say(told);
     }
 
-    /// Goes where it was asked to go, where that is known by now.
+    /// Goes to the requested step, if it is known by now.
     fn arrive(&mut self) {
         let Some(Pending { aim, asks, since }) = self.pending.clone() else { return };
         let end = self.history.end();
         let found = match &aim {
             Aim::Goal(goal) => goal.resolve(self.history.log(), self.history.step(), end),
-            Aim::Break(stops, forward) => match self.stop_at(stops, *forward) {
-                Ok(None) if end.is_some() || !forward => {
+            Aim::Break(stops, direction) => match self.stop_at(stops, *direction) {
+                Ok(None) if end.is_some() || *direction == Direction::Back => {
                     self.pending = None;
-                    return self.voice.say(Told::Nothing("No breakpoint is met there.", asks));
+                    return self.voice.say(SessionNews::Nothing("No breakpoint is hit in that direction.", asks));
                 }
                 Ok(found) => found,
                 Err(fault) => {
                     self.pending = None;
-                    return self.voice.say(Told::Fault(fault, asks));
+                    return self.voice.say(SessionNews::Fault(fault, asks));
                 }
             },
         };
@@ -336,27 +337,30 @@ impl Worker {
         };
         self.pending = None;
         match self.moment(step, since) {
-            Ok(moment) => self.voice.say(Told::Moment(Arc::new(moment), asks)),
-            Err(fault) => self.voice.say(Told::Fault(fault, asks)),
+            Ok(moment) => self.voice.say(SessionNews::Moment(Arc::new(moment), asks)),
+            Err(fault) => self.voice.say(SessionNews::Fault(fault, asks)),
         }
     }
 
-    /// The nearest step, forward or backward, at which a breakpoint is met or something that is watched is touched.
-    fn stop_at(&mut self, stops: &Stops, forward: bool) -> Result<Option<u64>, Fault> {
+    /// The nearest step at which a breakpoint is met or something that is watched is touched.
+    fn stop_at(&mut self, stops: &Stops, direction: Direction) -> Result<Option<u64>, Fault> {
         let mut found = Vec::new();
         if !stops.conditions.is_empty() {
-            let met = match forward {
-                true => self.history.next_break(&stops.conditions)?,
-                false => self.history.previous_break(&stops.conditions)?,
+            let met = match direction {
+                Direction::Forward => self.history.next_break(&stops.conditions)?,
+                Direction::Back => self.history.previous_break(&stops.conditions)?,
             };
             found.extend(met.map(|met| met.0));
         }
         for &watched in &stops.watched {
-            found.extend(match forward {
-                true => self.history.next_touch(watched)?,
-                false => self.history.last_touch(watched, false)?,
+            found.extend(match direction {
+                Direction::Forward => self.history.next_touch(watched)?,
+                Direction::Back => self.history.last_touch(watched, false)?,
             });
         }
-        Ok(if forward { found.into_iter().min() } else { found.into_iter().max() })
+        Ok(match direction {
+            Direction::Forward => found.into_iter().min(),
+            Direction::Back => found.into_iter().max(),
+        })
     }
 }

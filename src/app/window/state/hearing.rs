@@ -1,120 +1,112 @@
-//! What the session tells, and what it is asked for when a panel wants to know it.
+//! Takes in what worker threads report. With `apply` this is the only place that changes [`State`].
+
+mod files;
+mod opening;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::{Progress, State};
-use crate::app::window::session::{Explained, Moment, Past, Told};
+use crate::app::figure::another_state;
+use crate::app::window::session::{Moment, SessionNews, Source};
 use crate::core::convert::phase::Phase;
-use crate::core::mesh::ids::NodeId;
-use crate::core::run::watch::Watched;
+use crate::core::run::history::Changes;
+use crate::core::run::shown::{ShownState, fingerprint};
 
 /// How long a frame waits for the state that it asked for.
 const PATIENCE: Duration = Duration::from_millis(4);
 
 impl State {
-    /// Hears what the session has to tell.
-    pub fn hear(&mut self) {
+    /// Takes in what the session reports.
+    pub(in crate::app::window) fn hear(&mut self) {
         self.hear_opening();
-        let Some(session) = &self.session else { return };
-        let told: Vec<Told> = session.hear().collect();
+        let Some(session) = &self.run.session else { return };
+        let told: Vec<SessionNews> = session.hear().collect();
         told.into_iter().for_each(|told| self.take(told));
     }
 
-    /// Where the session owes an answer, waits for it, but not so long that anybody notices: most states are there at
+    /// If the session owes an answer, waits for it, but not so long that anybody notices: most states are ready at
     /// once, and are seen in the very frame that asked for them.
-    pub fn hear_soon(&mut self) {
+    pub(in crate::app::window) fn hear_soon(&mut self) {
         let begin = Instant::now();
-        while self.waiting > 0
+        while self.run.waiting > 0
             && let Some(left) = PATIENCE.checked_sub(begin.elapsed())
-            && let Some(told) = self.session.as_ref().and_then(|session| session.hear_within(left))
+            && let Some(told) = self.run.session.as_ref().and_then(|session| session.hear_within(left))
         {
             self.take(told);
         }
     }
 
-    fn take(&mut self, told: Told) {
+    /// The differences between the current state and the one at the last call, and how many slots for elements it has.
+    pub(in crate::app::window) fn take_changes(&mut self) -> Option<(Changes, usize)> {
+        let slots = self.run.moment.as_ref()?.mesh.element_slots();
+        Some((self.run.changes.take(), slots))
+    }
+
+    fn take(&mut self, told: SessionNews) {
+        let run = &mut self.run;
         match told {
-            Told::Progress { words, done, total } => self.progress = Some(Progress { words, done, total }),
-            Told::Opened(opened) => self.opened = Some(opened),
-            Told::Moment(moment, asks) => self.arrive(moment, asks),
-            Told::Track { from, steps, samples, end } => {
-                self.track.truncate(from as usize);
-                self.track.extend(steps);
-                self.samples.retain(|sample| sample.step <= from && from > 0);
-                self.samples.extend(samples);
-                self.track_epoch += 1;
-                self.recorded = end;
+            SessionNews::Progress { words, done, total } => run.progress = Some(Progress { words, done, total }),
+            SessionNews::Opened(opened) => run.opened = Some(opened),
+            SessionNews::Moment(moment, asks) => self.arrive(moment, asks),
+            SessionNews::Track { from, steps, samples, end } => {
+                run.track.truncate(from as usize);
+                run.track.extend(steps);
+                run.samples.retain(|sample| sample.step <= from && from > 0);
+                run.samples.extend(samples);
+                run.track_epoch += 1;
+                run.recorded = end;
             }
-            Told::Checked(step, verdict) => {
-                if self.moment.as_ref().is_some_and(|moment| moment.step == step) {
-                    self.verdict = verdict;
+            SessionNews::Checked(step, verdict) => {
+                if run.moment.as_ref().is_some_and(|moment| moment.step == step) {
+                    run.verdict = verdict;
                 }
             }
-            Told::Past(past) => self.past = Some(past),
-            Told::Hits(hits) => self.hits = hits,
-            Told::Explained(step, told) => self.explained = Some((step, told)),
-            Told::Nothing(words, asks) => {
+            SessionNews::Past(past) => run.past = Some(past),
+            SessionNews::Hits(hits) => run.hits = hits,
+            SessionNews::Explained(step, told) => run.explained = Some((step, told)),
+            SessionNews::Nothing(words, asks) => {
                 self.notice(words.to_owned());
                 self.answered(asks);
             }
-            Told::Fault(fault, asks) => {
+            SessionNews::Fault(fault, asks) => {
+                run.playing = None;
                 self.complain(&fault);
                 self.answered(asks);
-                self.playing = None;
             }
         }
     }
 
-    pub(super) fn answered(&mut self, asks: usize) {
-        self.waiting = self.waiting.saturating_sub(asks);
-        if self.waiting == 0 {
-            (self.progress, self.since) = (None, None);
+    fn answered(&mut self, asks: usize) {
+        self.run.waiting = self.run.waiting.saturating_sub(asks);
+        if self.run.waiting == 0 {
+            (self.run.progress, self.run.since) = (None, None);
         }
     }
 
     fn arrive(&mut self, moment: Arc<Moment>, asks: usize) {
-        if self.playing.is_some() && moment.phase == Phase::Done {
-            self.playing = None;
+        let run = &mut self.run;
+        if run.playing.is_some() && moment.phase == Phase::Done {
+            run.playing = None;
         }
-        self.changes.note(&moment.changes, moment.mesh.element_slots());
-        self.verdict = moment.verdict.clone();
-        self.times.state(moment.took);
-        self.lit.clear();
-        self.moment = Some(moment.clone());
+        run.changes.note(&moment.changes, moment.mesh.element_slots());
+        run.verdict = moment.verdict.clone();
+        run.moment = Some(moment.clone());
+        self.view.lit.clear();
+        self.view.over_epoch += 1;
         self.answered(asks);
         self.compare(&moment);
-        self.over_epoch += 1;
     }
 
-    /// Why a segment of the front was or was not chosen; asked for where it is not known yet.
-    pub fn explanation(&mut self, ends: [NodeId; 2]) -> Option<Arc<Explained>> {
-        let step = self.moment.as_ref()?.step;
-        if let Some((at, told)) = &self.explained
-            && (*at, [told.told.row.a, told.told.row.b]) == (step, ends)
-        {
-            return Some(told.clone());
+    /// Says so if a figure has brought the window to another state than the one that it shows.
+    fn compare(&mut self, moment: &Moment) {
+        let is_there =
+            |shown: &ShownState| shown.step == moment.step || shown.at.is_none() && moment.phase == Phase::Done;
+        let Some(shown) = self.run.awaited.filter(|_| self.run.waiting == 0) else { return };
+        self.run.awaited = None;
+        if !is_there(&shown) || fingerprint(&moment.mesh, &moment.phase) != shown.state {
+            let name = self.run.source.as_ref().map_or_else(String::new, Source::name);
+            self.complain(&another_state(&name, shown.step));
         }
-        if self.asked != Some((step, ends)) {
-            self.asked = Some((step, ends));
-            self.session.as_ref()?.explain(ends);
-        }
-        None
-    }
-
-    /// What became of something up to the step at hand; asked for where it is not known yet and nothing else is under
-    /// way.
-    pub fn past(&mut self, watched: Watched) -> Option<Arc<Past>> {
-        let step = self.moment.as_ref()?.step;
-        if let Some(past) = &self.past
-            && (past.step, past.watched) == (step, watched)
-        {
-            return Some(past.clone());
-        }
-        if self.asked_past != Some((step, watched)) && !self.is_busy() && self.playing.is_none() {
-            self.asked_past = Some((step, watched));
-            self.session.as_ref()?.past(watched);
-        }
-        None
     }
 }

@@ -1,60 +1,54 @@
-//! Where the views look: what is asked of the main one, the lens, the other end of the zoom.
+//! Where the views look: requests to the main view, the lens, and the view of the whole mesh.
 
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DMat2, DVec2};
 
-use super::Frame;
+use super::ViewFrame;
 use crate::app::window::session::Moment;
-use crate::app::window::state::{Look, State};
+use crate::app::window::state::{Look, State, ViewCamera};
 use crate::core::mesh::ids::NodeId;
 use crate::render::camera::Camera;
 use crate::render::scene::{self, Decision, Outlined};
 
-/// Points left free around a fitted mesh.
+/// Margin around a fitted mesh, in points.
 const MARGIN: f64 = 34.0;
-/// Points for a unit in the metric lens.
+/// Points per unit in the metric lens.
 const LENS: f64 = 92.0;
-/// Points for the base segment when the decision is looked at.
+/// Length of the base segment in points when the view shows the decision.
 pub(super) const DECISION: f64 = 180.0;
 
-/// The camera of the main view, after what was asked of it.
-pub(super) fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<Look>) -> Camera {
+/// The camera of the view of the plane after a request, and whether it shows the whole mesh.
+pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Camera, bool) {
     let bounds = scene::bounds(&moment.mesh).unwrap_or([DVec2::ZERO, DVec2::ONE]);
     let fitted = Camera::fit(bounds, size, MARGIN);
-    let mut camera = state.camera.unwrap_or(fitted);
+    let ViewCamera { camera, mut is_fitted, size: before } = state.view().plane;
     // A view that still shows the whole mesh goes on doing so when its size changes.
-    if state.fitted && state.view_size != size {
-        camera = fitted;
-    }
-    state.view_size = size;
+    let mut camera = camera.filter(|_| !is_fitted || before == size).unwrap_or(fitted);
     match look {
-        // A side is one of space.
+        // A side is a view of space.
         None | Some(Look::From(_)) => {}
-        Some(Look::Fit) => (camera, state.fitted) = (fitted, true),
+        Some(Look::Fit) => (camera, is_fitted) = (fitted, true),
         Some(Look::Decision) => {
             if let Some([a, b]) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
                 near(&mut camera, moment, [a, b]);
-                state.fitted = false;
+                is_fitted = false;
             }
         }
-        // One that was kept of space is not one of the plane.
-        Some(Look::Kept(_)) if moment.mesh.ground().is_some() && state.is_in_space() => {}
+        // A camera of space does not fit the plane.
+        Some(Look::Kept(_)) if moment.mesh.embedding().is_some() && state.is_in_space() => {}
         Some(Look::Kept(kept)) => {
             camera.take_up(&kept, size);
-            state.fitted = false;
+            is_fitted = false;
         }
         Some(Look::At(what)) => {
             if let Some(p) = middle(moment, what) {
                 let scale = camera.scale;
                 camera.look_at(p, scale);
-                state.fitted = false;
+                is_fitted = false;
             }
         }
     }
-    if state.camera.is_some_and(|before| before != camera) && state.fitted && camera != fitted {
-        state.fitted = false;
-    }
-    camera
+    (camera, is_fitted)
 }
 
 fn near(camera: &mut Camera, moment: &Moment, [a, b]: [NodeId; 2]) {
@@ -65,7 +59,7 @@ fn near(camera: &mut Camera, moment: &Moment, [a, b]: [NodeId; 2]) {
     }
 }
 
-/// The middle of something that is there.
+/// The middle of something in the plane, if it exists.
 pub fn middle(moment: &Moment, what: Outlined) -> Option<DVec2> {
     let mesh = &moment.mesh;
     match what {
@@ -78,7 +72,7 @@ pub fn middle(moment: &Moment, what: Outlined) -> Option<DVec2> {
     }
 }
 
-/// Pan by dragging, zoom by the wheel or two fingers, turn by dragging with the second button.
+/// Pan by dragging, zoom by the wheel or two fingers, turn by dragging with the right button.
 pub(super) fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect) {
     let drag = response.drag_delta();
     let by = DVec2::new(f64::from(drag.x), f64::from(drag.y));
@@ -91,15 +85,14 @@ pub(super) fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera, rec
     let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
     let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
     if factor != 1.0 {
-        let frame = Frame { camera: *camera, rect };
+        let frame = ViewFrame { camera: *camera, rect };
         camera.zoom(factor, frame.inside(at), frame.size());
     }
 }
 
-/// The node whose metric the lens shows, and the node that lies to its right: A and B of what is picked or of the
-/// decision.
+/// The node whose metric the lens shows, and the node to its right: A and B of the selection or of the decision.
 pub fn lens_node(state: &State, moment: &Moment) -> Option<(NodeId, Option<NodeId>)> {
-    let found = match (state.kept.picked, state.picked_segment().or(Decision::of(&moment.phase).base)) {
+    let found = match (state.document().picked, state.picked_segment().or(Decision::of(&moment.phase).base)) {
         (Some(Outlined::Node(node)), _) => (node, None),
         (_, Some([a, b])) => (a, Some(b)),
         _ => return None,
@@ -118,18 +111,18 @@ pub(super) fn metric_lens(state: &State, moment: &Moment) -> Option<Camera> {
     let turn = along.map_or(DMat2::IDENTITY, |d| DMat2::from_cols(DVec2::new(d.x, -d.y), DVec2::new(d.y, d.x)));
     let mut camera = Camera::through_lens(mesh.uv(node), turn * root, LENS);
     if along.is_some() {
-        // The base runs right from A: what comes of it lies up and to the right.
+        // The base runs right from A: its quadrilateral lies up and to the right.
         camera.pan(DVec2::new(-40.0, 60.0));
     }
     Some(camera)
 }
 
-/// The other end of the zoom: the whole mesh, or the decision where the main view shows the whole already.
+/// The whole mesh, or the decision if the main view shows the whole mesh already.
 pub(super) fn other_end(state: &State, moment: &Moment, size: DVec2) -> Option<Camera> {
     let whole = Camera::fit(scene::bounds(&moment.mesh)?, size, 14.0);
     let decision = Decision::of(&moment.phase).base.or(state.picked_segment());
     let mut camera = whole;
-    if let (true, Some(ends)) = (state.fitted, decision) {
+    if let (true, Some(ends)) = (state.view().plane.is_fitted, decision) {
         near(&mut camera, moment, ends);
         camera.scale *= 0.7;
     }

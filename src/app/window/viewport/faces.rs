@@ -1,9 +1,9 @@
-//! Several faces in the plane: the one that is worked on is framed, the others step back.
+//! Several faces in the plane: the active one is framed, the others are dimmed.
 
 use eframe::egui::{Pos2, Shape, Stroke, Ui};
 use glam::DVec2;
 
-use super::{Frame, middle};
+use super::{ViewFrame, middle};
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::ink;
@@ -11,12 +11,12 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
-/// The least and greatest coordinates of each face in the plane; none where it has no nodes.
+/// The least and greatest coordinates of each face in the plane; none if it has no nodes.
 fn bounds(mesh: &Mesh) -> Vec<Option<[DVec2; 2]>> {
-    let Some(ground) = mesh.ground() else { return Vec::new() };
-    let mut bounds = vec![None; ground.atlas.charts().len()];
+    let Some(embedding) = mesh.embedding() else { return Vec::new() };
+    let mut bounds = vec![None; embedding.atlas.charts().len()];
     for p in mesh.nodes().map(|n| mesh.uv(n)) {
-        if let Some(bounds) = bounds.get_mut(ground.atlas.chart_of(p)) {
+        if let Some(bounds) = bounds.get_mut(embedding.atlas.chart_of(p)) {
             let [low, high] = bounds.unwrap_or([p, p]);
             *bounds = Some([low.min(p), high.max(p)]);
         }
@@ -24,16 +24,16 @@ fn bounds(mesh: &Mesh) -> Vec<Option<[DVec2; 2]>> {
     bounds
 }
 
-/// The face of what is picked, or else of the decision.
+/// The face of the selection, or else of the decision.
 fn active(state: &State, moment: &Moment) -> Option<usize> {
     let base = Decision::of(&moment.phase).base.map(Outlined::Edge);
-    let place = state.kept.picked.or(base).and_then(|what| middle(moment, what))?;
-    Some(moment.mesh.ground()?.atlas.chart_of(place))
+    let place = state.document().picked.or(base).and_then(|what| middle(moment, what))?;
+    Some(moment.mesh.embedding()?.atlas.chart_of(place))
 }
 
-/// Frames the active face and dims the others, where there are several.
-pub(super) fn show(ui: &Ui, frame: &Frame, state: &State, moment: &Moment, palette: &Palette) {
-    let is_alone = moment.mesh.ground().is_none_or(|ground| ground.atlas.charts().len() < 2);
+/// Frames the active face and dims the others, if there are several.
+pub(super) fn show(ui: &Ui, frame: &ViewFrame, state: &State, moment: &Moment, palette: &Palette) {
+    let is_alone = moment.mesh.embedding().is_none_or(|ground| ground.atlas.charts().len() < 2);
     let Some(active) = active(state, moment).filter(|_| !is_alone) else { return };
     let painter = ui.painter_at(frame.rect);
     for (k, bounds) in bounds(&moment.mesh).into_iter().enumerate() {

@@ -1,35 +1,35 @@
-//! The mesh that is about to be converted: its features and charts, before there is a mesh of the program's own.
+//! The view of a mesh that is about to be converted: its features and charts.
 
 use eframe::egui::{self, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use eframe::egui_wgpu::Callback;
 use glam::{DQuat, DVec2, DVec3};
 
 use super::space::{MARGIN, orbit};
-use super::{Frame, Picture, Views, tools, whole_pixels};
+use super::{Picture, ViewFrame, Views, moved, tools, whole_pixels};
 use crate::app::window::command::Command;
 use crate::app::window::import::Loaded;
-use crate::app::window::state::{Look, State};
+use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
 use crate::app::window::theme::ink;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::gpu::{Light, View};
 use crate::render::palette::Palette;
 use crate::render::pick;
 
-/// The number of the view's picture on the card: that of the main view.
+/// The picture on the graphics card: that of the main view.
 const INDEX: usize = 0;
 
 impl Views {
     /// The main view while a mesh is about to be converted.
-    pub fn given(&mut self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>, palette: &'static Palette) {
+    pub fn given(&mut self, ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &'static Palette) {
         let rect = whole_pixels(ui.max_rect(), ui.pixels_per_point());
         let response = ui.interact(rect, ui.scope_id().with("given"), Sense::click_and_drag());
-        let look = state.look.take();
-        let hidden = state.space.hidden.share();
-        let Some(import) = &mut state.import else { return };
+        let look = state.view().look.take(&mut self.looked);
+        let hidden = state.workspace().surfaces.hidden.share();
+        let Some(import) = &state.run().import else { return };
         let marks = import.shown.as_ref().map_or_else(Default::default, |shown| shown.wanted.marks.clone());
         let spoken = match (&import.shown, marks.len()) {
             (Some(shown), marks) => {
-                let mesh = format!("Mesh of {} triangles, as it was given", shown.scene.faces.items().len());
+                let mesh = format!("Mesh of {} triangles, as imported", shown.scene.faces.items().len());
                 match marks {
                     0 => mesh,
                     1 => mesh + ", one element marked",
@@ -44,37 +44,37 @@ impl Views {
             return words(ui, rect, "The mesh is being read.", palette);
         };
         let Some(shown) = import.shown.clone() else {
-            return words(ui, rect, "Its features and charts are being sought.", palette);
+            return words(ui, rect, "Its features and charts are being computed.", palette);
         };
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        let mut camera = match import.camera {
+        let mut is_fitted = import.view.is_fitted;
+        let mut camera = match import.view.camera {
             None => {
-                // What it is refused for is looked at from near until somebody looks elsewhere.
+                // The view stays near the elements for which the mesh is refused until the user looks elsewhere.
                 let marks = import.refused.as_ref().map_or(&[][..], |fault| &fault.shapes);
-                import.fitted = marks.is_empty();
+                is_fitted = marks.is_empty();
                 let side = if loaded.is_plane { Bearing::Z } else { side_of(marks, &loaded) };
                 let all = fit(&loaded, side.turn(), size);
                 if marks.is_empty() { all } else { look_at(marks, loaded.mean_edge, all, size) }
             }
-            Some(camera) if import.fitted && import.size != size => fit(&loaded, camera.turn, size),
+            Some(camera) if is_fitted && import.view.size != size => fit(&loaded, camera.turn, size),
             Some(camera) => camera,
         };
-        import.size = size;
         match look {
-            Some(Look::Fit) => (camera, import.fitted) = (fit(&loaded, camera.turn, size), true),
-            Some(Look::From(side)) => (camera, import.fitted) = (fit(&loaded, side.turn(), size), true),
+            Some(Look::Fit) => (camera, is_fitted) = (fit(&loaded, camera.turn, size), true),
+            Some(Look::From(side)) => (camera, is_fitted) = (fit(&loaded, side.turn(), size), true),
             _ => {}
         }
-        let frame = Frame { camera, rect };
+        let frame = ViewFrame { camera, rect };
         if response.drag_started() {
             let press = ui.input(|input| input.pointer.press_origin());
             let hit = press.and_then(|at| pick::hit(&shown.scene, &camera, size, frame.inside(at)));
             self.pivot = Some(hit.map_or(shown.scene.anchor, |hit| hit.place));
         }
         if orbit(ui, &response, &mut camera, frame, self.pivot) {
-            import.fitted = false;
+            is_fitted = false;
         }
-        import.camera = Some(camera);
+        moved(import.view, ViewKind::Import, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
         let view = View {
             camera,
             size,
@@ -93,7 +93,7 @@ fn fit(loaded: &Loaded, turn: DQuat, size: DVec2) -> Camera {
     Camera::fit_in_space(loaded.mesh.points.iter().copied(), turn, size, MARGIN)
 }
 
-/// The side from which elements are rather seen than from behind: the usual one, unless they are at the back.
+/// The side from which marked elements are seen: the usual one, unless they are at the back.
 fn side_of(marks: &[Vec<DVec3>], loaded: &Loaded) -> Bearing {
     let middle = |points: &mut dyn Iterator<Item = DVec3>| {
         let ends = points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
@@ -117,14 +117,14 @@ fn side_of(marks: &[Vec<DVec3>], loaded: &Loaded) -> Bearing {
     sides.max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap_or_default()
 }
 
-/// A camera on some elements, with so much around them that one sees where they are; `all` sees the whole mesh.
+/// A camera on some elements, with enough around them to see where they are; `all` sees the whole mesh.
 fn look_at(marks: &[Vec<DVec3>], mean_edge: f64, all: Camera, size: DVec2) -> Camera {
     let ends = || marks.iter().flatten().copied();
     let (low, high) = ends().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let room = 0.5 * (high - low).max_element() + 2.0 * mean_edge;
     let around = ends().flat_map(|p| [p - room, p + room]);
     let near = Camera::fit_in_space(around, all.turn, size, MARGIN);
-    // Nothing is gained by looking from farther than the whole mesh needs.
+    // It never looks from farther away than for the whole mesh.
     if near.scale > all.scale { near.come_from(&all) } else { all }
 }
 

@@ -1,23 +1,23 @@
-//! The mesh in space: orbit, pan, zoom, and what is under the pointer, front to back.
+//! The mesh in space: orbit, pan, zoom, and picking from front to back.
 
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::{Frame, Views};
+use super::{ViewFrame, Views, moved};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
 use crate::app::window::session::Moment;
-use crate::app::window::state::{Look, State};
+use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
 use crate::core::mesh::ids::NodeId;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::palette::Palette;
 use crate::render::pick::{self, Cover};
 use crate::render::scene::{Decision, Outlined};
 
-/// Points left free around a fitted mesh.
+/// Margin around a fitted mesh, in points.
 pub(super) const MARGIN: f64 = 44.0;
 
-/// The last cover, and what it is of.
+/// The last cover, and the scene and camera that it is of.
 #[derive(Default)]
 pub(super) struct Covering {
     of: Option<(u64, Camera, DVec2)>,
@@ -31,43 +31,40 @@ impl Views {
         ui: &mut Ui,
         rect: Rect,
         look: Option<Look>,
-        state: &mut State,
+        state: &State,
         moment: &Moment,
         commands: &mut Vec<Command>,
         palette: &'static Palette,
     ) {
         let response = self.canvas(ui, rect, "space", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        let mut camera = aim(state, moment, size, look);
-        if self.steer(ui, &response, &mut camera, rect, moment) {
-            state.space.fitted = false;
-        }
-        state.space.camera = Some(camera);
-        let frame = Frame { camera, rect };
+        let (mut camera, mut is_fitted) = aim(state, moment, size, look);
+        is_fitted &= !self.steer(ui, &response, &mut camera, rect, moment);
+        moved(state.view().space, ViewKind::Space, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
+        let frame = ViewFrame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());
-        // Before the scene follows the state there may be other elements in it.
-        let form = state.space.form();
+        // Picking needs the elements of the current state.
+        let form = state.workspace().surfaces.form();
         self.update(state, moment, palette, &frame, form, true);
         let hovered = pointer
             .and_then(|at| pick::pick_in_space(&self.space.scene, &moment.mesh, &camera, size, frame.inside(at)));
-        self.hover(ui, &response, state, hovered, commands);
-        self.update(state, moment, palette, &frame, form, true);
-        self.paint(ui, 0, &frame, palette, state.space.hidden.share(), form);
+        self.point(ui, &response, state, hovered, commands);
+        self.paint(ui, 0, &frame, palette, state.workspace().surfaces.hidden.share(), form);
         let of = Some((self.space.scene.shape(), camera, size));
         if self.cover.of != of {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
         }
-        let over = labels::Seen { frame: &frame, scene: &self.space.scene, cover: Some(&self.cover.cover) };
-        labels::show(ui, &over, state, moment, palette, labels::Which::Main, &mut self.labels[0]);
+        let over = labels::LabelledScene { frame: &frame, scene: &self.space.scene, cover: Some(&self.cover.cover) };
+        labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[0]);
         labels::shading(ui, &frame, &self.shading, palette);
     }
 
     /// Orbit by dragging, pan by dragging with another button or Shift, zoom to the pointer by the wheel or two
-    /// fingers. Tells whether the camera has moved.
+    /// fingers. Returns whether the camera has moved.
     fn steer(&mut self, ui: &Ui, response: &egui::Response, camera: &mut Camera, rect: Rect, moment: &Moment) -> bool {
-        let frame = Frame { camera: *camera, rect };
+        let frame = ViewFrame { camera: *camera, rect };
         if response.drag_started() {
-            // What is grabbed stays under the pointer; beside the mesh it turns about its middle.
+            // The point that is grabbed stays under the pointer; beside the mesh, the drag turns about its middle.
             let press = ui.input(|input| input.pointer.press_origin());
             let hit = press.and_then(|at| pick::hit(&self.space.scene, camera, frame.size(), frame.inside(at)));
             self.pivot = hit.map(|hit| hit.place).or_else(|| middle_of(moment));
@@ -76,13 +73,12 @@ impl Views {
     }
 }
 
-/// Turns, moves and zooms by what is done in a view in space; a drag turns about `pivot`. Tells whether the camera has
-/// moved.
+/// Turns, moves and zooms a view in space; a drag turns about `pivot`. Returns whether the camera has moved.
 pub(super) fn orbit(
     ui: &Ui,
     response: &egui::Response,
     camera: &mut Camera,
-    frame: Frame,
+    frame: ViewFrame,
     pivot: Option<DVec3>,
 ) -> bool {
     let before = *camera;
@@ -113,46 +109,42 @@ fn middle_of(moment: &Moment) -> Option<DVec3> {
     ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).map(|[low, high]| 0.5 * (low + high))
 }
 
-/// The camera, after what was asked of it.
-fn aim(state: &mut State, moment: &Moment, size: DVec2, look: Option<Look>) -> Camera {
-    let space = &mut state.space;
-    let mut camera = match space.camera {
-        None => {
-            space.fitted = true;
-            fit(moment, Bearing::Iso.turn(), size)
-        }
+/// The camera of the view of space after a request, and whether it shows the whole mesh.
+fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Camera, bool) {
+    let before = state.view().space;
+    let (mut camera, mut is_fitted) = match before.camera {
+        None => (fit(moment, Bearing::Iso.turn(), size), true),
         // A view that still shows the whole mesh goes on doing so when its size changes.
-        Some(camera) if space.fitted && space.size != size => fit(moment, camera.turn, size),
-        Some(camera) => camera,
+        Some(camera) if before.is_fitted && before.size != size => (fit(moment, camera.turn, size), true),
+        Some(camera) => (camera, before.is_fitted),
     };
-    space.size = size;
     match look {
         None => {}
-        Some(Look::Fit) => (camera, space.fitted) = (fit(moment, camera.turn, size), true),
-        Some(Look::From(side)) => (camera, space.fitted) = (fit(moment, side.turn(), size), true),
+        Some(Look::Fit) => (camera, is_fitted) = (fit(moment, camera.turn, size), true),
+        Some(Look::From(side)) => (camera, is_fitted) = (fit(moment, side.turn(), size), true),
         // A camera of the plane looks straight down at it.
         Some(Look::Kept(kept)) if kept.target[2] == 0.0 && kept.turn == [0.0, 0.0, 0.0, 1.0] => {}
         Some(Look::Kept(kept)) => {
             camera.take_up(&kept, size);
-            space.fitted = false;
+            is_fitted = false;
         }
         Some(Look::Decision) => {
             if let Some(ends) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
                 near(&mut camera, moment, ends);
-                state.space.fitted = false;
+                is_fitted = false;
             }
         }
         Some(Look::At(what)) => {
             if let Some((place, _)) = place_of(moment, what) {
                 camera.centre_on(place);
-                state.space.fitted = false;
+                is_fitted = false;
             }
         }
     }
-    camera
+    (camera, is_fitted)
 }
 
-/// Where something stands in space, and the normal there.
+/// Where something lies in space, and the normal there.
 fn place_of(moment: &Moment, what: Outlined) -> Option<(DVec3, DVec3)> {
     let mesh = &moment.mesh;
     let nodes: Vec<NodeId> = match what {
@@ -169,7 +161,7 @@ fn place_of(moment: &Moment, what: Outlined) -> Option<(DVec3, DVec3)> {
     Some((sum / nodes.len() as f64, normal.normalize_or(DVec3::Z)))
 }
 
-/// Shows an edge from near; from before it where it lies on the other side.
+/// Shows an edge from near, and from the front if it lies on the far side.
 fn near(camera: &mut Camera, moment: &Moment, ends: [NodeId; 2]) {
     let Some((place, normal)) = place_of(moment, Outlined::Edge(ends)) else { return };
     let [a, b] = ends.map(|n| moment.mesh.xyz(n));

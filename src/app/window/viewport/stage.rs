@@ -1,8 +1,8 @@
-//! A scene with what of the state it has seen.
+//! A scene and the changes of the state that it has not drawn yet.
 
 use std::sync::Arc;
 
-use super::Frame;
+use super::ViewFrame;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::core::convert::candidates::Passed;
@@ -16,9 +16,9 @@ use crate::render::scene::{ColourBy, Decision, Drawn, Form, Overlay, Scene, Shad
 /// A scene that follows the state.
 pub(super) struct Stage {
     pub scene: Arc<Scene>,
-    /// What is other in the state than in the one that it shows.
+    /// The differences of the state from the one that it shows.
     changes: Since,
-    /// The style, the theme and the form in which it shows it.
+    /// The style, theme and form of the picture.
     style: Option<(u64, bool, Form)>,
     /// The range of what elements are coloured by.
     range: [f64; 2],
@@ -37,7 +37,7 @@ impl Stage {
         self.style.is_some()
     }
 
-    /// Takes note of what has changed.
+    /// Notes changes of the state.
     pub fn note(&mut self, changes: &Changes, slots: usize) {
         self.changes.note(changes, slots);
     }
@@ -48,16 +48,16 @@ impl Stage {
         state: &State,
         moment: &Moment,
         palette: &Palette,
-        frame: &Frame,
+        frame: &ViewFrame,
         form: Form,
         leads: bool,
         shading: &mut Shading,
     ) {
         let served = frame.camera.is_served_by(self.scene.anchor, frame.size());
-        let style = Some((state.style_epoch, palette.dark, form));
+        let style = Some((state.view().style_epoch, palette.dark, form));
         let again = self.style != style || (leads && !served);
         if again || !self.changes.is_nothing() {
-            let by = state.kept.colour_by;
+            let by = state.document().colour_by;
             if by != ColourBy::State || shading.by != by {
                 *shading = Shading::of(&moment.mesh, by, &state.births(by, moment));
             }
@@ -65,7 +65,7 @@ impl Stage {
                 mesh: &moment.mesh,
                 changed: &moment.changed,
                 shading,
-                layers: state.kept.layers,
+                layers: state.document().layers,
                 palette,
                 form,
             };
@@ -83,26 +83,26 @@ impl Stage {
             }
             self.over = None;
         }
-        if self.over != Some(state.over_epoch) {
-            let background = state.opened.as_ref().filter(|_| state.kept.layers.background);
+        if self.over != Some(state.view().over_epoch) {
+            let background = state.run().opened.as_ref().filter(|_| state.document().layers.background);
             let overlay = Overlay {
                 mesh: &moment.mesh,
                 front: &moment.front,
                 changed: &moment.changed,
                 decision: Decision::of(&moment.phase),
                 refused: &refused(moment),
-                picked: state.kept.picked,
-                hovered: state.hovered,
-                lit: &state.lit,
+                picked: state.document().picked,
+                hovered: state.frame().hovered,
+                lit: &state.view().lit,
                 background: background.map(|opened| &opened.background.mesh),
             };
-            Arc::make_mut(&mut self.scene).set_overlay(&overlay, state.kept.layers, palette);
-            self.over = Some(state.over_epoch);
+            Arc::make_mut(&mut self.scene).set_overlay(&overlay, state.document().layers, palette);
+            self.over = Some(state.view().over_epoch);
         }
     }
 }
 
-/// Edges that were there and are not the side, while one is chosen.
+/// Candidates that were not chosen as the side, while a side is chosen.
 fn refused(moment: &Moment) -> Vec<[NodeId; 2]> {
     let (Some(tried), Some([a, b])) = (&moment.candidates, Decision::of(&moment.phase).base) else { return Vec::new() };
     let from = if tried.side == Side::Left { a } else { b };

@@ -3,7 +3,7 @@
 use eframe::egui::{Align, Frame, Layout, Margin, Rect, RichText, Role, Ui, UiBuilder, Vec2, WidgetInfo};
 
 use crate::app::window::command::Command;
-use crate::app::window::state::{Place, State};
+use crate::app::window::state::{State, SurfaceView};
 use crate::app::window::theme::{self, ink};
 use crate::render::camera::Bearing;
 use crate::render::look::HiddenLines;
@@ -13,22 +13,23 @@ use crate::render::palette::Palette;
 pub(super) fn show(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     corner(ui, rect, palette, |ui, width| {
         // From the right.
-        let place = state.space.place;
-        for (shown, text) in [(Place::Plane, "Plane"), (Place::Both, "Both"), (Place::Space, "Space")] {
-            button(ui, place == shown, text, Command::Place(shown), commands);
+        let place = state.workspace().surfaces.view;
+        for (shown, text) in [(SurfaceView::Plane, "Plane"), (SurfaceView::Both, "Both"), (SurfaceView::Space, "Space")]
+        {
+            button(ui, place == shown, text, Command::SurfaceView(shown), commands);
         }
-        if place == Place::Plane || width < 380.0 {
+        if place == SurfaceView::Plane || width < 380.0 {
             return;
         }
         ui.separator();
         hidden(ui, state, commands);
-        button(ui, state.space.curved, "Curved", Command::ToggleCurved, commands);
+        button(ui, state.workspace().surfaces.curved, "Curved", Command::ToggleCurved, commands);
         ui.separator();
         sides(ui, commands);
     });
 }
 
-/// Those of a mesh that is no mesh of the program's own yet.
+/// The buttons for a mesh that is about to be converted.
 pub(super) fn show_sides(ui: &mut Ui, rect: Rect, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     corner(ui, rect, palette, |ui, _| {
         hidden(ui, state, commands);
@@ -60,7 +61,7 @@ fn button(ui: &mut Ui, on: bool, text: &str, command: Command, commands: &mut Ve
 }
 
 fn hidden(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let hidden = state.space.hidden;
+    let hidden = state.workspace().surfaces.hidden;
     let text = format!("Hidden {}", hidden.name());
     button(ui, hidden != HiddenLines::Off, &text, Command::HiddenLines, commands);
 }

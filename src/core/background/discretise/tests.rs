@@ -1,7 +1,7 @@
 use super::*;
 use crate::core::discrete::features::ANGLE;
-use crate::core::discrete::flat::Bound;
-use crate::core::discrete::sound::sound;
+use crate::core::discrete::planar_map::StretchBound;
+use crate::core::discrete::repair::repair;
 use crate::core::discrete::surface::surface;
 use crate::core::geometry::fixtures::*;
 use crate::core::kernel::tensor::Metric2;
@@ -100,7 +100,7 @@ fn loops_are_even_and_at_least_four_long() {
 
 #[test]
 fn the_curve_that_suffers_least_is_toggled() {
-    // Sides of 1.05, 0.95 .. in units of the size; the long one hardly notices.
+    // Sides of 10.5 and 1 in units of the size: the relative change of the long one is least.
     let curves = vec![
         segment("a", (0.0, 0.0), (10.5, 0.0)),
         segment("b", (10.5, 0.0), (10.5, 1.0)),
@@ -135,7 +135,7 @@ fn fixed_numbers_are_kept_and_shared_among_pieces() {
     specs.0[0].segments = Some(8);
     assert_eq!(counts(specs.clone(), 0.01), [8]);
     specs.0[0].segments = Some(2);
-    assert!(refusal(specs, 0.1).contains("3 pieces between corners and is to have 2 segments"));
+    assert!(refusal(specs, 0.1).contains("3 pieces between corners, but only 2 segments"));
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn a_fixed_odd_loop_is_refused_with_its_name() {
 
 #[test]
 fn loops_that_are_odd_only_together_are_named_together() {
-    // The shared side is free, the others fixed to an odd sum: 3 + 3 + 3 and 10 cannot both be mended.
+    // The shared side is free, the others have an odd sum: 3 + 3 + 3 and 10 cannot both be made even.
     let mut specs = two_faces();
     for (c, n) in specs.0.iter_mut().zip([Some(3), Some(3), None, Some(3), Some(10)]) {
         c.segments = n;
@@ -234,16 +234,16 @@ fn a_bent_chord_beside_a_divided_one_is_divided_too() {
         triangles: floor.into_iter().chain(wall).collect(),
         ..MeshFile::default()
     };
-    let given = sound(&file, &mut Nobody).unwrap();
-    let domain = surface(&given.mesh, &given.regions, ANGLE, Bound::default(), &mut Nobody).unwrap().domain;
+    let given = repair(&file, &mut Nobody).unwrap();
+    let domain = surface(&given.mesh, &given.regions, ANGLE, StretchBound::default(), &mut Nobody).unwrap().domain;
     let spatial = domain.spatial.clone().unwrap();
     let between = |id: &CurveId| {
         let ends = domain.curves[id.index()].ends.map(|v| spatial.vertices[spatial.vertex_of[v as usize] as usize]);
         ends.iter().all(|p| *p == DVec3::ZERO || *p == DVec3::X)
     };
-    let rules = (0..domain.curves.len() as u32).map(CurveId).filter(|id| domain.curves[id.index()].first == *id);
+    let first = (0..domain.curves.len() as u32).map(CurveId).filter(|id| domain.curves[id.index()].first == *id);
     let (straight, bent): (Vec<CurveId>, Vec<CurveId>) =
-        rules.filter(between).partition(|id| spatial.curves[id.index()].is_chord());
+        first.filter(between).partition(|id| spatial.curves[id.index()].is_chord());
     let ([straight], [bent]) = (&straight[..], &bent[..]) else { panic!("{straight:?} {bent:?}") };
     for n in [1, 2, 5] {
         let mut division = Division::measure(&domain, &Uniform(5.0)).unwrap();

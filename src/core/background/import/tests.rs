@@ -3,8 +3,10 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::core::background::discretise::tests::Uniform;
+use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::geometry::fixtures::{built, square, square_with_hole};
+use crate::core::kernel::tensor::Metric2;
 use crate::core::soup::mesh_file::Group;
 
 fn mesh(points: &[(f64, f64)], triangles: &[[u32; 3]]) -> MeshFile {
@@ -32,7 +34,7 @@ fn refusal(file: &MeshFile) -> String {
 }
 
 #[test]
-fn a_sound_mesh_comes_in_as_it_is() {
+fn a_valid_mesh_is_imported_unchanged() {
     let imported = import(&star(), false).unwrap();
     assert_eq!(imported.set.triangles, star().triangles);
     assert_eq!(imported.set.uv.len(), 5);
@@ -42,7 +44,7 @@ fn a_sound_mesh_comes_in_as_it_is() {
 }
 
 #[test]
-fn clockwise_duplicate_and_orphan_things_are_repaired_and_reported() {
+fn clockwise_and_duplicate_triangles_and_orphans_are_repaired_and_reported() {
     let mut file = star();
     file.points.push(DVec3::new(7.0, 7.0, 0.0));
     file.triangles[1].swap(0, 1);
@@ -51,16 +53,12 @@ fn clockwise_duplicate_and_orphan_things_are_repaired_and_reported() {
     assert_eq!(imported.set.triangles.len(), 4);
     assert_eq!(
         imported.repairs,
-        [
-            "1 point without triangles was left out",
-            "1 duplicate triangle was left out",
-            "1 clockwise triangle was turned"
-        ]
+        ["1 unused point was removed", "1 duplicate triangle was removed", "1 clockwise triangle was reversed"]
     );
 }
 
 #[test]
-fn quadrilaterals_and_polygons_among_triangles_are_cut_and_told() {
+fn quadrilaterals_and_polygons_among_triangles_are_cut_and_reported() {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0], [2.0, 1.0], [1.5, 2.0]];
     let mut file = MeshFile {
         points: square.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec(),
@@ -71,7 +69,7 @@ fn quadrilaterals_and_polygons_among_triangles_are_cut_and_told() {
     };
     let imported = import(&file, false).unwrap();
     assert_eq!(imported.set.triangles.len(), 6);
-    assert_eq!(imported.repairs, ["2 quadrilaterals and polygons were cut into triangles"]);
+    assert_eq!(imported.repairs, ["2 quadrilaterals and polygons were split into triangles"]);
     file.triangles.clear();
     file.quads.clear();
     assert!(import(&file, true).is_ok());
@@ -82,7 +80,7 @@ fn a_mesh_of_quadrilaterals_alone_is_refused() {
     let mut file = star();
     file.quads = vec![[0, 1, 2, 3]; 12];
     file.triangles.clear();
-    assert!(refusal(&file).contains("quadrilaterals already: all of its 12"));
+    assert!(refusal(&file).contains("already quadrilateral: all of its 12"));
     file.quads.clear();
     file.skipped = vec![("tetrahedron".to_owned(), 3)];
     assert!(refusal(&file).contains("no triangles, only 3 tetrahedron"));
@@ -94,7 +92,7 @@ fn curved_meshes_are_refused_with_their_range_of_z() {
     file.points.iter_mut().for_each(|p| p.z = 3.0);
     assert!(import(&file, false).is_ok());
     file.points[4].z = 3.25;
-    assert!(refusal(&file).contains("z runs from 3 to 3.25"));
+    assert!(refusal(&file).contains("z ranges from 3 to 3.25"));
 }
 
 #[test]
@@ -104,20 +102,20 @@ fn bad_numbers_are_refused() {
     assert!(refusal(&file).contains("Point 3 is at (NaN, 1, 0)"));
     let mut file = star();
     file.triangles[2][1] = 9;
-    assert!(refusal(&file).contains("Triangle 3 has the point 10, and there are 5"));
+    assert!(refusal(&file).contains("Triangle 3 refers to point 10 of 5"));
     file.triangles[2][1] = u32::MAX;
     assert!(refusal(&file).contains("4294967296"));
 }
 
 #[test]
-fn flat_triangles_are_taken_out() {
-    // One at the border, on whose corner others stand; one with a node twice; one whose corner the neighbour beyond gets.
+fn flat_triangles_are_removed() {
+    // One at the border, whose corner others share; one with a node twice; one whose corner the neighbour receives.
     for height in [0.0, 1e-9] {
         let mut file = star();
         file.points[4] = DVec3::new(0.5, height, 0.0);
         let imported = import(&file, true).unwrap();
         assert_eq!(imported.set.triangles.len(), 4);
-        assert_eq!(imported.repairs[0], "1 triangle without area was taken out");
+        assert_eq!(imported.repairs[0], "1 degenerate triangle was removed");
     }
     let mut file = star();
     file.triangles.push([3, 3, 4]);
@@ -129,13 +127,13 @@ fn flat_triangles_are_taken_out() {
     file.lines = vec![[0, 4]];
     file.line_tags = vec![8];
     let imported = import(&file, true).unwrap();
-    assert_eq!(imported.repairs[0], "1 triangle without area was taken out");
+    assert_eq!(imported.repairs[0], "1 degenerate triangle was removed");
     // The line runs along what its side has become.
     assert_eq!((imported.set.triangles.len(), imported.set.lines.len()), (6, 4));
 }
 
 #[test]
-fn triangles_between_the_banks_of_a_crack_are_refused_by_the_numbers_of_the_file() {
+fn triangles_between_the_sides_of_a_crack_are_refused_by_their_numbers_in_the_file() {
     let mut file = star();
     file.points.push(DVec3::new(0.5, 0.5, 0.0));
     file.triangles.extend([[0, 4, 5], [4, 5, 2]]);
@@ -147,26 +145,26 @@ fn triangles_between_the_banks_of_a_crack_are_refused_by_the_numbers_of_the_file
 }
 
 #[test]
-fn points_that_hang_in_sides_are_taken_into_them_unless_there_is_a_gap() {
+fn hanging_nodes_are_connected_unless_there_is_a_gap() {
     // A square on top of the star, which has the middle of their common side.
     let mut file = star();
     file.points[2].y = 1.0;
     file.points.extend([(0.5, 1.0), (0.0, 2.0), (1.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0)));
     file.triangles.extend([[3, 5, 6], [5, 7, 6], [5, 2, 7]]);
     let imported = import(&file, true).unwrap();
-    assert_eq!(imported.repairs[0], "1 point hung in a side and was taken into it");
+    assert_eq!(imported.repairs[0], "1 hanging point was inserted into its edge");
     assert_eq!(imported.set.triangles.len(), 8);
     // The square has points of its own, at the ends of the side too.
     file.points.extend([file.points[3], file.points[2]]);
     file.triangles.truncate(4);
     file.triangles.extend([[8, 5, 6], [5, 7, 6], [5, 9, 7]]);
     let fault = import(&file, true).unwrap_err();
-    assert!(fault.to_string().contains("Point 6 hangs in a side of another triangle"), "{fault}");
+    assert!(fault.to_string().contains("Point 6 hangs on a side of another triangle"), "{fault}");
     assert_eq!(fault.shapes, [[DVec3::new(0.5, 1.0, 0.0)]]);
 }
 
 #[test]
-fn what_covers_a_place_twice_is_refused() {
+fn overlapping_triangles_are_refused() {
     let mut file = star();
     file.points.extend([(0.2, 0.3), (3.0, 0.3), (3.0, 0.4)].map(|(x, y)| DVec3::new(x, y, 0.0)));
     file.triangles.extend([[5, 6, 7]]);
@@ -193,7 +191,7 @@ fn pinched_nodes_are_split_and_so_are_their_points() {
     let imported = import(&file, false).unwrap();
     assert_eq!(imported.set.uv.len(), 9);
     assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(8));
-    assert_eq!(imported.repairs, ["1 node was split where triangles meet in a point only"]);
+    assert_eq!(imported.repairs, ["1 node was split where triangles share only a point"]);
 }
 
 #[test]
@@ -208,7 +206,7 @@ fn several_components_are_all_kept() {
 }
 
 #[test]
-fn nodes_at_one_place_stay_the_two_sides_of_a_crack() {
+fn coincident_nodes_remain_the_two_sides_of_a_crack() {
     // The star with its edge from node 0 to the centre opened: node 5 is the other side of node 0.
     let mut file = star();
     file.points.push(DVec3::new(0.0, 0.0, 0.0));
@@ -216,7 +214,7 @@ fn nodes_at_one_place_stay_the_two_sides_of_a_crack() {
     let imported = import(&file, false).unwrap();
     assert_eq!(imported.set.uv.len(), 6);
     assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(5));
-    assert_eq!(imported.repairs, ["1 point stands at the place of another: taken as the other side of a crack"]);
+    assert_eq!(imported.repairs, ["1 coincident point was kept as the other side of a crack"]);
 }
 
 #[test]
@@ -238,13 +236,13 @@ fn an_odd_part_is_refused_with_a_loop_and_its_place() {
         says.contains("loop of 5 segments") && says.contains("with 3 triangles") && says.contains("Divide one"),
         "{says}"
     );
-    // A soup of triangles: the remedy tells what is amiss.
+    // A soup of triangles: the remedy names the cause.
     let soup = mesh(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], &[[0, 1, 2], [3, 4, 5]]);
-    assert!(refusal(&soup).contains("merge points that stand at the same place"));
+    assert!(refusal(&soup).contains("merge coincident points"));
 }
 
 #[test]
-fn an_odd_part_is_mended_at_its_longest_boundary_segment_where_allowed() {
+fn an_odd_part_is_divided_at_its_longest_boundary_segment_if_allowed() {
     let mut file = odd_fan();
     file.points[1].x = 2.0;
     let imported = import(&file, true).unwrap();
@@ -258,7 +256,7 @@ fn an_odd_part_is_mended_at_its_longest_boundary_segment_where_allowed() {
 }
 
 #[test]
-fn an_odd_part_within_others_is_refused_even_then() {
+fn an_odd_part_within_others_is_refused_nevertheless() {
     // One triangle in the middle of three others of another region.
     let mut file = mesh(
         &[(0.0, 0.0), (2.0, 0.0), (1.0, 2.0), (1.0, 0.0), (1.5, 1.0), (0.5, 1.0)],
@@ -282,10 +280,10 @@ fn odd_loops_of_an_even_part_are_fine() {
 }
 
 #[test]
-fn lines_inside_regions_are_told() {
+fn lost_lines_inside_regions_are_reported() {
     let mut file = star();
     file.lines = vec![[0, 1], [4, 0]];
-    assert_eq!(import(&file, false).unwrap().repairs, ["1 line inside a region that is in no group is not kept"]);
+    assert_eq!(import(&file, false).unwrap().repairs, ["1 line inside a region without a group was ignored"]);
 }
 
 #[test]
@@ -311,13 +309,13 @@ fn odd_parts_on_both_sides_of_a_line_are_made_even_by_dividing_it() {
     );
     file.lines = vec![[3, 4], [4, 5], [5, 3]];
     file.line_tags = vec![1; 3];
-    // The three outside are parts of their own, since they meet in points only: each shares a side with the one within.
+    // The three outside are separate parts, since they meet only in points: each shares a side with the one inside.
     let Imported { set, repairs, .. } = import(&file, false).unwrap();
     assert_eq!((set.triangles.len(), set.lines.len()), (10, 12));
     assert!(repairs[0].starts_with("3 "), "{repairs:?}");
     let firm = |t: &[u32; 3]| firm(set.uv[t[0] as usize], set.uv[t[1] as usize], set.uv[t[2] as usize]);
     assert!(set.triangles.iter().all(firm) && set.lines.iter().all(|line| line.1 == 0));
-    // Two parts, both odd: the side between them is divided, and that without leave.
+    // Two odd parts: the side between them is divided, even without `split_odd`.
     let mut file = star();
     file.triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 5, 4], [5, 6, 4], [6, 0, 4]];
     file.points.extend([DVec3::new(-0.1, 0.6, 0.0), DVec3::new(-0.1, 0.4, 0.0)]);
@@ -350,7 +348,7 @@ fn equilateral_triangles_imply_their_size_and_stretched_ones_their_stretch() {
 }
 
 #[test]
-fn a_background_mesh_survives_the_way_through_a_file() {
+fn a_background_mesh_survives_export_and_import() {
     for specs in [square(), square_with_hole()] {
         let (_, set) = divide_and_triangulate(&built(specs), &Uniform(0.05)).unwrap();
         let file = MeshFile {
@@ -365,9 +363,9 @@ fn a_background_mesh_survives_the_way_through_a_file() {
 }
 
 proptest! {
-    /// Whatever nonsense: an answer or a refusal, no panic.
+    /// Arbitrary input is imported or refused, without a panic.
     #[test]
-    fn nonsense_is_taken_or_refused(
+    fn arbitrary_input_is_imported_or_refused(
         points in prop::collection::vec((0_i32..5, 0_i32..5), 0..12),
         triangles in prop::collection::vec([0_u32..13, 0_u32..13, 0_u32..13], 0..12),
         tags in prop::option::of(prop::collection::vec(0_u32..3, 12)),

@@ -89,7 +89,7 @@ impl<'a> Converter<'a> {
     /// A converter at step 0: the initial merging front is the boundary of the background mesh (4.3.2). The metric is
     /// lent (`&sizing`) or shared (`Arc<Sizing>`).
     pub fn new(mesh: Mesh, source: impl MetricSource + Send + Sync + 'a, parameters: Parameters) -> Self {
-        let faces = if mesh.ground().is_some() { mesh.faces() } else { Vec::new() };
+        let faces = if mesh.embedding().is_some() { mesh.faces() } else { Vec::new() };
         let mut waiting = vec![0; faces.len()];
         if !faces.is_empty() {
             // Before each face, for now; then after it.

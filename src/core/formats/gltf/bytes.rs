@@ -1,4 +1,4 @@
-//! The buffers of a glTF document and the numbers in them, every range checked before it is read.
+//! The buffers of a glTF document and the numbers in them; every range is checked before it is read.
 
 use std::borrow::Cow;
 use std::path::{Component, Path};
@@ -14,9 +14,9 @@ use gltf::buffer::{Source, View};
 
 use crate::core::fault::Fault;
 use crate::core::formats::save::load;
-use crate::core::formats::scan::shown;
+use crate::core::formats::scan::{DAMAGED, TRUNCATED, shown};
 
-/// What lies in the buffers, by their index. The binary part of a `.glb` stays where it was read.
+/// The contents of the buffers, by index. The binary chunk of a `.glb` is borrowed.
 #[derive(Default)]
 pub(super) struct Buffers<'b>(Vec<Cow<'b, [u8]>>);
 
@@ -34,7 +34,7 @@ impl<'b> Buffers<'b> {
             let fault = |what: String| Fault::new(format!("Buffer {} {what}", buffer.index())).at(name);
             let bytes = match buffer.source() {
                 Source::Bin => {
-                    blob.take().ok_or_else(|| fault("is the binary part of a .glb, and there is none".into()))?
+                    blob.take().ok_or_else(|| fault("is the binary chunk of a .glb, but there is none".into()))?
                 }
                 Source::Uri(uri) => match uri.strip_prefix("data:") {
                     Some(data) => {
@@ -42,21 +42,21 @@ impl<'b> Buffers<'b> {
                         let lenient =
                             GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
                         let decoded = GeneralPurpose::new(&STANDARD, lenient).decode(text);
-                        Cow::Owned(decoded.map_err(|error| fault(format!("is no base64: {error}")))?)
+                        Cow::Owned(decoded.map_err(|error| fault(format!("is not valid base64: {error}")))?)
                     }
-                    None => Cow::Owned(beside(uri, folder).map_err(&fault)?),
+                    None => Cow::Owned(external(uri, folder).map_err(&fault)?),
                 },
             };
             if bytes.len() < buffer.length() {
-                let what = format!("has {} bytes, and {} are announced", bytes.len(), buffer.length());
-                return Err(fault(what).remedy("It seems to be cut off: write it again"));
+                let what = format!("has {} bytes instead of {}", bytes.len(), buffer.length());
+                return Err(fault(what).remedy(TRUNCATED));
             }
             buffers.push(bytes);
         }
         Ok(Buffers(buffers))
     }
 
-    /// Bytes of all buffers.
+    /// Total size of all buffers in bytes.
     pub fn size(&self) -> usize {
         self.0.iter().map(|bytes| bytes.len()).sum()
     }
@@ -79,13 +79,15 @@ impl<'b> Buffers<'b> {
         Some(bytes.chunks(stride).map(move |item| &item[..size]))
     }
 
-    /// Puts the positions of an accessor, three numbers in single precision each, behind `points`.
+    /// Appends the positions of an accessor, each three numbers in single precision, to `points`.
     pub fn positions(&self, name: &str, accessor: &Accessor, points: &mut Vec<DVec3>) -> Result<(), Fault> {
         let fault = |what: &str| Fault::new(format!("The positions of accessor {} {what}", accessor.index())).at(name);
         if accessor.data_type() != DataType::F32 || accessor.dimensions() != Dimensions::Vec3 {
-            return Err(fault("are not three numbers in single precision").remedy("Export it without quantization"));
+            return Err(
+                fault("are not in single precision with three components").remedy("Export it without quantization")
+            );
         }
-        let short = || fault("lie beyond the end of their buffer").remedy("It seems to be damaged: write it again");
+        let short = || fault("extend beyond the end of the buffer").remedy(DAMAGED);
         let read = |item: &[u8]| {
             let axis = |k: usize| f64::from(f32::from_le_bytes([item[k], item[k + 1], item[k + 2], item[k + 3]]));
             DVec3::new(axis(0), axis(4), axis(8))
@@ -95,25 +97,25 @@ impl<'b> Buffers<'b> {
             Some(view) => {
                 points.extend(self.items(&view, accessor.offset(), accessor.count(), 12).ok_or_else(short)?.map(read))
             }
-            // All zero where only a sparse part is given: no more of them than that part could mean.
+            // Without a view, all are zero except the sparse ones: no more of them than the buffers can address.
             None if accessor.count() <= self.size() => points.resize(first + accessor.count(), DVec3::ZERO),
             None => return Err(short()),
         }
         if let Some(sparse) = accessor.sparse() {
-            let (places, values) = (sparse.indices(), sparse.values());
-            let size = places.index_type().size();
-            let places = self.items(&places.view(), places.offset(), sparse.count(), size).ok_or_else(short)?;
+            let (indices, values) = (sparse.indices(), sparse.values());
+            let size = indices.index_type().size();
+            let indices = self.items(&indices.view(), indices.offset(), sparse.count(), size).ok_or_else(short)?;
             let values = self.items(&values.view(), values.offset(), sparse.count(), 12).ok_or_else(short)?;
-            for (place, value) in places.zip(values) {
-                *points[first..].get_mut(whole(place) as usize).ok_or_else(short)? = read(value);
+            for (index, value) in indices.zip(values) {
+                *points[first..].get_mut(whole(index) as usize).ok_or_else(short)? = read(value);
             }
         }
         Ok(())
     }
 
-    /// Puts texture coordinates behind `places`: two numbers each, in single precision or as parts of the greatest whole number.
-    /// None at all where they are given in another way, since a mesh is whole without them.
-    pub fn texture(&self, accessor: &Accessor, places: &mut Vec<DVec2>) {
+    /// Appends texture coordinates to `uv`: two numbers each, in single precision or as normalized integers. Ignores
+    /// other types, since texture coordinates are optional.
+    pub fn texture(&self, accessor: &Accessor, uv: &mut Vec<DVec2>) {
         let size = match accessor.data_type() {
             DataType::F32 => 4,
             DataType::U16 if accessor.normalized() => 2,
@@ -125,15 +127,15 @@ impl<'b> Buffers<'b> {
         }
         let Some(view) = accessor.view() else { return };
         let Some(items) = self.items(&view, accessor.offset(), accessor.count(), 2 * size) else { return };
-        // The unit of whole numbers says nothing: charts have sizes of their own.
+        // Integers are not scaled, since charts are rescaled anyway.
         let number = |item: &[u8]| match *item {
             [a, b, c, d] => f64::from(f32::from_le_bytes([a, b, c, d])),
             _ => f64::from(whole(item)),
         };
-        places.extend(items.map(|item| DVec2::new(number(&item[..size]), number(&item[size..]))));
+        uv.extend(items.map(|item| DVec2::new(number(&item[..size]), number(&item[size..]))));
     }
 
-    /// Indices: whole numbers of one, two or four bytes.
+    /// Indices: unsigned integers of one, two or four bytes.
     pub fn indices<'s>(
         &'s self,
         name: &str,
@@ -144,43 +146,43 @@ impl<'b> Buffers<'b> {
             (DataType::U8, Dimensions::Scalar, None) => IndexType::U8,
             (DataType::U16, Dimensions::Scalar, None) => IndexType::U16,
             (DataType::U32, Dimensions::Scalar, None) => IndexType::U32,
-            _ => return Err(fault("are not plain whole numbers")),
+            _ => return Err(fault("are not unsigned integers")),
         };
-        let short = || fault("lie beyond the end of their buffer").remedy("It seems to be damaged: write it again");
+        let short = || fault("extend beyond the end of the buffer").remedy(DAMAGED);
         let view = accessor.view().ok_or_else(short)?;
         let items = self.items(&view, accessor.offset(), accessor.count(), kind.size()).ok_or_else(short)?;
         Ok(items.map(whole))
     }
 }
 
-/// The whole number of one, two or four bytes.
+/// An unsigned little-endian integer of one, two or four bytes.
 fn whole(item: &[u8]) -> u32 {
     item.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte))
 }
 
-/// A file in the document's own folder, or below it: nothing that a foreign document names is opened elsewhere.
-fn beside(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
+/// Reads an external buffer from the document's folder or below it; a document must not open files elsewhere.
+fn external(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
     let Some(folder) = folder else {
-        return Err(format!("is the file {}, and there is no folder to look in", shown(uri.as_bytes())));
+        return Err(format!("is the file {}, but external files cannot be read here", shown(uri.as_bytes())));
     };
-    let path = decoded(uri).ok_or_else(|| format!("has the address {}, which is none", shown(uri.as_bytes())))?;
+    let path = decoded(uri).ok_or_else(|| format!("has the invalid address {}", shown(uri.as_bytes())))?;
     let inside = Path::new(&path).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if !inside || path.contains(':') || path.contains('\\') {
-        return Err(format!("is {}, which lies outside of the document's folder", shown(uri.as_bytes())));
+        return Err(format!("is {}, which is outside the document's folder", shown(uri.as_bytes())));
     }
-    let place = folder.join(path);
+    let file = folder.join(path);
     // A link in the folder may still lead out of it.
     let real = |path: &Path| path.canonicalize().ok();
-    if let (Some(place), Some(folder)) =
-        (real(&place), real(if folder.as_os_str().is_empty() { Path::new(".") } else { folder }))
-        && !place.starts_with(&folder)
+    if let (Some(file), Some(folder)) =
+        (real(&file), real(if folder.as_os_str().is_empty() { Path::new(".") } else { folder }))
+        && !file.starts_with(&folder)
     {
-        return Err(format!("is {}, which leads out of the document's folder", shown(uri.as_bytes())));
+        return Err(format!("is a link to {} outside the document's folder", shown(uri.as_bytes())));
     }
-    load(&place).map_err(|fault| format!("cannot be read: {fault}").trim_end_matches('.').to_owned())
+    load(&file).map_err(|fault| format!("cannot be read: {fault}").trim_end_matches('.').to_owned())
 }
 
-/// An address with its `%20` and the like written out.
+/// Decodes the percent-encoding of an address.
 fn decoded(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

@@ -4,7 +4,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec2;
 
-/// Two triangles over the unit square, 48 bytes of positions and then indices 0 1 2 3 as bytes, with the given nodes and mode.
+/// Two triangles over the unit square, 48 bytes of positions and then indices 0 1 2 3 as bytes, with the given nodes
+/// and mode.
 fn document(nodes: &str, mode: u8, more: &str) -> String {
     let mut bytes = Vec::new();
     for x in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0] {
@@ -32,7 +33,7 @@ fn refused(text: &str) -> String {
 }
 
 #[test]
-fn strips_and_fans_become_triangles_that_all_turn_the_same_way() {
+fn strips_and_fans_become_consistently_oriented_triangles() {
     let strip = read_text(&document(r#"{"mesh": 0}"#, 5, "")).unwrap();
     assert_eq!(strip.triangles, [[0, 1, 2], [2, 1, 3]]);
     let fan = read_text(&document(r#"{"mesh": 0}"#, 6, "")).unwrap();
@@ -42,8 +43,9 @@ fn strips_and_fans_become_triangles_that_all_turn_the_same_way() {
 }
 
 #[test]
-fn texture_coordinates_go_with_their_corners_through_welding() {
-    let places: Vec<u8> = [0.0_f32, 0.0, 0.5, 0.0, 0.0, 0.25, 0.5, 0.25].iter().flat_map(|x| x.to_le_bytes()).collect();
+fn texture_coordinates_survive_welding() {
+    let coordinates: Vec<u8> =
+        [0.0_f32, 0.0, 0.5, 0.0, 0.0, 0.25, 0.5, 0.25].iter().flat_map(|x| x.to_le_bytes()).collect();
     let text = document(r#"{"mesh": 0}"#, 5, "")
         .replace(r#""POSITION": 0"#, r#""POSITION": 0, "TEXCOORD_0": 2"#)
         .replace(
@@ -55,10 +57,10 @@ fn texture_coordinates_go_with_their_corners_through_welding() {
             r#""buffers": ["#,
             &format!(
                 r#""buffers": [{{"byteLength": 52, "uri": "first"}}, {{"byteLength": 32, "uri": "data:application/octet-stream;base64,{}"}}, "#,
-                STANDARD.encode(&places)
+                STANDARD.encode(&coordinates)
             ),
         );
-    // The document's own buffer takes the place of the first.
+    // The document's own buffer replaces the first.
     let (head, tail) = text.split_once(r#"{"byteLength": 52, "uri": "first"}, "#).unwrap();
     let (second, own) = tail.split_once("}, ").unwrap();
     let (own, rest) = own.split_once("}]").unwrap();
@@ -71,7 +73,7 @@ fn texture_coordinates_go_with_their_corners_through_welding() {
 }
 
 #[test]
-fn nodes_are_placed_by_all_transforms_above_them_and_mirrored_ones_keep_their_outside() {
+fn all_transforms_above_a_node_apply_and_mirrored_nodes_keep_their_orientation() {
     let nodes = r#"{"children": [1], "translation": [10, 0, 0]}, {"mesh": 0, "name": "mirrored", "scale": [-2, 1, 1]}"#;
     let mesh = read_text(&document(nodes, 5, "")).unwrap();
     assert_eq!(mesh.points[1], DVec3::new(8.0, 0.0, 0.0));
@@ -83,9 +85,9 @@ fn nodes_are_placed_by_all_transforms_above_them_and_mirrored_ones_keep_their_ou
 }
 
 #[test]
-fn nodes_that_hang_below_themselves_or_two_others_are_refused() {
+fn nodes_with_two_parents_or_in_a_cycle_are_refused() {
     let loop_of_two = r#"{"children": [1]}, {"children": [0], "mesh": 0}"#;
-    assert!(refused(&document(loop_of_two, 4, "")).contains("below itself"));
+    assert!(refused(&document(loop_of_two, 4, "")).contains("own ancestor"));
     let diamond = r#"{"children": [1, 2]}, {"children": [3]}, {"children": [3]}, {"mesh": 0}"#;
     assert!(refused(&document(diamond, 4, "")).contains("Node 3"));
 }
@@ -101,24 +103,28 @@ fn required_extensions_that_change_the_triangles_are_refused_by_name() {
 #[test]
 fn ranges_beyond_a_buffer_and_indices_beyond_the_points_are_refused() {
     let good = document(r#"{"mesh": 0}"#, 5, "");
-    for (from, to, told) in [
-        (r#""count": 4, "type": "VEC3""#, r#""count": 5, "type": "VEC3""#, "beyond the end"),
-        (r#""count": 4, "type": "VEC3""#, r#""count": 18446744073709551615, "type": "VEC3""#, "beyond the end"),
-        (r#""byteOffset": 48"#, r#""byteOffset": 49"#, "beyond the end"),
-        (r#""byteOffset": 48"#, r#""byteOffset": 18446744073709551615"#, "beyond the end"),
+    for (from, to, expected) in [
+        (r#""count": 4, "type": "VEC3""#, r#""count": 5, "type": "VEC3""#, "beyond the end of the buffer"),
+        (
+            r#""count": 4, "type": "VEC3""#,
+            r#""count": 18446744073709551615, "type": "VEC3""#,
+            "beyond the end of the buffer",
+        ),
+        (r#""byteOffset": 48"#, r#""byteOffset": 49"#, "beyond the end of the buffer"),
+        (r#""byteOffset": 48"#, r#""byteOffset": 18446744073709551615"#, "beyond the end of the buffer"),
         // The bytes of 1.0 are 0, 0, 128, 63.
-        (r#""byteOffset": 48"#, r#""byteOffset": 12"#, "has the vertex 128 of 4"),
-        (r#""byteLength": 52"#, r#""byteLength": 53"#, "53 are announced"),
+        (r#""byteOffset": 48"#, r#""byteOffset": 12"#, "refers to vertex 128 of 4"),
+        (r#""byteLength": 52"#, r#""byteLength": 53"#, "instead of 53"),
         (r#""componentType": 5126"#, r#""componentType": 5123"#, "single precision"),
     ] {
         assert!(good.contains(from), "{from}");
-        let said = refused(&good.replace(from, to));
-        assert!(said.contains(told), "{to}: {said}");
+        let message = refused(&good.replace(from, to));
+        assert!(message.contains(expected), "{to}: {message}");
     }
 }
 
 #[test]
-fn files_beside_it_are_read_and_none_elsewhere() {
+fn external_files_are_read_from_the_folder_only() {
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("inner");
     std::fs::create_dir(&inner).unwrap();
@@ -134,29 +140,29 @@ fn files_beside_it_are_read_and_none_elsewhere() {
     for uri in
         ["../outside.bin", "%2e%2e/outside.bin", &absolute, "file:///etc/passwd", "http://x/y", "a%2", "none.bin"]
     {
-        let told = read(uri).unwrap_err().to_string();
-        assert!(!told.contains("panicked") && told.starts_with("a.gltf"), "{told}");
+        let message = read(uri).unwrap_err().to_string();
+        assert!(!message.contains("panicked") && message.starts_with("a.gltf"), "{message}");
     }
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(folder.path().join("outside.bin"), inner.join("link.bin")).unwrap();
-        assert!(read("link.bin").unwrap_err().to_string().contains("leads out"));
+        assert!(read("link.bin").unwrap_err().to_string().contains("is a link"));
     }
-    assert!(read_text(&with("a%20b.bin")).unwrap_err().to_string().contains("no folder"));
+    assert!(read_text(&with("a%20b.bin")).unwrap_err().to_string().contains("external files"));
 }
 
 #[test]
-fn a_document_that_repeats_its_mesh_beyond_all_measure_is_refused() {
+fn a_document_that_repeats_its_mesh_too_often_is_refused() {
     let mut nodes = String::from(r#"{"children": ["#);
     let many = 600_000;
     nodes.push_str(&(1..=many).map(|i| i.to_string()).collect::<Vec<_>>().join(","));
     nodes.push_str("]}");
     nodes.push_str(&r#",{"mesh":0}"#.repeat(many));
-    assert!(refused(&document(&nodes, 5, "")).contains("more memory"));
+    assert!(refused(&document(&nodes, 5, "")).contains("too much memory"));
 }
 
 #[test]
-fn a_header_that_lies_about_its_length_is_refused() {
+fn a_header_with_a_wrong_length_is_refused() {
     for length in [0_u32, 11, 12, 4000] {
         let mut bytes = b"glTF\x02\0\0\0".to_vec();
         bytes.extend(length.to_le_bytes());

@@ -7,12 +7,12 @@ use rustc_hash::FxHashMap;
 
 use crate::core::fault::Fault;
 use crate::core::formats::numbering::{Numbering, sort_by_number};
-use crate::core::formats::scan::{Scanner, parse_integer, parse_real, shown};
+use crate::core::formats::scan::{Scanner, parse_whole, shown};
 use crate::core::progress::Pace;
 use crate::core::soup::counting::Count;
 use crate::core::soup::mesh_file::{Group, MeshFile};
 
-/// What an element type of Abaqus is to us: its number of corners, 0 for what is skipped.
+/// The number of corners of an Abaqus element type; 0 for a type that is skipped, `Err` for one of higher order.
 fn corners_of(kind: &str) -> Result<usize, ()> {
     let shells = ["STRI", "S", "CPS", "CPE", "CPEG", "CAX", "M3D", "R3D", "SFM3D", "DS", "DC2D"];
     let lines = ["T2D", "T3D", "B2", "B3", "R2D", "RAX"];
@@ -39,33 +39,35 @@ fn corners_of(kind: &str) -> Result<usize, ()> {
     Ok(0)
 }
 
-/// The section that lines of data belong to.
+/// The section of the following data lines.
 enum Section {
     Nodes,
-    /// Elements of so many corners, and the set that they are in.
+    /// Elements with this number of corners, and their set.
     Elements(usize, Option<usize>),
     Skipped(String),
-    /// The numbers of a set's elements; or the first, the last and the step of them.
-    Set(usize, bool),
-    /// Edges of elements.
+    /// The element numbers of a set.
+    Set(usize),
+    /// The element numbers of a set, as first, last and step (GENERATE).
+    GeneratedSet(usize),
+    /// Element edges of a surface.
     Surface(usize),
     Other,
 }
 
-/// Sets of elements and surfaces of their edges, by name, in the order of the file.
+/// Element sets and edge surfaces by name, in the order of the file.
 #[derive(Default)]
 struct Sets {
-    sets: List<Run>,
-    surfaces: List<(u64, usize)>,
+    sets: NamedLists<Run>,
+    surfaces: NamedLists<(u64, usize)>,
 }
 
-/// Things by name, in capitals or not.
-struct List<T> {
+/// Lists by name, ignoring case.
+struct NamedLists<T> {
     all: Vec<(String, Vec<T>)>,
     known: FxHashMap<String, usize>,
 }
 
-/// Numbers from the first to the last.
+/// The numbers from `first` to `last` in steps of `step`.
 #[derive(Clone, Copy)]
 struct Run {
     first: u64,
@@ -73,12 +75,11 @@ struct Run {
     step: u64,
 }
 
-/// Reads nodes and elements; sets of elements become regions (of several that an element is in, the smallest), surfaces
-/// of edges groups of lines. Sets of nodes, parts and everything else are passed over. Nodes and elements come in the
-/// order of their numbers.
+/// Reads nodes and elements, sorted by their numbers. Element sets become regions (an element in several sets belongs
+/// to the smallest), and edge surfaces become groups of lines. Node sets, parts and everything else are ignored.
 ///
 /// # Errors
-/// A fault with the line for a malformed node or element, an element of higher order, and numbers that come twice.
+/// With the line: a malformed node or element, an element of higher order, or a node number that is used twice.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes).watched(pace);
     let mut mesh = MeshFile::default();
@@ -104,17 +105,13 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         match &section {
             Section::Nodes => {
                 if nodes.is_some() {
-                    return Err(s.fault("Nodes come behind elements").remedy("Put all nodes first"));
+                    return Err(s.fault("Nodes follow elements").remedy("Put all nodes first"));
                 }
                 node_numbers.push(whole(&s, fields.next(), "the number of a node")?);
                 let mut p = DVec3::ZERO;
                 for axis in 0..3 {
-                    // Abaqus takes what is left out for zero.
-                    let word = fields.next().filter(|word| !word.is_empty()).unwrap_or(b"0");
-                    p[axis] = match parse_real(word) {
-                        Some(x) if x.is_finite() => x,
-                        _ => return Err(s.fault(format!("\"{}\" stands where a coordinate is expected", shown(word)))),
-                    };
+                    // In Abaqus, a missing coordinate is zero.
+                    p[axis] = s.coordinate(fields.next().filter(|word| !word.is_empty()).unwrap_or(b"0"))?;
                 }
                 mesh.points.push(p);
             }
@@ -127,7 +124,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 for corner in &mut corners[..*count] {
                     let node = whole(&s, fields.next(), "a node of the element")?;
                     *corner = nodes.as_ref().and_then(|nodes| nodes.index(node)).ok_or_else(|| {
-                        s.fault(format!("Element {number} has the node {node}, which does not exist"))
+                        s.fault(format!("Element {number} refers to node {node}, which does not exist"))
                     })?;
                 }
                 match *count {
@@ -146,12 +143,12 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 Some(count) => *count += 1,
                 None => drop(skipped.insert(kind.clone(), 1)),
             },
-            Section::Set(set, is_run) => {
-                // What is no number names another set.
-                let numbers: Vec<u64> = fields.filter_map(number_of).collect();
+            Section::Set(set) | Section::GeneratedSet(set) => {
+                // Names of other sets are ignored.
+                let numbers: Vec<u64> = fields.filter_map(parse_whole).collect();
                 let runs = &mut sets.sets.all[*set].1;
                 match numbers[..] {
-                    [first, last, ref rest @ ..] if *is_run => {
+                    [first, last, ref rest @ ..] if matches!(section, Section::GeneratedSet(_)) => {
                         runs.push(Run { first, last, step: rest.first().copied().unwrap_or(1) });
                     }
                     _ => runs.extend(numbers.into_iter().map(|number| Run { first: number, last: number, step: 1 })),
@@ -164,7 +161,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 };
                 let [element, side] = [fields.next(), fields.next()]
                     .map(Option::unwrap_or_default)
-                    .map(|word| (number_of(word), side(word)));
+                    .map(|word| (parse_whole(word), side(word)));
                 if let (Some(element), Some(side)) = (element.0, side.1) {
                     sets.surfaces.all[*surface].1.push((element, side));
                 }
@@ -173,7 +170,9 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         }
     }
     if !any {
-        return Err(Fault::new("There is no keyword line (*NODE, ...)").at(name).remedy("Is it an Abaqus input file?"));
+        return Err(Fault::new("There is no keyword line (*NODE, ...)")
+            .at(name)
+            .remedy("Check that it is an Abaqus input file"));
     }
     if nodes.is_none() {
         number(&s, &mut node_numbers, &mut mesh.points)?;
@@ -189,17 +188,17 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
 }
 
 impl Sets {
-    /// Makes groups of the sets that have triangles or quadrilaterals and of the surfaces that have edges of these.
+    /// Adds groups for the sets with triangles or quadrilaterals and for the surfaces with edges of these.
     fn into_groups(self, mesh: &mut MeshFile, triangle_numbers: &[u64], quad_numbers: &[u64]) {
         let triangles = triangle_numbers.len();
         let mut numbers: Vec<(u64, usize)> = triangle_numbers.iter().chain(quad_numbers).copied().zip(0..).collect();
         numbers.sort_unstable();
         let from = |number: u64| numbers.partition_point(|known| known.0 < number);
         let index = |number: u64| numbers.get(from(number)).filter(|known| known.0 == number).map(|known| known.1);
-        // Runs that say the same over and over again are not followed for ever.
+        // Bounds the time for runs that repeat.
         let mut left = 16 * numbers.len();
         let mut members: Vec<(usize, Vec<usize>)> = Vec::new();
-        for (place, (_, runs)) in self.sets.all.iter().enumerate() {
+        for (set, (_, runs)) in self.sets.all.iter().enumerate() {
             let mut own = Vec::new();
             for run in runs {
                 let all = numbers[from(run.first)..].iter().take_while(|known| known.0 <= run.last);
@@ -213,20 +212,20 @@ impl Sets {
             own.sort_unstable();
             own.dedup();
             if !own.is_empty() {
-                members.push((place, own));
+                members.push((set, own));
             }
         }
-        members.sort_by_key(|(place, own)| (own.len(), *place));
+        members.sort_by_key(|(set, own)| (own.len(), *set));
         let mut tags = vec![0; numbers.len()];
-        for (place, own) in members {
-            let tag = place as u32 + 1;
+        for (set, own) in members {
+            let tag = set as u32 + 1;
             let mut any = false;
             for element in own.into_iter().filter(|&element| tags[element] == 0).collect::<Vec<_>>() {
                 tags[element] = tag;
                 any = true;
             }
             if any {
-                mesh.groups.push(Group { dimension: 2, tag, name: self.sets.all[place].0.clone() });
+                mesh.groups.push(Group { dimension: 2, tag, name: self.sets.all[set].0.clone() });
             }
         }
         if tags.iter().any(|tag| *tag != 0) {
@@ -258,26 +257,21 @@ impl Sets {
     }
 }
 
-fn number_of(word: &[u8]) -> Option<u64> {
-    parse_integer(word).and_then(|value| u64::try_from(value).ok())
-}
-
-/// Puts the points into the order of their numbers, which must not come twice.
+/// Sorts the points by their numbers, which must be unique.
 fn number(s: &Scanner, numbers: &mut [u64], points: &mut [DVec3]) -> Result<Numbering, Fault> {
     sort_by_number(numbers, points, &mut []);
-    Numbering::new(numbers).map_err(|twice| {
-        s.fault(format!("Node {twice} comes twice before here"))
-            .remedy("Parts and instances are not read: save one flat mesh")
+    Numbering::new(numbers).map_err(|number| {
+        s.fault(format!("The node number {number} is used twice above"))
+            .remedy("Parts and instances are not supported: save one flat mesh")
     })
 }
 
 fn whole(s: &Scanner, field: Option<&[u8]>, what: &str) -> Result<u64, Fault> {
     let word = field.unwrap_or_default();
-    let value = parse_integer(word).and_then(|value| u64::try_from(value).ok());
-    value.ok_or_else(|| s.fault(format!("\"{}\" stands where {what} is expected", shown(word))))
+    parse_whole(word).ok_or_else(|| s.unexpected(word, what))
 }
 
-/// What a keyword line begins.
+/// The section that a keyword line begins.
 fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fault> {
     let text = String::from_utf8_lossy(line);
     let mut parts = text.split(',').map(str::trim);
@@ -294,20 +288,21 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
             let kind = shown(kind.to_ascii_uppercase().as_bytes());
             match corners_of(&kind) {
                 Ok(0) => Ok(Section::Skipped(format!("element {kind}"))),
-                Ok(count) => Ok(Section::Elements(count, option("ELSET").map(|name| sets.sets.place(name)))),
+                Ok(count) => Ok(Section::Elements(count, option("ELSET").map(|name| sets.sets.index(name)))),
                 Err(()) => Err(s
-                    .fault(format!("Elements of type {kind} are not read"))
+                    .fault(format!("Elements of type {kind} are not supported"))
                     .remedy("Save the mesh with elements of order 1 (S3, S4)")),
             }
         }
         "ELSET" => Ok(match option("ELSET") {
-            Some(name) => Section::Set(sets.sets.place(name), option("GENERATE").is_some()),
+            Some(name) if option("GENERATE").is_some() => Section::GeneratedSet(sets.sets.index(name)),
+            Some(name) => Section::Set(sets.sets.index(name)),
             None => Section::Other,
         }),
-        // Where no type is given it is that of elements.
+        // The default type is ELEMENT.
         "SURFACE" => Ok(match (option("NAME"), option("TYPE")) {
             (Some(name), kind) if kind.is_none_or(|kind| kind.eq_ignore_ascii_case("ELEMENT")) => {
-                Section::Surface(sets.surfaces.place(name))
+                Section::Surface(sets.surfaces.index(name))
             }
             _ => Section::Other,
         }),
@@ -315,20 +310,20 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
     }
 }
 
-impl<T> Default for List<T> {
+impl<T> Default for NamedLists<T> {
     fn default() -> Self {
-        List { all: Vec::new(), known: FxHashMap::default() }
+        NamedLists { all: Vec::new(), known: FxHashMap::default() }
     }
 }
 
-impl<T> List<T> {
-    /// The place of a name; a new one where it is not known.
-    fn place(&mut self, name: &str) -> usize {
+impl<T> NamedLists<T> {
+    /// The index of a list, which is added if the name is new.
+    fn index(&mut self, name: &str) -> usize {
         let new = self.all.len();
-        let place = *self.known.entry(name.to_ascii_uppercase()).or_insert(new);
-        if place == new {
+        let index = *self.known.entry(name.to_ascii_uppercase()).or_insert(new);
+        if index == new {
             self.all.push((name.to_owned(), Vec::new()));
         }
-        place
+        index
     }
 }

@@ -1,4 +1,4 @@
-//! The sections $NodeData and $ElementData of an MSH file.
+//! Reading the sections $NodeData and $ElementData of an MSH file.
 
 use super::METRIC;
 use super::read::Reader;
@@ -8,7 +8,7 @@ use crate::core::kernel::tensor::Metric3;
 use crate::core::soup::mesh_file::{Data, positive_definite};
 
 impl Reader<'_> {
-    /// $NodeData or $ElementData.
+    /// Reads $NodeData or $ElementData.
     pub fn data(&mut self, section: &[u8]) -> Result<(), Fault> {
         let of_nodes = section == b"NodeData";
         let scanner = &mut self.input.scanner;
@@ -33,17 +33,17 @@ impl Reader<'_> {
         }
         scanner.line();
         let [_, components, count] = tags;
-        let things = if of_nodes { self.file.points.len() } else { self.file.triangles.len() + self.file.quads.len() };
+        let total = if of_nodes { self.file.points.len() } else { self.file.triangles.len() + self.file.quads.len() };
         let (components, count) = (components.max(0) as u64, count.max(0) as u64);
         let is_metric = of_nodes && components == 9 && name == METRIC;
-        // Data that cannot cover everything is left out; to make room for it could cost more than its bytes.
-        if things == 0 || (count as usize) < things || !(components == 1 || is_metric) {
+        // Incomplete data is skipped, before memory is reserved by a possibly wrong count.
+        if total == 0 || (count as usize) < total || !(components == 1 || is_metric) {
             return self.skip(section);
         }
         let components = components as usize;
         let count = self.input.fits(count, 2 + 2 * components, 4 + 8 * components, "a number of values")?;
-        let mut values = vec![0.0; things * components];
-        let mut seen = vec![false; things];
+        let mut values = vec![0.0; total * components];
+        let mut seen = vec![false; total];
         for _ in 0..count {
             let tag = self.input.tag("a node or element tag")?;
             let index =

@@ -1,9 +1,9 @@
-//! The numbers of an MSH file, from text or from binary.
+//! The numbers of an MSH file, text or binary.
 
 use crate::core::fault::Fault;
-use crate::core::formats::scan::{ByteOrder, Scanner, parse_integer, shown};
+use crate::core::formats::scan::{ByteOrder, Scanner, parse_whole};
 
-/// Numbers from text or from binary, by what the header says.
+/// Reads numbers as text or binary, as declared in the header.
 pub(super) struct Input<'a> {
     pub scanner: Scanner<'a>,
     pub binary: Option<ByteOrder>,
@@ -18,10 +18,10 @@ impl Input<'_> {
         }
     }
 
-    /// A tag: an `int` that is not negative.
+    /// A tag: a non-negative `int`.
     pub fn tag(&mut self, what: &str) -> Result<u64, Fault> {
         let tag = self.int(what)?;
-        u64::try_from(tag).map_err(|_| self.scanner.fault(format!("{tag} stands where {what} is expected")))
+        u64::try_from(tag).map_err(|_| self.scanner.fault(format!("Expected {what}, found {tag}")))
     }
 
     /// A C `size_t`.
@@ -32,12 +32,13 @@ impl Input<'_> {
         }
     }
 
-    /// A C `double`, which must be finite.
+    /// A finite C `double`.
     pub fn finite(&mut self, what: &str) -> Result<f64, Fault> {
         let value = self.real(what)?;
         self.scanner.must_be_finite(value, what)
     }
 
+    /// A C `double`.
     pub fn real(&mut self, what: &str) -> Result<f64, Fault> {
         match self.binary {
             None => self.scanner.real(what),
@@ -45,18 +46,15 @@ impl Input<'_> {
         }
     }
 
-    /// Whether `count` things can still come: of `text` bytes at least in text, of `binary` bytes in binary.
+    /// `count` as an index, if the rest of the file can hold that many items of at least `text` or `binary` bytes each.
     pub fn fits(&self, count: u64, text: usize, binary: usize, what: &str) -> Result<usize, Fault> {
         self.scanner.fits(count, if self.binary.is_some() { binary } else { text }, what)
     }
 
-    /// The count that stands in text on a line of its own, in binary files of version 2 too.
+    /// A count as text on its own line, as in version 2, also in binary files.
     pub fn count_line(&mut self, text: usize, binary: usize, what: &str) -> Result<usize, Fault> {
         let line = self.scanner.line().unwrap_or_default();
-        let count = parse_integer(line).and_then(|count| u64::try_from(count).ok());
-        let Some(count) = count else {
-            return Err(self.scanner.fault(format!("\"{}\" stands where {what} is expected", shown(line))));
-        };
+        let count = parse_whole(line).ok_or_else(|| self.scanner.unexpected(line, what))?;
         self.fits(count, text, binary, what)
     }
 }

@@ -1,4 +1,4 @@
-//! Reading MSH: one path for text and binary, both versions.
+//! Reading MSH: one path for text and binary, and for both versions.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,20 @@ use super::input::Input;
 use super::{Shape, shape};
 use crate::core::fault::Fault;
 use crate::core::formats::numbering::{Numbering, sort_by_number};
-use crate::core::formats::scan::{ByteOrder, Scanner, shown};
+use crate::core::formats::scan::{ByteOrder, Scanner, TRUNCATED, shown};
 use crate::core::progress::Pace;
 use crate::core::soup::counting::Count;
 use crate::core::soup::mesh_file::{Group, MeshFile};
 
-/// Reads a mesh from the bytes of an MSH file; `name` is how messages call it.
+/// Reads a mesh from the bytes of an MSH file; `name` is the file's name in messages.
 ///
-/// Points come in the order of their node tags, elements in the order of theirs. The tag of an element is that of its
-/// first physical group, 0 where it is in none. Node data called "metric" with nine components becomes the metric;
-/// data of one component is kept where it has a value for every node, or every triangle and quadrilateral.
+/// Points and elements are sorted by their tags in the file. The tag of an element is that of its first physical group,
+/// 0 without one. Node data named "metric" with nine components becomes the metric; data with one component is kept if
+/// it covers every node, or every triangle and quadrilateral.
 ///
 /// # Errors
-/// A fault with the line for everything that is not MSH 2.x or 4.1, and for what MSH allows and we do not read
-/// (elements of higher order).
+/// With the line: anything that is not MSH 2.x or 4.1, and parts of MSH that are not supported (elements of higher
+/// order).
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut reader = Reader {
         input: Input { scanner: Scanner::new(name, bytes).watched(pace), binary: None },
@@ -40,10 +40,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
             continue;
         }
         let Some(section) = line.strip_prefix(b"$") else {
-            return Err(reader
-                .input
-                .scanner
-                .fault(format!("\"{}\" stands where a section (\"$Nodes\", ...) is expected", shown(line))));
+            return Err(reader.input.scanner.unexpected(line, "a section (\"$Nodes\", ...)"));
         };
         reader.section(section)?;
     }
@@ -52,13 +49,13 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         let missing = if reader.nodes.is_none() { "$Nodes" } else { "$Elements" };
         return Err(Fault::new(format!("There is no section {missing}"))
             .at(scanner.name())
-            .remedy("Save it with its nodes and elements"));
+            .remedy("Save it with nodes and elements"));
     }
     reader.file.skipped = reader.skipped.into_iter().map(|(name, count)| (name.to_string(), count)).collect();
     Ok(reader.file)
 }
 
-/// The two versions that differ in their sections.
+/// The two versions with different sections.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Version {
     Two,
@@ -69,14 +66,14 @@ pub(super) struct Reader<'a> {
     pub input: Input<'a>,
     version: Option<Version>,
     pub file: MeshFile,
-    /// From node tags to indices, as soon as the nodes have been read.
+    /// Node tags to indices, once the nodes are read.
     pub nodes: Option<Numbering>,
     has_elements: bool,
     /// Version 4: the first physical group of an entity, by dimension and tag.
     physical: FxHashMap<(i64, i64), u32>,
     /// Element tags of lines, triangles and quadrilaterals.
     pub numbers: [Vec<u64>; 3],
-    /// From element tags to indices (triangles first), made when data asks for it; `None` inside: tags are not unique.
+    /// Element tags to indices (triangles first), built on demand; the inner `None` means that tags are not unique.
     pub elements: Option<Option<Numbering>>,
     skipped: BTreeMap<&'static str, usize>,
 }
@@ -94,7 +91,7 @@ impl Reader<'_> {
             return Err(self
                 .input
                 .scanner
-                .fault(format!("The section \"${}\" stands before $MeshFormat", shown(section)))
+                .fault(format!("The section \"${}\" precedes $MeshFormat", shown(section)))
                 .remedy("Save it as MSH 2.2 or 4.1"));
         };
         match (section, version) {
@@ -103,7 +100,8 @@ impl Reader<'_> {
             (b"Nodes", _) => self.nodes(version)?,
             (b"Elements", _) => self.elements(version)?,
             (b"ParametricNodes", _) => {
-                let fault = self.input.scanner.fault("Nodes with parametric coordinates are not read in this version");
+                let fault =
+                    self.input.scanner.fault("Nodes with parametric coordinates are not supported in this version");
                 return Err(fault.remedy("Save it without them (in Gmsh: Mesh.SaveParametric = 0), or as MSH 4.1"));
             }
             (b"NodeData" | b"ElementData", _) if self.has_elements => return self.data(section),
@@ -112,19 +110,19 @@ impl Reader<'_> {
         self.end(section)
     }
 
-    /// Goes behind a section that is not read.
+    /// Moves past a section that is not read.
     pub fn skip(&mut self, section: &[u8]) -> Result<(), Fault> {
         let start = self.input.scanner.mark();
         let end = [b"$End", section].concat();
         if !self.input.scanner.skip_past(&end) {
             let what = format!("The section \"${}\" has no end", shown(section));
-            return Err(self.input.scanner.fault_at(start, what).remedy("It seems to be cut off: write it again"));
+            return Err(self.input.scanner.fault_at(start, what).remedy(TRUNCATED));
         }
         self.input.scanner.line();
         Ok(())
     }
 
-    /// The end of a section that has been read whole.
+    /// Reads the end of a section.
     pub fn end(&mut self, section: &[u8]) -> Result<(), Fault> {
         let end = format!("$End{}", shown(section));
         let word = self.input.scanner.need(&end)?;
@@ -132,8 +130,8 @@ impl Reader<'_> {
             return Err(self
                 .input
                 .scanner
-                .fault(format!("\"{}\" stands where {end} is expected", shown(word)))
-                .remedy("The counts of this section do not agree with what is in it"));
+                .unexpected(word, &end)
+                .remedy("The counts of this section do not match its contents"));
         }
         self.input.scanner.line();
         Ok(())
@@ -142,14 +140,14 @@ impl Reader<'_> {
     fn format(&mut self) -> Result<(), Fault> {
         let scanner = &mut self.input.scanner;
         if self.version.is_some() {
-            return Err(scanner.fault("$MeshFormat comes twice"));
+            return Err(scanner.fault("There are two sections $MeshFormat"));
         }
         let version = scanner.need("a version")?;
         self.version = Some(match version {
             b"4.1" => Version::Four,
             b"2" | b"2.0" | b"2.1" | b"2.2" => Version::Two,
             _ => {
-                let what = format!("MSH version {} is not read", shown(version));
+                let what = format!("MSH version {} is not supported", shown(version));
                 return Err(scanner.fault(what).remedy("Save it as MSH 4.1 or 2.2"));
             }
         });
@@ -157,14 +155,14 @@ impl Reader<'_> {
         let size = scanner.whole("the size of a number")?;
         scanner.line();
         if binary > 1 || size != 8 {
-            return Err(scanner.fault(format!("File type {binary} with numbers of {size} bytes is not read")));
+            return Err(scanner.fault(format!("File type {binary} with numbers of {size} bytes is not supported")));
         }
         if binary == 1 {
             scanner.set_binary();
             self.input.binary = match scanner.binary_i32(ByteOrder::Little, "the byte order")? {
                 1 => Some(ByteOrder::Little),
                 0x0100_0000 => Some(ByteOrder::Big),
-                other => return Err(scanner.fault(format!("The byte order mark is {other} and not 1"))),
+                other => return Err(scanner.fault(format!("The byte order mark is {other} instead of 1"))),
             };
         }
         Ok(())
@@ -189,7 +187,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Version 4: which physical groups the entities are in.
+    /// Version 4: the physical groups of the entities.
     fn entities(&mut self) -> Result<(), Fault> {
         let mut counts = [0; 4];
         for count in &mut counts {
@@ -204,7 +202,7 @@ impl Reader<'_> {
                 }
                 let groups = self.input.size("a number of physical tags")?;
                 for place in 0..self.input.fits(groups, 2, 4, "a number of physical tags")? {
-                    // The sign says which way the group runs through the entity.
+                    // The sign is the orientation of the entity in the group.
                     let group = self.input.int("a physical tag")?.unsigned_abs();
                     if let (0, Ok(group)) = (place, u32::try_from(group)) {
                         self.physical.insert((dimension, tag), group);
@@ -224,7 +222,11 @@ impl Reader<'_> {
     fn nodes(&mut self, version: Version) -> Result<(), Fault> {
         let start = self.input.scanner.mark();
         if self.nodes.is_some() {
-            return Err(self.input.scanner.fault("$Nodes comes twice").remedy("Save it unpartitioned, as one mesh"));
+            return Err(self
+                .input
+                .scanner
+                .fault("There are two sections $Nodes")
+                .remedy("Save it unpartitioned, as one mesh"));
         }
         let mut numbers = Vec::new();
         match version {
@@ -249,16 +251,16 @@ impl Reader<'_> {
                     self.node_block(total, &mut numbers)?;
                 }
                 if numbers.len() != total {
-                    let what = format!("{total} nodes are announced and {} come", numbers.len());
+                    let what = format!("The section declares {total} nodes but contains {}", numbers.len());
                     return Err(self.input.scanner.fault_at(start, what));
                 }
             }
         }
         sort_by_number(&mut numbers, &mut self.file.points, &mut []);
         self.file.counting.points = Count::of(&numbers);
-        let numbering = Numbering::new(&numbers);
-        self.nodes =
-            Some(numbering.map_err(|twice| self.input.scanner.fault_at(start, format!("Node {twice} comes twice")))?);
+        let numbering = Numbering::new(&numbers)
+            .map_err(|number| self.input.scanner.fault_at(start, format!("The node number {number} is used twice")))?;
+        self.nodes = Some(numbering);
         Ok(())
     }
 
@@ -269,7 +271,7 @@ impl Reader<'_> {
         let count = self.input.size("a number of nodes")?;
         let count = self.input.fits(count, 8, 32, "a number of nodes")?;
         if numbers.len() + count > total {
-            return Err(self.input.scanner.fault(format!("More than the {total} nodes that are announced come")));
+            return Err(self.input.scanner.fault(format!("The section contains more than the declared {total} nodes")));
         }
         for _ in 0..count {
             numbers.push(self.input.size("the tag of a node")?);
@@ -293,26 +295,26 @@ impl Reader<'_> {
 
     fn elements(&mut self, version: Version) -> Result<(), Fault> {
         if self.has_elements || self.nodes.is_none() {
-            let what = if self.has_elements { "$Elements comes twice" } else { "$Elements stands before $Nodes" };
+            let what = if self.has_elements { "There are two sections $Elements" } else { "$Elements precedes $Nodes" };
             return Err(self.input.scanner.fault(what).remedy("Save it unpartitioned, as one mesh"));
         }
         let start = self.input.scanner.mark();
-        let mut come = 0u64;
+        let mut found = 0u64;
         let total = match (version, self.input.binary) {
             (Version::Two, None) => {
                 let total = self.input.count_line(8, 8, "a number of elements")? as u64;
-                while come < total {
+                while found < total {
                     let number = self.input.tag("the number of an element")?;
                     let kind = self.input.int("an element type")?;
                     let group = self.tags_of_version_2(None)?;
                     self.element(kind, number, group)?;
-                    come += 1;
+                    found += 1;
                 }
                 total
             }
             (Version::Two, Some(_)) => {
                 let total = self.input.count_line(8, 8, "a number of elements")? as u64;
-                while come < total {
+                while found < total {
                     let kind = self.input.int("an element type")?;
                     let count = self.input.tag("a number of elements")?;
                     let tags = self.input.tag("a number of tags")?;
@@ -321,7 +323,7 @@ impl Reader<'_> {
                         let group = self.tags_of_version_2(Some(tags))?;
                         self.element(kind, number, group)?;
                     }
-                    come += count;
+                    found += count;
                 }
                 total
             }
@@ -340,13 +342,13 @@ impl Reader<'_> {
                         let number = self.input.size("the tag of an element")?;
                         self.element(kind, number, group)?;
                     }
-                    come += count;
+                    found += count;
                 }
                 total
             }
         };
-        if come != total {
-            let what = format!("{total} elements are announced and {come} come");
+        if found != total {
+            let what = format!("The section declares {total} elements but contains {found}");
             return Err(self.input.scanner.fault_at(start, what));
         }
         let [lines, triangles, quads] = &mut self.numbers;
@@ -356,19 +358,15 @@ impl Reader<'_> {
         sort_by_number(quads, &mut file.quads, &mut file.quad_tags);
         file.counting.shared = true;
         (file.counting.triangles, file.counting.quads) = (Count::of(triangles), Count::of(quads));
-        for tags in [&mut file.line_tags, &mut file.triangle_tags, &mut file.quad_tags] {
-            if tags.iter().all(|&tag| tag == 0) {
-                *tags = Vec::new();
-            }
-        }
+        file.clear_zero_tags();
         self.has_elements = true;
         Ok(())
     }
 
-    /// The tags of an element of version 2, the first of which is its physical group. Their number stands before them
-    /// unless the block has told it.
-    fn tags_of_version_2(&mut self, told: Option<u64>) -> Result<u32, Fault> {
-        let count = match told {
+    /// Reads the tags of an element of version 2; returns the first, its physical group. Their number, unless known
+    /// from the block, precedes them.
+    fn tags_of_version_2(&mut self, known: Option<u64>) -> Result<u32, Fault> {
+        let count = match known {
             Some(count) => count,
             None => self.input.tag("a number of tags")?,
         };
@@ -384,7 +382,7 @@ impl Reader<'_> {
 
     fn element(&mut self, kind: i64, number: u64, group: u32) -> Result<(), Fault> {
         let Some(shape) = shape(kind) else {
-            return Err(self.input.scanner.fault(format!("Element type {kind} is not known")));
+            return Err(self.input.scanner.fault(format!("Unknown element type {kind}")));
         };
         match shape {
             Shape::Point => {
@@ -412,7 +410,7 @@ impl Reader<'_> {
                 return Err(self
                     .input
                     .scanner
-                    .fault(format!("Elements of higher order (type {kind}) are not read"))
+                    .fault(format!("Elements of higher order (type {kind}) are not supported"))
                     .remedy("Save the mesh with elements of order 1 (in Gmsh: Mesh.ElementOrder = 1)"));
             }
             Shape::Volume(name, nodes) => {
@@ -441,7 +439,7 @@ impl Reader<'_> {
         };
         match self.nodes.as_ref().and_then(|nodes| nodes.index(tag)) {
             Some(index) => Ok(index),
-            None => Err(self.input.scanner.fault(format!("An element has the node {tag}, which does not exist"))),
+            None => Err(self.input.scanner.fault(format!("An element refers to node {tag}, which does not exist"))),
         }
     }
 }

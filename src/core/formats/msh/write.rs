@@ -17,11 +17,12 @@ pub enum Version {
     V4,
 }
 
-/// Writes a mesh as MSH text. Nodes are numbered from 1 in the order of the points; elements from 1: lines, triangles,
-/// quadrilaterals. Tags become physical groups; in version 4.1 each tag makes one discrete entity of its dimension.
+/// Writes a mesh as MSH text. Nodes are numbered from 1 in the order of the points, elements from 1: lines, triangles,
+/// quadrilaterals. Tags become physical groups; in version 4.1 each tag also becomes a discrete entity of its
+/// dimension.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Result<()> {
     let number = if version == Version::V2 { "2.2" } else { "4.1" };
     writeln!(out, "$MeshFormat\n{number} 0 8\n$EndMeshFormat")?;
@@ -41,8 +42,8 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Resu
     point_data(out, mesh)?;
     for data in &mesh.element_data {
         data_header(out, "ElementData", &data.name, 1, mesh.lines.len() + data.values.len())?;
-        // Readers that go by the order of the elements instead of their tags (meshio) want a value for the lines too,
-        // in the order in which the elements stand. Gmsh passes over what is not a number.
+        // Readers that use the order of the elements instead of their tags (meshio) need a value for each line too, in
+        // the order of the elements. Gmsh ignores NaN.
         let mut value = |kind: usize, i: usize| match kind {
             0 => writeln!(out, "{} NaN", i + 1),
             1 => writeln!(out, "{} {}", mesh.lines.len() + i + 1, Shortest(data.values[i])),
@@ -53,7 +54,7 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Resu
         };
         match &entities {
             None => {
-                for (kind, elements) in Kind::all(mesh).iter().enumerate() {
+                for (kind, elements) in ElementType::all(mesh).iter().enumerate() {
                     (0..elements.count).try_for_each(|i| value(kind, i))?;
                 }
             }
@@ -94,7 +95,7 @@ fn point_data(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     Ok(())
 }
 
-/// A name between quotes, on one line.
+/// A name in quotes, on one line.
 fn quoted(name: &str) -> String {
     let plain: String = name.chars().map(|c| if c == '"' || c.is_control() { '\'' } else { c }).collect();
     format!("\"{plain}\"")
@@ -136,7 +137,7 @@ fn nodes_2(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
 }
 
 fn elements_2(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
-    let kinds = Kind::all(mesh);
+    let kinds = ElementType::all(mesh);
     writeln!(out, "$Elements\n{}", kinds.iter().map(|kind| kind.count).sum::<usize>())?;
     for kind in kinds {
         for i in 0..kind.count {
@@ -149,63 +150,50 @@ fn elements_2(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     writeln!(out, "$EndElements")
 }
 
-/// The elements of one shape.
-struct Kind<'a> {
-    /// Gmsh's number of it.
+/// The elements of one type.
+struct ElementType<'a> {
+    /// Gmsh's number of the type.
     number: u8,
     dimension: usize,
     count: usize,
     tags: &'a [u32],
-    /// How many elements are numbered before them.
+    /// Number of elements before them.
     before: usize,
     corners: fn(&MeshFile, usize) -> &[u32],
 }
 
-impl Kind<'_> {
-    fn all(mesh: &MeshFile) -> [Kind<'_>; 3] {
+impl ElementType<'_> {
+    fn all(mesh: &MeshFile) -> [ElementType<'_>; 3] {
         let (lines, triangles) = (mesh.lines.len(), mesh.triangles.len());
+        let of = |number, dimension, count, tags, before, corners| ElementType {
+            number,
+            dimension,
+            count,
+            tags,
+            before,
+            corners,
+        };
         [
-            Kind {
-                number: 1,
-                dimension: 1,
-                count: lines,
-                tags: &mesh.line_tags,
-                before: 0,
-                corners: |mesh, i| &mesh.lines[i],
-            },
-            Kind {
-                number: 2,
-                dimension: 2,
-                count: triangles,
-                tags: &mesh.triangle_tags,
-                before: lines,
-                corners: |mesh, i| &mesh.triangles[i],
-            },
-            Kind {
-                number: 3,
-                dimension: 2,
-                count: mesh.quads.len(),
-                tags: &mesh.quad_tags,
-                before: lines + triangles,
-                corners: |mesh, i| &mesh.quads[i],
-            },
+            of(1, 1, lines, &mesh.line_tags[..], 0, |mesh: &MeshFile, i: usize| &mesh.lines[i][..]),
+            of(2, 2, triangles, &mesh.triangle_tags, lines, |mesh, i| &mesh.triangles[i]),
+            of(3, 2, mesh.quads.len(), &mesh.quad_tags, lines + triangles, |mesh, i| &mesh.quads[i]),
         ]
     }
 }
 
-/// One discrete entity for each dimension and tag, with the nodes that are classified on it.
+/// One discrete entity for each dimension and tag, with the nodes classified on it.
 struct Entities {
-    /// Dimension and tag, ascending: curves before surfaces, so that a node on both belongs to the curve.
+    /// Dimension and tag, ascending: curves before surfaces, so that a shared node belongs to the curve.
     list: Vec<(usize, u32)>,
-    /// The elements of each entity: the number of their shape in [`Kind::all`], their index in it.
+    /// The elements of each entity: lines or triangles, then quadrilaterals, by index.
     elements: Vec<[Vec<u32>; 2]>,
-    /// Nodes of each entity.
+    /// The nodes of each entity.
     nodes: Vec<Vec<u32>>,
 }
 
 impl Entities {
     fn of(mesh: &MeshFile) -> Self {
-        let kinds = Kind::all(mesh);
+        let kinds = ElementType::all(mesh);
         let mut list: Vec<(usize, u32)> = Vec::new();
         for kind in &kinds {
             let mut tags: Vec<u32> = (0..kind.count).map(|i| tag_of(kind.tags, i)).collect();
@@ -232,14 +220,14 @@ impl Entities {
         }
         let mut nodes = vec![Vec::new(); list.len()];
         for (node, owner) in (0u32..).zip(owner) {
-            // A node without elements goes to the last entity.
+            // A node without elements belongs to the last entity.
             let entity = if owner == u32::MAX { list.len() - 1 } else { owner as usize };
             nodes[entity].push(node);
         }
         Entities { list, elements, nodes }
     }
 
-    /// The tag of an entity: that of its group, or the first free one for what is in no group.
+    /// The tag of an entity: that of its group, or without a group, the first free one.
     fn tag(&self, (dimension, tag): (usize, u32)) -> u64 {
         if tag > 0 {
             return u64::from(tag);
@@ -248,7 +236,7 @@ impl Entities {
     }
 
     fn write(&self, out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
-        let kinds = Kind::all(mesh);
+        let kinds = ElementType::all(mesh);
         let curves = self.list.iter().filter(|entity| entity.0 == 1).count();
         writeln!(out, "$Entities\n0 {curves} {} 0", self.list.len() - curves)?;
         for (&entity, elements) in self.list.iter().zip(&self.elements) {
@@ -269,7 +257,7 @@ impl Entities {
             for value in [low.x, low.y, low.z, high.x, high.y, high.z] {
                 write!(out, " {}", Shortest(value))?;
             }
-            // No bounding entities: they are discrete.
+            // Discrete entities have no bounding entities.
             match entity.1 {
                 0 => writeln!(out, " 0 0")?,
                 tag => writeln!(out, " 1 {tag} 0")?,
@@ -295,7 +283,7 @@ impl Entities {
     }
 
     fn write_elements(&self, out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
-        let kinds = Kind::all(mesh);
+        let kinds = ElementType::all(mesh);
         let count: usize = kinds.iter().map(|kind| kind.count).sum();
         let blocks: usize = self.elements.iter().flatten().filter(|list| !list.is_empty()).count();
         writeln!(out, "$Elements\n{blocks} {count} {} {count}", count.min(1))?;

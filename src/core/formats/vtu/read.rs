@@ -6,16 +6,16 @@ use glam::{DVec2, DVec3};
 
 use super::{METRIC, TAG, UV};
 use crate::core::fault::Fault;
-use crate::core::formats::scan::{Scanner, shown};
+use crate::core::formats::scan::{Scanner, TRUNCATED, shown};
 use crate::core::kernel::tensor::Metric3;
 use crate::core::progress::Pace;
 use crate::core::soup::counting::Counting;
 use crate::core::soup::mesh_file::{Data, Group, MeshFile, positive_definite};
 
-/// An array as the file has it.
+/// A data array of the file.
 struct Array {
-    /// The element around it: "Points", "Cells", "PointData", "CellData", "FieldData".
-    room: String,
+    /// The enclosing XML element: "Points", "Cells", "PointData", "CellData" or "FieldData".
+    parent: String,
     name: String,
     components: usize,
     values: Values,
@@ -23,20 +23,20 @@ struct Array {
 }
 
 impl Array {
-    /// Whether it has a value for each of so many things.
-    fn holds(&self, things: usize) -> bool {
-        self.values.len() == self.components * things
+    /// Whether it has a value for each of `items` items.
+    fn holds(&self, items: usize) -> bool {
+        self.values.len() == self.components * items
     }
 }
 
-/// Numbers, in half the room where all are whole, as those of cells and tags are.
+/// Numbers, in half the memory if all are whole, such as those of cells and tags.
 enum Values {
     Whole(Vec<u32>),
     Real(Vec<f64>),
 }
 
 impl Values {
-    /// All that are left of `s`.
+    /// Reads all remaining numbers.
     fn read(s: &mut Scanner) -> Result<Values, Fault> {
         let mut whole = Vec::new();
         let mut first = None;
@@ -66,10 +66,10 @@ impl Values {
         }
     }
 
-    fn at(&self, place: usize) -> f64 {
+    fn at(&self, index: usize) -> f64 {
         match self {
-            Values::Whole(values) => f64::from(values[place]),
-            Values::Real(values) => values[place],
+            Values::Whole(values) => f64::from(values[index]),
+            Values::Real(values) => values[index],
         }
     }
 
@@ -81,32 +81,32 @@ impl Values {
     }
 }
 
-/// Reads the mesh of a `.vtu` file whose arrays are inline text.
+/// Reads a mesh from the bytes of a `.vtu` file with inline text arrays; `name` is the file's name in messages.
 ///
 /// # Errors
-/// A fault with the line for what is not such a file.
+/// With the line: anything that is not such a file.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes).watched(pace);
     let mut arrays = Vec::new();
-    let mut room = String::new();
+    let mut parent = String::new();
     let (mut is_grid, mut pieces) = (false, 0);
     while s.skip_past(b"<") {
         let mark = s.mark();
         let Some(tag) = s.until(b'>') else {
-            return Err(s.fault_at(mark, "A tag is not closed").remedy("It seems to be cut off: write it again"));
+            return Err(s.fault_at(mark, "A tag is not closed").remedy(TRUNCATED));
         };
         let word = tag.split(|b| b.is_ascii_whitespace() || *b == b'/').next().unwrap_or_default();
         match word {
             b"VTKFile" => {
                 is_grid = attribute(tag, "type").as_deref() == Some("UnstructuredGrid");
                 if !is_grid || attribute(tag, "compressor").is_some() {
-                    return Err(s.fault_at(mark, "This is no uncompressed UnstructuredGrid").remedy(AS_TEXT));
+                    return Err(s.fault_at(mark, "This is not an uncompressed UnstructuredGrid").remedy(AS_TEXT));
                 }
             }
             b"Piece" => pieces += 1,
-            b"Points" | b"Cells" | b"PointData" | b"CellData" | b"FieldData" => room = shown(word),
-            b"DataArray" if !room.is_empty() && !tag.ends_with(b"/") => {
-                if room == "FieldData" && attribute(tag, "NumberOfComponents").as_deref() != Some("2") {
+            b"Points" | b"Cells" | b"PointData" | b"CellData" | b"FieldData" => parent = shown(word),
+            b"DataArray" if !parent.is_empty() && !tag.ends_with(b"/") => {
+                if parent == "FieldData" && attribute(tag, "NumberOfComponents").as_deref() != Some("2") {
                     continue;
                 }
                 if attribute(tag, "format").as_deref() != Some("ascii") {
@@ -115,13 +115,13 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 let components = attribute(tag, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
                 let values = Values::read(&mut s.part_before(b'<'))?;
                 let name = attribute(tag, "Name").unwrap_or_default();
-                arrays.push(Array { room: room.clone(), name, components, values, mark });
+                arrays.push(Array { parent: parent.clone(), name, components, values, mark });
             }
             _ => {}
         }
     }
     if !is_grid || pieces != 1 {
-        let what = if is_grid { format!("The file has {pieces} pieces") } else { "This is no VTK file".to_string() };
+        let what = if is_grid { format!("The file has {pieces} pieces") } else { "This is not a VTK file".to_string() };
         return Err(Fault::new(what).at(name).remedy(AS_TEXT));
     }
     assemble(&s, name, arrays)
@@ -147,31 +147,31 @@ fn attribute(tag: &[u8], name: &str) -> Option<String> {
 }
 
 fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile, Fault> {
-    // What is found goes out of the list, and out of memory as soon as it is used.
-    let mut find = |room: &str, name: &str| {
-        let at = arrays.iter().position(|a| a.room == room && (name.is_empty() || a.name == name))?;
+    // Arrays are moved out, so that each is freed after use.
+    let mut find = |parent: &str, name: &str| {
+        let at = arrays.iter().position(|a| a.parent == parent && (name.is_empty() || a.name == name))?;
         Some(arrays.remove(at))
     };
     let missing = |what: &str| Fault::new(format!("There are no {what}")).at(name).remedy(AS_TEXT);
     let mut mesh = MeshFile { counting: Counting::from_zero(), ..MeshFile::default() };
     let points = find("Points", "").ok_or_else(|| missing("points"))?;
     if points.components != 3 || points.values.len() % 3 != 0 || points.values.len() / 3 >= u32::MAX as usize {
-        return Err(s.fault_at(points.mark, "The points do not have three coordinates each"));
+        return Err(s.fault_at(points.mark, "The points must have three coordinates each"));
     }
     mesh.points = points.values.into_reals().as_chunks().0.iter().copied().map(DVec3::from_array).collect();
     if let Some(number) = mesh.points.iter().position(|p| !p.is_finite()) {
-        return Err(s.fault_at(points.mark, format!("Point {number} has a coordinate that is not finite")));
+        return Err(s.fault_at(points.mark, format!("Point {number} has a non-finite coordinate")));
     }
     let connectivity = find("Cells", "connectivity").ok_or_else(|| missing("cells"))?;
     let offsets = find("Cells", "offsets").ok_or_else(|| missing("offsets of cells"))?;
     let types = find("Cells", "types").ok_or_else(|| missing("types of cells"))?;
     if offsets.values.len() != types.values.len() {
-        return Err(s.fault_at(types.mark, "There are not as many types as offsets"));
+        return Err(s.fault_at(types.mark, "The numbers of cell types and offsets differ"));
     }
     if types.values.len() >= u32::MAX as usize {
-        return Err(s.fault_at(types.mark, "There are more cells than can be numbered"));
+        return Err(s.fault_at(types.mark, "There are too many cells"));
     }
-    // Where the data of each triangle, quadrilateral and line stands among those of all cells.
+    // The cells of triangles, quadrilaterals and lines, to find their data.
     let (mut triangle_cells, mut quad_cells, mut line_cells) = (Vec::new(), Vec::new(), Vec::new());
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
     let cells = types.values.len();
@@ -179,7 +179,7 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
     for cell in 0..cells {
         let (to, kind) = (offsets.values.at(cell), types.values.at(cell));
         if !(to >= from as f64 && to as usize <= connectivity.values.len()) {
-            return Err(s.fault_at(offsets.mark, format!("The offset {to} of cell {cell} is impossible")));
+            return Err(s.fault_at(offsets.mark, format!("The offset {to} of cell {cell} is out of range")));
         }
         let corners = from..to as usize;
         from = to as usize;
@@ -187,7 +187,7 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
         for (index, at) in indices.iter_mut().zip(corners.clone()) {
             let corner = connectivity.values.at(at);
             if !(corner >= 0.0 && corner < mesh.points.len() as f64 && corner.fract() == 0.0) {
-                let what = format!("Cell {cell} has the point {corner}, which does not exist");
+                let what = format!("Cell {cell} refers to point {corner}, which does not exist");
                 return Err(s.fault_at(connectivity.mark, what));
             }
             *index = corner as u32;
@@ -208,12 +208,12 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
                 line_cells.push(cell as u32);
             }
             (5 | 9 | 3, count) => {
-                let what = format!("Cell {cell} is of type {kind} and has {count} points");
+                let what = format!("Cell {cell} of type {kind} has {count} points");
                 return Err(s.fault_at(offsets.mark, what));
             }
             (1 | 2, _) => {}
             (21..=37, _) => {
-                let what = format!("Cells of higher order (type {kind}) are not read");
+                let what = format!("Cells of higher order (type {kind}) are not supported");
                 return Err(s.fault_at(types.mark, what).remedy("Save the mesh with cells of order 1"));
             }
             (other, _) => *skipped.entry(format!("VTK cell of type {other}")).or_default() += 1,
@@ -222,10 +222,10 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
     mesh.skipped = skipped.into_iter().collect();
     drop((connectivity, offsets, types));
     let (points, triangles) = (mesh.points.len(), triangle_cells.len());
-    let mut ours = triangle_cells;
-    ours.append(&mut quad_cells);
+    let mut element_cells = triangle_cells;
+    element_cells.append(&mut quad_cells);
     for array in arrays {
-        match array.room.as_str() {
+        match array.parent.as_str() {
             "PointData" if array.name == METRIC && matches!(array.components, 6 | 9) && array.holds(points) => {
                 let values = array.values.into_reals();
                 let tensors = values.chunks_exact(array.components).zip(0..).map(|(m, point)| {
@@ -250,15 +250,16 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
                 let value = |&cell: &u32| array.values.at(cell as usize);
                 if array.name == TAG {
                     let tags = |cells: &[u32]| cells.iter().map(|cell| value(cell) as u32).collect();
-                    let (of_triangles, of_quads) = ours.split_at(triangles);
+                    let (of_triangles, of_quads) = element_cells.split_at(triangles);
                     (mesh.triangle_tags, mesh.quad_tags) = (tags(of_triangles), tags(of_quads));
                     mesh.line_tags = tags(&line_cells);
                 } else {
-                    mesh.element_data.push(Data { name: array.name, values: ours.iter().map(value).collect() });
+                    mesh.element_data
+                        .push(Data { name: array.name, values: element_cells.iter().map(value).collect() });
                 }
             }
             "FieldData" => {
-                // Pairs of tag and dimension, as far as they are such.
+                // Pairs of tag and dimension; others are ignored.
                 for &[tag, dimension] in array.values.into_reals().as_chunks().0 {
                     let is_whole = |x: f64, most: f64| x.fract() == 0.0 && (0.0..=most).contains(&x);
                     if is_whole(tag, f64::from(u32::MAX)) && is_whole(dimension, 2.0) {

@@ -10,7 +10,7 @@ use crate::core::soup::mesh_file::{Data, MeshFile, tag_of};
 /// Writes a mesh with its data.
 ///
 /// # Errors
-/// What `out` says.
+/// Those of `out`.
 pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     let lines = mesh.own_lines();
     let elements = mesh.triangles.len() + mesh.quads.len();
@@ -31,7 +31,7 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     mesh.quads.iter().try_for_each(|corners| row(out, corners))?;
     lines.iter().try_for_each(|&i| row(out, &mesh.lines[i]))?;
     close(out)?;
-    // VTK's numbers of the shapes, and how many corners they have.
+    // VTK's cell types, with their numbers of corners and of cells.
     let shapes = [(5, 3, mesh.triangles.len()), (9, 4, mesh.quads.len()), (3, 2, lines.len())];
     let each = || shapes.into_iter().flat_map(|(kind, corners, count)| std::iter::repeat_n((kind, corners), count));
     let mut offset = 0;
@@ -45,7 +45,7 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
 }
 
-/// The names of the groups of elements, and of those of the lines that are written.
+/// Writes the names of the face groups and of the groups of the given lines.
 fn groups(out: &mut dyn Write, mesh: &MeshFile, lines: &[usize]) -> io::Result<()> {
     let mut named: Vec<(&str, Vec<[u32; 2]>)> = Vec::new();
     for group in mesh.groups_with(lines) {
@@ -92,7 +92,7 @@ fn cell_data(out: &mut dyn Write, mesh: &MeshFile, lines: &[usize]) -> io::Resul
     }
     let beside = if mesh.element_data.is_empty() { Vec::new() } else { mesh.sides_at(lines) };
     for Data { name, values } in &mesh.element_data {
-        // A line that bounds no element: no number, and VTK does not read what is none.
+        // A line without an adjacent element gets -1, since VTK does not read NaN.
         let of_lines = beside.iter().map(|element| element.map_or(-1.0, |(element, _)| values[element]));
         array(out, "Float64", name, &[""], values.iter().copied().chain(of_lines).map(|value| [Shortest(value)]))?;
     }
@@ -111,7 +111,7 @@ fn escaped(name: &str) -> String {
     name.chars().map(escape).collect()
 }
 
-/// An array of rows, with the names of its components where they are several.
+/// Writes an array row by row; several components have names.
 fn array<const N: usize>(
     out: &mut dyn Write,
     kind: &str,

@@ -57,7 +57,7 @@ impl Mesh {
             deferred,
             first_level: self.first_level_in(nodes),
             refusals: self.refusals,
-            ground: self.ground.clone(),
+            embedding: self.embedding.clone(),
             ..Mesh::default()
         }
     }

@@ -165,9 +165,9 @@ impl Mesh {
             closed,
             journal: _,
             refusals,
-            ground,
+            embedding,
         } = other;
-        self.ground.clone_from(ground);
+        self.embedding.clone_from(embedding);
         self.uv.clone_from(uv);
         self.metric.clone_from(metric);
         self.anchor.clone_from(anchor);

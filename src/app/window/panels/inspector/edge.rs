@@ -1,4 +1,4 @@
-//! An edge that is no front segment: live, dead or boundary, and what lies beside it.
+//! An edge that is not a front segment: live, dead or boundary, and the elements beside it.
 
 use eframe::egui::Ui;
 
@@ -14,7 +14,7 @@ use crate::render::scene::Outlined;
 
 pub fn show(
     ui: &mut Ui,
-    state: &mut State,
+    state: &State,
     moment: &Moment,
     between: [NodeId; 2],
     commands: &mut Vec<Command>,
@@ -28,7 +28,7 @@ pub fn show(
         EdgeKind::Live => "live: between live triangles, it can be changed",
         EdgeKind::Front => "front: live triangles on one side",
         EdgeKind::Dead => "dead: between quadrilaterals",
-        EdgeKind::Boundary => "boundary: used up",
+        EdgeKind::Boundary => "boundary: quadrilaterals only",
     };
     let boundary = if told.is_boundary && told.kind != EdgeKind::Boundary { "  ·  on the boundary" } else { "" };
     ui.label(note(format!("{kind}{boundary}"), palette));
@@ -37,12 +37,12 @@ pub fn show(
     let text =
         format!("**{}** metric,  {} in space", words::fixed(told.length_metric, 2), words::size(told.length_physical));
     formula(ui, &text, palette).on_hover_text("In a plane case the parametric length is that in space.");
-    heading(ui, "Beside it", "", palette);
+    heading(ui, "Elements beside it", "", palette);
     let sides = [mesh.half_edge_between(a, b), mesh.half_edge_between(b, a)];
     let beside: Vec<ElementId> = sides.into_iter().flatten().map(|h| h.element()).collect();
     let (live, dead): (Vec<ElementId>, Vec<ElementId>) = beside.into_iter().partition(|e| mesh.is_triangle(*e));
-    elements(ui, "live triangles", &live, state, commands, palette);
-    elements(ui, "dead quads", &dead, state, commands, palette);
-    heading(ui, "Ends", "what their metrics ask for", palette);
-    ends(ui, state, moment, &[("", a), ("", b)], commands, palette);
+    elements(ui, "live triangles", &live, commands, palette);
+    elements(ui, "dead quads", &dead, commands, palette);
+    heading(ui, "Ends", "sizes of their metrics", palette);
+    ends(ui, moment, &[("", a), ("", b)], commands, palette);
 }

@@ -12,14 +12,7 @@ use crate::core::run::explain::ElementTold;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
-pub fn show(
-    ui: &mut Ui,
-    state: &mut State,
-    moment: &Moment,
-    e: ElementId,
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+pub fn show(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(told) = ElementTold::of(&moment.mesh, e) else {
         title(ui, format!("Element {}", e.0), palette);
         return gone(ui, "The element", palette);
@@ -37,7 +30,7 @@ pub fn show(
     heading(ui, "Area", "1 is a unit square of the metric", palette);
     let areas = format!("**{}** metric,  {} in space", words::fixed(told.area_metric, 2), words::size(told.area));
     formula(ui, &areas, palette);
-    heading(ui, "Nodes", "what their metrics ask for", palette);
+    heading(ui, "Nodes", "sizes of their metrics", palette);
     let nodes: Vec<(&str, NodeId)> = told.nodes.iter().map(|n| ("", *n)).collect();
-    ends(ui, state, moment, &nodes, commands, palette);
+    ends(ui, moment, &nodes, commands, palette);
 }

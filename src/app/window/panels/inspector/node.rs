@@ -1,4 +1,4 @@
-//! A node: its place and metric, what lies around it, its frontal angles.
+//! A node: its place and metric, the elements around it, its frontal angles.
 
 use eframe::egui::Ui;
 
@@ -12,18 +12,11 @@ use crate::core::run::explain::NodeTold;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
-pub fn show(
-    ui: &mut Ui,
-    state: &mut State,
-    moment: &Moment,
-    node: NodeId,
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+pub fn show(ui: &mut Ui, state: &State, moment: &Moment, node: NodeId, commands: &mut Vec<Command>, palette: &Palette) {
     title(ui, format!("Node {}", node.0), palette);
     let mesh = &moment.mesh;
     let Some(told) = NodeTold::of(mesh, node) else { return gone(ui, "The node", palette) };
-    let place = if told.is_fixed { "on the boundary: it stays" } else { "free: it may be moved" };
+    let place = if told.is_fixed { "on the boundary: fixed" } else { "free: may be moved" };
     ui.label(note(format!("{place}  ·  {} edges", told.valence), palette));
     actions(ui, state, Outlined::Node(node), commands);
     heading(ui, "Place", "plane case: u = x, v = y", palette);
@@ -50,10 +43,10 @@ pub fn show(
         ui.horizontal(|ui| {
             formula(ui, &format!("\u{3b8} = **{}°**  left of", words::fixed(*angle, 1)), palette);
             let name = words::segment(ends[0], ends[1]);
-            super::link(ui, name, Outlined::Edge(ends), state, commands, palette);
+            super::link(ui, name, Outlined::Edge(ends), commands, palette);
         });
     }
     heading(ui, "Elements around it", "", palette);
-    elements(ui, "live triangles", &told.live, state, commands, palette);
-    elements(ui, "dead quads", &told.dead, state, commands, palette);
+    elements(ui, "live triangles", &told.live, commands, palette);
+    elements(ui, "dead quads", &told.dead, commands, palette);
 }

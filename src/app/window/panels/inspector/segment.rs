@@ -1,4 +1,4 @@
-//! A segment of the front: H-value, frontal angles, why it was or was not chosen, what its sides were chosen from.
+//! A segment of the front: H-value, frontal angles, why it was or was not selected, and the candidates for its sides.
 
 use eframe::egui::Ui;
 
@@ -15,14 +15,7 @@ use crate::core::run::explain::Corner;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
-pub fn show(
-    ui: &mut Ui,
-    state: &mut State,
-    moment: &Moment,
-    place: usize,
-    commands: &mut Vec<Command>,
-    palette: &Palette,
-) {
+pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {
     let s = &moment.front[place];
     let is_base = Decision::of(&moment.phase).base == Some([s.a, s.b]);
     title(ui, format!("Front segment {}", words::segment(s.a, s.b)), palette);
@@ -45,8 +38,8 @@ pub fn show(
     let what = Outlined::Edge([s.a, s.b]);
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| {
-        let tip = "In place of the base that was just selected, or else at the next selection, whatever its rank: a change of \
-                   the run";
+        let tip =
+            "Replaces the base that was just selected, or is selected next, whatever its rank. This changes the run";
         if !is_base && ui.button("Choose as base").on_hover_text(tip).clicked() {
             commands.push(Command::ChooseBase([s.a, s.b]));
         }
@@ -57,12 +50,12 @@ pub fn show(
     for (side, name) in Side::BOTH.into_iter().zip(["A", "B"]) {
         angle(ui, moment, s, side, name, palette);
     }
-    why::show(ui, state, moment, place, palette);
+    why::show(ui, state, moment, place, commands, palette);
     match moment.candidates.as_ref().filter(|_| is_base) {
-        Some(tried) => candidates(ui, state, moment, tried, s, commands, palette),
+        Some(tried) => candidates(ui, moment, tried, s, commands, palette),
         None if is_base => {
             heading(ui, "Side edges", "4.3.4", palette);
-            let text = "Step on by one operation (Ctrl+Right) to see what a side is chosen from.";
+            let text = "Step forward by one operation (Ctrl+Right) to see the candidates for a side.";
             ui.add(eframe::egui::Label::new(note(text, palette)).wrap());
         }
         None => {}
@@ -71,8 +64,8 @@ pub fn show(
     let length =
         format!("**{}** metric,  {} in space", words::fixed(s.length_metric, 2), words::size(s.length_physical));
     formula(ui, &length, palette).on_hover_text("In a plane case the parametric length is that in space.");
-    heading(ui, "Ends", "what their metrics ask for", palette);
-    ends(ui, state, moment, &[("A", s.a), ("B", s.b)], commands, palette);
+    heading(ui, "Ends", "sizes of their metrics", palette);
+    ends(ui, moment, &[("A", s.a), ("B", s.b)], commands, palette);
 }
 
 fn h_value(ui: &mut Ui, moment: &Moment, s: &Segment, palette: &Palette) {
@@ -121,10 +114,9 @@ fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, pale
     formula(ui, &format!("\u{3b8}_{{{name}}}  **{}°**  {verdict}", words::degrees(theta)), palette);
 }
 
-/// What the step that led here chose a side from.
+/// The candidates for a side in the last step.
 fn candidates(
     ui: &mut Ui,
-    state: &mut State,
     moment: &Moment,
     tried: &Candidates,
     s: &Segment,
@@ -145,7 +137,7 @@ fn candidates(
     let told = format!("{} tried, {}", count(edges, "edge"), count(swaps, "swap"));
     heading(ui, &format!("{side} side at {end}"), &told, palette);
     let aim = format!(
-        "Aims at {}° from the base and takes what is within {}° of that.",
+        "The target is {}° from the base; edges within {}° of it are accepted.",
         words::degrees(tried.target),
         words::degrees(tried.limit)
     );
@@ -155,7 +147,7 @@ fn candidates(
     for (k, candidate) in tried.edges.iter().enumerate() {
         let ends = [from, candidate.node];
         let verdict = match candidate.passed {
-            None => format!("{} taken", icons::CHECK),
+            None => format!("{} chosen", icons::CHECK),
             Some(passed) => words::passed(passed, candidate, tried),
         };
         let texts = [
@@ -176,7 +168,7 @@ fn candidates(
         let there = moment.mesh.has_node(candidate.node) && moment.mesh.are_joined(from, candidate.node);
         let what = if there { Outlined::Edge(ends) } else { Outlined::Node(candidate.node) };
         if response.hovered() {
-            state.hover(Some(what));
+            commands.push(Command::Hover(what));
         }
         if response.on_hover_text(&texts[4]).clicked() {
             commands.push(Command::Pick(Some(what)));

@@ -1,29 +1,31 @@
-//! Why a segment was, or was not, chosen (paper 4.3.3, table 1), and within which bounds the choice would have been the
+//! Why a segment was or was not selected (paper 4.3.3, table 1), and for which parameters the selection would be the
 //! same.
 
 use eframe::egui::Ui;
 
 use super::{heading, sentence};
+use crate::app::window::command::Command;
 use crate::app::window::session::{Explained, Moment};
-use crate::app::window::state::State;
+use crate::app::window::state::{Lookup, State};
 use crate::app::window::words;
 use crate::core::case::parameters::{Selection, SelectionWindow};
 use crate::core::run::explain::{SegmentTold, Verdict};
 use crate::core::run::front_table::Row;
 use crate::render::palette::Palette;
 
-pub fn show(ui: &mut Ui, state: &mut State, moment: &Moment, place: usize, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {
     let row = &moment.rows[place];
     let ends = [row.a, row.b];
     let base = moment.base.as_ref().filter(|told| [told.row.a, told.row.b] == ends);
     let (told, put_off) = match base {
         Some(told) => (told.clone(), None),
-        None => match state.explanation(ends) {
-            Some(explained) => {
+        None => match state.run().explanation(ends) {
+            Lookup::Known(explained) => {
                 let Explained { told, put_off } = &*explained;
                 (told.clone(), *put_off)
             }
-            None => return,
+            Lookup::Pending => return,
+            Lookup::Unasked => return commands.push(Command::Explain(ends)),
         },
     };
     heading(ui, if told.is_base { "Why this segment" } else { "Why not this segment" }, "table 1, 4.3.3", palette);
@@ -51,12 +53,12 @@ fn count_of_class(moment: &Moment, class: u8) -> usize {
     waiting(moment).filter(|row| row.class == class).count()
 }
 
-/// The segment with the smallest H of those that wait.
+/// The segment with the smallest H among those that are not put off.
 fn smallest(moment: &Moment) -> Option<&Row> {
     waiting(moment).min_by(|a, b| a.h_value.total_cmp(&b.h_value))
 }
 
-/// What is held against c Hmin, with its number.
+/// The quantity that is compared with c Hmin.
 fn window(moment: &Moment, row: &Row) -> String {
     let name = match moment.parameters.selection_window {
         SelectionWindow::HValue => "H",
@@ -161,7 +163,7 @@ fn same_choice(told: &SegmentTold) -> String {
     if bounds.is_empty() { String::new() } else { format!("Same choice for {}.", bounds.join(" and ")) }
 }
 
-/// Bounds are rounded inwards, so that what is said stays true.
+/// Bounds are rounded inwards, so that they stay true.
 fn up(x: f64, decimals: i32) -> String {
     let scale = libm::pow(10.0, f64::from(decimals));
     words::fixed((x * scale - 1e-9).ceil() / scale, decimals as usize)

@@ -1,4 +1,4 @@
-//! What the timeline shows, by its columns: counted anew only when the run, the span or the width is another.
+//! The contents of the timeline by columns of pixels, computed again only when the run, the span or the width changes.
 
 use crate::app::window::session::Tracked;
 use crate::app::window::state::State;
@@ -16,57 +16,57 @@ const ROWS: [(&str, &[&str]); 5] = [
     ),
     ("rolled back", &["rolled_back", "deferred", "second_pass", "seam_refused"]),
 ];
-/// The row of what did not come about.
+/// The row of failures.
 const FAILURES: usize = 4;
 
 /// One row of ticks.
 pub struct Lane {
     pub name: String,
-    /// How many in the whole run.
+    /// How many events there are in the whole run.
     pub total: u64,
-    /// How many by column.
+    /// How many there are in each column.
     pub bins: Vec<u32>,
     pub is_failure: bool,
-    /// The row of kinds that it belongs to, where there are several.
+    /// The row of kinds that it belongs to, if there are several.
     pub group: Option<usize>,
     pub is_open: bool,
 }
 
-/// What a curve shows.
+/// The quantity of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Figure {
+pub enum CurveKind {
     Front,
     Quality,
     Live,
     Loops,
 }
 
-impl Figure {
-    /// In the order in which they stand where there is room.
-    const ALL: [Figure; 4] = [Figure::Front, Figure::Quality, Figure::Live, Figure::Loops];
+impl CurveKind {
+    /// All of them, in the order in which they are shown as far as there is room.
+    const ALL: [CurveKind; 4] = [CurveKind::Front, CurveKind::Quality, CurveKind::Live, CurveKind::Loops];
 
     pub fn name(self) -> &'static str {
         match self {
-            Figure::Front => "front length",
-            Figure::Quality => "quality, worst",
-            Figure::Live => "live triangles",
-            Figure::Loops => "loops",
+            CurveKind::Front => "front length",
+            CurveKind::Quality => "quality, worst",
+            CurveKind::Live => "live triangles",
+            CurveKind::Loops => "loops",
         }
     }
 
     fn of(self, tracked: &Tracked) -> f32 {
         match self {
-            Figure::Front => tracked.front as f32,
-            Figure::Quality => tracked.formed.map_or(1.0, |formed| formed.1),
-            Figure::Live => tracked.live as f32,
-            Figure::Loops => f32::from(tracked.loops[0]),
+            CurveKind::Front => tracked.front as f32,
+            CurveKind::Quality => tracked.formed.map_or(1.0, |formed| formed.1),
+            CurveKind::Live => tracked.live as f32,
+            CurveKind::Loops => f32::from(tracked.loops[0]),
         }
     }
 }
 
 /// One curve: places in points from the left, with values.
 pub struct Curve {
-    pub of: Figure,
+    pub of: CurveKind,
     pub line: Vec<(f32, f32)>,
     pub dots: Vec<(f32, f32)>,
     /// The value at the top.
@@ -88,40 +88,40 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Counts anew where something is other than before.
-    pub fn update(&mut self, state: &State, span: [f64; 2], width: f32) {
+    /// Counts again if anything has changed.
+    pub fn update(&mut self, state: &State, open_row: Option<usize>, span: [f64; 2], width: f32) {
         let columns = width.max(1.0) as usize;
-        let seen = Some((state.track_epoch, span, columns, state.open_lanes));
+        let seen = Some((state.run().track_epoch, span, columns, open_row));
         if self.seen == seen {
             return;
         }
-        if self.seen.is_none_or(|before| before.0 != state.track_epoch) {
+        if self.seen.is_none_or(|before| before.0 != state.run().track_epoch) {
             self.follow(state);
         }
         self.seen = seen;
         let place = |step: usize| ((step as f64 - span[0]) / (span[1] - span[0]) * columns as f64) as f32;
-        let first = (span[0].max(0.0) as usize).min(state.track.len());
-        let last = (span[1].ceil() as usize).clamp(first, state.track.len());
-        self.count_lanes(state, first..last, columns, &place);
+        let first = (span[0].max(0.0) as usize).min(state.run().track.len());
+        let last = (span[1].ceil() as usize).clamp(first, state.run().track.len());
+        self.count_lanes(state, open_row, first..last, columns, &place);
         self.curves.clear();
-        for of in Figure::ALL {
+        for of in CurveKind::ALL {
             self.curves.push(self.curve_of(of, state, first..last, columns, &place));
         }
     }
 
-    /// What is known along the run.
+    /// Follows the record of the run.
     fn follow(&mut self, state: &State) {
         let mut worst = f32::INFINITY;
-        let qualities = state.track.iter().map(|tracked| {
+        let qualities = state.run().track.iter().map(|tracked| {
             worst = tracked.formed.map_or(worst, |formed| worst.min(formed.1));
             worst
         });
         self.worst = qualities.collect();
-        self.figures = state.track.iter().map(|t| [t.front, t.live, t.loops[0].into()]).collect();
-        self.first = state.samples.first().copied();
+        self.figures = state.run().track.iter().map(|t| [t.front, t.live, t.loops[0].into()]).collect();
+        self.first = state.run().samples.first().copied();
         self.broken.clear();
         let mut before = 0;
-        for sample in &state.samples {
+        for sample in &state.run().samples {
             if self.broken(sample).is_some() {
                 self.broken.push([before, sample.step]);
             }
@@ -129,7 +129,7 @@ impl Columns {
         }
         // Parity is known after every step.
         if self.first.is_some_and(|first| first.front.odd == 0) {
-            for (k, _) in state.track.iter().enumerate().filter(|(_, tracked)| tracked.loops[1] > 0) {
+            for (k, _) in state.run().track.iter().enumerate().filter(|(_, tracked)| tracked.loops[1] > 0) {
                 let step = k as u64 + 1;
                 match self.broken.last_mut() {
                     Some(last) if last[1] + 1 == step => last[1] = step,
@@ -139,7 +139,7 @@ impl Columns {
         }
     }
 
-    /// What does not hold in a sample: orientation, area, Euler's number, parity of the loops.
+    /// The invariant that does not hold in a sample: orientation, area, Euler's number, parity of the loops.
     pub fn broken(&self, sample: &Sample) -> Option<String> {
         let first = self.first?;
         if sample.inverted > 0 {
@@ -157,13 +157,14 @@ impl Columns {
     fn count_lanes(
         &mut self,
         state: &State,
+        open_row: Option<usize>,
         seen: std::ops::Range<usize>,
         columns: usize,
         place: &dyn Fn(usize) -> f32,
     ) {
         self.lanes.clear();
         for (k, (name, kinds)) in ROWS.iter().enumerate() {
-            let is_open = state.open_lanes == Some(k);
+            let is_open = open_row == Some(k);
             let group = (kinds.len() > 1).then_some(k);
             let lane = |name: String| Lane {
                 name,
@@ -179,12 +180,12 @@ impl Columns {
                 self.lanes.push(lane((*name).to_owned()));
             }
         }
-        // Kinds are static words: most steps are decided by their addresses.
+        // Kinds are static words: comparing addresses is enough for most steps.
         let lane_of = |kind: &str| {
             let mut first = 0;
             for (k, (_, kinds)) in ROWS.iter().enumerate() {
                 let at = kinds.iter().position(|known| *known == kind);
-                let is_open = state.open_lanes == Some(k);
+                let is_open = open_row == Some(k);
                 if let Some(at) = at {
                     return Some(first + if is_open { at } else { 0 });
                 }
@@ -193,7 +194,7 @@ impl Columns {
             None
         };
         let mut known: Vec<(&'static str, Option<usize>)> = Vec::new();
-        for (k, tracked) in state.track.iter().enumerate() {
+        for (k, tracked) in state.run().track.iter().enumerate() {
             let found = known.iter().find(|known| std::ptr::eq(known.0, tracked.kind)).map(|known| known.1);
             let lane = found.unwrap_or_else(|| {
                 let lane = lane_of(tracked.kind);
@@ -212,7 +213,7 @@ impl Columns {
 
     fn curve_of(
         &self,
-        of: Figure,
+        of: CurveKind,
         state: &State,
         seen: std::ops::Range<usize>,
         columns: usize,
@@ -221,12 +222,12 @@ impl Columns {
         let mut curve = Curve { of, line: Vec::new(), dots: Vec::new(), top: 1.0 };
         let every = (seen.len() / (2 * columns).max(1)).max(1);
         for k in seen.clone().step_by(every) {
-            let value = if of == Figure::Quality { self.worst[k].min(1.0) } else { of.of(&state.track[k]) };
+            let value = if of == CurveKind::Quality { self.worst[k].min(1.0) } else { of.of(&state.run().track[k]) };
             curve.line.push((place(k + 1), value));
         }
         match of {
-            Figure::Quality => {
-                let formed = seen.filter_map(|k| Some((k, state.track[k].formed?.1)));
+            CurveKind::Quality => {
+                let formed = seen.filter_map(|k| Some((k, state.run().track[k].formed?.1)));
                 let dots: Vec<_> = formed.map(|(k, quality)| (place(k + 1), quality)).collect();
                 let every = (dots.len() / columns.max(1)).max(1);
                 curve.dots = dots.into_iter().step_by(every).collect();
@@ -244,29 +245,29 @@ impl Columns {
         &self.curves
     }
 
-    /// Stretches of steps in which something does not hold.
+    /// Ranges of steps in which an invariant does not hold.
     pub fn broken_spans(&self) -> &[[u64; 2]] {
         &self.broken
     }
 
     /// The value of a curve at a step.
-    pub fn value(&self, of: Figure, step: u64) -> String {
+    pub fn value(&self, of: CurveKind, step: u64) -> String {
         let Some(k) = step.checked_sub(1).map(|k| k as usize) else {
             let Some(first) = self.first else { return words::UNDEFINED.to_owned() };
             return match of {
-                Figure::Front => words::grouped(first.front.segments.into()),
-                Figure::Live => words::grouped(first.front.live.into()),
-                Figure::Loops => words::grouped(first.front.loops.into()),
-                Figure::Quality => words::UNDEFINED.to_owned(),
+                CurveKind::Front => words::grouped(first.front.segments.into()),
+                CurveKind::Live => words::grouped(first.front.live.into()),
+                CurveKind::Loops => words::grouped(first.front.loops.into()),
+                CurveKind::Quality => words::UNDEFINED.to_owned(),
             };
         };
         let figure =
             |at: usize| self.figures.get(k).map_or(words::UNDEFINED.to_owned(), |f| words::grouped(f[at].into()));
         match of {
-            Figure::Front => figure(0),
-            Figure::Live => figure(1),
-            Figure::Loops => figure(2),
-            Figure::Quality => words::fixed(f64::from(self.worst.get(k).copied().unwrap_or(f32::NAN)), 2),
+            CurveKind::Front => figure(0),
+            CurveKind::Live => figure(1),
+            CurveKind::Loops => figure(2),
+            CurveKind::Quality => words::fixed(f64::from(self.worst.get(k).copied().unwrap_or(f32::NAN)), 2),
         }
     }
 }

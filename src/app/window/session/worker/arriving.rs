@@ -1,10 +1,10 @@
-//! Arriving at a step: what of the state is told, and whether its invariants hold.
+//! Arriving at a step: the report of the state, and the checks of its invariants.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::super::Told;
+use super::super::SessionNews;
 use super::super::moment::{Moment, Verdict, segment};
 use super::{RECENT, Worker};
 use crate::core::convert::candidates::Candidates;
@@ -15,7 +15,7 @@ use crate::core::run::front_table::{FrontTable, Row};
 use crate::core::run::history::Changes;
 
 impl Worker {
-    /// Goes to a step, and takes note of what that changes.
+    /// Goes to a step and notes the changes.
     fn walk(&mut self, step: u64) -> Result<Changes, Fault> {
         self.history.seek(step)?;
         let changes = self.history.take_changes();
@@ -24,8 +24,7 @@ impl Worker {
         Ok(changes)
     }
 
-    /// Goes to a step in such a way that what the last steps changed is known; tells what the last one had to choose
-    /// from.
+    /// Goes to a step such that the changes of the last steps are known. Returns the candidates of the last step.
     fn walk_with_recent(&mut self, step: u64) -> Result<Option<Candidates>, Fault> {
         let first = (step + 1).saturating_sub(RECENT).max(1);
         let is_known = |recent: &VecDeque<(u64, _)>, step: u64| recent.iter().any(|known| known.0 == step);
@@ -103,7 +102,7 @@ impl Worker {
         })
     }
 
-    /// Checks the whole mesh at hand.
+    /// Checks the whole mesh.
     pub(super) fn check(&mut self) {
         self.unchecked = false;
         let verdict = match self.history.state().mesh.check() {
@@ -113,6 +112,6 @@ impl Worker {
                 Verdict::Broken(what)
             }
         };
-        self.voice.say(Told::Checked(self.history.step(), verdict));
+        self.voice.say(SessionNews::Checked(self.history.step(), verdict));
     }
 }

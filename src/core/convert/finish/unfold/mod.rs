@@ -280,8 +280,8 @@ impl<'a> Unfolding<'a> {
         INLAID.iter().find_map(|&part| {
             let mark = mesh.mark();
             let places = p.map(|p| p.lerp(middle, part));
-            let ground = mesh.ground()?;
-            let lies_on = |place: &DVec2| beside.iter().any(|q| ground.atlas.xyz(*place).distance(*q) <= self.near);
+            let embedding = mesh.embedding()?;
+            let lies_on = |place: &DVec2| beside.iter().any(|q| embedding.atlas.xyz(*place).distance(*q) <= self.near);
             if places.iter().any(lies_on) {
                 return None;
             }

@@ -159,12 +159,12 @@ impl Star {
 
     /// The least sine of the elements with the node elsewhere; where it is not above `floor`, any number that is not.
     fn least_sine_at(&mut self, mesh: &Mesh, place: DVec2, near: f64, floor: f64) -> f64 {
-        let ground = mesh.ground().map(|ground| &**ground);
-        let xyz = ground.map_or_else(|| place.extend(0.0), |ground| ground.atlas.xyz(place));
+        let embedding = mesh.embedding().map(|embedding| &**embedding);
+        let xyz = embedding.map_or_else(|| place.extend(0.0), |embedding| embedding.atlas.xyz(place));
         let mut least = f64::INFINITY;
         for (corners, own) in &mut self.0 {
             corners.put(*own, place, xyz);
-            least = least.min(corners.least_sine(ground, near, floor));
+            least = least.min(corners.least_sine(embedding, near, floor));
             if least <= floor {
                 break;
             }

@@ -1,4 +1,4 @@
-//! A part of a surface laid into the plane: whether it lies there one to one, and how much it is stretched.
+//! Maps of a surface part to the plane: injectivity and stretch.
 
 use glam::{DVec2, DVec3};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -6,12 +6,12 @@ use rstar::{AABB, RTree};
 
 use crate::core::kernel::predicates::orient;
 
-/// How far a map to the plane is from keeping shapes and areas.
+/// Distortion of a map to the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// The greatest ratio of the lengths in space that equal lengths of the plane have at one place (1: shapes are kept).
+    /// Largest ratio of the two singular values at a point (1: conformal).
     pub shape: f64,
-    /// Ratio of the greatest to the least area in space of equal areas of the plane.
+    /// Ratio of the largest to the smallest area factor.
     pub area: f64,
 }
 
@@ -21,45 +21,45 @@ impl Default for Stretch {
     }
 }
 
-/// How much a chart may be stretched.
+/// Limits on the stretch of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
+pub struct StretchBound {
     /// Bound for [`Stretch::shape`].
     pub shape: f64,
     /// Bound for [`Stretch::area`].
     pub area: f64,
 }
 
-impl Default for Bound {
+impl Default for StretchBound {
     fn default() -> Self {
         // Far below what the arithmetic would bear (50 and 1e4; docs/algorithm.md, "Charts of triangles"): the mesh is
         // made in the plane, and follows its metric the better the less that changes from triangle to triangle.
-        Bound { shape: 4.0, area: 16.0 }
+        StretchBound { shape: 4.0, area: 16.0 }
     }
 }
 
-impl Bound {
+impl StretchBound {
     pub(super) fn allows(self, stretch: Stretch) -> bool {
         stretch.shape <= self.shape && stretch.area <= self.area
     }
 }
 
-/// The nearest multiple of the grid.
+/// The nearest multiple of `grid`.
 pub fn snapped(p: DVec2, grid: f64) -> DVec2 {
     (p / grid).round() * grid
 }
 
-/// Whether all triangles lie the right way round, by an exact predicate.
-pub fn stands(triangles: &[[u32; 3]], uv: &[DVec2]) -> bool {
+/// Whether all triangles are positively oriented, by an exact predicate.
+pub fn is_positive(triangles: &[[u32; 3]], uv: &[DVec2]) -> bool {
     triangles.iter().all(|t| {
         let [a, b, c] = t.map(|k| uv[k as usize]);
         orient(a, b, c) > 0.0
     })
 }
 
-/// Whether the border loops bound one region of the plane to their left: none crosses or touches itself or another, and one
-/// alone runs anticlockwise. Then triangles that all lie the right way round cover each place once: the times that they cover a place are
-/// the turns of the loops around it, 1 within the one and 0 in its holes. By exact predicates.
+/// Whether the border loops bound one region of the plane to their left: none crosses or touches itself or another, and
+/// exactly one runs anticlockwise. Positively oriented triangles then cover each point once, since the number that
+/// cover a point is the winding number of the loops around it: 1 inside, 0 in the holes. By exact predicates.
 pub fn is_embedded(uv: &[DVec2], loops: &[u32]) -> bool {
     let mut next: Vec<u32> = Vec::new();
     let mut anticlockwise = 0;
@@ -80,7 +80,7 @@ pub fn is_embedded(uv: &[DVec2], loops: &[u32]) -> bool {
         let apart = |s: f64, t: f64| (s > 0.0 && t > 0.0) || (s < 0.0 && t < 0.0);
         !apart(orient(a, b, c), orient(a, b, d)) && !apart(orient(c, d, a), orient(c, d, b))
     };
-    // Neighbours share a corner; they must not fold back on each other.
+    // Adjacent sides share a corner and must not fold back on each other.
     let folds = |[a, b]: [DVec2; 2], c: DVec2| orient(a, b, c) == 0.0 && (a - b).dot(c - b) >= 0.0;
     let is_free = |k: usize| {
         let own = side(k);
@@ -95,7 +95,7 @@ pub fn is_embedded(uv: &[DVec2], loops: &[u32]) -> bool {
     anticlockwise == 1 && (0..next.len()).all(is_free)
 }
 
-/// How much the map stretches. Triangles that are nearly flat in space say nothing of it and are passed over.
+/// The stretch of a map. Nearly degenerate triangles are ignored.
 pub fn stretch(xyz: &[DVec3], triangles: &[[u32; 3]], uv: &[DVec2]) -> Stretch {
     let (mut shape, mut least, mut most) = (1.0_f64, f64::INFINITY, 0.0_f64);
     for t in triangles {
@@ -106,7 +106,7 @@ pub fn stretch(xyz: &[DVec3], triangles: &[[u32; 3]], uv: &[DVec2]) -> Stretch {
         if area < 1e-3 * longest {
             continue;
         }
-        // First fundamental form of the map from the plane to space: its eigenvalues are the squares of the singular values.
+        // Eigenvalues of the first fundamental form of the map from the plane to space are the squared singular values.
         let [a, b, c] = t.map(|k| uv[k as usize]);
         let (g, h) = (b - a, c - a);
         let det = g.perp_dot(h);
@@ -114,7 +114,7 @@ pub fn stretch(xyz: &[DVec3], triangles: &[[u32; 3]], uv: &[DVec2]) -> Stretch {
         let (uu, uv, vv) = (x_u.length_squared(), x_u.dot(x_v), x_v.length_squared());
         let (mean, radius) = (0.5 * (uu + vv), (0.25 * (uu - vv) * (uu - vv) + uv * uv).sqrt());
         let product = (area / det).abs();
-        // The smaller eigenvalue by the product: the difference would lose it.
+        // By the product of the eigenvalues: the smaller one would be lost in a difference.
         let ratio = (mean + radius) / product;
         shape = shape.max(if ratio.is_finite() { ratio } else { f64::INFINITY });
         (least, most) = (least.min(product), most.max(product));

@@ -1,4 +1,4 @@
-//! Files of runs that are kept, their locks, and those that were left behind.
+//! The files of autosaved runs, their locks, and abandoned runs.
 
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::time::SystemTime;
 use crate::core::fault::Fault;
 use crate::core::record::run_file;
 
-/// Where runs are kept: in `XDG_STATE_HOME` or what the system has in its place. `None` where it has nothing.
+/// The folder of autosaved runs: in `XDG_STATE_HOME` or this system's equivalent; none if the user has no home.
 pub fn folder() -> Option<PathBuf> {
     let of = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = |rest: &str| of("HOME").map(|home| home.join(rest));
@@ -21,20 +21,20 @@ pub fn folder() -> Option<PathBuf> {
     own.map(|own| own.join("quadfront").join("runs"))
 }
 
-/// A file for a run, with the lock that says whose it is.
+/// The file of an autosaved run, with the lock of the window that it belongs to.
 #[derive(Debug)]
-pub(super) struct Place {
+pub(super) struct RunSlot {
     pub path: PathBuf,
     lock: PathBuf,
-    /// Held while this is there.
+    /// Held for the lifetime of this value.
     _held: File,
 }
 
-impl Place {
-    /// A new one.
-    pub fn new(folder: &Path) -> Result<Place, Fault> {
+impl RunSlot {
+    /// A new file.
+    pub fn new(folder: &Path) -> Result<RunSlot, Fault> {
         let refuse = |what: std::io::Error| {
-            Fault::new(format!("The run cannot be kept while you work on it: {what}"))
+            Fault::new(format!("The run cannot be autosaved: {what}"))
                 .at(folder.display().to_string())
                 .remedy("Make the folder writable, or save the run with Ctrl+S")
         };
@@ -42,14 +42,14 @@ impl Place {
         for number in 0.. {
             let path = folder.join(format!("{}-{number}.toml", std::process::id()));
             let lock = path.with_extension("lock");
-            // A number of a process long gone may come again.
+            // The system may reuse the number of a process that has ended.
             if path.exists() {
                 continue;
             }
             match OpenOptions::new().write(true).create_new(true).open(&lock) {
                 Ok(held) => {
                     held.lock().map_err(refuse)?;
-                    return Ok(Place { path, lock, _held: held });
+                    return Ok(RunSlot { path, lock, _held: held });
                 }
                 Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists && number < 10_000 => {}
                 Err(error) => return Err(refuse(error)),
@@ -58,38 +58,38 @@ impl Place {
         unreachable!("the numbers do not end")
     }
 
-    /// The one of a run that nobody works on.
-    fn claim(path: PathBuf) -> Option<Place> {
+    /// Claims an abandoned file.
+    fn claim(path: PathBuf) -> Option<RunSlot> {
         let lock = path.with_extension("lock");
         let held = OpenOptions::new().write(true).create(true).truncate(false).open(&lock).ok()?;
         held.try_lock().ok()?;
-        // Another window may have taken it away meanwhile.
-        path.exists().then_some(Place { path, lock, _held: held })
+        // Another window may have removed it in the meantime.
+        path.exists().then_some(RunSlot { path, lock, _held: held })
     }
 
-    /// Takes it away.
+    /// Removes it.
     pub fn remove(self) {
-        // What cannot be removed is offered once more: nothing is lost by that.
+        // A file that cannot be removed is offered once more: nothing is lost.
         let _ = std::fs::remove_file(&self.path);
         let _ = std::fs::remove_file(&self.lock);
     }
 }
 
-/// A run that was left behind.
+/// An abandoned run.
 #[derive(Debug)]
 pub struct Offer {
-    pub(super) place: Place,
-    /// What is said of it.
+    pub(super) slot: RunSlot,
+    /// What the offer says.
     pub text: String,
     /// Whether it can be opened.
     pub opens: bool,
 }
 
 impl Offer {
-    fn of(place: Place) -> Offer {
-        let since = std::fs::metadata(&place.path).and_then(|meta| meta.modified()).ok();
+    fn of(slot: RunSlot) -> Offer {
+        let since = std::fs::metadata(&slot.path).and_then(|meta| meta.modified()).ok();
         let ago = since.map_or_else(String::new, |since| format!(" from {}", ago(since)));
-        let (text, opens) = match run_file::read(&place.path) {
+        let (text, opens) = match run_file::read(&slot.path) {
             Ok(run) => {
                 let edits = match (run.edits().len(), run.bookmarks.len()) {
                     (0, 0) => String::new(),
@@ -102,7 +102,7 @@ impl Offer {
             }
             Err(fault) => (format!("A run{ago} was not closed, and cannot be opened: {fault}"), false),
         };
-        Offer { place, text, opens }
+        Offer { slot, text, opens }
     }
 }
 
@@ -117,15 +117,15 @@ fn ago(since: SystemTime) -> String {
     }
 }
 
-/// Runs of a folder that were left behind, the last one first.
+/// The abandoned runs of a folder, the latest first.
 pub(super) fn left_behind(folder: &Path) -> Vec<Offer> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let is_run = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
     let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).filter(is_run);
-    let mut places: Vec<Place> = paths.filter_map(Place::claim).collect();
-    let written = |place: &Place| std::fs::metadata(&place.path).and_then(|meta| meta.modified()).ok();
-    places.sort_by_key(|place| std::cmp::Reverse((written(place), place.path.clone())));
-    places.into_iter().map(Offer::of).collect()
+    let mut slots: Vec<RunSlot> = paths.filter_map(RunSlot::claim).collect();
+    let written = |slot: &RunSlot| std::fs::metadata(&slot.path).and_then(|meta| meta.modified()).ok();
+    slots.sort_by_key(|slot| std::cmp::Reverse((written(slot), slot.path.clone())));
+    slots.into_iter().map(Offer::of).collect()
 }
 
 #[cfg(test)]

@@ -1,27 +1,27 @@
-//! A disc of triangles laid into the plane as rigidly as possible (Liu, Zhang, Xu, Gotsman & Gortler 2008): each triangle is
-//! turned as it lies best, then the nodes follow, again and again. What can be unrolled keeps its lengths to rounding; nothing
-//! promises that the result is one to one, so that it is looked at before it is taken.
+//! As-rigid-as-possible parametrisation of triangles in the plane (Liu, Zhang, Xu, Gotsman & Gortler 2008): alternates
+//! the best rotation of each triangle (local) with a linear solve for the nodes (global). Developable surfaces keep
+//! their lengths to rounding. The result need not be injective, so that it is checked.
 
 use glam::{DVec2, DVec3};
 
 use super::edges::Edges;
-use super::flat::{is_embedded, snapped, stands};
+use super::planar_map::{is_embedded, is_positive, snapped};
 use super::sparse::Means;
 use crate::core::progress::Cancel;
 
-/// Rounds of turning and following.
+/// Local/global iterations.
 const ROUNDS: usize = 40;
-/// Triangles that are looked at between two looks at whether to go on.
-const AT_A_TIME: usize = 1 << 14;
-/// Nodes that move by less than this part of the size are at rest.
+/// Triangles processed between two checks for cancellation.
+const BATCH: usize = 1 << 14;
+/// Convergence: the largest move relative to the length of the border.
 const AT_REST: f64 = 1e-4;
-/// The least weight of an edge, as a part of that between equilateral triangles: blunt angles would pull backwards.
+/// Least edge weight relative to that of equilateral triangles: obtuse angles would give negative ones.
 const LEAST_WEIGHT: f64 = 1e-2;
 
-/// Where the nodes lie in the plane; those of the border loops (so many each) come first, with the triangles to their left. `None`
-/// where that is not one to one, or where the work is told to end. `tell` is told how far it is, from 0 to 1.
+/// The nodes in the plane. Those of the border loops (of the given lengths) come first, with the triangles to their
+/// left. `None` if the map is not injective, or when cancelled. `tell` receives the progress, from 0 to 1.
 ///
-/// Coordinates are multiples of `grid`, a power of two: so they stay what they are when charts are laid side by side.
+/// Coordinates are multiples of `grid`, a power of two, so that they stay exact when charts are placed side by side.
 pub fn map(
     xyz: &[DVec3],
     triangles: &[[u32; 3]],
@@ -38,11 +38,11 @@ pub fn map(
     let mut uv = unrolled(triangles, edges, &flat, xyz.len(), cancel)?;
     let border = loops[0] as usize;
     let size = (0..border).map(|k| xyz[k].distance(xyz[(k + 1) % border])).sum::<f64>();
-    // One node is held fast, so that the rest know where they are.
+    // Node 0 is fixed, which makes the solution unique.
     let n = xyz.len();
     let mut row: Vec<Vec<(u32, f64)>> = vec![Vec::with_capacity(8); n];
     for (at, (t, w)) in triangles.iter().zip(&weights).enumerate() {
-        if at.is_multiple_of(AT_A_TIME) {
+        if at.is_multiple_of(BATCH) {
             go_on()?;
         }
         for k in 0..3 {
@@ -72,7 +72,7 @@ pub fn map(
         tell(round as f64 / ROUNDS as f64);
         let mut right = vec![DVec2::ZERO; n];
         for ((t, q), w) in triangles.iter().zip(&flat).zip(&weights) {
-            // The turn that brings the triangle nearest to where it lies: from the sums of u.q and u x q over its sides.
+            // The best rotation of the triangle, from the weighted sums of u.q and u x q over its sides.
             let mut turn = DVec2::ZERO;
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -104,10 +104,10 @@ pub fn map(
         }
     }
     uv.iter_mut().for_each(|p| *p = snapped(*p, grid));
-    (stands(triangles, &uv) && is_embedded(&uv, loops)).then_some(uv)
+    (is_positive(triangles, &uv) && is_embedded(&uv, loops)).then_some(uv)
 }
 
-/// A triangle in a plane of its own.
+/// A triangle in its own plane: first corner at the origin, second on the +x axis.
 pub fn flattened([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
     let (e, f) = (b - a, c - a);
     let long = e.length();
@@ -118,20 +118,20 @@ pub fn flattened([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
     [DVec2::ZERO, DVec2::new(long, 0.0), DVec2::new(f.dot(along), e.cross(f).length() / long)]
 }
 
-/// Half the cotangents of a triangle's angles, not below a least one: the weights of the sides opposite.
+/// Half the cotangents of a triangle's angles, bounded: the weights of the opposite sides.
 fn weights(q: &[DVec2; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
         let (e, f) = (q[(k + 1) % 3] - q[k], q[(k + 2) % 3] - q[k]);
         let cotangent = e.dot(f) / e.perp_dot(f);
-        // That of 60 degrees, for a triangle without area too.
+        // The cotangent of 60 degrees, also for a degenerate triangle.
         let plain = 1.0 / 3.0_f64.sqrt();
         let bound = if cotangent.is_finite() { cotangent.min(1e2) } else { plain };
         0.5 * bound.max(LEAST_WEIGHT * plain)
     })
 }
 
-/// The triangles unrolled one after the other from the first: each node where the triangle that meets it first puts it. `None` where
-/// the work is told to end.
+/// Initial positions: unrolls the triangles breadth first; the first triangle to reach a node places it. `None` when
+/// cancelled.
 fn unrolled(
     triangles: &[[u32; 3]],
     edges: &Edges,
@@ -141,7 +141,7 @@ fn unrolled(
 ) -> Option<Vec<DVec2>> {
     let mut uv = vec![None; nodes];
     let mut seen = vec![false; triangles.len()];
-    // From the middle of the list outwards as the triangles hang together.
+    // Starts in the middle of the list.
     let first = triangles.len() / 2;
     for k in 0..3 {
         uv[triangles[first][k] as usize] = Some(flat[first][k]);
@@ -151,7 +151,7 @@ fn unrolled(
     let mut looked = 0_usize;
     while let Some(t) = waiting.pop_front() {
         looked += 1;
-        if looked.is_multiple_of(AT_A_TIME) && cancel.is_asked() {
+        if looked.is_multiple_of(BATCH) && cancel.is_asked() {
             return None;
         }
         for side in 0..3 {
@@ -179,7 +179,7 @@ mod tests {
     use crate::core::discrete::fixtures::{plate, tube};
     use crate::core::progress::Nobody;
 
-    /// A disc of a fixture cut open, with its border first: what charts make of it.
+    /// The first chart of a fixture.
     fn disc(mesh: &crate::core::discrete::edges::Triangles) -> crate::core::discrete::chart::Chart {
         let edges = Edges::of(&mesh.triangles);
         let features = crate::core::discrete::features::features(mesh, &edges, 0.7);
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_unrolled_keeps_its_lengths() {
+    fn a_developable_surface_keeps_its_lengths() {
         let mesh = tube(48, 40, 10.0);
         let chart = disc(&mesh);
         for t in &chart.local {
@@ -202,13 +202,13 @@ mod tests {
     }
 
     #[test]
-    fn a_bumpy_plate_is_hardly_stretched() {
+    fn a_bumpy_plate_has_little_stretch() {
         let chart = disc(&plate(20, 0.1));
         assert!(chart.stretch.shape < 2.0 && chart.stretch.area < 2.0, "{:?}", chart.stretch);
     }
 
     #[test]
-    fn loops_that_cross_touch_or_fold_back_bound_nothing() {
+    fn loops_that_cross_touch_or_fold_back_are_not_embedded() {
         let loops = |all: &[&[[f64; 2]]]| {
             let uv: Vec<DVec2> = all.concat().into_iter().map(DVec2::from).collect();
             is_embedded(&uv, &all.iter().map(|l| l.len() as u32).collect::<Vec<_>>())

@@ -10,7 +10,7 @@ use crate::core::mesh::ids::NodeId;
 
 /// The surfaces on which a mesh lies, and the positions of its boundary points in space, which all faces share.
 #[derive(Debug)]
-pub struct Ground {
+pub struct Embedding {
     /// The charts of all faces.
     pub atlas: Arc<Atlas>,
     /// The position of each output point of a fixed node.
@@ -19,42 +19,42 @@ pub struct Ground {
 
 impl Mesh {
     /// Places the mesh on surfaces.
-    pub fn set_ground(&mut self, ground: Arc<Ground>) {
-        self.ground = Some(ground);
+    pub fn set_embedding(&mut self, embedding: Arc<Embedding>) {
+        self.embedding = Some(embedding);
     }
 
     /// The surfaces on which it lies; `None` in the plane.
-    pub fn ground(&self) -> Option<&Arc<Ground>> {
-        self.ground.as_ref()
+    pub fn embedding(&self) -> Option<&Arc<Embedding>> {
+        self.embedding.as_ref()
     }
 
     /// The position of a node in space; z is 0 in the plane.
     pub fn xyz(&self, node: NodeId) -> DVec3 {
-        match (&self.ground, self.point(node)) {
+        match (&self.embedding, self.point(node)) {
             (None, _) => self.uv(node).extend(0.0),
-            (Some(ground), Some(point)) => ground.points[point.index()],
-            (Some(ground), None) => ground.atlas.xyz(self.uv(node)),
+            (Some(embedding), Some(point)) => embedding.points[point.index()],
+            (Some(embedding), None) => embedding.atlas.xyz(self.uv(node)),
         }
     }
 
     /// The unit normal of the surface at a node; z in the plane.
     pub fn normal(&self, node: NodeId) -> DVec3 {
-        self.ground.as_ref().map_or(DVec3::Z, |ground| ground.atlas.at(self.uv(node)).normal())
+        self.embedding.as_ref().map_or(DVec3::Z, |embedding| embedding.atlas.at(self.uv(node)).normal())
     }
 
     /// The smallest target size at a node, in units of length: on surfaces that of the intrinsic eigenvalues, of M
     /// against `J^T J` (docs/algorithm.md, "The H-value").
     #[inline]
     pub fn smallest_size(&self, node: NodeId) -> f64 {
-        match &self.ground {
+        match &self.embedding {
             None => self.metric_ref(node).min_size(),
-            Some(ground) => self.metric_ref(node).min_size_against(&ground.atlas.at(self.uv(node)).first_form()),
+            Some(embedding) => self.metric_ref(node).min_size_against(&embedding.atlas.at(self.uv(node)).first_form()),
         }
     }
 
     /// The distance of two nodes in space.
     pub fn physical_distance(&self, a: NodeId, b: NodeId) -> f64 {
-        match &self.ground {
+        match &self.embedding {
             None => self.uv(a).distance(self.uv(b)),
             Some(_) => self.xyz(a).distance(self.xyz(b)),
         }

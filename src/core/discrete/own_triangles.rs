@@ -1,15 +1,16 @@
-//! The triangles of a surface as a background, as they are: each chart is a face laid flat, its border kept. Counts are made even by
-//! dividing sides on which charts meet. Deliberately absent: meshing the shape anew (`surface`).
+//! The surface's own triangles as a background: each chart is a flattened face with its border kept. Counts are made
+//! even by dividing sides between charts. Deliberately absent: remeshing the shape (`surface`).
 
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
+use super::defects::capital;
 use super::edges::{Corner, Edge, Edges, Triangles};
-use super::refuse::{capital, place as told};
 use super::surface::{Surface, sides};
 use crate::core::fault::Fault;
+use crate::core::kernel::decimal::point_text;
 use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::kernel::parity::toggles;
 use crate::core::kernel::predicates::firm;
@@ -18,30 +19,30 @@ use crate::core::kernel::tensor::Metric3;
 use crate::core::mesh::ids::PointId;
 use crate::core::mesh::triangle_set::TriangleSet;
 
-/// A chart while sides of it are divided.
-struct Laid {
+/// A chart whose sides are being divided.
+struct DividedChart {
     uv: Vec<DVec2>,
     points: Vec<u32>,
     local: Vec<[u32; 3]>,
-    /// The triangle of the surface that each is, or is a part of.
+    /// The surface triangle that each is, or is a part of.
     triangles: Vec<u32>,
 }
 
 impl Surface {
-    /// The triangles of the surface `mesh`, chart by chart in the plane, and how many sides had to be divided so that every
-    /// chart has an even number of them. Sides at which the surface ends are divided only where `split_odd` allows.
+    /// The triangles of the surface `mesh`, chart by chart in the plane, and the number of sides divided to give every
+    /// chart an even number of triangles. Sides on the border of the surface are divided only with `split_odd`.
     ///
     /// # Errors
-    /// An open part with an odd number of triangles; triangles that are too flat, in space or where they are laid.
+    /// An open part with an odd number of triangles; triangles that are too flat in space or in the plane.
     pub fn triangles(&self, mesh: &Triangles, split_odd: bool) -> Result<(TriangleSet, usize), Fault> {
         let offset = |k: usize| self.domain.spatial.as_ref().map_or(DVec2::ZERO, |spatial| spatial.atlas.offset(k));
-        let laid = |(k, chart): (usize, &Chart)| Laid {
+        let divided_chart = |(k, chart): (usize, &Chart)| DividedChart {
             uv: chart.uv.iter().map(|&uv| uv + offset(k)).collect(),
             points: chart.points.clone(),
             local: chart.local.clone(),
             triangles: chart.triangles.clone(),
         };
-        let mut charts: Vec<Laid> = self.charts.iter().enumerate().map(laid).collect();
+        let mut charts: Vec<DividedChart> = self.charts.iter().enumerate().map(divided_chart).collect();
         let mut points = mesh.points.clone();
         let divided = divide_odd(mesh, &self.charts, split_odd)?;
         let mut lines = mesh.lines.clone();
@@ -57,7 +58,7 @@ impl Surface {
         }
         let mut set = TriangleSet::default();
         let mut flat: Vec<(u32, [DVec3; 3])> = Vec::new();
-        let corners_of = |chart: &Laid| -> Vec<[u32; 3]> {
+        let corners_of = |chart: &DividedChart| -> Vec<[u32; 3]> {
             chart.local.iter().map(|t| t.map(|node| chart.points[node as usize])).collect()
         };
         let mut fans = Fans::of(charts.iter().flat_map(corners_of).collect());
@@ -65,13 +66,13 @@ impl Surface {
         let mut triangle = 0;
         for (k, chart) in charts.iter().enumerate() {
             let first = set.uv.len() as u32;
-            // A corner at which each node stands.
-            let mut stands = vec![0; chart.uv.len()];
+            // A corner of each node.
+            let mut corner_of = vec![0; chart.uv.len()];
             for t in &chart.local {
-                (0..3).for_each(|corner| stands[t[corner] as usize] = 3 * triangle + corner as u32);
+                (0..3).for_each(|corner| corner_of[t[corner] as usize] = 3 * triangle + corner as u32);
                 triangle += 1;
             }
-            for ((&uv, &point), corner) in chart.uv.iter().zip(&chart.points).zip(stands) {
+            for ((&uv, &point), corner) in chart.uv.iter().zip(&chart.points).zip(corner_of) {
                 let known = &mut number[fans.sets.find(corner) as usize];
                 if *known == u32::MAX {
                     *known = set.xyz.len() as u32;
@@ -101,12 +102,12 @@ impl Surface {
     }
 }
 
-/// Triangles by their points, with the corners held together that fans have around a point: parts that touch in a point only have a
-/// node each there.
+/// Triangles by their points, with the corners of each fan around a point joined: parts that touch in a point only have
+/// a node each there.
 struct Fans {
     triangles: Vec<[u32; 3]>,
     edges: Edges,
-    /// Of corners.
+    /// Sets of corners.
     sets: DisjointSets,
 }
 
@@ -125,29 +126,29 @@ impl Fans {
         fans
     }
 
-    /// Corners at the ends of an edge.
+    /// A corner at each end of an edge.
     fn corners(&self, ends: [u32; 2]) -> Option<[u32; 2]> {
         let side = self.edges.get(self.edges.between(ends)?).sides[0];
         Some(ends.map(|end| at_end(&self.triangles, side, end)))
     }
 }
 
-/// The corner at that end of a side.
+/// The corner at an end of a side.
 fn at_end(triangles: &[[u32; 3]], side: Corner, end: u32) -> Corner {
     let own = triangles[side as usize / 3][side as usize % 3] == end;
     if own { side } else { side - side % 3 + (side + 1) % 3 }
 }
 
-impl Laid {
-    /// Divides the triangles at a side; at a slit both banks.
+impl DividedChart {
+    /// Divides the triangles at a side, on both sides of a slit.
     fn divide(&mut self, [a, b]: [u32; 2], middle: u32) {
-        let stands = |at: &Laid, t: usize, k: usize, [a, b]: [u32; 2]| {
+        let is_side = |at: &DividedChart, t: usize, k: usize, [a, b]: [u32; 2]| {
             let node = |k: usize| at.points[at.local[t][k % 3] as usize];
             (node(k), node(k + 1)) == (a, b) || (node(k), node(k + 1)) == (b, a)
         };
         let sides: Vec<(usize, usize)> = (0..self.local.len())
             .flat_map(|t| [0, 1, 2].map(|k| (t, k)))
-            .filter(|&(t, k)| stands(self, t, k, [a, b]))
+            .filter(|&(t, k)| is_side(self, t, k, [a, b]))
             .collect();
         for (t, k) in sides {
             let [p, q, r] = [0, 1, 2].map(|i| self.local[t][(k + i) % 3]);
@@ -161,8 +162,8 @@ impl Laid {
     }
 }
 
-/// The sides to divide, by the points at their ends, so that every loop of a chart's border has an even number of sides, and with
-/// that every chart an even number of triangles; where that is no way only the latter.
+/// The sides to divide, by their end points, so that every border loop has an even number of sides, and thus every
+/// chart an even number of triangles; if that is impossible, only the latter.
 fn divide_odd(mesh: &Triangles, charts: &[Chart], split_odd: bool) -> Result<Vec<[u32; 2]>, Fault> {
     if charts.iter().all(|chart| chart.loops.iter().all(|long| long % 2 == 0)) {
         return Ok(Vec::new());
@@ -177,26 +178,26 @@ fn divide_odd(mesh: &Triangles, charts: &[Chart], split_odd: bool) -> Result<Vec
     )
 }
 
-/// What triangles are refused for, each with its corners, that have no area where they are laid.
+/// The fault for triangles, with their corners, that have no area in the plane.
 fn flat_fault(mesh: &Triangles, flat: &[(u32, [DVec3; 3])]) -> Fault {
     let mut triangles: Vec<u32> = flat.iter().map(|triangle| triangle.0).collect();
     triangles.sort_unstable();
     triangles.dedup();
     let [verb, as_] = if triangles.len() == 1 { ["is", "it is"] } else { ["are", "they are"] };
-    let [p, q, r] = flat[0].1.map(told);
-    Fault::new(format!("{} {verb} too flat to be converted as {as_}", capital(&mesh.told(&triangles))))
+    let [p, q, r] = flat[0].1.map(point_text);
+    Fault::new(format!("{} {verb} too flat to be converted as {as_}", capital(&mesh.describe(&triangles))))
         .at(format!("at {p}, {q}, {r}"))
-        .remedy("Mend the mesh there, or mesh its shape anew (--use shape)")
+        .remedy("Repair the mesh there, or remesh its shape (--use shape)")
         .showing(flat.iter().map(|triangle| triangle.1.to_vec()))
 }
 
-/// What charts are refused for that have an odd number of triangles together.
+/// The fault for charts with an odd total number of triangles.
 fn odd_fault(mesh: &Triangles, edges: &Edges, charts: &[&Chart], split_odd: bool) -> Fault {
     let triangles = match charts.iter().map(|chart| chart.local.len()).sum::<usize>() {
         1 => "1 triangle".to_owned(),
         n => format!("{n} triangles"),
     };
-    // The loops of the surface's own border that make it odd, whatever the charts that they run along.
+    // The odd loops of the surface's border, across charts.
     let of_charts =
         charts.iter().flat_map(|chart| sides(chart).flatten().map(|side| side.map(|node| chart.points[node as usize])));
     let is_outer = |ends: &[u32; 2]| edges.between(*ends).is_some_and(|edge| edges.get(edge).sides.len() == 1);
@@ -206,31 +207,31 @@ fn odd_fault(mesh: &Triangles, edges: &Edges, charts: &[&Chart], split_odd: bool
     let mut count: BTreeMap<u32, usize> = BTreeMap::new();
     outer.iter().for_each(|ends| *count.entry(loops.find(ends[0])).or_default() += 1);
     let odd: Vec<[u32; 2]> = outer.into_iter().filter(|ends| count[&loops.find(ends[0])] % 2 == 1).collect();
-    let at = |point: u32| format!("at {}", told(mesh.points[point as usize]));
+    let at = |point: u32| format!("at {}", point_text(mesh.points[point as usize]));
     let beside = |ends: &[u32; 2]| edges.between(*ends).map(|edge| edges.get(edge).sides[0] / 3);
     let beside: Vec<u32> = odd.iter().filter_map(beside).collect();
     let place = match odd.first() {
-        Some(ends) => format!("{}, sides of {}", at(ends[0]), mesh.told(&beside)),
+        Some(ends) => format!("{}, sides of {}", at(ends[0]), mesh.describe(&beside)),
         None => at(charts[0].points[0]),
     };
     let shape = |ends: &[u32; 2]| ends.map(|end| mesh.points[end as usize]).to_vec();
     Fault::new(format!(
-        "A part of the surface with {triangles} has an odd number of sides at its border; an all-quad mesh needs an even count"
+        "A part of the surface with {triangles} has an odd number of border sides; an all-quad mesh needs an even count"
     ))
     .at(place)
-    .remedy(if split_odd { "Divide one side there" } else { "Divide one side at its border, or allow that (--split-odd)" })
+    .remedy(if split_odd { "Divide one side there" } else { "Divide one border side, or allow that (--split-odd)" })
     .showing(odd.iter().map(shape))
 }
 
-/// What is to be made even, with the edges that it runs along.
+/// Borders to be made even, with their edges.
 struct Borders {
     odd: Vec<bool>,
-    /// An edge, and what runs along it: ascending, as often as it does.
+    /// Pairs of edge and border along it, ascending, with repetition.
     along: Vec<(usize, u32)>,
 }
 
 impl Borders {
-    /// Each loop by itself.
+    /// One border for each loop.
     fn of_loops(charts: &[Chart], edges: &Edges) -> Borders {
         let mut borders = Borders { odd: Vec::new(), along: Vec::new() };
         for chart in charts {
@@ -243,7 +244,7 @@ impl Borders {
         borders
     }
 
-    /// All loops of a chart together.
+    /// One border for all loops of a chart.
     fn of_charts(charts: &[Chart], edges: &Edges) -> Borders {
         let mut borders = Borders { odd: Vec::new(), along: Vec::new() };
         for chart in charts {
@@ -261,17 +262,17 @@ impl Borders {
         self.along.extend(sides.iter().filter_map(on).map(|edge| (edge, number)));
     }
 
-    /// The edges to divide, by the points at their ends: of all that the same borders run along the longest one is at hand.
+    /// The edges to divide, by their end points: of all edges with the same borders, the longest is the candidate.
     ///
     /// # Errors
     /// The borders that cannot be made even.
     fn divided(&self, mesh: &Triangles, edges: &Edges, split_odd: bool) -> Result<Vec<[u32; 2]>, Vec<u32>> {
-        // The borders that are turned from even to odd by dividing an edge, and the longest such edge.
+        // The borders whose parity changes when an edge is divided, and the longest such edge.
         let mut longest: BTreeMap<Vec<u32>, (f64, usize)> = BTreeMap::new();
         for at_edge in self.along.chunk_by(|a, b| a.0 == b.0) {
             let edge = edges.get(at_edge[0].0);
-            let is_turned = |same: &&[(usize, u32)]| same.len() % 2 == 1;
-            let turned: Vec<u32> = at_edge.chunk_by(|a, b| a == b).filter(is_turned).map(|same| same[0].1).collect();
+            let is_toggled = |same: &&[(usize, u32)]| same.len() % 2 == 1;
+            let turned: Vec<u32> = at_edge.chunk_by(|a, b| a == b).filter(is_toggled).map(|same| same[0].1).collect();
             if turned.is_empty() || (edge.sides.len() == 1 && !split_odd) {
                 continue;
             }
@@ -294,8 +295,8 @@ impl Borders {
     }
 }
 
-/// The metric that the triangles themselves imply, at each point: in that of a triangle it is equilateral with sides of length 1. At a
-/// point it is the log-Euclidean mean over its triangles, as in the plane (`background::import`).
+/// The metric implied by the triangles, at each point: a triangle is equilateral with unit sides in its own metric; a
+/// point has the log-Euclidean mean over its triangles, as in the plane (`background::import`).
 pub fn implied_metric_in_space(mesh: &Triangles) -> Vec<Metric3> {
     let mut sums = vec![(LogMetric3::ZERO, 0.0_f64); mesh.points.len()];
     for (t, nodes) in mesh.triangles.iter().enumerate() {
@@ -313,8 +314,8 @@ pub fn implied_metric_in_space(mesh: &Triangles) -> Vec<Metric3> {
     sums.iter().map(mean).collect()
 }
 
-/// The metric in which a triangle is equilateral with unit sides; across its plane as much as in it on average (the geometric mean).
-/// None for a triangle without area.
+/// The metric in which a triangle is equilateral with unit sides; the eigenvalue along the normal is the geometric mean
+/// of the other two. `None` for a degenerate triangle.
 fn implied_by([a, b, c]: [DVec3; 3]) -> Option<Metric3> {
     let s = (b - a).try_normalize()?;
     let normal = (b - a).cross(c - a).try_normalize()?;
@@ -338,15 +339,15 @@ mod tests {
     use super::*;
     use crate::core::discrete::features::ANGLE;
     use crate::core::discrete::fixtures::{cube, plate, sphere, torus};
-    use crate::core::discrete::flat::Bound;
+    use crate::core::discrete::planar_map::StretchBound;
     use crate::core::discrete::surface::surface;
     use crate::core::mesh::names::Named;
     use crate::core::progress::Nobody;
 
     #[test]
-    fn charts_of_closed_surfaces_are_made_even_and_nothing_else_is_changed() {
+    fn charts_of_closed_surfaces_are_made_even_without_other_changes() {
         for mesh in [cube(3), sphere(5), torus(15, 9)] {
-            let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
+            let laid = surface(&mesh, &[Named::new("all")], ANGLE, StretchBound::default(), &mut Nobody).unwrap();
             let (set, divided) = laid.triangles(&mesh, false).unwrap();
             assert_eq!(set.xyz.len(), mesh.points.len() + divided);
             assert_eq!(set.triangles.len(), mesh.triangles.len() + 2 * divided);
@@ -363,15 +364,15 @@ mod tests {
         mesh.triangles.drain(80..83);
         mesh.triangles.pop();
         mesh.region.truncate(mesh.triangles.len());
-        let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
+        let laid = surface(&mesh, &[Named::new("all")], ANGLE, StretchBound::default(), &mut Nobody).unwrap();
         assert_eq!(laid.charts[0].loops.iter().map(|long| long % 2).collect::<Vec<_>>(), [1, 1]);
         assert_eq!(laid.triangles(&mesh, true).unwrap().1, 2);
-        // Where no side of the border may be divided, the count of triangles is even all the same.
+        // Without divided border sides, the number of triangles is still even.
         assert_eq!(laid.triangles(&mesh, false).unwrap().1, 0);
     }
 
     #[test]
-    fn plates_that_touch_in_a_corner_have_a_point_each_there() {
+    fn plates_that_touch_in_a_corner_keep_separate_points_there() {
         let (mut mesh, other) = (plate(2, 0.0), plate(2, 0.0));
         let last = mesh.points.len() as u32 - 1;
         // The first point of the other one is the last of this one.
@@ -379,7 +380,7 @@ mod tests {
         mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|k| k + last)));
         mesh.region.extend(&other.region);
         mesh.lines = vec![([0, 1], 0), ([last, last + 1], 1)];
-        let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
+        let laid = surface(&mesh, &[Named::new("all")], ANGLE, StretchBound::default(), &mut Nobody).unwrap();
         let (set, _) = laid.triangles(&mesh, false).unwrap();
         assert_eq!((set.xyz.len(), mesh.points.len()), (18, 17));
         let ends = set.lines.iter().map(|(ends, _)| ends.map(|end| set.xyz[end.index()].truncate()));
@@ -395,14 +396,14 @@ mod tests {
         mesh.region.pop();
         // A file that has other triangles before these.
         mesh.origin = (4..21).collect();
-        let laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
+        let laid = surface(&mesh, &[Named::new("all")], ANGLE, StretchBound::default(), &mut Nobody).unwrap();
         assert!(laid.charts.len() > 1);
         let fault = laid.triangles(&mesh, false).unwrap_err();
         assert!(fault.what.contains("17 triangles"), "{fault}");
         let edges = Edges::of(&mesh.triangles);
         let border = (0..edges.len()).map(|edge| edges.get(edge).sides).filter(|sides| sides.len() == 1);
         let beside: Vec<u32> = border.map(|sides| sides[0] / 3).collect();
-        assert!(fault.place.ends_with(&format!(", sides of {}", mesh.told(&beside))), "{fault}");
+        assert!(fault.place.ends_with(&format!(", sides of {}", mesh.describe(&beside))), "{fault}");
         assert!(fault.place.contains("sides of triangles 5, "), "{fault}");
         assert_eq!(fault.shapes.len(), beside.len());
         assert!(fault.shapes.iter().all(|shape| shape.len() == 2));
@@ -410,20 +411,20 @@ mod tests {
     }
 
     #[test]
-    fn triangles_too_flat_where_they_are_laid_are_called_as_the_file_counts_them_and_shown() {
+    fn triangles_too_flat_in_the_plane_are_named_by_the_file_and_shown() {
         let mut mesh = plate(3, 0.02);
         mesh.origin = (4..22).collect();
-        let mut laid = surface(&mesh, &[Named::new("all")], ANGLE, Bound::default(), &mut Nobody).unwrap();
+        let mut laid = surface(&mesh, &[Named::new("all")], ANGLE, StretchBound::default(), &mut Nobody).unwrap();
         let chart = &mut laid.charts[0];
         let place = chart.triangles.iter().position(|&t| t == 7).unwrap();
-        // One end of a side between two triangles is laid on the other.
+        // Collapse a side between two triangles.
         let [a, b, _] = chart.local[place];
         chart.uv[a as usize] = chart.uv[b as usize];
         let at_both = |t: &[u32; 3]| t.contains(&a) && t.contains(&b);
         let flat: Vec<u32> =
             chart.triangles.iter().zip(&chart.local).filter(|(_, t)| at_both(t)).map(|(&t, _)| t).collect();
         let fault = laid.triangles(&mesh, false).unwrap_err();
-        assert!(fault.what.starts_with(&capital(&mesh.told(&flat))), "{fault}");
+        assert!(fault.what.starts_with(&capital(&mesh.describe(&flat))), "{fault}");
         assert!(fault.what.contains("12") && fault.what.ends_with("too flat to be converted as they are"), "{fault}");
         assert!(fault.shapes.contains(&mesh.corners(7).to_vec()), "{:?}", fault.shapes);
     }

@@ -1,5 +1,5 @@
-//! Mending where it is certain: points at one place made one, points that hang in sides taken into them, parts that touch
-//! in a point only set apart there.
+//! Connectivity repairs: merges coincident points, inserts hanging points into the sides on which they lie, and
+//! separates parts that touch in a point only.
 
 use glam::DVec3;
 use rstar::primitives::GeomWithData;
@@ -10,57 +10,58 @@ use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::progress::Cancel;
 use crate::core::soup::weld::weld;
 
-/// Points nearer than this part of the size of the mesh are at one place.
-const SAME_PLACE: f64 = 1e-9;
-/// And so are those nearer than this part of the largest coordinate.
+/// Points closer than this fraction of the size of the mesh coincide,
+const COINCIDENT: f64 = 1e-9;
+/// and so do points closer than this fraction of the largest coordinate.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// A point nearer to a side than this part of the side's length hangs in it.
-pub(super) const IN_SIDE: f64 = 1e-6;
-/// Parts that touch in a point are set apart by this part of the size, and by no more than this part of an edge there.
-const APART: f64 = 1e-6;
-const APART_OF_EDGE: f64 = 1e-2;
-/// Sides in which points hang are divided round by round.
+/// A point closer to a side than this fraction of the side's length hangs on it.
+pub(super) const ON_SIDE: f64 = 1e-6;
+/// Parts that touch in a point are separated by this fraction of the size, at most by the second fraction of an edge
+/// there.
+const GAP: f64 = 1e-6;
+const GAP_OF_EDGE: f64 = 1e-2;
+/// Rounds of dividing sides on which points hang.
 const ROUNDS: usize = 8;
 
 impl Triangles {
-    /// Lets triangles that use points at one place use the first of them; how many points are no longer used for it.
+    /// Replaces coincident points by the first of them; returns how many points are no longer used.
     pub fn weld(&mut self, cancel: &Cancel) -> usize {
         let mut is_used = vec![false; self.points.len()];
         self.triangles.as_flattened().iter().for_each(|&k| is_used[k as usize] = true);
         let used: Vec<u32> = (0..self.points.len() as u32).filter(|&k| is_used[k as usize]).collect();
         let mut kept: Vec<DVec3> = used.iter().map(|&k| self.points[k as usize]).collect();
-        let [near, largest] = self.same_place(&is_used);
-        let standing = weld(&mut kept, near / largest.max(f64::MIN_POSITIVE), cancel);
+        let [tolerance, largest] = self.weld_tolerance(&is_used);
+        let representative = weld(&mut kept, tolerance / largest.max(f64::MIN_POSITIVE), cancel);
         if kept.len() == used.len() || cancel.is_asked() {
             return 0;
         }
-        // The first point of each place, by the order in which places were kept.
+        // The first point of each position, in the order of the kept positions.
         let mut first = vec![u32::MAX; kept.len()];
-        for (&point, &place) in used.iter().zip(&standing) {
+        for (&point, &place) in used.iter().zip(&representative) {
             let first = &mut first[place as usize];
             *first = (*first).min(point);
         }
-        let mut stands = vec![u32::MAX; self.points.len()];
-        used.iter().zip(&standing).for_each(|(&point, &place)| stands[point as usize] = first[place as usize]);
-        self.triangles.as_flattened_mut().iter_mut().for_each(|k| *k = stands[*k as usize]);
+        let mut merged = vec![u32::MAX; self.points.len()];
+        used.iter().zip(&representative).for_each(|(&point, &place)| merged[point as usize] = first[place as usize]);
+        self.triangles.as_flattened_mut().iter_mut().for_each(|k| *k = merged[*k as usize]);
         used.len() - kept.len()
     }
 
-    /// How near to each other points are that are at one place, by the size of the mesh, wherever it is, but more than by rounding; and
-    /// the largest coordinate of those in use.
-    pub(super) fn same_place(&self, is_used: &[bool]) -> [f64; 2] {
+    /// The distance below which points coincide, by the size of the mesh but above rounding; and the largest absolute
+    /// coordinate of the used points.
+    pub(super) fn weld_tolerance(&self, is_used: &[bool]) -> [f64; 2] {
         let used = self.points.iter().zip(is_used).filter(|(_, used)| **used).map(|(p, _)| *p);
         let ends = used.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let [low, high] = ends.unwrap_or([DVec3::ZERO; 2]);
         let largest = low.abs().max(high.abs()).max_element();
-        [(SAME_PLACE * (high - low).max_element()).max(ROUNDING * largest), largest]
+        [(COINCIDENT * (high - low).max_element()).max(ROUNDING * largest), largest]
     }
 
-    /// Divides sides on the border in which points of the border hang, so that they meet there; of those that are `closed` alone, where
-    /// other sides run along the whole of the divided one. How many points those were.
+    /// Divides border sides at the border points that hang on them, so that the two borders match; returns the number
+    /// of points. With `closed`, divides only sides along which other border sides run from end to end.
     pub fn stitch(&mut self, closed: bool, cancel: &Cancel) -> usize {
         let mut stitched = 0;
-        // A triangle is divided at one of its sides at a time.
+        // Each round divides a triangle at one of its sides.
         for _ in 0..ROUNDS {
             let hanging = self.hanging(closed, cancel);
             if hanging.is_empty() {
@@ -94,7 +95,7 @@ impl Triangles {
         stitched
     }
 
-    /// Points of the border that hang in sides of the border: the side, how far along, the point, ascending.
+    /// Border points that hang on border sides: the side, the parameter along it, the point; ascending.
     fn hanging(&self, closed: bool, cancel: &Cancel) -> Vec<(u32, f64, u32)> {
         let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return Vec::new() };
         let one = |e: usize| <[u32; 1]>::try_from(edges.get(e).sides).ok();
@@ -108,13 +109,13 @@ impl Triangles {
         for side in sides {
             let [a, b] = self.side(side).map(|k| self.points[k as usize]);
             let along = b - a;
-            let margin = DVec3::splat(IN_SIDE * along.length());
+            let margin = DVec3::splat(ON_SIDE * along.length());
             let (low, high) = (a.min(b) - margin, a.max(b) + margin);
             for place in tree.locate_in_envelope(AABB::from_corners(low.to_array(), high.to_array())) {
                 let p = self.points[place.data as usize] - a;
                 let t = p.dot(along) / along.length_squared();
                 let own = self.triangles[side as usize / 3].contains(&place.data);
-                if !own && t > IN_SIDE && t < 1.0 - IN_SIDE && (p - t * along).length() < margin.x {
+                if !own && t > ON_SIDE && t < 1.0 - ON_SIDE && (p - t * along).length() < margin.x {
                     hanging.push((side, t, place.data));
                 }
             }
@@ -133,14 +134,15 @@ impl Triangles {
         hanging
     }
 
-    /// Gives parts that touch in a point only, one of which closes around it, points of their own, a little apart. For each new
-    /// point the one that it was; how many places those were, and how many more there are in which parts touch.
-    pub fn part(&mut self, cancel: &Cancel) -> (Vec<u32>, usize, usize) {
+    /// Separates parts that touch in a point only, if one of them is closed around it: each gets a copy of the point,
+    /// slightly displaced. Returns the original of each copy, the number of points separated, and the number of other
+    /// contact points.
+    pub fn separate(&mut self, cancel: &Cancel) -> (Vec<u32>, usize, usize) {
         let corners = 3 * self.triangles.len();
         let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return (Vec::new(), 0, 0) };
         let mut sets = DisjointSets::new(corners);
         let next = |c: u32| c - c % 3 + (c + 1) % 3;
-        // How many sides of the border begin or end at each point: two for each part that does not close around it.
+        // Border sides at each point: two for each part that is not closed around it.
         let mut outer = vec![0; self.points.len()];
         for e in 0..edges.len() {
             let edge = edges.get(e);
@@ -174,7 +176,7 @@ impl Triangles {
                 let others: Vec<DVec3> = others.map(|k| self.points[k as usize]).collect();
                 let way = others.iter().sum::<DVec3>() / others.len() as f64 - place;
                 let shortest = others.iter().map(|p| p.distance(place)).fold(f64::INFINITY, f64::min);
-                let far = (APART * size).min(APART_OF_EDGE * shortest);
+                let far = (GAP * size).min(GAP_OF_EDGE * shortest);
                 self.points.push(place + way.normalize_or_zero() * far);
                 copies.push(point);
                 for &c in fan {
@@ -196,7 +198,7 @@ mod tests {
         (0..edges.len()).filter(|&e| edges.get(e).sides.len() == 1).count()
     }
 
-    /// Two meshes as one, without a common point.
+    /// Both meshes in one, without shared points.
     fn beside(mut one: Triangles, other: &Triangles, by: DVec3) -> Triangles {
         let n = one.points.len() as u32;
         one.points.extend(other.points.iter().map(|p| *p + by));
@@ -206,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn points_at_one_place_are_used_as_one() {
+    fn coincident_points_are_merged() {
         let plate_size = 1.0;
         let mut mesh = beside(plate(4, 0.0), &plate(4, 0.0), DVec3::X * plate_size);
         assert_eq!((borders(&mesh), mesh.weld(&Cancel::default()), borders(&mesh)), (32, 5, 24));
@@ -214,8 +216,8 @@ mod tests {
     }
 
     #[test]
-    fn points_that_hang_in_sides_are_taken_into_them() {
-        // Five points of the one border stand on four, or two, sides of the other.
+    fn hanging_points_are_inserted_into_their_sides() {
+        // One border has four sides along the two of the other.
         let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
         assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false, &Cancel::default())), (3, 2));
         assert_eq!(borders(&mesh), 16 + 8 - 4 - 2);
@@ -224,15 +226,15 @@ mod tests {
     }
 
     #[test]
-    fn cubes_that_touch_in_a_corner_are_set_apart_and_plates_are_not() {
+    fn cubes_that_touch_in_a_corner_are_separated_and_plates_are_not() {
         let mut mesh = beside(cube(1), &cube(1), DVec3::ONE);
         assert_eq!(mesh.weld(&Cancel::default()), 1);
         let points = mesh.points.len();
-        let (copies, places, _) = mesh.part(&Cancel::default());
+        let (copies, places, _) = mesh.separate(&Cancel::default());
         assert_eq!((copies.len(), places, mesh.points.len()), (2, 1, points + 2));
         let [a, b] = [mesh.points[points], mesh.points[points + 1]];
         assert!(a.distance(b) > 1e-7 && a.distance(b) < 1e-5);
         let mut mesh = beside(plate(2, 0.0), &plate(2, 0.0), DVec3::new(1.0, 1.0, 0.0));
-        assert_eq!((mesh.weld(&Cancel::default()), mesh.part(&Cancel::default()).1), (1, 0));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.separate(&Cancel::default()).1), (1, 0));
     }
 }

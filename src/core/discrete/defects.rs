@@ -1,5 +1,4 @@
-//! What no surface can be made of and nobody can mend for certain: refused with the elements called as the file counts
-//! them, and shown.
+//! Defects without a safe repair: faults that name the elements by the file's numbers and show them.
 
 use glam::{DVec2, DVec3};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -12,31 +11,24 @@ use crate::core::kernel::predicates::orient;
 use crate::core::soup::mesh_file::MeshFile;
 use crate::core::soup::soundness::{Defect, examine};
 
-/// Coordinates beyond this, and meshes smaller than one over this, cannot be reckoned with: products of several of them
-/// have no number.
+/// Largest coordinate, and inverse of the smallest size of a mesh: beyond, products of several coordinates overflow.
 pub(in crate::core) const LARGEST: f64 = 1e30;
-/// A surface smaller than this part of how far it is from the origin has too few digits for its normals.
+/// A surface smaller than this fraction of its distance from the origin has too few digits for its normals.
 const FAR: f64 = 5e-8;
-/// A polygon whose pieces face each other, so that no more than this part of their areas is left as a whole, crosses
-/// itself.
+/// A polygon crosses itself if its area vector is shorter than this fraction of the summed areas of its pieces.
 const CROSSED: f64 = 0.2;
-/// A polygon smaller than this part of its length squared has no area.
+/// A polygon with an area below this fraction of its length squared is degenerate.
 const FLAT: f64 = 1e-6;
-/// So much of a polygon may lie with its back to the whole, by rounding.
+/// Fraction of a polygon that may face backwards, by rounding.
 const BACK: f64 = 1e-6;
-/// Pairs of triangles that are looked at for each triangle until enough is known of where they overlap.
+/// Limit on the pairs of triangles tested for overlap, for each triangle.
 const PAIRS: usize = 64;
 
-/// A place in space as messages show it, to six digits.
-pub(super) fn place(p: DVec3) -> String {
-    format!("({}, {}, {})", number(p.x), number(p.y), number(p.z))
-}
-
-/// Whether the triangles that are made of a file have points that can be reckoned with; which of the points they have.
+/// Checks the points of a file's triangles; returns for each point whether a triangle uses it.
 ///
 /// # Errors
-/// No triangles, or too many; points that are not there, not finite, beyond [`LARGEST`], or all nearer to each other
-/// than one over it.
+/// No triangles, or too many; missing points, coordinates not finite or beyond [`LARGEST`], or a mesh smaller than its
+/// inverse.
 pub(in crate::core) fn used_points(
     file: &MeshFile,
     triangles: &[[u32; 3]],
@@ -55,19 +47,19 @@ pub(in crate::core) fn used_points(
         return Err(Fault::new(format!("The mesh has no triangles{others}")).remedy("Give a mesh of triangles"));
     }
     if triangles.len() > u32::MAX as usize / 8 || file.points.len() > u32::MAX as usize / 8 {
-        return Err(Fault::new(format!("The mesh has {} triangles, more than can be numbered", triangles.len())));
+        return Err(Fault::new(format!("The mesh has {} triangles, which is too many", triangles.len())));
     }
     let mut used = vec![false; file.points.len()];
     for (t, origin) in triangles.iter().zip(origins) {
         for &k in t {
             let Some(used) = used.get_mut(k as usize) else {
                 let what = format!(
-                    "{} has the point {}, and there are {}",
+                    "{} refers to point {} of {}",
                     capital(&file.describe_elements(&[*origin])),
                     u64::from(k) + 1,
                     file.points.len()
                 );
-                return Err(Fault::new(what).remedy("Write the mesh again, with all points that its triangles have"));
+                return Err(Fault::new(what).remedy("Export the mesh again, with all points of its triangles"));
             };
             *used = true;
         }
@@ -76,10 +68,10 @@ pub(in crate::core) fn used_points(
     let is_beyond = |p: DVec3| !p.is_finite() || p.abs().max_element() > LARGEST;
     let beyond: Vec<u32> = of_use().filter(|(_, p)| is_beyond(*p)).map(|(k, _)| k).collect();
     if let Some(&first) = beyond.first() {
-        let p = place(file.points[first as usize]);
+        let p = point_text(file.points[first as usize]);
         let what = match beyond.len() {
             1 => format!("{} is at {p}", capital(&file.describe_points(&beyond))),
-            _ => format!("{} are not where points can be, the first at {p}", capital(&file.describe_points(&beyond))),
+            _ => format!("{} are out of range, the first at {p}", capital(&file.describe_points(&beyond))),
         };
         let remedy = format!("Coordinates must be finite numbers no larger than {LARGEST:e}");
         let with = |t: &&[u32; 3]| t.iter().any(|k| beyond.binary_search(k).is_ok());
@@ -91,21 +83,21 @@ pub(in crate::core) fn used_points(
     if size == 0.0 {
         return Err(Fault::new(format!(
             "All points of the mesh are at {}",
-            place(file.points[triangles[0][0] as usize])
+            point_text(file.points[triangles[0][0] as usize])
         ))
-        .remedy("Write it with more digits, or in another unit"));
+        .remedy("Export it with more digits, or in another unit"));
     }
     if size < 1.0 / LARGEST {
-        return Err(Fault::new(format!("The mesh is only {} large", number(size))).remedy("Write it in another unit"));
+        return Err(Fault::new(format!("The mesh is only {} across", number(size))).remedy("Export it in another unit"));
     }
     Ok(used)
 }
 
-/// Whether points have digits enough for normals and areas of what lies between them.
+/// Checks that coordinates have enough digits for normals and areas.
 ///
 /// # Errors
-/// A surface far from the origin for its size.
-pub(super) fn far_away(mesh: &Triangles) -> Result<(), Fault> {
+/// A surface that is too far from the origin for its size.
+pub(super) fn far_from_origin(mesh: &Triangles) -> Result<(), Fault> {
     let corners = mesh.triangles.as_flattened().iter().map(|&k| mesh.points[k as usize]);
     let ends = corners.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
     let [low, high] = ends.unwrap_or([DVec3::ZERO; 2]);
@@ -114,21 +106,21 @@ pub(super) fn far_away(mesh: &Triangles) -> Result<(), Fault> {
         return Ok(());
     }
     let what =
-        format!("The mesh is {} large and lies {} from the origin: too far for its size", number(size), number(away));
-    Err(Fault::new(what).remedy("Move it to the origin: its coordinates have too few digits where it is"))
+        format!("The mesh is {} across and {} from the origin, too far for its size", number(size), number(away));
+    Err(Fault::new(what).remedy("Move it to the origin: its coordinates have too few digits"))
 }
 
-/// A sentence that begins with such words.
+/// Capitalises the first letter.
 pub(in crate::core) fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Whether polygons that were cut cross themselves. What stands next to each other in `triangles` and comes from the
-/// same element are the pieces of one.
+/// Checks that the polygons that were triangulated do not cross themselves. Adjacent `triangles` with the same origin
+/// are the pieces of one polygon.
 ///
 /// # Errors
-/// Those that do.
+/// The polygons that do.
 pub(in crate::core) fn crossed(file: &MeshFile, triangles: &[[u32; 3]], origins: &[u32]) -> Result<(), Fault> {
     let area = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|k| file.points[k as usize]);
@@ -144,11 +136,11 @@ pub(in crate::core) fn crossed(file: &MeshFile, triangles: &[[u32; 3]], origins:
         let all: f64 = of.iter().map(|t| area(t).length()).sum();
         let corners = || of.as_flattened().iter().map(|&k| file.points[k as usize]);
         let size = corners().map(|p| p.distance(file.points[of[0][0] as usize])).fold(0.0, f64::max);
-        // One without area is taken out by its pieces.
+        // The pieces of a degenerate polygon are removed later.
         if all <= FLAT * size * size {
             continue;
         }
-        // A plane one that crosses itself has pieces that lie with their backs to the whole.
+        // A plane polygon that crosses itself has pieces that face backwards.
         let back: f64 = of.iter().map(|t| -area(t).dot(whole)).filter(|dot| *dot > 0.0).sum();
         if back > BACK * all * whole.length() || whole.length() < CROSSED * all {
             bad.push(pieces[0]);
@@ -157,25 +149,25 @@ pub(in crate::core) fn crossed(file: &MeshFile, triangles: &[[u32; 3]], origins:
     if bad.is_empty() {
         return Ok(());
     }
-    let corners = |&place: &u32| {
+    let corners = |&element: &u32| {
         let quads = &file.quads;
-        let corners = match quads.get(place as usize - cut) {
+        let corners = match quads.get(element as usize - cut) {
             Some(quad) => &quad[..],
-            None => &file.polygons[place as usize - cut - quads.len()],
+            None => &file.polygons[element as usize - cut - quads.len()],
         };
         corners.iter().map(|&k| file.points[k as usize]).collect::<Vec<_>>()
     };
     let verb = if bad.len() == 1 { "crosses itself" } else { "cross themselves" };
     Err(Fault::new(format!("{} {verb}", capital(&file.describe_elements(&bad))))
-        .at(format!("at {}", place(corners(&bad[0])[0])))
-        .remedy("Give the corners in the order in which they lie around it, or cut it into triangles")
+        .at(format!("at {}", point_text(corners(&bad[0])[0])))
+        .remedy("Give the corners in order around it, or split it into triangles")
         .showing(bad.iter().map(corners)))
 }
 
-/// Whether triangles agree with their neighbours on which side is outside, once they are turned as far as that goes.
+/// Checks that the triangles are consistently oriented, after an attempt to orient them.
 ///
 /// # Errors
-/// A surface that has one side only.
+/// A one-sided surface.
 pub(super) fn one_sided(file: &MeshFile, mesh: &Triangles, edges: &Edges) -> Result<(), Fault> {
     let conflicts: Vec<[u32; 2]> = (0..edges.len())
         .filter_map(|edge| <[u32; 2]>::try_from(edges.get(edge).sides).ok())
@@ -185,19 +177,18 @@ pub(super) fn one_sided(file: &MeshFile, mesh: &Triangles, edges: &Edges) -> Res
     let origins: Vec<u32> = conflicts.as_flattened().iter().map(|side| mesh.origin[*side as usize / 3]).collect();
     let at = mesh.points[mesh.side(first[0])[0] as usize];
     Err(Fault::new(format!(
-        "The surface has one side only, as a Moebius strip: however its triangles are turned, some disagree with their neighbours, here {}",
+        "The surface is one-sided, like a Moebius strip: its triangles cannot be oriented consistently, here {}",
         file.describe_elements(&origins)
     ))
-    .at(format!("at {}", place(at)))
-    .remedy("Cut a gap across it: a mesh has an outside")
+    .at(format!("at {}", point_text(at)))
+    .remedy("Cut a gap across it")
     .showing(conflicts.iter().map(|[side, _]| mesh.side(*side).map(|k| mesh.points[k as usize]).to_vec())))
 }
 
-/// Whether a mesh in the plane, its triangles anticlockwise, covers no place twice and has no points that hang in
-/// sides.
+/// Checks that a mesh in the plane with anticlockwise triangles has no overlaps and no hanging points.
 ///
 /// # Errors
-/// Triangles that overlap, and points that hang.
+/// The overlapping triangles, or the hanging points.
 pub(in crate::core) fn overlapping(
     file: &MeshFile,
     points: &[DVec3],
@@ -217,25 +208,25 @@ pub(in crate::core) fn overlapping(
         let at = corners(&triangles[first as usize]).iter().sum::<DVec3>() / 3.0;
         return Err(Fault::new(format!("{} overlap", capital(&file.describe_elements(&named))))
             .at(format!("at {}", point_text(at.truncate())))
-            .remedy("Take out what is too much: in the plane a place belongs to one triangle")
+            .remedy("Remove the overlap: triangles in the plane must not overlap")
             .showing(bad.iter().map(|&t| corners(&triangles[t as usize]).to_vec())));
     }
     let Some(hanging) = hanging else { return Ok(()) };
-    // Points that were made by dividing sides are none of the file's.
+    // Points made by dividing sides are not in the file.
     let nodes: Vec<u32> = hanging.first.iter().map(|one| one.number as u32 - 1).collect();
     let own: Vec<u32> = nodes.iter().copied().filter(|&k| (k as usize) < file.points.len()).collect();
     let verb =
-        if hanging.count == 1 { "hangs in a side of another triangle" } else { "hang in sides of other triangles" };
+        if hanging.count == 1 { "hangs on a side of another triangle" } else { "hang on sides of other triangles" };
     let more = hanging.count.saturating_sub(own.len() as u64);
     let and = if more > 0 { format!(" and {more} more") } else { String::new() };
     let first = points[nodes[0] as usize];
     Err(Fault::new(format!("{}{and} {verb}", capital(&file.describe_points(&own))))
         .at(format!("at {}", point_text(first.truncate())))
-        .remedy("Divide that side there, or mesh the shape anew (--use shape)")
+        .remedy("Divide that side there, or remesh the shape (--use shape)")
         .showing(nodes.iter().map(|&k| vec![points[k as usize]])))
 }
 
-/// Triangles, anticlockwise, that have more than sides in common with another one, ascending.
+/// The anticlockwise triangles whose interiors intersect others, ascending.
 fn overlaps(triangles: &[[DVec2; 3]]) -> Vec<u32> {
     let boxed = |t: &[DVec2; 3]| {
         let [low, high] = [t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2])];
@@ -243,7 +234,7 @@ fn overlaps(triangles: &[[DVec2; 3]]) -> Vec<u32> {
     };
     let boxes = (0_u32..).zip(triangles).map(|(i, t)| GeomWithData::new(Rectangle::from_aabb(boxed(t)), i)).collect();
     let tree: RTree<GeomWithData<Rectangle<[f64; 2]>, u32>> = RTree::bulk_load(boxes);
-    // Two convex figures are apart where a side of one of them has the other beyond it.
+    // Convex polygons are disjoint if a side of one separates them.
     let beyond =
         |a: &[DVec2; 3], b: &[DVec2; 3]| (0..3).any(|k| b.iter().all(|&p| orient(a[k], a[(k + 1) % 3], p) <= 0.0));
     let mut left = PAIRS * triangles.len();

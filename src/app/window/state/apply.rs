@@ -1,0 +1,397 @@
+//! Does what the user asks for. With `hearing` this is the only place that changes [`State`].
+
+mod opening;
+mod saving;
+
+use std::time::{Duration, Instant};
+
+use super::{Breakpoint, Document, Look, Overlay, State, SurfaceView, ViewCamera, ViewKind, Watchpoint, watched};
+use crate::app::window::command::Command;
+use crate::app::window::figures::Formats;
+use crate::app::window::files::Dialog;
+use crate::app::window::measure::Measuring;
+use crate::app::window::session::{Direction, Goal, Session, Source};
+use crate::app::window::words;
+use crate::core::convert::event::Event;
+use crate::core::fault::Fault;
+use crate::core::mesh::ids::NodeId;
+use crate::core::run::breakpoint::Condition;
+use crate::core::run::run::{Edit, EditKind};
+use crate::core::run::watch::Watched;
+
+impl State {
+    /// Does what the user asks for.
+    pub(in crate::app::window) fn apply(&mut self, command: Command) {
+        if self.run.import.is_some() && !command.fits_import() {
+            return self.notice("That belongs to a run: convert the mesh first, or cancel.".to_owned());
+        }
+        match command {
+            Command::Go(goal) => self.ask(|session| session.go(goal)),
+            Command::GoToText(text) => self.go_to_text(&text),
+            Command::ToBreakpoint(direction) => self.seek_breakpoint(direction),
+            Command::Play => self.run.playing = if self.run.playing.is_some() { None } else { Some(Instant::now()) },
+            Command::Speed(speed) => self.workspace.speed = speed,
+            Command::Stop => self.stop(),
+            Command::Hover(what) => self.frame.hovered = Some(what),
+            Command::Pick(picked) => self.change(|document| document.picked = picked),
+            Command::Show(what) => self.view.look.ask(Look::At(what)),
+            Command::LightUp(what, notice) => {
+                self.notice(notice);
+                self.view.lit = what;
+                self.view.over_epoch += 1;
+            }
+            Command::LastTouch(what) => self.ask(|session| session.go_to_touch(watched(what))),
+            Command::Made(element) => self.ask(|session| session.go_to_making(element)),
+            Command::Explain(ends) => self.explain(ends),
+            Command::TellPast(watched) => self.tell_past(watched),
+            Command::Watch(what) => self.watch(watched(what)),
+            Command::SwitchWatch(k) => self.change(|document| {
+                if let Some(watch) = document.watches.get_mut(k) {
+                    watch.is_on = !watch.is_on;
+                }
+            }),
+            Command::Measure => self.run.measuring = Some(Measuring::default()),
+            Command::ShowTimes => self.view.times = !self.view.times,
+            Command::Fit => self.view.look.ask(Look::Fit),
+            Command::ShowDecision => self.view.look.ask(Look::Decision),
+            Command::LookFrom(side) => self.view.look.ask(Look::From(side)),
+            Command::MoveCamera(view, camera) => self.move_camera(view, camera),
+            Command::SurfaceView(view) => self.workspace.surfaces.view = view,
+            Command::TogglePlane => self.workspace.surfaces.view = self.workspace.surfaces.view.toggled(),
+            Command::ToggleSplit => {
+                let view = &mut self.workspace.surfaces.view;
+                *view = if *view == SurfaceView::Both { SurfaceView::Space } else { SurfaceView::Both };
+            }
+            Command::HiddenLines => self.workspace.surfaces.hidden = self.workspace.surfaces.hidden.next(),
+            Command::ToggleCurved => self.workspace.surfaces.curved = !self.workspace.surfaces.curved,
+            Command::Set(key, value) => self.set(key, value),
+            Command::ChooseBase(ends) => self.choose_base(ends),
+            Command::ResetParameters => {
+                self.change(|document| document.edits.retain(|edit| !matches!(edit.kind, EditKind::Parameter { .. })));
+            }
+            Command::Layer(layer) => self.change(|document| {
+                let on = layer.switch(&mut document.layers);
+                *on = !*on;
+            }),
+            Command::ColourBy(by) => self.change(|document| document.colour_by = by),
+            Command::AddBreakpoint(text) => self.add_breakpoint(text),
+            Command::SwitchBreakpoint(k) => self.change(|document| {
+                if let Some(breakpoint) = document.breakpoints.get_mut(k) {
+                    breakpoint.is_on = !breakpoint.is_on;
+                }
+            }),
+            Command::RemoveBreakpoint(k) => self.change(|document| {
+                if k < document.breakpoints.len() {
+                    document.breakpoints.remove(k);
+                }
+            }),
+            Command::Bookmark => self.bookmark(),
+            Command::Open(source) => self.open(source),
+            Command::Import => match &self.run.source {
+                Some(Source::Mesh(path, options)) => self.import(path.clone(), options.clone()),
+                _ => self.notice("What is open was not imported from a mesh file in this window.".to_owned()),
+            },
+            Command::SetImport(options, gesture) => {
+                if let Some(import) = &mut self.run.import {
+                    import.set(*options, gesture);
+                }
+            }
+            Command::Convert => {
+                if let Some(import) = self.run.import.as_ref().filter(|import| import.is_ready()) {
+                    self.open(Source::Mesh(import.path.clone(), import.options.clone()));
+                }
+            }
+            Command::CancelImport => self.cancel_import(),
+            Command::OpenDialog => {
+                self.run.dialog.get_or_insert_with(|| Dialog::open(self.wake.clone()));
+            }
+            Command::OpenPath => self.toggle(Overlay::Path),
+            Command::GoTo => self.toggle(Overlay::GoTo),
+            Command::Palette => self.toggle(Overlay::Palette),
+            Command::Help => self.toggle(Overlay::Help),
+            Command::CloseOverlay => self.view.overlay = Overlay::Nothing,
+            Command::CloseFault(k) => {
+                if k < self.view.faults.len() {
+                    self.view.faults.remove(k);
+                }
+            }
+            Command::Screenshot => self.frame.screenshot = true,
+            Command::Figures => self.view.figure_panel = !self.view.figure_panel,
+            Command::SetFigure(form) => self.workspace.figure = *form,
+            Command::Export => self.save_figure(Formats::Both),
+            Command::SaveFigure(formats) => self.save_figure(formats),
+            Command::Reopen => {
+                if let Some(source) = self.run.source.clone() {
+                    self.open(source);
+                }
+            }
+            Command::Notes => self.view.notes = !self.view.notes,
+            Command::OpenKept => {
+                if let Some(source) = self.run.autosave.as_mut().and_then(|autosave| autosave.take()) {
+                    self.open(source);
+                }
+            }
+            Command::DiscardKept => {
+                if let Some(autosave) = &mut self.run.autosave {
+                    autosave.discard();
+                }
+            }
+            Command::SaveRun => drop(self.save_run()),
+            Command::SaveMesh => {
+                if self.run.opened.is_some() && self.run.moment.is_some() {
+                    self.toggle(Overlay::Mesh);
+                }
+            }
+            Command::SaveMeshAs(path) => self.save_mesh(&path),
+            Command::Undo => self.take_back(Direction::Back),
+            Command::Redo => self.take_back(Direction::Forward),
+            Command::Arrange(layout) => self.change(|document| document.layout = Some(layout)),
+            Command::ResetLayout => {
+                self.change(|document| document.layout = None);
+                self.view.relayout.ask(());
+            }
+            Command::ToggleTheme => self.frame.toggle_theme = true,
+            Command::Escape => self.escape(),
+        }
+    }
+
+    /// Ends a frame: does what its panels ask for. Returns whether the next frame has something new to show.
+    pub(in crate::app::window) fn end_frame(&mut self, commands: Vec<Command>) -> bool {
+        let hovered = std::mem::take(&mut self.frame).hovered;
+        let is_asked = commands.iter().any(|command| !matches!(command, Command::Hover(_)));
+        commands.into_iter().for_each(|command| self.apply(command));
+        let is_hovered_anew = self.frame.hovered != hovered;
+        self.view.over_epoch += u64::from(is_hovered_anew);
+        is_asked || is_hovered_anew
+    }
+
+    /// While the run is played, goes on when it is time. Returns how long to wait until then.
+    pub(in crate::app::window) fn play_on(&mut self) -> Option<Duration> {
+        let last = self.run.playing.filter(|_| !self.run.is_busy())?;
+        let period = Duration::from_secs_f32(1.0 / self.workspace.speed.max(0.1));
+        let left = period.checked_sub(last.elapsed()).filter(|left| !left.is_zero());
+        if left.is_none() {
+            self.run.playing = Some(Instant::now());
+            self.ask(|session| session.go(Goal::Quads(1)));
+        }
+        left
+    }
+
+    /// While times are measured, goes on to the next step once the frame before has shown the last one.
+    pub(in crate::app::window) fn measure_on(&mut self) {
+        let is_there = !self.run.is_busy();
+        let took = self.run.moment.as_ref().map_or(Duration::ZERO, |moment| moment.took);
+        let end = self.run.track.len() as u64;
+        let Some(measuring) = &mut self.run.measuring else { return };
+        if let Some(goal) = measuring.next(is_there, took, end) {
+            self.ask(|session| session.go(goal));
+        } else if let Some(told) = measuring.told() {
+            println!("{told}");
+            self.run.measuring = None;
+            self.notice(told);
+        }
+    }
+
+    /// Shows a fault until the user closes it.
+    pub(in crate::app::window) fn complain(&mut self, fault: &Fault) {
+        let text = fault.to_string();
+        if !self.view.faults.contains(&text) {
+            self.view.faults.push(text);
+        }
+    }
+
+    /// Shows for a while what was done.
+    pub(in crate::app::window) fn notice(&mut self, text: String) {
+        self.view.notice = Some((text, Instant::now()));
+    }
+
+    /// Asks the session for another state; it owes an answer to that.
+    fn ask(&mut self, ask: impl FnOnce(&Session)) {
+        let Some(session) = &self.run.session else { return };
+        ask(session);
+        self.wait();
+    }
+
+    /// The session owes one more answer.
+    pub(super) fn wait(&mut self) {
+        self.run.waiting += 1;
+        self.run.since.get_or_insert_with(Instant::now);
+    }
+
+    /// Changes the document, so that undo takes it back.
+    fn change(&mut self, change: impl FnOnce(&mut Document)) {
+        if let Some(before) = self.workspace.change(change) {
+            self.follow(&before);
+        }
+    }
+
+    /// Undoes or redoes a change.
+    fn take_back(&mut self, direction: Direction) {
+        if let Some(import) = &mut self.run.import {
+            return import.take_back(direction);
+        }
+        let Some(before) = self.workspace.take_back(direction) else { return };
+        self.follow(&before);
+        if self.document().layout != before.layout {
+            self.view.relayout.ask(());
+        }
+    }
+
+    /// Has the run and the views follow a change of the document.
+    fn follow(&mut self, before: &Document) {
+        let document = &self.workspace.document;
+        if document.layers != before.layers || document.colour_by != before.colour_by {
+            self.view.style_epoch += 1;
+        }
+        if document.breakpoints != before.breakpoints
+            && let Some(session) = &self.run.session
+        {
+            // Switched off, a breakpoint keeps its count.
+            let all = document.breakpoints.iter().filter_map(|b| Condition::parse(&b.condition).ok());
+            session.count(all.collect());
+        }
+        if document.picked != before.picked {
+            self.view.scroll.ask(document.picked);
+        }
+        self.view.over_epoch += 1;
+        if document.edits != before.edits {
+            self.run.recorded = false;
+            let edits = document.edits.clone();
+            self.ask(|session| session.set_edits(edits));
+        }
+    }
+
+    fn set(&mut self, key: &'static str, value: String) {
+        let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
+        if self.parameter(key).as_ref() == Some(&value) {
+            return;
+        }
+        match EditKind::parameter(key, &value) {
+            Ok(kind) => self.edit(Edit { step, kind }),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    fn edit(&mut self, edit: Edit) {
+        self.change(|document| {
+            document.edits.retain(|old| old.step != edit.step || !edit.kind.replaces(&old.kind));
+            let place = document.edits.partition_point(|old| old.step <= edit.step);
+            document.edits.insert(place, edit);
+        });
+    }
+
+    /// Replaces the base if it has just been selected, or else decides the next selection.
+    fn choose_base(&mut self, [a, b]: [NodeId; 2]) {
+        let Some(moment) = &self.run.moment else { return };
+        let selected = matches!(moment.event, Some(Event::BaseSelected { .. }));
+        let step = moment.step - u64::from(selected);
+        self.edit(Edit { step, kind: EditKind::Base { a, b } });
+        let which = if selected { "The base is now" } else { "The next base will be" };
+        self.notice(format!("{which} {}.", words::segment(a, b)));
+    }
+
+    fn add_breakpoint(&mut self, text: String) {
+        let condition = text.trim().to_owned();
+        if condition.is_empty() || self.document().breakpoints.iter().any(|b| b.condition == condition) {
+            return;
+        }
+        match Condition::parse(&condition) {
+            Ok(_) => self.change(|document| document.breakpoints.push(Breakpoint { condition, is_on: true })),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    fn seek_breakpoint(&mut self, direction: Direction) {
+        let stops = self.stops();
+        if stops.conditions.is_empty() && stops.watched.is_empty() {
+            return self.notice("No breakpoint is on: add a condition in the Breakpoints panel.".to_owned());
+        }
+        self.ask(|session| session.go_to_break(stops, direction));
+    }
+
+    /// Watches something, or stops watching it.
+    fn watch(&mut self, watched: Watched) {
+        self.change(|document| match document.watches.iter().position(|watch| watch.watched == watched) {
+            Some(k) => drop(document.watches.remove(k)),
+            None => document.watches.push(Watchpoint { watched, is_on: true }),
+        });
+    }
+
+    /// Sets a bookmark at the current step, or removes it.
+    fn bookmark(&mut self) {
+        let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
+        self.change(|document| match document.bookmarks.binary_search(&step) {
+            Ok(k) => drop(document.bookmarks.remove(k)),
+            Err(k) => document.bookmarks.insert(k, step),
+        });
+    }
+
+    fn explain(&mut self, ends: [NodeId; 2]) {
+        let (Some(moment), Some(session)) = (&self.run.moment, &self.run.session) else { return };
+        self.run.asked = Some((moment.step, ends));
+        session.explain(ends);
+    }
+
+    fn tell_past(&mut self, watched: Watched) {
+        let (Some(moment), Some(session)) = (&self.run.moment, &self.run.session) else { return };
+        self.run.asked_past = Some((moment.step, watched));
+        session.past(watched);
+    }
+
+    fn move_camera(&mut self, view: ViewKind, camera: ViewCamera) {
+        match view {
+            ViewKind::Plane => self.view.plane = camera,
+            ViewKind::Space => self.view.space = camera,
+            ViewKind::Import => {
+                if let Some(import) = &mut self.run.import {
+                    import.view = camera;
+                }
+            }
+        }
+    }
+
+    /// Opens something over the window, or closes it if it is open.
+    fn toggle(&mut self, overlay: Overlay) {
+        self.view.overlay = if self.view.overlay == overlay { Overlay::Nothing } else { overlay };
+    }
+
+    fn escape(&mut self) {
+        if self.view.overlay != Overlay::Nothing {
+            self.view.overlay = Overlay::Nothing;
+        } else if self.run.import.is_some() {
+            self.cancel_import();
+        } else if self.run.playing.is_some() {
+            self.run.playing = None;
+        } else {
+            self.change(|document| document.picked = None);
+        }
+    }
+
+    /// Stops all work under way: playing, opening, and what the session does.
+    fn stop(&mut self) {
+        self.run.playing = None;
+        self.stop_opening();
+        if let Some(session) = &self.run.session {
+            session.stop();
+        }
+    }
+
+    /// Goes where a text says: to a step, or to nq=N.
+    fn go_to_text(&mut self, text: &str) {
+        let short = text.trim().replace(['\u{2009}', ' '], "");
+        let goal = match short.to_lowercase().strip_prefix("nq=") {
+            Some(quads) => quads.parse().map(Goal::ToQuads),
+            None => short.trim_start_matches("step=").parse().map(Goal::Step),
+        };
+        match goal {
+            Ok(goal) => {
+                self.view.overlay = Overlay::Nothing;
+                self.ask(|session| session.go(goal));
+            }
+            Err(_) => {
+                let fault = Fault::new(format!("\"{text}\" is not a step"));
+                self.complain(&fault.remedy("Write a step such as 812, or nq=100"));
+            }
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Opens cases and meshes, and gives them up.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use super::State;
+use crate::app::input;
+use crate::app::window::import::{Import, ImportOptions};
+use crate::app::window::session::{Session, Source};
+use crate::core::case::built_in;
+use crate::core::fault::Fault;
+use crate::core::formats::format::Format;
+use crate::core::run::run::Run;
+
+impl State {
+    /// Opens a case or a mesh; what is open stays until the other one is ready. A mesh is shown before it is converted.
+    pub(in crate::app::window) fn open(&mut self, source: Source) {
+        if let Source::File(path) = &source
+            && Format::from_path(path).is_ok()
+        {
+            return self.import(path.clone(), ImportOptions::default());
+        }
+        let is_of_import =
+            matches!((&source, &self.run.import), (Source::Mesh(path, _), Some(import)) if *path == import.path);
+        if !is_of_import {
+            self.give_up_import();
+        }
+        let named = source.clone();
+        let session = Session::open(move || read(&named), self.wake.clone());
+        if self.run.opening.replace((source, session)).is_none() {
+            self.run.waiting += 1;
+        }
+        self.run.since.get_or_insert_with(Instant::now);
+    }
+
+    /// Shows a mesh and how it is to be imported.
+    pub(in crate::app::window::state) fn import(&mut self, path: PathBuf, options: ImportOptions) {
+        self.give_up_import();
+        self.stop_opening();
+        self.run.playing = None;
+        self.run.import = Some(Import::begin(path, options, self.run.pictures, self.wake.clone()));
+    }
+
+    /// Gives up what is being opened.
+    pub(super) fn stop_opening(&mut self) {
+        if let Some((_, session)) = &self.run.opening {
+            session.stop();
+        }
+    }
+
+    /// Gives up the mesh that is about to be converted.
+    pub(in crate::app::window::state) fn give_up_import(&mut self) {
+        if let Some(import) = self.run.import.take() {
+            self.run.pictures = import.generation();
+        }
+    }
+
+    /// Stops the conversion and goes back to the import, or else gives up the mesh.
+    pub(super) fn cancel_import(&mut self) {
+        if self.run.is_opening() {
+            self.stop_opening();
+        } else {
+            self.give_up_import();
+        }
+    }
+}
+
+/// Reads what is to be opened.
+fn read(source: &Source) -> Result<Run, Fault> {
+    match source {
+        Source::BuiltIn(name) => match built_in::named(name) {
+            Some(case) => case.map(Run::of),
+            None => Err(Fault::new("There is no built-in case of this name").at(name.clone())),
+        },
+        Source::File(path) => input::run_of(path, &ImportOptions::default()),
+        Source::Mesh(path, options) => input::run_of(path, options),
+    }
+}

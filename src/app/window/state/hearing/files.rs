@@ -1,0 +1,50 @@
+//! Files: dialogs, autosaved runs, files that are written, and the file that is open when it changes.
+
+use std::time::Duration;
+
+use crate::app::window::command::Command;
+use crate::app::window::files::{Answer, Watcher, answers};
+use crate::app::window::session::Source;
+use crate::app::window::state::{Overlay, State};
+
+impl State {
+    /// Opens the file that the user has chosen in the dialog.
+    pub(in crate::app::window) fn hear_dialog(&mut self) {
+        let Some(dialog) = &self.run.dialog else { return };
+        let answer = dialog.answer();
+        if !matches!(answer, Answer::Waiting) {
+            self.run.dialog = None;
+        }
+        match answer {
+            Answer::File(path) => self.apply(Command::Open(Source::File(path))),
+            Answer::Missing => {
+                self.view.overlay = Overlay::Path;
+                self.notice("The system has no file dialog: type the path.".to_owned());
+            }
+            Answer::Nothing | Answer::Waiting => {}
+        }
+    }
+
+    /// Autosaves the run, and takes in what became of files. Returns when to look again.
+    pub(in crate::app::window) fn hear_files(&mut self) -> Option<Duration> {
+        let mut again = None;
+        if let Some(mut autosave) = self.run.autosave.take() {
+            let (opened, source) = (self.run.opened.clone(), self.run.source.clone());
+            let (faults, wait) = autosave.look(opened.as_ref(), source.as_ref(), || self.current_run());
+            faults.iter().for_each(|fault| self.complain(fault));
+            self.run.autosave = Some(autosave);
+            again = wait;
+        }
+        let mut written = answers(&mut self.run.figures);
+        written.extend(answers(&mut self.run.meshes));
+        let changed = self.run.watcher.as_ref().and_then(Watcher::news);
+        let changed = changed.map(|news| news.map(|name| format!("{name} has changed: Ctrl+R opens it again.")));
+        for news in written.into_iter().chain(changed) {
+            match news {
+                Ok(notice) => self.notice(notice),
+                Err(fault) => self.complain(&fault),
+            }
+        }
+        again
+    }
+}

@@ -1,0 +1,111 @@
+//! What is being opened: it takes the place of what is open, or is refused.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::app::window::files::Watcher;
+use crate::app::window::import::News;
+use crate::app::window::session::{Goal, Opened, Session, SessionNews, Source};
+use crate::app::window::state::{Look, Progress, RunState, State, ViewCamera};
+use crate::core::case::built_in;
+
+impl State {
+    /// Takes in what the preview of an import reports; a mesh that cannot be read is given up.
+    pub(in crate::app::window) fn hear_import(&mut self, dark: bool) {
+        let Some(import) = &mut self.run.import else { return };
+        if let News::Refused(fault) = import.look(dark) {
+            self.complain(&fault);
+            self.give_up_import();
+            self.say_what_stays();
+        }
+    }
+
+    /// Says that the run that is open stays, if there is one.
+    fn say_what_stays(&mut self) {
+        if let Some(opened) = &self.run.opened {
+            self.notice(format!("{} stays open.", opened.case.name));
+        }
+    }
+
+    pub(super) fn hear_opening(&mut self) {
+        while let Some(told) = self.run.opening.as_ref().and_then(|(_, session)| session.hear().next()) {
+            match told {
+                SessionNews::Progress { words, done, total } => {
+                    self.run.progress = Some(Progress { words, done, total })
+                }
+                SessionNews::Opened(opened) => {
+                    if let Some((source, session)) = self.run.opening.take() {
+                        self.begin(source, session, opened);
+                    }
+                }
+                SessionNews::Fault(fault, asks) => {
+                    let opening = self.run.opening.take();
+                    match opening {
+                        _ if fault.is_stop() => {}
+                        Some((Source::Mesh(path, options), _)) => {
+                            // The import shows why, and how the mesh may be imported in another way.
+                            if self.run.import.is_none() {
+                                self.import(path, options);
+                            }
+                            if let Some(import) = &mut self.run.import {
+                                import.refuse_conversion(fault);
+                            }
+                        }
+                        _ => self.complain(&fault),
+                    }
+                    if self.run.import.is_none() {
+                        self.say_what_stays();
+                    }
+                    if let Some(autosave) = &mut self.run.autosave {
+                        autosave.failed();
+                    }
+                    self.answered(asks);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A run is open and takes the place of the one before.
+    fn begin(&mut self, source: Source, session: Session, opened: Arc<Opened>) {
+        self.give_up_import();
+        let watcher = match &source {
+            Source::File(path) | Source::Mesh(path, _) => Some(Watcher::of(path.clone(), self.wake.clone())),
+            Source::BuiltIn(_) => None,
+        };
+        let is_figure =
+            matches!(&source, Source::BuiltIn(name) if built_in::FIGURES.iter().any(|figure| figure.0 == name));
+        let old = std::mem::take(&mut self.run);
+        self.run = RunState {
+            source: Some(source),
+            number: old.number + 1,
+            track_epoch: old.track_epoch + 1,
+            verdict: old.verdict,
+            progress: old.progress,
+            autosave: old.autosave,
+            pictures: old.pictures,
+            dialog: old.dialog,
+            figures: old.figures,
+            meshes: old.meshes,
+            session: Some(session),
+            watcher,
+            since: Some(Instant::now()),
+            waiting: 1,
+            ..RunState::default()
+        };
+        let bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
+        self.workspace.begin(opened.run.edits().to_vec(), bookmarks);
+        self.view.notes = is_figure;
+        for view in [&mut self.view.plane, &mut self.view.space] {
+            *view = ViewCamera { camera: None, is_fitted: true, ..*view };
+        }
+        self.view.look.ask(opened.run.camera.map_or(Look::Fit, Look::Kept));
+        self.frame.hovered = None;
+        self.run.awaited = opened.run.shown.as_ref().and_then(|shown| shown.state()).copied();
+        if let (Some(shown), Some(session)) = (self.run.awaited, &self.run.session) {
+            session.go(if shown.at.is_some() { Goal::Step(shown.step) } else { Goal::End });
+            self.run.waiting += 1;
+        }
+        self.run.opened = Some(opened);
+    }
+}

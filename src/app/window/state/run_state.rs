@@ -1,0 +1,144 @@
+//! The run: what is open, how far it is known, and the work under way on other threads.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::app::window::autosave::Autosave;
+use crate::app::window::files::{Dialog, Watcher, Writing};
+use crate::app::window::import::Import;
+use crate::app::window::measure::Measuring;
+use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, Tracked, Verdict};
+use crate::core::convert::phase::Phase;
+use crate::core::mesh::ids::NodeId;
+use crate::core::run::copies::Since;
+use crate::core::run::sample::Sample;
+use crate::core::run::shown::ShownState;
+use crate::core::run::watch::Watched;
+
+/// How far some work is.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    pub words: &'static str,
+    pub done: u64,
+    /// 0 where it is unknown.
+    pub total: u64,
+}
+
+/// What is known about a question that the session answers.
+pub enum Lookup<T> {
+    Known(Arc<T>),
+    /// The answer is on its way, or has to wait until other work is done.
+    Pending,
+    /// Nobody has asked yet.
+    Unasked,
+}
+
+/// The run and the work on it.
+#[derive(Default)]
+pub struct RunState {
+    /// What was opened.
+    pub source: Option<Source>,
+    /// The case as it was opened, with its background mesh.
+    pub opened: Option<Arc<Opened>>,
+    /// How many runs have been opened before this one and with it.
+    pub number: u64,
+    /// The current state of the run.
+    pub moment: Option<Arc<Moment>>,
+    /// Whether the invariants hold in it.
+    pub verdict: Verdict,
+    /// The steps of the run, as far as they have been recorded.
+    pub track: Vec<Tracked>,
+    /// Invariants and sizes along it.
+    pub samples: Vec<Sample>,
+    /// Changes with both.
+    pub track_epoch: u64,
+    /// Whether all steps have been recorded.
+    pub recorded: bool,
+    /// How often each breakpoint is met.
+    pub hits: Vec<usize>,
+    /// Since when the session owes an answer.
+    pub since: Option<Instant>,
+    pub progress: Option<Progress>,
+    /// Set while the run is played: when it went on last.
+    pub playing: Option<Instant>,
+    pub measuring: Option<Measuring>,
+    /// The mesh that is about to be converted.
+    pub import: Option<Import>,
+    /// Saves the run while the user works on it.
+    pub autosave: Option<Autosave>,
+    pub(super) session: Option<Session>,
+    /// What is being opened; the run that is open stays until it is ready.
+    pub(super) opening: Option<(Source, Session)>,
+    /// The number of the last picture of an import.
+    pub(super) pictures: u64,
+    /// Watches the file that was opened.
+    pub(super) watcher: Option<Watcher>,
+    /// The state of a figure that was opened, until the run gets there.
+    pub(super) awaited: Option<ShownState>,
+    /// The differences between the current state and the one that the views took last.
+    pub(super) changes: Since,
+    /// How many answers the session owes.
+    pub(super) waiting: usize,
+    /// Why the selected segment was or was not chosen, at a step; and the question asked last.
+    pub(super) explained: Option<(u64, Arc<Explained>)>,
+    pub(super) asked: Option<(u64, [NodeId; 2])>,
+    /// The history of the selected element; and the question asked last.
+    pub(super) past: Option<Arc<Past>>,
+    pub(super) asked_past: Option<(u64, Watched)>,
+    /// The file dialog, while it is open.
+    pub(super) dialog: Option<Dialog>,
+    /// Figures and meshes that are being written.
+    pub(super) figures: Vec<Writing>,
+    pub(super) meshes: Vec<Writing>,
+}
+
+impl RunState {
+    /// Whether the session still owes an answer.
+    pub fn is_busy(&self) -> bool {
+        self.waiting > 0
+    }
+
+    /// Whether something is being opened.
+    pub fn is_opening(&self) -> bool {
+        self.opening.is_some()
+    }
+
+    /// Whether a file dialog is open.
+    pub fn is_asking_for_file(&self) -> bool {
+        self.dialog.is_some()
+    }
+
+    /// Whether a figure is being made.
+    pub fn is_making_figure(&self) -> bool {
+        !self.figures.is_empty()
+    }
+
+    /// Whether the current state is the last one.
+    pub fn is_at_the_end(&self) -> bool {
+        self.moment.as_ref().is_some_and(|moment| moment.phase == Phase::Done)
+    }
+
+    /// Why a segment of the front was or was not chosen at the current step.
+    pub fn explanation(&self, ends: [NodeId; 2]) -> Lookup<Explained> {
+        let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return Lookup::Pending };
+        match &self.explained {
+            Some((at, told)) if (*at, [told.told.row.a, told.told.row.b]) == (step, ends) => {
+                Lookup::Known(told.clone())
+            }
+            _ if self.asked == Some((step, ends)) => Lookup::Pending,
+            _ => Lookup::Unasked,
+        }
+    }
+
+    /// The history of something up to the current step. While other work is under way the question waits.
+    pub fn past(&self, watched: Watched) -> Lookup<Past> {
+        let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return Lookup::Pending };
+        match &self.past {
+            Some(past) if (past.step, past.watched) == (step, watched) => Lookup::Known(past.clone()),
+            _ if self.asked_past == Some((step, watched)) || self.is_busy() || self.playing.is_some() => {
+                Lookup::Pending
+            }
+            _ => Lookup::Unasked,
+        }
+    }
+}

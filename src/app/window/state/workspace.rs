@@ -1,0 +1,162 @@
+//! What the user has set up: the part that undo covers, and settings that outlast the run.
+
+use serde::{Deserialize, Serialize};
+
+use crate::app::window::figures::FigureForm;
+use crate::app::window::session::Direction;
+use crate::core::run::run::Edit;
+use crate::core::run::watch::Watched;
+use crate::render::look::HiddenLines;
+use crate::render::scene::{ColourBy, Form, Layers, Outlined};
+
+/// How many changes can be undone.
+const UNDO: usize = 200;
+
+/// What the user has set up. A small file keeps the layers, the colours, the speed and the surface style from one start
+/// to the next (`settings`).
+pub struct Workspace {
+    pub document: Document,
+    /// Quadrilaterals a second while playing.
+    pub speed: f32,
+    /// How meshes on surfaces are shown.
+    pub surfaces: SurfaceStyle,
+    /// How figures are made.
+    pub figure: FigureForm,
+    undo: Vec<Document>,
+    redo: Vec<Document>,
+}
+
+/// Everything that undo covers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Document {
+    /// Changes of the run: parameters and choices of a base.
+    pub edits: Vec<Edit>,
+    /// The selection, which the inspector shows.
+    pub picked: Option<Outlined>,
+    /// What is drawn.
+    pub layers: Layers,
+    /// What elements are coloured by.
+    pub colour_by: ColourBy,
+    pub breakpoints: Vec<Breakpoint>,
+    pub watches: Vec<Watchpoint>,
+    /// The bookmarked steps, in order.
+    pub bookmarks: Vec<u64>,
+    /// Where the panels are, once the user has moved them.
+    pub layout: Option<String>,
+}
+
+/// A condition to stop at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Breakpoint {
+    pub condition: String,
+    pub is_on: bool,
+}
+
+/// Something to stop at when it is touched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Watchpoint {
+    pub watched: Watched,
+    pub is_on: bool,
+}
+
+/// How meshes on surfaces are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SurfaceStyle {
+    pub view: SurfaceView,
+    /// How hidden lines are drawn.
+    pub hidden: HiddenLines,
+    /// Whether elements follow the surface between their nodes.
+    pub curved: bool,
+}
+
+impl SurfaceStyle {
+    /// How the scene in space is laid out.
+    pub fn form(&self) -> Form {
+        if self.curved { Form::Curved } else { Form::Flat }
+    }
+}
+
+/// Where the main view shows a mesh on surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SurfaceView {
+    /// In space.
+    #[default]
+    Space,
+    /// In its parametric plane.
+    Plane,
+    /// In space, with the plane beside it.
+    Both,
+}
+
+impl SurfaceView {
+    /// All of them.
+    pub const ALL: [SurfaceView; 3] = [SurfaceView::Space, SurfaceView::Both, SurfaceView::Plane];
+
+    /// What it does, for menus.
+    pub fn name(self) -> &'static str {
+        match self {
+            SurfaceView::Space => "Show in space",
+            SurfaceView::Plane => "Show in the parametric plane",
+            SurfaceView::Both => "Show in space and in the plane",
+        }
+    }
+
+    /// From the plane to space, and from anything else to the plane.
+    pub fn toggled(self) -> SurfaceView {
+        if self == SurfaceView::Plane { SurfaceView::Space } else { SurfaceView::Plane }
+    }
+}
+
+impl Default for Workspace {
+    fn default() -> Self {
+        Workspace {
+            document: Document::default(),
+            speed: 8.0,
+            surfaces: SurfaceStyle::default(),
+            figure: FigureForm::default(),
+            undo: Vec::new(),
+            redo: Vec::new(),
+        }
+    }
+}
+
+impl Workspace {
+    /// Another run has been opened: how the mesh is shown stays, and nothing can be undone.
+    pub(super) fn begin(&mut self, edits: Vec<Edit>, bookmarks: Vec<u64>) {
+        let Document { layers, colour_by, ref layout, .. } = self.document;
+        self.document = Document { edits, bookmarks, layers, colour_by, layout: layout.clone(), ..Document::default() };
+        self.undo.clear();
+        self.redo.clear();
+        if self.surfaces.view == SurfaceView::Plane {
+            self.surfaces.view = SurfaceView::Space;
+        }
+    }
+
+    /// Changes the document so that undo takes it back. Returns the document as it was before, if there is a
+    /// difference.
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut Document)) -> Option<Document> {
+        let before = self.document.clone();
+        change(&mut self.document);
+        if self.document == before {
+            return None;
+        }
+        self.undo.push(before.clone());
+        if self.undo.len() > UNDO {
+            self.undo.remove(0);
+        }
+        self.redo.clear();
+        Some(before)
+    }
+
+    /// Undoes or redoes a change. Returns the document as it was before, if there was anything to undo or redo.
+    pub(super) fn take_back(&mut self, direction: Direction) -> Option<Document> {
+        let (from, to) = match direction {
+            Direction::Back => (&mut self.undo, &mut self.redo),
+            Direction::Forward => (&mut self.redo, &mut self.undo),
+        };
+        let before = std::mem::replace(&mut self.document, from.pop()?);
+        to.push(before.clone());
+        Some(before)
+    }
+}
