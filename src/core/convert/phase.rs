@@ -56,7 +56,7 @@ pub struct Attempt {
 
 /// A part of the post-processing (4.3.7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum PostProcessingPart {
+pub enum FinishPart {
     /// Smoothing of all that the front has left.
     FirstSmoothing,
     /// Clean-up of the structure by single changes.
@@ -182,7 +182,7 @@ pub enum Phase {
     /// Clean-up and smoothing of the whole mesh.
     PostProcess {
         /// Which part of it is under way.
-        part: PostProcessingPart,
+        part: FinishPart,
     },
     /// The face at hand is converted; the next one follows.
     NextFace,

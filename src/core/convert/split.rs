@@ -111,19 +111,14 @@ fn parts(mesh: &Mesh, side: HalfEdgeId) -> Option<[usize; 2]> {
     // The front segments that leave both ends, in the sector of the edge.
     let from = mesh.front_after(mesh.previous(side));
     let to = mesh.front_after(side);
-    let (mut h, mut count, mut parts) = (from, 0, [0; 2]);
-    loop {
+    let (mut first, mut all) = (0, 0);
+    for h in mesh.front_loop(from) {
         if h == to {
-            parts[0] = count;
+            first = all;
         }
-        h = mesh.front_after(h);
-        count += 1;
-        if h == from {
-            break;
-        }
+        all += 1;
     }
-    parts[1] = count - parts[0];
-    (parts[0] > 0).then_some(parts)
+    (first > 0).then_some([first, all - first])
 }
 
 /// Area of a triangle in the mean metric of its nodes.

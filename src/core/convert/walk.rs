@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::converter::Converter;
 use super::event::Event;
-use super::phase::{Phase, PostProcessingPart};
+use super::phase::{FinishPart, Phase};
 use super::side::candidates::Candidates;
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::NodeId;
@@ -116,7 +116,7 @@ pub fn walk_editing(
     while !stop.is_some_and(|stop| stop.is_reached(converter)) {
         match converter.phase() {
             Phase::Done => return stop.map_or(Ok(()), |_| Err(past_the_end(converter))),
-            Phase::PostProcess { part: PostProcessingPart::FirstSmoothing } => watch.tell(Stage::Finish, 0, 0),
+            Phase::PostProcess { part: FinishPart::FirstSmoothing } => watch.tell(Stage::Finish, 0, 0),
             _ => {}
         }
         let crossings = tell.as_ref().and_then(|_| converter.top_crossings());

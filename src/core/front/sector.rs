@@ -104,6 +104,11 @@ impl Mesh {
         n
     }
 
+    /// The front segments of the loop of one, from it on.
+    pub fn front_loop(&self, start: HalfEdgeId) -> impl Iterator<Item = HalfEdgeId> + '_ {
+        std::iter::successors(Some(start), move |&h| Some(self.front_after(h)).filter(|&h| h != start))
+    }
+
     /// The front segment from one node to another, if there is one.
     pub fn front_between(&self, from: NodeId, to: NodeId) -> Option<HalfEdgeId> {
         self.half_edge_between(from, to).filter(|&h| self.is_front(h))

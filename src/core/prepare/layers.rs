@@ -54,14 +54,7 @@ pub(super) fn offset_only(mesh: &mut Mesh, divided: &DividedDomain, curves: &[us
         if !follows || layered[mesh.origin(start).index()] {
             continue;
         }
-        let mut h = start;
-        loop {
-            layered[mesh.origin(h).index()] = true;
-            h = mesh.front_after(h);
-            if h == start {
-                break;
-            }
-        }
+        mesh.front_loop(start).for_each(|h| layered[mesh.origin(h).index()] = true);
     }
     for h in segments {
         let node = mesh.origin(h);

@@ -129,14 +129,10 @@ impl FrontTracker {
             if self.epoch[start.index()] == self.epochs {
                 continue;
             }
-            let (mut h, mut segments) = (start, 0_u32);
-            loop {
+            let mut segments = 0_u32;
+            for h in mesh.front_loop(start) {
                 self.epoch[h.index()] = self.epochs;
                 segments += 1;
-                h = mesh.front_after(h);
-                if h == start {
-                    break;
-                }
             }
             loops += 1;
             odd += segments % 2;

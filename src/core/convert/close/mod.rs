@@ -9,7 +9,7 @@ use super::event::Event;
 use super::front::{Done, Front};
 use super::last_resort::component::{Component, small_component};
 use super::last_resort::{Outcome, Plan};
-use super::phase::{Base, Phase, PostProcessingPart};
+use super::phase::{Base, FinishPart, Phase};
 use crate::core::fault::Fault;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::HalfEdgeId;
@@ -40,11 +40,7 @@ pub(super) fn close_or_defer(front: &mut Front<'_>, base: Base) -> Done {
 /// The live component beside a front segment, where it has few triangles and the segment's loop is short.
 fn component_beside(mesh: &Mesh, h: HalfEdgeId) -> Option<Component> {
     // The walk is short; collecting the triangles is more expensive.
-    let mut walk = h;
-    let is_short = (0..MOST_SEGMENTS).any(|_| {
-        walk = mesh.front_after(walk);
-        walk == h
-    });
+    let is_short = mesh.front_loop(h).nth(MOST_SEGMENTS).is_none();
     is_short.then(|| small_component(mesh, h.element(), MOST_TRIANGLES)).flatten()
 }
 
@@ -68,7 +64,7 @@ pub(super) fn match_next(
 ) -> Result<Done, Fault> {
     let Some(component) = left.get(at) else {
         let next = if front.parameters.post_processing {
-            Phase::PostProcess { part: PostProcessingPart::FirstSmoothing }
+            Phase::PostProcess { part: FinishPart::FirstSmoothing }
         } else if front.face.is_some() {
             Phase::NextFace
         } else {

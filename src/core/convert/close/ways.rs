@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 use super::{MOST_SEGMENTS, MOST_TRIANGLES};
 use crate::core::convert::event::Event;
 use crate::core::convert::last_resort::component::Component;
-use crate::core::convert::relax::settle::{Nodes, all_convex, put, settle, worst_quality};
+use crate::core::convert::relax::{Nodes, all_convex, put, settle, worst_quality};
 use crate::core::mesh::half_edge::{Mesh, NewElement};
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::refusals::Operation;
@@ -191,16 +191,11 @@ fn ring(mesh: &Mesh, component: &Component) -> Option<SmallVec<[NodeId; MOST_SEG
     }
     let start = component.triangles.iter().flat_map(|&e| mesh.half_edges(e)).find(|&h| mesh.is_front(h))?;
     let mut ring = SmallVec::new();
-    let mut h = start;
-    loop {
-        if ring.contains(&mesh.origin(h)) || ring.len() == MOST_SEGMENTS {
+    for node in mesh.front_loop(start).map(|h| mesh.origin(h)) {
+        if ring.contains(&node) || ring.len() == MOST_SEGMENTS {
             return None;
         }
-        ring.push(mesh.origin(h));
-        h = mesh.front_after(h);
-        if h == start {
-            break;
-        }
+        ring.push(node);
     }
     (ring.len() == component.boundary).then_some(ring)
 }

@@ -70,16 +70,12 @@ fn loops_through(mesh: &Mesh, nodes: &[NodeId]) -> Vec<u32> {
         if walked.contains(&start) {
             continue;
         }
-        let (mut h, mut segments) = (start, 0);
-        loop {
+        let mut segments = 0;
+        for h in mesh.front_loop(start) {
             if starts.contains(&h) {
                 walked.push(h);
             }
-            h = mesh.front_after(h);
             segments += 1;
-            if h == start {
-                break;
-            }
         }
         loops.push(segments);
     }

@@ -6,7 +6,7 @@ use super::helping::next_message;
 use super::{Converter, TELL};
 use crate::core::convert::event::Event;
 use crate::core::convert::front::Done;
-use crate::core::convert::phase::{Phase, PostProcessingPart};
+use crate::core::convert::phase::{FinishPart, Phase};
 use crate::core::fault::Fault;
 use crate::core::progress::{Stage, Watch};
 
@@ -64,7 +64,7 @@ impl<'a> Converter<'a> {
         self.queue = None;
         let next = match self.face() {
             Some(_) => Phase::Select,
-            None if self.parameters.post_processing => Phase::PostProcess { part: PostProcessingPart::Unfolding },
+            None if self.parameters.post_processing => Phase::PostProcess { part: FinishPart::Unfolding },
             None => Phase::Done,
         };
         (next, Some(event))

@@ -5,8 +5,8 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use rayon::Yield;
 
 /// The next message of tasks in a scope; `None` once all senders are gone. A caller that is a thread of the pool itself
-/// runs tasks while it waits: a pool may have no other thread (targets without threads have none), or all of its threads
-/// may wait like this one.
+/// runs tasks while it waits: a pool may have no other thread (targets without threads have none), or all of its
+/// threads may wait like this one.
 pub(super) fn next_message<T>(receiver: &Receiver<T>) -> Option<T> {
     loop {
         match receiver.try_recv() {

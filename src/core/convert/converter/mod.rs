@@ -22,7 +22,7 @@ use super::finish::parts::Finishing;
 use super::finish::{Finished, PostProcessing};
 use super::front::{Done, Front};
 use super::last_resort::Outcome;
-use super::phase::{Attempt, Base, Phase, PostProcessingPart};
+use super::phase::{Attempt, Base, FinishPart, Phase};
 use super::{close, form, local, seam, select, side, split, top};
 use crate::core::case::parameters::Parameters;
 use crate::core::fault::Fault;
@@ -221,7 +221,7 @@ impl<'a> Converter<'a> {
                     watch.tell(Stage::Convert, 2 * self.counts.formed, total);
                 }
             }
-            if self.phase == (Phase::PostProcess { part: PostProcessingPart::FirstSmoothing }) {
+            if self.phase == (Phase::PostProcess { part: FinishPart::FirstSmoothing }) {
                 watch.tell(Stage::Finish, 0, 0);
             }
             self.step()?;

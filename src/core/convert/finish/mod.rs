@@ -17,7 +17,7 @@ use self::unfold::{Unfolded, Unfolding};
 use self::worklist::Worklist;
 use super::event::{Event, Mending};
 use super::front::Done;
-use super::phase::{Phase, PostProcessingPart as Part};
+use super::phase::{FinishPart, Phase};
 use super::relax::energy;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::metric::field::MetricSource;
@@ -47,24 +47,24 @@ pub(super) struct PostProcessing<'f, 'a> {
 
 impl PostProcessing<'_, '_> {
     /// The next sweep or change of structure; where a part is done, the next part. Elements stay strictly convex.
-    pub fn step(&mut self, part: Part) -> Done {
+    pub fn step(&mut self, part: FinishPart) -> Done {
         let event = match part {
-            Part::FirstSmoothing | Part::LastSmoothing => self.sweep(part),
-            Part::CleanUp => self.clean_up(Reach::Singles),
-            Part::CleanUpByPairs => self.clean_up(Reach::Pairs),
-            Part::CleanUpBySequences => self.clean_up(Reach::Longer),
-            Part::Unfolding => self.unfold(),
+            FinishPart::FirstSmoothing | FinishPart::LastSmoothing => self.sweep(part),
+            FinishPart::CleanUp => self.clean_up(Reach::Singles),
+            FinishPart::CleanUpByPairs => self.clean_up(Reach::Pairs),
+            FinishPart::CleanUpBySequences => self.clean_up(Reach::Longer),
+            FinishPart::Unfolding => self.unfold(),
         };
         if event.is_some() {
             return (Phase::PostProcess { part }, event);
         }
         let next = match part {
-            Part::FirstSmoothing => Part::CleanUp,
-            Part::CleanUp => Part::CleanUpByPairs,
-            Part::CleanUpByPairs if !self.parts.pairs_are_cut_short() => Part::CleanUpBySequences,
-            Part::CleanUpByPairs | Part::CleanUpBySequences => Part::LastSmoothing,
-            Part::LastSmoothing if self.face.is_some() => return (Phase::NextFace, Some(Event::PostProcessed)),
-            Part::LastSmoothing | Part::Unfolding => return (Phase::Done, Some(Event::PostProcessed)),
+            FinishPart::FirstSmoothing => FinishPart::CleanUp,
+            FinishPart::CleanUp => FinishPart::CleanUpByPairs,
+            FinishPart::CleanUpByPairs if !self.parts.pairs_are_cut_short() => FinishPart::CleanUpBySequences,
+            FinishPart::CleanUpByPairs | FinishPart::CleanUpBySequences => FinishPart::LastSmoothing,
+            FinishPart::LastSmoothing if self.face.is_some() => return (Phase::NextFace, Some(Event::PostProcessed)),
+            FinishPart::LastSmoothing | FinishPart::Unfolding => return (Phase::Done, Some(Event::PostProcessed)),
         };
         (Phase::PostProcess { part: next }, None)
     }
@@ -99,10 +99,10 @@ impl PostProcessing<'_, '_> {
 
     /// Looks at every free node that waits: all in the first sweep of a part, then those around nodes that moved. None
     /// where no node waits any more.
-    fn sweep(&mut self, part: Part) -> Option<Event> {
+    fn sweep(&mut self, part: FinishPart) -> Option<Event> {
         let mesh = &mut *self.mesh;
         let list = match part {
-            Part::FirstSmoothing => &mut self.parts.first_smoothing,
+            FinishPart::FirstSmoothing => &mut self.parts.first_smoothing,
             _ => &mut self.parts.last_smoothing,
         };
         let list = list.get_or_insert_with(|| every_free_node(mesh, self.face, self.keeps_history));

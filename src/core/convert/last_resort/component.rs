@@ -44,8 +44,8 @@ pub fn small_component(mesh: &Mesh, first: ElementId, most: usize) -> Option<Com
     component_of(mesh, first, most, |found, u| !found.contains(&u))
 }
 
-/// The component of a triangle; `None` where it has more than `most`. `is_new` says of a triangle whether it is found for
-/// the first time.
+/// The component of a triangle; `None` where it has more than `most`. `is_new` says of a triangle whether it is found
+/// for the first time.
 fn component_of(
     mesh: &Mesh,
     first: ElementId,

@@ -1,10 +1,10 @@
 //! Maximum cardinality matching in a general graph (Edmonds 1965; docs/algorithm.md, "The last resort", step 1), made
 //! for the dual graphs of triangulations: millions of vertices of degree at most three, nearly all matched greedily.
 //!
-//! The start takes edges by rank, best first, but serves vertices with one possibility left before all others
-//! (Karp & Sipser 1981: that loses no cardinality). Then one search for an augmenting path grows from each vertex left
-//! over. It pays only for what it touches: labels carry the number of their search, blossoms are sets in a union-find
-//! forest. A search that fails leaves a Hungarian tree, which no later augmenting path can use: it is closed permanently.
+//! The start takes edges by rank, best first, but serves vertices with one possibility left before all others (Karp &
+//! Sipser 1981: that loses no cardinality). Then one search for an augmenting path grows from each vertex left over. It
+//! pays only for what it touches: labels carry the number of their search, blossoms are sets in a union-find forest. A
+//! search that fails leaves a Hungarian tree, which no later augmenting path can use: it is closed permanently.
 //!
 //! Edges come in two tiers. *Preferred* ones are matched to their maximum first; *reserve* ones may then match more,
 //! each search using them only where preferred ones lead nowhere. Deliberately absent: weights beyond the start's

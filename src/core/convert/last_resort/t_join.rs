@@ -8,6 +8,7 @@
 
 use super::component::{Dual, NONE};
 use super::matching::Matching;
+use crate::core::kernel::disjoint_sets::DisjointSets;
 
 /// The join as three bits a triangle: bit k says that its side k is in the join.
 ///
@@ -98,15 +99,14 @@ impl Cells {
         }
         links.sort_unstable();
         // Kruskal's tree. Of its links each owner keeps the number and the exclusive or: enough to peel leaves off.
-        let mut set: Vec<u32> = (0..left_over.len() as u32).collect();
+        let mut sets = DisjointSets::new(left_over.len());
         let mut degree = vec![0_u32; left_over.len()];
         let mut mixed = vec![0_u32; left_over.len()];
         let ends = |side: u32| [side, dual.across[side as usize]].map(|s| self.owner[(s / 3) as usize]);
         for (_, side) in links {
             let [a, b] = ends(side);
-            let (root_a, root_b) = (find(&mut set, a), find(&mut set, b));
-            if root_a != root_b {
-                set[root_a.max(root_b) as usize] = root_a.min(root_b);
+            if sets.find(a) != sets.find(b) {
+                sets.join(a, b);
                 for end in [a, b] {
                     degree[end as usize] += 1;
                     mixed[end as usize] ^= side;
@@ -141,12 +141,4 @@ impl Cells {
             None => Ok(chosen),
         }
     }
-}
-
-fn find(set: &mut [u32], mut v: u32) -> u32 {
-    while set[v as usize] != v {
-        set[v as usize] = set[set[v as usize] as usize];
-        v = set[v as usize];
-    }
-    v
 }

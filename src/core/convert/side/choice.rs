@@ -10,7 +10,8 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::metric::measure::angle;
 
-/// The widest frontal angle that is bisected: at 225 degrees the bisector, at 112, is still near a right angle. Our rule, not a reading of `theta_revr`, which the paper draws (fig. 12) and only classifies with.
+/// The widest frontal angle that is bisected: at 225 degrees the bisector, at 112, is still near a right angle. Our
+/// rule, not a reading of `theta_revr`, which the paper draws (fig. 12) and only classifies with.
 const WIDEST_BISECTED: f64 = 1.25 * PI;
 
 /// A side edge that was decided on, before anything is changed.

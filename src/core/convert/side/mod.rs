@@ -1,5 +1,6 @@
-//! Side edges (paper 4.3.4, definition of left and right side edges, i to vii; docs/algorithm.md, "Side edges"): the left
-//! one, then the right one, prepared as `choice` and divided as `division` decide. Left and right are one function.
+//! Side edges (paper 4.3.4, definition of left and right side edges, i to vii; docs/algorithm.md, "Side edges"): the
+//! left one, then the right one, prepared as `choice` and divided as `division` decide. Left and right are one
+//! function.
 
 pub mod candidates;
 pub(super) mod choice;

@@ -4,7 +4,7 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use crate::core::convert::event::Cleaning;
-use crate::core::convert::relax::settle::{Nodes, put};
+use crate::core::convert::relax::{Nodes, put};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::refusals::Refusal;

@@ -14,8 +14,7 @@ use smallvec::SmallVec;
 
 use super::worklist::Worklist;
 use crate::core::convert::event::{Cleaning, Event};
-use crate::core::convert::relax::energy;
-use crate::core::convert::relax::settle::{Nodes, RELAX_ROUNDS, relax, untangle, worst_quality};
+use crate::core::convert::relax::{Nodes, RELAX_ROUNDS, energy, relax, untangle, worst_quality};
 use crate::core::convert::sums::summed;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::NodeId;

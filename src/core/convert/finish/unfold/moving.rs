@@ -107,7 +107,8 @@ impl Unfolding<'_> {
         let mut best = self.star_sine(mesh, node);
         let mut star = Star::of(mesh, node);
         // Steps by the size that is asked for, then by that of the elements that are there; then towards the nodes
-        // around, and ever finer: in slivers there is no room for others, and in a facet that is flat in space the metric does not show its width.
+        // around, and ever finer: in slivers there is no room for others, and in a facet that is flat in space the
+        // metric does not show its width.
         let (from, metric) = (mesh.uv(node), mesh.metric(node));
         let shortest = mesh.neighbours(node).map(|n| metric.norm2(mesh.uv(n) - from)).fold(1.0, f64::min).sqrt();
         let around: Vec<DVec2> = ring(mesh, node).map(|n| mesh.uv(n)).collect();
