@@ -19,7 +19,7 @@ use crate::core::metric::field::Sizing;
 use crate::core::prepare::{self, Background};
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::export::Export;
-use crate::core::record::report::{CaseTold, LastResort, Program, Report};
+use crate::core::record::report::{CaseRecord, LastResort, Program, Report};
 use crate::core::record::statistics::{Measured, Statistics};
 use crate::core::run::births::Births;
 use crate::core::run::run::Run;
@@ -43,7 +43,7 @@ pub(super) struct Triangles {
     pub file: MeshFile,
     /// What it is like.
     pub statistics: Statistics,
-    /// What was mended in a mesh that was given.
+    /// Repairs of a given mesh, as readable phrases.
     pub repairs: Vec<String>,
 }
 
@@ -154,7 +154,7 @@ pub(super) fn convert(
     let resort = converted.last_resort.quads();
     let report = Report {
         program: Program::this(),
-        case: CaseTold::of(case),
+        case: CaseRecord::of(case),
         parameters: case.parameters.clone(),
         background_triangles: converted.triangles,
         regions: converted.names.faces.len(),

@@ -6,4 +6,4 @@ pub mod counting;
 pub mod polygons;
 pub(in crate::core) mod weld;
 pub mod soundness;
-pub mod repairs;
+pub(in crate::core) mod repairs;
