@@ -164,7 +164,7 @@ fn an_external_mesh_is_named_by_path_and_must_be_as_it_was() {
     let mut mesh = read(here, "plate.mesh");
     mesh.push(b'\n');
     std::fs::write(here.join("plate.mesh"), mesh).unwrap();
-    assert!(refused(&["render", "a.svg", "-o", "b.svg"], here).contains("not what it was"));
+    assert!(refused(&["render", "a.svg", "-o", "b.svg"], here).contains("has changed"));
     std::fs::remove_file(here.join("plate.mesh")).unwrap();
     assert!(refused(&["render", "a.svg", "-o", "b.svg"], here).contains("No such file"));
 }
@@ -180,8 +180,8 @@ fn figures_that_were_tampered_with_are_told() {
     let case_in_case = svg.replace("text = '''", &format!("text = '''\n[[{}", "a.".repeat(50_000)));
     let many = format!("state = [{}]\n</quadfront:run>", "{ step = 1, fingerprint = \"\" },".repeat(5000));
     for (what, text, words) in [
-        ("none", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>".to_owned(), "carries no run"),
-        ("empty", String::new(), "carries no run"),
+        ("none", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>".to_owned(), "contains no run"),
+        ("empty", String::new(), "contains no run"),
         ("cut off", svg[..svg.find("[figure]").unwrap()].to_owned(), "damaged"),
         ("no figure", svg.replace("[figure]", "[figures]"), "figures"),
         ("no states", svg.replace(state, "]\n"), "1 to 1000 states"),

@@ -183,7 +183,7 @@ fn what_is_mended_is_told_and_what_cannot_be_read_names_file_and_line() {
     triangles.push(triangles[0]);
     open(&mut harness, &stl(folder.path(), "tube.stl", &triangles));
     harness.get_by_label("1 duplicate triangle was removed");
-    harness.get_by_label("1 triangle was reversed to match its neighbours");
+    harness.get_by_label("1 triangle was reversed to match neighbours");
     picture(&mut harness, "mended");
     let broken = folder.path().join("broken.obj");
     std::fs::write(&broken, "v 0 0 0\nv 1 0 x\n").unwrap();

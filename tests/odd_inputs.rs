@@ -39,8 +39,8 @@ const FLAT: &str = "1 degenerate triangle was removed";
 const DOUBLE: &str = "1 duplicate triangle was removed";
 const DOUBLES: &str = "8 duplicate triangles were removed";
 const CLOCKWISE: &str = "1 clockwise triangle was reversed";
-const TURNED: &str = "1 triangle was reversed to match its neighbours";
-const HUNG: &str = "2 hanging points were inserted into their edges";
+const TURNED: &str = "1 triangle was reversed to match neighbours";
+const HUNG: &str = "2 hanging points were joined to the mesh";
 const CUT: &str = "1 quadrilateral or polygon was split into triangles";
 const CUTS: &str = "4 quadrilaterals and polygons were split into triangles";
 const MADE_EVEN: &str = "3 sides of triangles were divided to make counts even";
@@ -193,7 +193,10 @@ fn holds(name: &str, obj: &Obj, used: &str, expected: &Outcome) {
                 serde_json::from_slice(&std::fs::read(folder.path().join("report.json")).unwrap()).unwrap();
             assert_eq!(report["repairs"], serde_json::json!(repairs), "{case}");
             for repair in *repairs {
-                assert!(summary.lines().any(|l| l.trim_start().starts_with("mended") && l.contains(repair)), "{case}");
+                assert!(
+                    summary.lines().any(|l| l.trim_start().starts_with("repaired") && l.contains(repair)),
+                    "{case}"
+                );
             }
             check(&case, folder.path(), obj);
         }
@@ -442,7 +445,7 @@ fn t_junctions_and_sheets_across_each_other() {
         Obj::plate(2, bend).and(square, [0.0; 3])
     };
     let hangs = Refused(&["at (1, 0.5)", "Point 6 hangs on a side", "--use shape"]);
-    let welded = || Mended(&["2 coincident points were merged", "1 hanging point was inserted into its edge"]);
+    let welded = || Mended(&["2 coincident points were merged", "1 hanging point was joined to the mesh"]);
     let across =
         Obj::plate(3, FLAT_PLATE).and(Obj::plate(3, FLAT_PLATE).moved(|[x, y, _]| [x, 0.51, y - 0.497]), [0.0; 3]);
     let over = Obj::plate(3, FLAT_PLATE).and(Obj::plate(3, FLAT_PLATE), [0.9, 0.2, 0.0]);

@@ -39,7 +39,7 @@ pub(super) struct Triangles {
     pub file: MeshFile,
     /// What it is like.
     pub statistics: Statistics,
-    /// What was mended in a mesh that was given.
+    /// Repairs of a given mesh, as readable phrases.
     pub repairs: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The built-in cases: the files of `assets/cases`, carried inside the program, and apart from them the figures of the paper as small
+//! The built-in cases: the files of `assets/cases`, compiled into the program, and the figures of the paper as small
 //! meshes that show one operation each.
 
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::core::fault::Fault;
 
 macro_rules! cases {
     ($list:ident, $folder:literal, $($name:literal),* $(,)?) => {
-        /// Name and text of each, in the order in which they are listed.
+        /// Name and text of each, in the order of the list.
         pub const $list: &[(&str, &str)] =
             &[$(($name, include_str!(concat!("../../../assets/cases/", $folder, $name, ".toml")))),*];
     };
@@ -64,10 +64,10 @@ pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
     CASES.iter().chain(FIGURES).copied()
 }
 
-/// The built-in case or figure of a name; `None` where there is none.
+/// The built-in case or figure of a name, if any.
 ///
 /// # Errors
-/// None that a test has not seen: all of them parse.
+/// None in practice: a test parses all of them.
 pub fn named(name: &str) -> Option<Result<Case, Fault>> {
     let (name, text) = all().find(|case| case.0 == name)?;
     Some(Case::parse(text, name, &format!("{name}.toml"), Path::new("")))

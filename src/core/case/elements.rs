@@ -4,7 +4,7 @@ use super::DomainSource;
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
 
-/// Reads points, triangles and quadrilaterals; whether they make a mesh is for the conversion to say.
+/// Reads points, triangles and quadrilaterals; the conversion checks that they form a mesh.
 pub(super) fn elements(table: &Table<'_>) -> Result<DomainSource, Fault> {
     table.only(&["points", "triangles", "quads"])?;
     let points = table.need("points", "[[0, 0], [1, 0], [0, 1]]")?.points()?;
@@ -16,7 +16,7 @@ pub(super) fn elements(table: &Table<'_>) -> Result<DomainSource, Fault> {
     Ok(DomainSource::Elements { points, triangles, quads })
 }
 
-/// The corners of an element by the numbers of its points.
+/// The corners of an element, by point index.
 fn corners<const N: usize>(value: &Value<'_>, points: u32, example: &str) -> Result<[u32; N], Fault> {
     let wrong = || value.wrong(&format!("a list of {N} points by number"), &format!("{} = {example}", value.key()));
     let list = value.list().map_err(|_| wrong())?;

@@ -7,7 +7,7 @@ use crate::core::fault::Fault;
 use crate::core::geometry::spec::{CurveShape, CurveSpec, FaceSpec};
 use crate::core::kernel::spelling::nearest;
 
-/// Reads the curves; whether they make sense is for `geometry` to say.
+/// Reads the curves; `geometry` checks them.
 pub(super) fn curves(document: &Table<'_>) -> Result<Vec<CurveSpec>, Fault> {
     let mut curves = Vec::new();
     for table in document.tables("curve")? {
@@ -19,7 +19,7 @@ pub(super) fn curves(document: &Table<'_>) -> Result<Vec<CurveSpec>, Fault> {
     Ok(curves)
 }
 
-/// Reads the faces, whose curves must be there.
+/// Reads the faces, whose curves must exist.
 pub(super) fn faces(document: &Table<'_>, curves: &[CurveSpec]) -> Result<Vec<FaceSpec>, Fault> {
     let names: Vec<&str> = curves.iter().map(|c| c.name.as_str()).collect();
     let mut faces = Vec::new();
@@ -31,7 +31,7 @@ pub(super) fn faces(document: &Table<'_>, curves: &[CurveSpec]) -> Result<Vec<Fa
     Ok(faces)
 }
 
-/// Reads what a face has besides its outer loop.
+/// Reads the rest of a face, after its outer loop.
 pub(super) fn face(table: &Table<'_>, outer: Vec<String>, names: &[&str]) -> Result<FaceSpec, Fault> {
     let name = name(table)?;
     let some = |key| table.get(key).map_or(Ok(Vec::new()), |value| known_curves(&value, names));
@@ -47,7 +47,7 @@ pub(super) fn face(table: &Table<'_>, outer: Vec<String>, names: &[&str]) -> Res
     Ok(FaceSpec { name, outer, holes, cracks, repeated, place: table.place() })
 }
 
-/// Reads a list of names of curves that must be there; edges of whole surfaces, such as "ball: v0", are known later.
+/// Reads a list of names of existing curves; edges of whole surfaces, such as "ball: v0", are checked later.
 pub(super) fn known_curves(value: &Value<'_>, curves: &[&str]) -> Result<Vec<String>, Fault> {
     let names = value.texts()?;
     if names.is_empty() {
@@ -81,7 +81,7 @@ fn shape(table: &Table<'_>) -> Result<CurveShape, Fault> {
     shape_of(table, &[])
 }
 
-/// Reads a curve of the plane from a table that may have these keys besides.
+/// Reads a plane curve; `besides` are further keys allowed in the table.
 pub(super) fn shape_of(table: &Table<'_>, besides: &[&'static str]) -> Result<CurveShape, Fault> {
     let keys = |own: &[&'static str]| table.only(&[&["name", "kind", "segments"], own, besides].concat());
     let kind = table.need("kind", "\"segment\"")?;
@@ -101,7 +101,7 @@ pub(super) fn shape_of(table: &Table<'_>, besides: &[&'static str]) -> Result<Cu
             let turn = to.number()? - from.number()?;
             if turn == 0.0 || turn.abs() > 360.0 {
                 return Err(to
-                    .fault("The arc turns by nothing or by more than 360 degrees")
+                    .fault("The arc spans 0 or more than 360 degrees")
                     .remedy("Write to_angle greater than from_angle for anticlockwise, less for clockwise"));
             }
             if turn.abs() == 360.0 {

@@ -5,7 +5,7 @@ use super::table::{Table, Value};
 use crate::core::fault::Fault;
 use crate::core::metric::field::FieldSpec;
 
-/// Reads the metric fields; boundary layers name curves that must be there.
+/// Reads the metric fields; curves named by boundary layers must exist.
 pub(super) fn fields(document: &Table<'_>, curves: &[&str]) -> Result<Vec<FieldSpec>, Fault> {
     document.tables("metric")?.iter().map(|table| field(table, curves)).collect()
 }
@@ -31,8 +31,8 @@ fn field(table: &Table<'_>, curves: &[&str]) -> Result<FieldSpec, Fault> {
                 && *far < first
             {
                 return Err(value
-                    .fault(format!("far = {far} is less than first = {first}"))
-                    .remedy("Write far at least as large as first, or leave it out"));
+                    .fault(format!("far = {far} is smaller than first = {first}"))
+                    .remedy("Give far at least the value of first, or remove it"));
             }
             Ok(FieldSpec::BoundaryLayer {
                 curves: known_curves(&table.need("curves", "[\"wall\"]")?, curves)?,

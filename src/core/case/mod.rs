@@ -1,6 +1,6 @@
 //! Case files: geometry, metric and parameters as one TOML file, strict and versioned; documented in
-//! `assets/cases/README.md`. Deliberately absent: what the words mean geometrically (`geometry::domain`) and whether a
-//! formula can be evaluated (`metric::formula`).
+//! `assets/cases/README.md`. Deliberately absent: geometric checks (`geometry::domain`) and checks of formulas
+//! (`metric::formula`).
 
 pub mod parameters;
 pub(in crate::core) mod table;
@@ -15,7 +15,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec2;
-use toml::de::DeTable;
 
 use parameters::Parameters;
 use table::{Source, Table};
@@ -28,14 +27,14 @@ use crate::core::geometry::spec::{CurveSpec, FaceSpec};
 use crate::core::metric::field::FieldSpec;
 use crate::core::soup::mesh_file::MeshFile;
 
-/// The version of case files that this program reads.
+/// The supported version of case files.
 pub const VERSION: u32 = 1;
 
-/// Where the domain of a case comes from.
+/// The source of a case's domain.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DomainSource {
-    /// Curves and the faces that they bound.
+    /// Plane curves and the faces that they bound.
     Curves {
         /// All curves.
         curves: Vec<CurveSpec>,
@@ -44,13 +43,13 @@ pub enum DomainSource {
     },
     /// Surfaces, curves on them and the faces that they bound.
     Surfaces(ComplexSpec),
-    /// A small background that the case itself holds: the fixtures of the paper's figures.
+    /// A small background mesh in the case itself: the fixtures of the paper's figures.
     Elements {
         /// Coordinates of its points.
         points: Vec<DVec2>,
-        /// Triangles, by the numbers of their points from 0; live.
+        /// Live triangles, by zero-based point index.
         triangles: Vec<[u32; 3]>,
-        /// Quadrilaterals that stand already.
+        /// Existing quadrilaterals, likewise.
         quads: Vec<[u32; 4]>,
     },
     /// A triangle mesh.
@@ -62,35 +61,35 @@ pub enum DomainSource {
     },
 }
 
-/// A case: everything that a conversion starts from.
+/// A case: the complete input of a conversion.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Case {
-    /// Short name: that of the file without its extension.
+    /// Short name: the file name without its extension.
     pub name: String,
-    /// One line for people; the name where the file has none.
+    /// One line for display; by default, the name.
     pub title: String,
-    /// Free text: where the case is from, which words are the paper's and which are ours.
+    /// Free text: origin of the case, and which parts follow the paper.
     pub notes: String,
-    /// Parameters, defaults where the file is silent.
+    /// Parameters, with defaults for those not in the file.
     pub parameters: Parameters,
-    /// Curves or a mesh.
+    /// Source of the domain.
     pub domain: DomainSource,
-    /// Metric fields, intersected; empty only with a mesh, whose own metric is then taken.
+    /// Metric fields, intersected; empty only for a mesh, which then uses its own metric.
     pub fields: Vec<FieldSpec>,
     /// Bound of the metric's gradation (docs/algorithm.md, "Gradation"), greater than 1; `None`: not bounded.
     pub gradation: Option<f64>,
-    /// Whether a boundary whose count of segments is odd, and fixed, may be given one segment more; otherwise it is refused.
+    /// Whether a boundary with a fixed odd number of segments may get one more; otherwise it is rejected.
     pub split_odd: bool,
-    /// The file's own text, for reports; empty for a mesh without a case file.
+    /// The text of the file, for reports; empty for a mesh without a case file.
     pub text: String,
 }
 
 impl Case {
-    /// Reads a case file; a mesh that it names lies relative to it.
+    /// Reads a case file; mesh paths are relative to it.
     ///
     /// # Errors
-    /// What the system says of the file, or see [`Case::parse`].
+    /// Those of reading the file, and of [`Case::parse`].
     pub fn read(path: &Path) -> Result<Case, Fault> {
         let place = path.display().to_string();
         let bytes = load(path)?;
@@ -102,36 +101,32 @@ impl Case {
     /// A case from the bytes of a file: see [`Case::parse`].
     ///
     /// # Errors
-    /// Bytes that are not UTF-8, or see [`Case::parse`].
+    /// Bytes that are not UTF-8, and those of [`Case::parse`].
     pub fn from_bytes(bytes: &[u8], name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             Fault::new(format!("The file is not text (byte {})", error.valid_up_to()))
                 .of_kind(FaultKind::Syntax)
                 .at(file)
-                .remedy("Name a TOML case file; meshes are known by their extension")
+                .remedy("Give a TOML case file; meshes are recognised by their extension")
         })?;
         Case::parse(text, name, file, folder)
     }
 
-    /// Parses the text of a case called `name`; messages call the file `file`, meshes lie relative to `folder`.
+    /// Parses the text of a case `name`; `file` is its name in messages, and mesh paths are relative to `folder`.
     ///
     /// # Errors
-    /// Text that is not TOML, another version, unknown or missing keys, values of the wrong kind or out of range, names
-    /// that are not there: with file and line.
+    /// With file and line: text that is not TOML, an unsupported version, unknown or missing keys, values of the wrong
+    /// type or out of range, unknown names.
     pub fn parse(text: &str, name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
         Case::parsed(text, name, file, folder).map_err(|fault| fault.of_kind(FaultKind::Syntax))
     }
 
     fn parsed(text: &str, name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
-        // A byte order mark is what some editors write first.
+        // Some editors write a byte order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let source = Source { file, text };
-        let document = DeTable::parse(text).map_err(|error| {
-            let place = error.span().map_or(file.to_owned(), |span| source.place(span.start));
-            Fault::new(format!("This is not TOML: {}", error.message().replace('\n', ", ")))
-                .at(place)
-                .remedy("See assets/cases/README.md for how a case is written")
-        })?;
+        let remedy = |fault: Fault| fault.remedy("See assets/cases/README.md for the format of a case");
+        let document = source.parse().map_err(remedy)?;
         let table = Table::document(&source, &document);
         check_version(&table)?;
         table.only(&[
@@ -175,7 +170,7 @@ impl Case {
         })
     }
 
-    /// The case that a mesh file without a case is: default parameters, the metric of `sol` or of its own triangles.
+    /// The case of a mesh file without a case file: default parameters, and the metric of `sol` or of its triangles.
     pub fn of_mesh(path: PathBuf, sol: Option<PathBuf>) -> Case {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let title = format!("Mesh {}", path.file_name().unwrap_or_default().to_string_lossy());
@@ -221,8 +216,8 @@ fn check_version(table: &Table<'_>) -> Result<(), Fault> {
     match value.count(1, u32::MAX)? {
         VERSION => Ok(()),
         newer => Err(value
-            .fault(format!("version = {newer} is newer than what this program reads"))
-            .remedy(format!("Use a newer quadfront, or write the case in version {VERSION}"))),
+            .fault(format!("version = {newer} is newer than this program supports"))
+            .remedy(format!("Use a newer quadfront, or convert the case to version {VERSION}"))),
     }
 }
 
@@ -238,7 +233,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
             let named =
                 if ["surface", "curve", "face"].contains(&key) { format!("every [[{key}]]") } else { key.to_owned() };
             let fault = value.fault(format!("The case has a {own} and a {key}"));
-            Err(fault.remedy(format!("Leave out either {own} or {named}")))
+            Err(fault.remedy(format!("Remove either {own} or {named}")))
         }
     };
     if let Some(value) = table.get("background") {
@@ -280,7 +275,7 @@ fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) 
                 .remedy("Add [[metric]] with, for example, kind = \"uniform\" and h = 0.1"))
         }
         DomainSource::Mesh { source: MeshSource::File { sol: Some(_), .. }, .. } if !fields.is_empty() => {
-            Err(table.fault("The case has sol and [[metric]]").remedy("Leave one of them out"))
+            Err(table.fault("The case has both sol and [[metric]]").remedy("Remove one of them"))
         }
         _ => Ok(()),
     }
@@ -292,15 +287,11 @@ fn parameters(table: &Table<'_>) -> Result<Parameters, Fault> {
         let own = value.table()?;
         own.only(&Parameters::KEYS)?;
         for entry in own.entries() {
-            if entry.key() == "layered_loops" {
-                parameters.layered_loops = entry.texts()?;
-                continue;
+            match entry.key() {
+                "layered_loops" => parameters.layered_loops = entry.texts()?,
+                "faces" => parameters.faces = entry.texts()?,
+                key => parameters.set(key, &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?,
             }
-            if entry.key() == "faces" {
-                parameters.faces = entry.texts()?;
-                continue;
-            }
-            parameters.set(entry.key(), &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?;
         }
     }
     Ok(parameters)

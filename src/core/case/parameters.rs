@@ -17,23 +17,24 @@ pub enum Selection {
     Level,
 }
 
-/// What is held against `c` times the smallest H-value (docs/algorithm.md, "The selection window").
+/// What is compared with `c` times the smallest H-value (docs/algorithm.md, "The selection window", "the worst
+/// ambiguity").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelectionWindow {
-    /// Metric length times H: near H for unit edges, larger for long ones.
+    /// Metric length times H: about H for unit edges, larger for long ones.
     MetricLengthTimesH,
     /// The H-value of eq. (6).
     HValue,
-    /// The physical length: the paper's words.
+    /// The physical length, as the paper says.
     PhysicalLength,
 }
 
-/// Everything that can be set beside the case's geometry and metric. Angles in radians.
+/// All settings besides geometry and metric. Angles in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameters {
-    /// Every target size is multiplied by this.
+    /// Factor for all target sizes.
     pub size_scale: f64,
-    /// The selection factor c of section 4.3.3: 1.5-2.0 in the paper, which used 2.0.
+    /// The selection factor c of section 4.3.1: 1.5 to 2.0 in the paper, which used 2.0.
     pub c: f64,
     /// Below this frontal angle the neighbouring front segment is the side edge (table 1).
     pub theta_rect: f64,
@@ -43,24 +44,24 @@ pub struct Parameters {
     pub theta_revr: f64,
     /// A live side edge longer than this times the base is split (section 4.3.4, vi).
     pub side_split: f64,
-    /// A side edge may be off its target direction by this (eq. 8).
+    /// Largest deviation of a side edge from its target direction (eq. 8).
     pub side_deviation: f64,
     /// Metric area below which the front is split at a triangle (section 4.3.6, ii b).
     pub eps1: f64,
     /// Metric width over height above which the front is split at a triangle (section 4.3.6, ii c).
     pub eps2: f64,
-    /// Rows that are offset from the boundary before anything else (0: none).
+    /// Number of rows offset from the boundary first (0: none).
     pub layers: u32,
-    /// Curves on whose loops rows are offset; none: on all loops. Belongs to the case: later changes have no effect.
+    /// Curves on whose loops rows are offset; empty for all loops. Belongs to the case: later changes have no effect.
     pub layered_loops: Vec<String>,
-    /// Faces that are converted, and the others left out; none: all. Belongs to the case: later changes have no effect.
+    /// Faces to convert; empty for all. Belongs to the case: later changes have no effect.
     pub faces: Vec<String>,
-    /// Order of base segments.
+    /// Selection of base segments.
     pub selection: Selection,
-    /// What is held against `c` times the smallest H-value.
+    /// What is compared with `c` times the smallest H-value.
     pub selection_window: SelectionWindow,
-    /// Aim a side edge at the bisector of a frontal angle up to 225 degrees, and at the right angle beyond; off: always at
-    /// the right angle, as the paper says.
+    /// Aim a side edge at the bisector of a frontal angle up to 225 degrees, and at the right angle beyond; off: always
+    /// at the right angle, as the paper says.
     pub bisector: bool,
     /// Place the new top nodes of each quadrilateral (docs/algorithm.md, "Placement of new top nodes"); off: the
     /// paper's eq. (9) on front nodes.
@@ -75,7 +76,7 @@ pub struct Parameters {
     pub splitting: bool,
     /// Clean-up and smoothing of the whole mesh at the end (4.3.7).
     pub post_processing: bool,
-    /// A mesh that would need more quadrilaterals is refused before any memory is spent on it.
+    /// A mesh that would need more quadrilaterals is rejected before memory is allocated for it.
     pub max_quads: u64,
 }
 
@@ -109,7 +110,7 @@ impl Default for Parameters {
 }
 
 impl Selection {
-    /// The words of files and of `--set`, in the order of the variants.
+    /// The words in files and for `--set`, in the order of the variants.
     const WORDS: [(&'static str, Selection); 4] = [
         ("table1", Selection::Table1),
         ("shortest", Selection::Shortest),
@@ -127,7 +128,7 @@ impl SelectionWindow {
 }
 
 impl Parameters {
-    /// The keys of files and of `--set`, in the order in which they are documented.
+    /// The keys in files and for `--set`, in the documented order.
     pub const KEYS: [&'static str; 22] = [
         "size_scale",
         "c",
@@ -169,8 +170,7 @@ impl Parameters {
         }
     }
 
-    /// The paper's reading for the mesh that these parameters ask for: its size, its limit and the rows that are offset stay,
-    /// and so do the faces: they belong to the case.
+    /// The paper's reading with the size, limit, offset rows and faces of these parameters, which belong to the case.
     #[must_use]
     pub fn read_as_paper(&self) -> Parameters {
         Parameters {
@@ -183,11 +183,11 @@ impl Parameters {
         }
     }
 
-    /// Sets one parameter from its text, as files and `--set KEY=VALUE` give it (angles in degrees). A number in quotes is
-    /// refused: files pass their texts with them.
+    /// Sets one parameter from its text in a file or in `--set KEY=VALUE` (angles in degrees). Rejects a number in
+    /// quotes: files pass strings with their quotes.
     ///
     /// # Errors
-    /// An unknown key (with the nearest known one), a value of the wrong kind, a value out of range. Nothing is changed.
+    /// An unknown key (with the nearest known one), or a value of the wrong type or out of range. Nothing is changed.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Fault> {
         self.take(key, value).map_err(|fault| fault.of_kind(FaultKind::Parameter))
     }
@@ -222,7 +222,7 @@ impl Parameters {
         Ok(())
     }
 
-    /// The value of a parameter as [`Parameters::set`] takes it; `None` for an unknown key.
+    /// The value of a parameter as text for [`Parameters::set`]; `None` for an unknown key.
     pub fn text_of(&self, key: &str) -> Option<String> {
         Some(match key {
             "size_scale" => self.size_scale.to_string(),
@@ -237,8 +237,8 @@ impl Parameters {
             "layers" => self.layers.to_string(),
             "layered_loops" => self.layered_loops.join(", "),
             "faces" => self.faces.join("; "),
-            "selection" => said(self.selection, &Selection::WORDS),
-            "selection_window" => said(self.selection_window, &SelectionWindow::WORDS),
+            "selection" => word_of(self.selection, &Selection::WORDS),
+            "selection_window" => word_of(self.selection_window, &SelectionWindow::WORDS),
             "bisector" => self.bisector.to_string(),
             "placement" => self.placement.to_string(),
             "smoothing" => self.smoothing.to_string(),
@@ -252,7 +252,7 @@ impl Parameters {
     }
 }
 
-/// The fault of a key that nobody knows: names the nearest known one, or all of them where none is near.
+/// The fault of an unknown key: names the nearest known one, or all if none is near.
 pub fn unknown_key(key: &str, known: &[&str]) -> Fault {
     let nearest = nearest(key, known.iter().copied());
     let fault = Fault::new(format!("The key \"{key}\" is not known"));
@@ -318,22 +318,21 @@ fn word<T: Copy>(key: &str, value: &str, words: &[(&str, T)]) -> Result<T, Fault
     })
 }
 
-/// Names between commas.
-/// Names between separators: commas, but for names that have commas themselves.
+/// Splits a list of names; the separator is not a comma where names may contain one.
 fn names(value: &str, separator: char) -> Vec<String> {
     value.split(separator).map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
 }
 
-fn said<T: PartialEq>(value: T, words: &[(&'static str, T)]) -> String {
+fn word_of<T: PartialEq>(value: T, words: &[(&'static str, T)]) -> String {
     words.iter().find(|w| w.1 == value).expect("every variant has its word").0.to_owned()
 }
 
-/// Degrees as a person wrote them: what the conversion to radians and back adds to the last digits is taken off.
+/// Degrees rounded to remove the rounding errors of the conversion to radians and back.
 fn degrees(radians: f64) -> String {
     ((radians.to_degrees() * 1e9).round() / 1e9).to_string()
 }
 
-/// A value as a message shows it: texts in quotes (files pass texts with theirs); escapes keep a message on its one line.
+/// A value for a message: strings in quotes (files pass their own) and escaped, to keep the message on one line.
 fn quoted(value: &str) -> String {
     if value.parse::<f64>().is_ok() {
         return value.to_owned();
@@ -354,7 +353,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_key_can_be_read_and_set_to_what_was_read() {
+    fn every_parameter_survives_a_round_trip_through_text() {
         let standard = Parameters::default();
         let mut parameters = standard.clone();
         for key in Parameters::KEYS {
@@ -366,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn the_paper_s_reading_leaves_the_size_of_the_case_alone() {
+    fn the_paper_s_reading_keeps_the_size_of_the_case() {
         let mut own = Parameters::default();
         for (key, value) in
             [("size_scale", "0.5"), ("layers", "2"), ("max_quads", "1000"), ("c", "1.5"), ("seaming", "false")]
@@ -382,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_with_a_unit_is_refused_with_the_way_to_write_it() {
+    fn an_angle_with_a_unit_is_refused_with_the_right_form() {
         let fault = Parameters::default().set("theta_rect", "120deg").unwrap_err();
         assert_eq!(
             fault.to_string(),

@@ -1,4 +1,4 @@
-//! `[[surface]]` of a case file, and the curves and faces of a case that has one.
+//! `[[surface]]` of a case file, and the curves and faces of a case with surfaces.
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ use crate::core::geometry::spec::SurfaceShape;
 use crate::core::geometry::spec::{ComplexSpec, SpaceCurveSpec, SurfaceFaceSpec, SurfaceSpec};
 use crate::core::kernel::spelling::nearest;
 
-/// Reads surfaces, curves and faces; whether they make sense is for `geometry` to say.
+/// Reads surfaces, curves and faces; `geometry` checks them.
 pub(super) fn complex(document: &Table<'_>) -> Result<ComplexSpec, Fault> {
     let mut surfaces = Vec::new();
     for table in document.tables("surface")? {
@@ -50,9 +50,9 @@ fn known_surface(value: &Value<'_>, surfaces: &[SurfaceSpec]) -> Result<String, 
     })
 }
 
-/// A point or direction of space; two numbers lie in z = 0.
+/// A point or direction in space; two numbers mean z = 0.
 fn vector(value: &Value<'_>) -> Result<DVec3, Fault> {
-    let wrong = || value.wrong("a point of space", &format!("{} = [0.5, 1.0, 0.0]", value.key()));
+    let wrong = || value.wrong("a point in space", &format!("{} = [0.5, 1.0, 0.0]", value.key()));
     let numbers = value.list().map_err(|_| wrong())?;
     match numbers.as_slice() {
         [x, y] => Ok(DVec3::new(x.number()?, y.number()?, 0.0)),
@@ -65,7 +65,7 @@ fn vectors(value: &Value<'_>) -> Result<Vec<DVec3>, Fault> {
     value.list()?.iter().map(vector).collect()
 }
 
-/// Centre (default: the origin), axis (default: z) and start of something that turns.
+/// Centre (default: the origin), axis (default: z) and start direction of a shape with an axis.
 fn frame(table: &Table<'_>) -> Result<AxisFrame, Fault> {
     let or = |key, default| table.get(key).map_or(Ok(default), |v| vector(&v));
     let start = table.get("start").map(|v| vector(&v)).transpose()?;
@@ -166,8 +166,8 @@ fn net(table: &Table<'_>) -> Result<(Vec<DVec3>, usize, Vec<f64>), Fault> {
     let columns = rows.first().map_or(0, Vec::len);
     if columns == 0 || rows.iter().any(|row| row.len() != columns) {
         return Err(value
-            .fault("The rows of control points are not all of the same length")
-            .remedy("Give a list of rows, one for each place along u, each with the points along v"));
+            .fault("The rows of control points have different lengths")
+            .remedy("Give a list of rows along u, each with the points along v"));
     }
     let weights = match table.get("weights") {
         None => Vec::new(),
@@ -175,8 +175,8 @@ fn net(table: &Table<'_>) -> Result<(Vec<DVec3>, usize, Vec<f64>), Fault> {
             let rows: Vec<Vec<f64>> = value.list()?.iter().map(Value::numbers).collect::<Result<_, _>>()?;
             if rows.iter().any(|row| row.len() != columns) {
                 return Err(value
-                    .fault("weights has not a number for each point")
-                    .remedy("Give rows as those of points"));
+                    .fault("weights must have a number for each point")
+                    .remedy("Give rows like those of points"));
             }
             rows.concat()
         }

@@ -1,4 +1,5 @@
-//! The tables of case files and run files, read strictly: every fault has its file and line, unknown keys name the nearest known one.
+//! The tables of case files and run files, read strictly: every fault has file and line; an unknown key names the
+//! nearest known one.
 
 use glam::DVec2;
 use toml::Spanned;
@@ -21,6 +22,14 @@ impl Source<'_> {
         let before = self.text.as_bytes().get(..byte).unwrap_or_default();
         let line = 1 + before.iter().filter(|b| **b == b'\n').count();
         format!("{}, line {line}", self.file)
+    }
+
+    /// Parses the text as TOML.
+    pub fn parse(&self) -> Result<Spanned<DeTable<'_>>, Fault> {
+        DeTable::parse(self.text).map_err(|error| {
+            let place = error.span().map_or(self.file.to_owned(), |span| self.place(span.start));
+            Fault::new(format!("This is not TOML: {}", error.message().replace('\n', ", "))).at(place)
+        })
     }
 }
 
@@ -46,7 +55,7 @@ impl<'a> Table<'a> {
         Table { source, table: table.get_ref(), start: 0 }
     }
 
-    /// Where the table stands.
+    /// File and line of the table.
     pub fn place(&self) -> String {
         self.source.place(self.start)
     }
@@ -56,7 +65,7 @@ impl<'a> Table<'a> {
         Fault::new(what).at(self.place())
     }
 
-    /// Refuses the first key of the file's order that is not among `known`.
+    /// Rejects the first key in the file that is not in `known`.
     pub fn only(&self, known: &[&str]) -> Result<(), Fault> {
         let unknown = self.table.keys().filter(|k| !known.contains(&k.get_ref().as_ref()));
         match unknown.min_by_key(|k| k.span().start) {
@@ -65,13 +74,13 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The value of a key, if it is there.
+    /// The value of an optional key.
     pub fn get(&self, key: &str) -> Option<Value<'a>> {
         let value = self.table.get(key)?;
         Some(Value { source: self.source, key: key.to_owned(), value })
     }
 
-    /// The value of a key that must be there.
+    /// The value of a required key.
     pub fn need(&self, key: &str, example: &str) -> Result<Value<'a>, Fault> {
         self.get(key).ok_or_else(|| {
             self.fault(format!("The key \"{key}\" is missing")).remedy(format!("Write for example {key} = {example}"))
@@ -90,7 +99,7 @@ impl<'a> Table<'a> {
         entries.into_iter().map(value).collect()
     }
 
-    /// The tables of a `[[key]]`, none where it is absent.
+    /// The tables of `[[key]]`; empty if absent.
     pub fn tables(&self, key: &str) -> Result<Vec<Table<'a>>, Fault> {
         let Some(value) = self.get(key) else { return Ok(Vec::new()) };
         let wrong = || value.wrong("a list of tables", &format!("[[{key}]]"));
@@ -104,12 +113,12 @@ impl<'a> Table<'a> {
 }
 
 impl<'a> Value<'a> {
-    /// Its key; in lists with the index ("points[2]").
+    /// Its key, in lists with the index ("points[2]").
     pub fn key(&self) -> &str {
         &self.key
     }
 
-    /// Where it stands.
+    /// File and line of the value.
     pub fn place(&self) -> String {
         self.source.place(self.value.span().start)
     }
@@ -119,7 +128,7 @@ impl<'a> Value<'a> {
         Fault::new(what).at(self.place())
     }
 
-    /// The value as it is written, shortened to what a message can hold.
+    /// The value as written, shortened for a message.
     pub fn written(&self) -> String {
         let text = self.source.text.get(self.value.span()).unwrap_or_default();
         let mut words = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -129,7 +138,7 @@ impl<'a> Value<'a> {
         words
     }
 
-    /// The fault of a value that is not `what` it should be.
+    /// The fault of a value that is not `what`.
     pub fn wrong(&self, what: &str, example: &str) -> Fault {
         self.fault(format!("{} = {} is not {what}", self.key, self.written()))
             .remedy(format!("Write for example {example}"))
@@ -145,13 +154,13 @@ impl<'a> Value<'a> {
         number.filter(|n| n.is_finite()).ok_or_else(|| self.wrong("a number", &format!("{} = 0.5", self.key)))
     }
 
-    /// A number that is greater than zero.
+    /// A positive number.
     pub fn positive(&self) -> Result<f64, Fault> {
         let number = self.number()?;
         if number > 0.0 { Ok(number) } else { Err(self.wrong("greater than 0", &format!("{} = 0.5", self.key))) }
     }
 
-    /// An angle, written in degrees, in radians.
+    /// An angle in radians, given in degrees.
     pub fn degrees(&self) -> Result<f64, Fault> {
         let number = self.number().map_err(|_| {
             self.fault(format!("{} = {} is not a number", self.key, self.written()))
@@ -160,7 +169,7 @@ impl<'a> Value<'a> {
         Ok(number.to_radians())
     }
 
-    /// A whole number within bounds.
+    /// An integer from `least` to `most`.
     pub fn count(&self, least: u32, most: u32) -> Result<u32, Fault> {
         let number = match self.value.get_ref() {
             DeValue::Integer(integer) => u32::from_str_radix(integer.as_str(), integer.radix()).ok(),
@@ -191,8 +200,8 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// What [`Parameters::set`](crate::core::case::parameters::Parameters::set) takes: numbers as they are, texts bare
-    /// where a word is wanted and with their quotes (which it refuses) where a number is.
+    /// The text for [`Parameters::set`](crate::core::case::parameters::Parameters::set): numbers as written; strings
+    /// without quotes for parameters that are words, and with quotes (which it rejects) for numbers.
     pub fn parameter_text(&self) -> String {
         match self.value.get_ref() {
             DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().to_owned(),

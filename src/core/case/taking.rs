@@ -1,5 +1,4 @@
-//! Where the mesh of a case is, and how it is used: its triangles or its shape, where it is folded, how far its charts
-//! may be stretched, its scale.
+//! Where the mesh of a case is, and how it is used: its triangles or its shape, feature angle, chart stretch, scale.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -26,34 +25,34 @@ pub enum MeshSource {
     Memory(Arc<MeshFile>),
 }
 
-/// What a mesh is used for.
+/// What a mesh is used as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshUse {
-    /// Its triangles are converted as they are.
+    /// Its triangles are converted directly.
     Triangles,
-    /// Its shape is meshed anew.
+    /// Its shape is remeshed.
     Shape,
 }
 
-/// How a mesh is taken.
+/// How a mesh is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taking {
-    /// For what; where nothing is said, a mesh in the plane for its triangles and one in space for its shape.
+    /// As triangles or as a shape; by default, triangles for a mesh in the plane and the shape for one in space.
     pub used: Option<MeshUse>,
-    /// Folds beyond this are edges to keep (radians).
+    /// Edges folded by more than this are kept (radians).
     pub feature_angle: f64,
-    /// How far shapes may be stretched where the mesh is laid into the plane.
+    /// Limit on the stretch of charts ([`StretchBound::shape`]).
     pub chart_stretch: f64,
-    /// What all coordinates are multiplied by.
+    /// Factor for all coordinates.
     pub scale: f64,
 }
 
 impl Taking {
-    /// The least and the greatest fold, in degrees.
+    /// Smallest and largest feature angle, in degrees.
     pub const ANGLES: [f64; 2] = [1.0, 180.0];
-    /// The least and the greatest stretch.
+    /// Smallest and largest chart stretch.
     pub const STRETCHES: [f64; 2] = [1.1, 50.0];
-    /// The least and the greatest scale.
+    /// Smallest and largest scale.
     pub const SCALES: [f64; 2] = [1e-9, 1e9];
 }
 
@@ -64,12 +63,12 @@ impl Default for Taking {
 }
 
 impl Taking {
-    /// The bound of charts.
+    /// The stretch bound of charts.
     pub fn bound(&self) -> StretchBound {
         StretchBound { shape: self.chart_stretch, area: self.chart_stretch * self.chart_stretch }
     }
 
-    /// Scales a mesh; metrics, which are of its own unit, with it.
+    /// Scales a mesh together with its metric, which is in the unit of the mesh.
     pub fn scale(&self, file: &mut MeshFile) {
         if self.scale == 1.0 {
             return;
@@ -90,7 +89,7 @@ impl Taking {
     }
 }
 
-/// Reads the keys beside `mesh`.
+/// Reads the keys that belong to `mesh`.
 pub(super) fn taking(table: &Table<'_>) -> Result<Taking, Fault> {
     let mut taking = Taking::default();
     if let Some(value) = table.get("use") {

@@ -50,7 +50,7 @@ far = 0.1
 "#;
 
 #[test]
-fn a_case_is_read_whole_with_the_places_of_its_parts() {
+fn a_case_is_read_with_the_lines_of_its_parts() {
     let case = parse(PLATE).unwrap();
     assert_eq!((case.name.as_str(), case.title.as_str(), case.gradation), ("plate", "Plate", Some(1.3)));
     assert_eq!(case.parameters.text_of("theta_rect").unwrap(), "120");
@@ -72,7 +72,7 @@ fn a_case_is_read_whole_with_the_places_of_its_parts() {
 }
 
 #[test]
-fn an_angle_with_a_unit_is_refused_as_the_house_words_it() {
+fn an_angle_with_a_unit_is_refused() {
     let fault = parse(&PLATE.replace("theta_rect = 120", "theta_rect = \"135deg\"")).unwrap_err();
     let line =
         "plate.toml, line 7: theta_rect = \"135deg\" is not a number. Write degrees without a unit: theta_rect = 135.";
@@ -80,7 +80,7 @@ fn an_angle_with_a_unit_is_refused_as_the_house_words_it() {
 }
 
 #[test]
-fn a_number_in_quotes_is_no_number() {
+fn a_number_in_quotes_is_refused() {
     let fault = parse(&PLATE.replace("size_scale = 0.5", "size_scale = \"0.5\"")).unwrap_err();
     assert_eq!(
         fault.to_string(),
@@ -88,7 +88,7 @@ fn a_number_in_quotes_is_no_number() {
     );
 }
 
-/// Replaces a part of the plate, and says what the refusal is.
+/// The fault of the plate with one part replaced.
 fn refusal(from: &str, to: &str) -> String {
     assert!(PLATE.contains(from), "{from}");
     parse(&PLATE.replacen(from, to, 1)).expect_err(to).to_string()
@@ -156,7 +156,7 @@ fn an_arc_keeps_its_sense_and_a_full_turn_is_exact() {
 }
 
 #[test]
-fn a_mesh_lies_relative_to_its_case() {
+fn mesh_paths_are_relative_to_the_case() {
     let case = parse("version = 1\nmesh = \"plate.msh\"\nsol = \"../plate.sol\"").unwrap();
     let DomainSource::Mesh { source: MeshSource::File { path, sol }, .. } = case.domain else { panic!() };
     assert_eq!(path, Path::new("cases/plate.msh"));
@@ -165,12 +165,12 @@ fn a_mesh_lies_relative_to_its_case() {
 }
 
 #[test]
-fn files_that_are_no_cases_are_refused_with_their_name() {
+fn files_that_are_not_cases_are_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let fault = Case::read(folder.path()).unwrap_err();
     assert_eq!(fault.what, "This is a folder");
     let fault = Case::read(&folder.path().join("nothing.toml")).unwrap_err();
-    assert!(fault.place.ends_with("nothing.toml") && fault.what.contains("no such file"), "{fault}");
+    assert!(fault.place.ends_with("nothing.toml") && fault.what.contains("No such file"), "{fault}");
     let binary = folder.path().join("binary.toml");
     std::fs::write(&binary, [b'v', 0xff, 0xfe]).unwrap();
     assert_eq!(Case::read(&binary).unwrap_err().what, "The file is not text (byte 1)");
@@ -216,7 +216,7 @@ fn damaged_cases_are_read_or_refused_and_never_panic() {
 }
 
 #[test]
-fn a_small_background_may_stand_in_the_case_itself() {
+fn a_case_may_contain_a_small_background() {
     let text = |elements: &str| {
         format!(
             "version = 1\n[background]\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\n{elements}\n\
@@ -238,15 +238,15 @@ fn a_small_background_may_stand_in_the_case_itself() {
     }
     let both = text("triangles = []").replace("version = 1", "version = 1\nmesh = \"a.msh\"");
     let fault = Case::parse(&both, "a", "a.toml", Path::new("")).unwrap_err().to_string();
-    assert!(fault.contains("The case has a background and a mesh. Leave out either background or mesh"), "{fault}");
+    assert!(fault.contains("The case has a background and a mesh. Remove either background or mesh"), "{fault}");
 }
 
 #[test]
-fn a_background_in_a_case_that_is_no_mesh_is_refused() {
+fn an_invalid_background_in_a_case_is_refused() {
     for (elements, said) in [
         ("triangles = []\nquads = [[0, 3, 2, 1]]", "quads[0] is not strictly convex and anticlockwise"),
         ("triangles = [[0, 1, 2]]", "an all-quad mesh needs an even count"),
-        ("triangles = [[0, 1, 2], [0, 3, 2]]", "The background would have to be mended: 1 clockwise triangle"),
+        ("triangles = [[0, 1, 2], [0, 3, 2]]", "The background needs a repair: 1 clockwise triangle"),
         ("triangles = [[0, 1, 2], [0, 1, 3]]", "overlap"),
     ] {
         let text = format!(

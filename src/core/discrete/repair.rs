@@ -350,7 +350,7 @@ mod tests {
             given.triangles[i].swap(0, 1);
         }
         let found = repair(&given, &mut Nobody).unwrap();
-        assert_eq!(found.repairs, ["100 triangles were reversed to match their neighbours".to_owned()]);
+        assert_eq!(found.repairs, ["100 triangles were reversed to match neighbours".to_owned()]);
         let edges = Edges::of(&found.mesh.triangles);
         assert!(features(&found.mesh, &edges, 3.2).iter().all(|f| *f != Some(Feature::Conflict)));
         let outward = (0..found.mesh.triangles.len())

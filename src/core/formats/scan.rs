@@ -294,16 +294,16 @@ impl<'a> Scanner<'a> {
         if value.is_finite() { Ok(value) } else { Err(self.fault(format!("Expected {what}, found {value}"))) }
     }
 
-    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Fault> {
+    /// The next `N` bytes, in little-endian order.
+    fn take<const N: usize>(&mut self, order: ByteOrder, what: &str) -> Result<[u8; N], Fault> {
         self.check_pace();
-        match self.bytes[self.at..].first_chunk::<N>() {
-            Some(chunk) => {
-                self.last = self.at;
-                self.at += N;
-                Ok(*chunk)
-            }
-            None => Err(self.ended(what)),
+        let mut bytes = *self.bytes[self.at..].first_chunk::<N>().ok_or_else(|| self.ended(what))?;
+        self.last = self.at;
+        self.at += N;
+        if order == ByteOrder::Big {
+            bytes.reverse();
         }
+        Ok(bytes)
     }
 
     /// The next four bytes as an integer.
@@ -311,8 +311,7 @@ impl<'a> Scanner<'a> {
     /// # Errors
     /// The end of the file.
     pub fn binary_i32(&mut self, order: ByteOrder, what: &str) -> Result<i32, Fault> {
-        let bytes = self.take(what)?;
-        Ok(if order == ByteOrder::Little { i32::from_le_bytes(bytes) } else { i32::from_be_bytes(bytes) })
+        self.take(order, what).map(i32::from_le_bytes)
     }
 
     /// The next eight bytes as a non-negative integer.
@@ -320,8 +319,7 @@ impl<'a> Scanner<'a> {
     /// # Errors
     /// The end of the file.
     pub fn binary_u64(&mut self, order: ByteOrder, what: &str) -> Result<u64, Fault> {
-        let bytes = self.take(what)?;
-        Ok(if order == ByteOrder::Little { u64::from_le_bytes(bytes) } else { u64::from_be_bytes(bytes) })
+        self.take(order, what).map(u64::from_le_bytes)
     }
 
     /// The next eight bytes as a real number.
@@ -329,8 +327,7 @@ impl<'a> Scanner<'a> {
     /// # Errors
     /// The end of the file.
     pub fn binary_f64(&mut self, order: ByteOrder, what: &str) -> Result<f64, Fault> {
-        let bytes = self.take(what)?;
-        Ok(if order == ByteOrder::Little { f64::from_le_bytes(bytes) } else { f64::from_be_bytes(bytes) })
+        self.take(order, what).map(f64::from_le_bytes)
     }
 }
 

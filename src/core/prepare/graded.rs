@@ -1,4 +1,4 @@
-//! The metric with its gradation bounded, as a table at the nodes of a first mesh.
+//! The metric with bounded gradation, as a table at the nodes of a first mesh.
 
 use glam::{DVec2, DVec3};
 
@@ -9,9 +9,9 @@ use crate::core::mesh::ids::NodeId;
 use crate::core::metric::field::{Field, Sizing};
 use crate::core::metric::gradation::bound_gradation;
 
-/// The field at the nodes of a mesh with its gradation bounded, as a table. Nodes at the same place (on curves between
-/// faces, on both sides of cracks) are one node of it: bounded each for itself they would differ, and the metric along the
-/// curve would be now that of one side, now that of the other, as rounding has it.
+/// The field at the nodes of a mesh, with gradation bounded by `beta`, as a table. Coincident nodes (on curves between
+/// faces, on both sides of cracks) are one node of the table: bounded separately, they would differ, and rounding would
+/// decide which of the two applies along the curve.
 pub(super) fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, Fault> {
     let (points, place) = places(mesh);
     let mut metrics = points.iter().map(|&uv| sizing.metric3_at(uv)).collect::<Result<Vec<_>, _>>()?;
@@ -22,7 +22,7 @@ pub(super) fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, 
         bound_gradation(&in_space, &edges, &mut metrics, beta);
         return Field::table(&points, &triangles, metrics);
     };
-    // On surfaces, places of different charts may be one point in space; the sizes spread over it from face to face.
+    // On surfaces, nodes of different charts may be one point in space, through which sizes spread from face to face.
     let mut space_of: Vec<u32> = vec![0; points.len()];
     let (mut in_space, mut shared): (Vec<DVec3>, Vec<Metric3>) = (Vec::new(), Vec::new());
     let mut of_point: Vec<Option<u32>> = vec![None; embedding.points.len()];
@@ -48,7 +48,7 @@ pub(super) fn bounded(mesh: &Mesh, sizing: &Sizing, beta: f64) -> Result<Field, 
     Field::table(&points, &triangles, space_of.iter().map(|&n| shared[n as usize]).collect())
 }
 
-/// The different places of a mesh's nodes in the order of the first node there, and which of them each node slot has.
+/// The distinct positions of a mesh's nodes, in the order of their first nodes, and the position of each node slot.
 fn places(mesh: &Mesh) -> (Vec<DVec2>, Vec<u32>) {
     let uv = |n: u32| mesh.uv(NodeId(n));
     let by_place = |a: &u32, b: &u32| uv(*a).x.total_cmp(&uv(*b).x).then(uv(*a).y.total_cmp(&uv(*b).y));

@@ -1,5 +1,5 @@
-//! Boundary offsetting (paper 4.3.3, point 3, fig. 10) on some loops only: the segments of all others begin at the level at which
-//! offsetting ends, so that selection passes them over until then.
+//! Boundary offsetting (paper 4.3.3, point 3, fig. 10) on some loops only: all other segments start at the level at
+//! which offsetting ends, so that they are not selected before.
 
 use glam::DVec2;
 use rustc_hash::FxHashSet;
@@ -12,17 +12,17 @@ use crate::core::kernel::spelling::nearest;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::HalfEdgeId;
 
-/// The curves (by number) on whose loops rows are offset; `None` where that is on all loops, or on none.
+/// Indices of the curves on whose loops rows are offset; `None` for all loops or none.
 ///
 /// # Errors
-/// A name that no curve has.
+/// A name of no curve.
 pub(super) fn layered_curves(domain: &Domain, parameters: &Parameters) -> Result<Option<Vec<usize>>, Fault> {
-    // On surfaces a curve has an image on every face, all of its name.
+    // On surfaces, the images of a curve on its faces share its name.
     let numbers = |name: &String| {
         let found: Vec<usize> = (0..domain.curves.len()).filter(|&c| domain.curves[c].name == *name).collect();
         if found.is_empty() {
             let fault =
-                Fault::new(format!("layered_loops names \"{}\", and no curve has this name", name.escape_debug()));
+                Fault::new(format!("layered_loops names \"{}\", but no curve has this name", name.escape_debug()));
             return Err(match nearest(name, domain.curves.iter().map(|curve| curve.name.as_str())) {
                 Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
                 None => fault.remedy("Name a curve of each loop"),
@@ -35,9 +35,9 @@ pub(super) fn layered_curves(domain: &Domain, parameters: &Parameters) -> Result
     Ok((parameters.layers > 0 && !curves.is_empty()).then_some(curves))
 }
 
-/// Offsets rows only on the loops that follow one of the curves.
+/// Restricts offsetting to the loops along the curves.
 pub(super) fn offset_only(mesh: &mut Mesh, divided: &DividedDomain, curves: &[usize], layers: u32) {
-    // Boundary nodes have not moved, so that their places name them; plus zero, since -0 is the same place as 0.
+    // Boundary nodes have not moved, so their positions identify them; adding zero turns -0 into 0.
     let bits = |p: DVec2| [(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits()];
     let mut named = FxHashSet::default();
     for chain in curves.iter().map(|&curve| &divided.chains[curve]) {

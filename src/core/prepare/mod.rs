@@ -1,5 +1,4 @@
-//! From a case to its background mesh with its metric: which parts of `geometry`, `metric`, `discrete` and `background` make it,
-//! in which order.
+//! Prepares the background mesh of a case and its metric from `geometry`, `metric`, `discrete` and `background`.
 
 mod graded;
 pub(in crate::core) mod layers;
@@ -27,28 +26,28 @@ use crate::core::progress::Watch;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Background {
-    /// Triangles; every node with its metric.
+    /// The triangles, with the metric at every node.
     pub mesh: Mesh,
-    /// What gives the metric anywhere.
+    /// The metric as a function of position.
     pub sizing: Sizing,
-    /// What its faces and lines are called.
+    /// The names of its faces and lines.
     pub names: Names,
-    /// What the adaptation did; nothing for a mesh that was given.
+    /// Counts of the adaptation; zero for a given mesh.
     pub adapted: Adapted,
-    /// What was mended in a mesh that was given, for people.
+    /// Repairs of a given mesh, as readable phrases.
     pub repairs: Vec<String>,
 }
 
 /// Makes the background mesh of a case.
 ///
 /// # Errors
-/// Whatever is wrong with the case's geometry, metric or mesh.
+/// Faults of the case's geometry, metric or mesh.
 pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
     let has_curves = matches!(case.domain, DomainSource::Curves { .. } | DomainSource::Surfaces(_));
     if !has_curves && !case.parameters.layered_loops.is_empty() {
-        return Err(Fault::new("layered_loops names curves, and the case has none")
+        return Err(Fault::new("layered_loops names curves, but the case has none")
             .of_kind(FaultKind::Parameter)
-            .remedy("Leave it out: layers then holds for every loop"));
+            .remedy("Remove it: layers then applies to every loop"));
     }
     let whole = |domain| from_domain(case, domain, None, FileLines::default(), watch);
     let (made, kind) = match &case.domain {
@@ -67,7 +66,7 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     chosen_faces(made, &case.parameters.faces)
 }
 
-/// A background mesh of the faces of these names alone; of all where there are none. Their curves are divided as for all faces.
+/// The background mesh of the named faces only, or of all without names. Curves are divided as for all faces.
 fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault> {
     if names.is_empty() {
         return Ok(made);
@@ -92,12 +91,12 @@ fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault>
     Ok(Background { mesh, ..made })
 }
 
-/// Whether a face is one of those that a region was divided into: "lid, part 2" of "lid".
+/// Whether a face is a part of a region: "lid, part 2" of "lid".
 fn is_part_of(face: &str, region: &str) -> bool {
     face.strip_prefix(region).is_some_and(|rest| rest.starts_with(", part "))
 }
 
-/// Refuses a background with a triangle so flat that rounding could invert what the last resort makes of it.
+/// Rejects triangles so flat that rounding could invert the elements that the last resort makes of them.
 fn refuse_needles(mesh: &Mesh) -> Result<(), Fault> {
     for e in mesh.elements().filter(|&e| mesh.is_triangle(e)) {
         let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
@@ -105,7 +104,7 @@ fn refuse_needles(mesh: &Mesh) -> Result<(), Fault> {
             return Err(Fault::new(format!(
                 "A triangle of the background mesh is too flat to be converted: {a}, {b}, {c}"
             ))
-            .remedy("Make the boundary there less thin, its segments shorter, or the sizes less stretched"));
+            .remedy("Widen the boundary there, or use shorter segments or less anisotropic sizes"));
         }
     }
     Ok(())
@@ -121,7 +120,7 @@ mod tests {
     use crate::core::metric::field::MetricSource;
     use crate::core::progress::Nobody;
 
-    /// Two squares side by side; the left one asks for small elements far from the line between them.
+    /// Two adjacent squares; the left one has small sizes far from the common line.
     const TWO_SQUARES: &str = r#"
         version = 1
         gradation = 1.2

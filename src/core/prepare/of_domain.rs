@@ -18,11 +18,11 @@ use crate::core::metric::field::{Field, MetricSource, Sizing};
 use crate::core::metric::measure::triangle_area;
 use crate::core::progress::{Stage, Watch};
 
-/// Points at which the metric is looked over before anything is made from it.
+/// Number of points at which the metric is checked first.
 const SURVEYED: usize = 20_000;
 
-/// The background mesh of a domain of curves, in the plane or on surfaces; where the case bounds the gradation, a first mesh
-/// carries the table of the bounded metric for the second. `own` are fields in place of the case's.
+/// The background mesh of a domain of curves, in the plane or on surfaces. If the case bounds the gradation, a first
+/// mesh carries the table of the bounded metric for the second. `own` replaces the fields of the case.
 pub(super) fn from_domain(
     case: &Case,
     domain: Domain,
@@ -50,19 +50,19 @@ pub(super) fn from_domain(
         layers::offset_only(&mut made.mesh, &made.divided, &curves, case.parameters.layers);
     }
     let faces = domain.faces.iter().map(|face| Named::new(&face.name)).collect();
-    // Of curves only those that carry lines of a file give their names to what is written.
+    // Only curves on lines of a file name lines of the output.
     let on_line = |&(ends, curve): &([PointId; 2], u32)| Some((ends, lines.of_curve.get(curve as usize).copied()??));
     let sides = made.lines.iter().filter_map(on_line).collect();
     let names = Names::of_faces(faces).with_lines(lines.names, sides);
     Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs: Vec::new() })
 }
 
-/// The lines of a file that a domain was made from.
+/// The lines of the file of a domain.
 #[derive(Default)]
 pub(super) struct FileLines {
-    /// Their names by number.
+    /// Their names, by index.
     pub names: Vec<Named>,
-    /// The line on which each curve of the domain lies, if on one.
+    /// The line on which each curve of the domain lies, if any.
     pub of_curve: Vec<Option<u32>>,
 }
 
@@ -79,7 +79,7 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     watch.tell(Stage::Triangulate, 0, 0);
     let (divided, set) = divide_and_triangulate(domain, sizing)?;
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
-    refuse_the_endless(&set, sizing, case.parameters.max_quads)?;
+    check_size(&set, sizing, case.parameters.max_quads)?;
     watch.tell(Stage::Adapt, 0, 0);
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (docs/algorithm.md,
     // "Adaptation to the metric").
@@ -95,7 +95,7 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
 /// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is the
 /// metric area (docs/algorithm.md, "Adaptation to the metric"), one place a triangle of the boundary's triangulation:
 /// rough, so that only what is beyond doubt is refused here. The adaptation itself holds the bound.
-fn refuse_the_endless(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Result<(), Fault> {
+fn check_size(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Result<(), Fault> {
     let mut quads = 0.0;
     for triangle in &set.triangles {
         let [a, b, c] = triangle.map(|n| set.uv[n as usize]);
@@ -104,7 +104,7 @@ fn refuse_the_endless(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Res
     if quads <= 4.0 * max_quads as f64 {
         return Ok(());
     }
-    Err(Fault::new(format!("The metric asks for about {quads:.1e} quadrilaterals, and max_quads is {max_quads}"))
+    Err(Fault::new(format!("The metric requires about {quads:.1e} quadrilaterals, but max_quads is {max_quads}"))
         .of_kind(FaultKind::Limit)
-        .remedy("Make the sizes larger, or allow more by max_quads"))
+        .remedy("Increase the sizes or max_quads"))
 }

@@ -1,4 +1,4 @@
-//! The background mesh that a case itself holds: a small one, for the figures of the paper.
+//! The small background mesh in a case file, for the figures of the paper.
 
 use glam::DVec2;
 
@@ -14,7 +14,7 @@ use crate::core::mesh::names::Names;
 use crate::core::metric::field::{Field, MetricSource, Sizing};
 use crate::core::soup::mesh_file::MeshFile;
 
-/// A small mesh that the case itself holds, as it is: nodes keep its numbers, and its quadrilaterals stand already.
+/// The mesh in a case file, unchanged: nodes keep their numbers, and its quadrilaterals exist from the start.
 pub(super) fn from_elements(
     case: &Case,
     points: &[DVec2],
@@ -22,16 +22,16 @@ pub(super) fn from_elements(
     quads: &[[u32; 4]],
 ) -> Result<Background, Fault> {
     if case.gradation.is_some() {
-        return Err(Fault::new("The case has a background and bounds the gradation").remedy("Leave gradation out"));
+        return Err(Fault::new("The case has a background and bounds the gradation").remedy("Remove gradation"));
     }
     for (i, q) in quads.iter().enumerate() {
         let [a, b, c, d] = q.map(|n| points[n as usize]);
         if !convex(a, b, c, d) {
             return Err(Fault::new(format!("quads[{i}] is not strictly convex and anticlockwise"))
-                .remedy("Give the numbers of its points anticlockwise, and no corner of 180 degrees or more"));
+                .remedy("List its points anticlockwise, with all corners below 180 degrees"));
         }
     }
-    // Halved for the checks that triangle meshes go through; the halves are joined again afterwards.
+    // Split for the checks of triangle meshes; the halves are merged again below.
     let halves = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
     let file = MeshFile {
         points: points.iter().map(|p| p.extend(0.0)).collect(),
@@ -40,8 +40,8 @@ pub(super) fn from_elements(
     };
     let imported = import(&file, false)?;
     if let Some(repair) = imported.repairs.first() {
-        return Err(Fault::new(format!("The background would have to be mended: {repair}"))
-            .remedy("Write it as it shall be: nothing is mended in a mesh that a case holds"));
+        return Err(Fault::new(format!("The background needs a repair: {repair}"))
+            .remedy("Correct it: a mesh in a case file is not repaired"));
     }
     let set = &imported.set;
     let fields = case.fields.iter().map(|spec| Field::compile(spec, &|_| None)).collect::<Result<_, _>>()?;

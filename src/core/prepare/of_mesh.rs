@@ -1,4 +1,4 @@
-//! The background mesh of a mesh that was given: its triangles as they are, or its shape meshed anew.
+//! The background mesh from a given mesh: its own triangles, or its shape remeshed.
 
 use std::sync::Arc;
 
@@ -24,9 +24,10 @@ use crate::core::mesh::names::Names;
 use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
 use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::repairs::Repair;
 
-/// A mesh that was given: its triangles as they are (in the plane where nothing is said), or its shape (in space). The
-/// metric is that of the case's fields; where there are none its own, given at its nodes or implied by its triangles.
+/// The background of a given mesh: its own triangles (the default in the plane), or its shape (the default in space).
+/// The metric is that of the case's fields; without fields, that given at its nodes or implied by its triangles.
 pub(super) fn from_mesh(
     case: &Case,
     source: &MeshSource,
@@ -52,7 +53,7 @@ pub(super) fn from_mesh(
     for spec in &case.fields {
         fields.push(Field::compile(spec, &|_| None)?);
     }
-    // What the triangles themselves imply is sound, however thin they are.
+    // The metric implied by the triangles needs no survey: it is valid however thin they are.
     let given = !fields.is_empty() || file.metric.is_some();
     if fields.is_empty() {
         let metrics = match &file.metric {
@@ -63,8 +64,7 @@ pub(super) fn from_mesh(
     }
     let mut sizing = Sizing::new(fields, case.parameters.size_scale);
     if given {
-        // The mesh stays as it is, so that its nodes and the middles of its triangles show what the metric will be
-        // asked for.
+        // The mesh is not changed, so its nodes and centroids show where the metric will be evaluated.
         let middle = |t: &[u32; 3]| t.iter().map(|&n| set.uv[n as usize]).sum::<DVec2>() / 3.0;
         let points: Vec<DVec2> = set.uv.iter().copied().chain(set.triangles.iter().map(middle)).collect();
         sizing.survey(&points, &|_| false)?;
@@ -82,8 +82,8 @@ pub(super) fn from_mesh(
     Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
-/// A mesh as a surface without CAD: its shape meshed anew, or its triangles as they are, chart by chart. Sizes are those of the
-/// case's fields; where there are none those given at its points, or those that its triangles have. `place` is what messages call it.
+/// A mesh as a surface without CAD: its shape remeshed, or its own triangles, chart by chart. Sizes are those of the
+/// case's fields; without fields, those given at its points or implied by its triangles. `place` is the file's name.
 fn from_surface(
     case: &Case,
     file: &MeshFile,
@@ -91,7 +91,7 @@ fn from_surface(
     taking: &Taking,
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
-    // What the case says of sizes has a place of its own.
+    // Faults of the case's fields have their own place.
     let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
     let Repaired { mesh, copied, regions, lines, mut repairs } = repair(file, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
@@ -119,7 +119,7 @@ fn from_surface(
     let faces = surface.regions.clone();
     let lines = FileLines { names: lines, of_curve: surface.lines.clone() };
     let made = if converts {
-        from_laid_out(case, &mesh, &surface, fields, lines, &mut repairs)
+        from_own_triangles(case, &mesh, &surface, fields, lines, &mut repairs)
     } else {
         from_domain(case, surface.domain, Some(fields), lines, watch)
     };
@@ -128,8 +128,8 @@ fn from_surface(
     Ok(Background { repairs, ..made })
 }
 
-/// The triangles of a surface as they are, laid flat chart by chart.
-fn from_laid_out(
+/// The own triangles of a surface, flattened chart by chart.
+fn from_own_triangles(
     case: &Case,
     surface: &Triangles,
     laid: &Surface,
@@ -138,11 +138,7 @@ fn from_laid_out(
     repairs: &mut Vec<String>,
 ) -> Result<Background, Fault> {
     let (set, divided) = laid.triangles(surface, case.split_odd)?;
-    match divided {
-        0 => {}
-        1 => repairs.push("1 side of a triangle was divided to make counts even".to_owned()),
-        n => repairs.push(format!("{n} sides of triangles were divided to make counts even")),
-    }
+    Repair::DividedSide.report(divided, repairs);
     let atlas = laid.domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
     let embedding = atlas.clone().map(|atlas| Arc::new(Embedding { atlas, points: set.xyz.clone() }));
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());

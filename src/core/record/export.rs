@@ -1,4 +1,5 @@
-//! A mesh of the converter as files and measurements know it: without tombstones, the copies of a node made one point.
+//! Exports the converter's mesh for files and measurements: without tombstones, and with one point for all copies of a
+//! node.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,46 +17,46 @@ use crate::core::metric::field::Sizing;
 use crate::core::run::births::Births;
 use crate::core::soup::mesh_file::{BUILT_IN, Data, FRONT, Group, MeshFile};
 
-/// Tag, where no line of a file has it, of lines with elements on one side: the boundary, and both sides of a crack.
+/// Tag of lines with elements on one side (the boundary, both sides of a crack), unless a line of the file has it.
 const BOUNDARY: u32 = 1;
-/// That of lines with elements on both sides: curves that faces share, repeated lines.
+/// Likewise of lines with elements on both sides (curves between faces, repeated lines).
 const INSIDE: u32 = 2;
-/// That of the segments of the merging front.
+/// Likewise of the segments of the merging front.
 const FRONT_TAG: u32 = 3;
 
 /// No point yet.
 const NONE: u32 = u32::MAX;
 
-/// The arrays of a mesh.
+/// An exported mesh.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Export {
     /// Coordinates of each node.
     pub uv: Vec<DVec2>,
-    /// Output point of each node: its place in the points of `file`.
+    /// Output point of each node: its index in the points of `file`.
     pub points: Vec<PointId>,
     /// Triangles by nodes.
     pub triangles: Vec<[u32; 3]>,
     /// Quadrilaterals by nodes.
     pub quads: Vec<[u32; 4]>,
-    /// Points, elements, lines along all curves, and their groups.
+    /// Points, elements, lines along all curves, and groups.
     pub file: MeshFile,
-    /// The surfaces on which it lies; none in the plane.
+    /// The surfaces of the mesh; `None` in the plane.
     pub atlas: Option<Arc<Atlas>>,
-    /// A place in the parametric plane of each point.
+    /// A position in the parametric plane for each point.
     pub chart: Vec<DVec2>,
 }
 
 impl Export {
-    /// The arrays of a mesh whose faces and lines have these names; nodes and elements keep their order. Groups keep the tags that a
-    /// file gave them; sides on no line are in the groups `boundary` and `inside`.
+    /// Exports a mesh whose faces and lines have these names; nodes and elements keep their order. Groups keep the tags
+    /// of the file; sides on no line go to the groups `boundary` and `inside`.
     pub fn of(mesh: &Mesh, names: &Names) -> Export {
         Export::with_nodes(mesh, names).0
     }
 
-    /// The arrays of a mesh on the way, with what a reader needs to see where it stands: `live` (1 for triangles, 0 for
-    /// quadrilaterals), `level` and `region` (the tag of its group) at elements, and the merging front as lines of a group
-    /// of its own, each with its live triangle to the left.
+    /// Exports an intermediate mesh. Elements also have `live` (1 for triangles, 0 for quadrilaterals), `level` and
+    /// `region` (the tag of the group), and the merging front is a group of lines, each with its live triangle to the
+    /// left.
     pub fn of_state(mesh: &Mesh, names: &Names) -> Export {
         let (mut export, node_at) = Export::with_nodes(mesh, names);
         let tags = face_tags(mesh, names);
@@ -83,13 +84,12 @@ impl Export {
         export
     }
 
-    /// Gives elements and points what a reader may look at: elements `quality` (in the metric: docs/algorithm.md,
-    /// "Quality") and `face` (its number from 1), and where they come from a run (`births`) `level` and `step`, the
-    /// step that made them, -1 for triangles; points the metric and their place in the parametric plane (of a point on
-    /// several faces, that in the first).
+    /// Adds data. Elements get `quality` (in the metric, docs/algorithm.md, "Quality") and `face` (numbered from 1),
+    /// and with `births` from a run, `level` and `step`, the step that made them (-1 for triangles). Points get the
+    /// metric and the position in the parametric plane (of a point on several faces, in the first).
     ///
     /// # Errors
-    /// Where there is no metric at a point.
+    /// A point without a metric.
     pub fn describe(&mut self, mesh: &Mesh, sizing: &Sizing, births: Option<&Births>) -> Result<(), Fault> {
         let (live, dead): (Vec<ElementId>, Vec<ElementId>) = mesh.elements().partition(|e| mesh.is_triangle(*e));
         let data = &mut self.file.element_data;
@@ -112,7 +112,7 @@ impl Export {
         Ok(())
     }
 
-    /// The arrays, and the place in them of each node.
+    /// The exported mesh, and the exported index of each node slot.
     fn with_nodes(mesh: &Mesh, names: &Names) -> (Export, Vec<u32>) {
         let atlas = mesh.embedding().map(|embedding| Arc::clone(&embedding.atlas));
         let mut export = Export { atlas, ..Export::default() };
@@ -191,7 +191,7 @@ impl Export {
         (export, node_at)
     }
 
-    /// The mesh as it is measured.
+    /// The mesh as input of the statistics.
     pub fn measured(&self) -> Measured<'_> {
         Measured {
             uv: &self.uv,
@@ -203,20 +203,20 @@ impl Export {
     }
 }
 
-/// The tag of each face: that which a file gave it, else the next free one from 1 on in the order of the names, faces of one name (the
-/// charts of a region) alike.
+/// The tag of each face: that of the file, otherwise the next free one from 1 in the order of the names, equal for
+/// faces of one name (the charts of a region).
 fn face_tags(mesh: &Mesh, names: &Names) -> Vec<u32> {
     let mut tags = tags_of(&names.faces);
-    // Faces without names are told apart by their numbers.
+    // Faces without names get their numbers.
     let faces = mesh.elements().map(|e| mesh.region(e) + 1).max().unwrap_or(0);
     (tags.len() as u32..faces).for_each(|face| tags.push(face + 1));
     tags
 }
 
-/// The tag of each line, of the boundary and of what lies inside; and that of the merging front.
+/// The tags of the lines, then of `boundary` and `inside`; and the tag of the merging front.
 fn line_tags(lines: &[Named]) -> (Vec<u32>, u32) {
     let mut tags = tags_of(lines);
-    // Those that the groups have where no line is in their way.
+    // The default tags, or the next free ones.
     for own in [BOUNDARY, INSIDE, FRONT_TAG] {
         let free = (own..).find(|tag| !tags.contains(tag)).unwrap_or(own);
         tags.push(free);
@@ -246,8 +246,8 @@ mod tests {
     use crate::core::mesh::ids::NodeId;
     use crate::core::mesh::triangle_set::TriangleSet;
 
-    /// Two triangles of two faces whose nodes along the line between them are doubled.
-    fn two_faces(points: [u32; 6]) -> Export {
+    /// Two triangles of two faces with doubled nodes along their common line.
+    fn two_faces(points: [u32; 6], names: [&str; 2]) -> Export {
         let uv = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         let set = TriangleSet {
             uv: uv.map(|(x, y)| DVec2::new(x, y)).to_vec(),
@@ -257,12 +257,12 @@ mod tests {
             ..TriangleSet::default()
         };
         let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6]);
-        Export::of(&mesh, &Names::of_faces(["left", "right"].map(Named::new).to_vec()))
+        Export::of(&mesh, &Names::of_faces(names.map(Named::new).to_vec()))
     }
 
     #[test]
     fn copies_of_a_node_are_one_point_and_the_line_between_faces_is_inside() {
-        let export = two_faces([0, 1, 2, 1, 3, 2]);
+        let export = two_faces([0, 1, 2, 1, 3, 2], ["left", "right"]);
         assert_eq!((export.uv.len(), export.file.points.len()), (6, 4));
         assert_eq!(export.file.triangles, [[0, 1, 2], [1, 3, 2]]);
         assert_eq!(export.file.triangle_tags, [1, 2]);
@@ -276,16 +276,7 @@ mod tests {
     #[test]
     fn faces_of_one_name_are_one_group() {
         let named = |a: &str, b: &str| {
-            let uv = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
-            let set = TriangleSet {
-                uv: uv.map(|(x, y)| DVec2::new(x, y)).to_vec(),
-                point: [0, 1, 2, 1, 3, 2].map(PointId).to_vec(),
-                triangles: vec![[0, 1, 2], [3, 4, 5]],
-                region: vec![0, 1],
-                ..TriangleSet::default()
-            };
-            let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6]);
-            let file = Export::of(&mesh, &Names::of_faces([a, b].map(Named::new).to_vec())).file;
+            let file = two_faces([0, 1, 2, 1, 3, 2], [a, b]).file;
             (file.triangle_tags, file.groups.iter().filter(|g| g.dimension == 2).count())
         };
         assert_eq!(named("shell", "shell"), (vec![1, 1], 1));
@@ -319,8 +310,8 @@ mod tests {
     }
 
     #[test]
-    fn the_sides_of_a_crack_are_points_and_lines_of_their_own() {
-        let export = two_faces([0, 1, 2, 3, 4, 5]);
+    fn the_sides_of_a_crack_have_separate_points_and_lines() {
+        let export = two_faces([0, 1, 2, 3, 4, 5], ["left", "right"]);
         assert_eq!((export.file.points.len(), export.file.lines.len()), (6, 6));
         assert!(export.file.line_tags.iter().all(|tag| *tag == BOUNDARY));
     }

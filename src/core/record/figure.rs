@@ -1,5 +1,5 @@
-//! Figures carry their run: the text of a run file in the `<metadata>` of an SVG or in an iTXt chunk of a PNG, and how it is had
-//! from there again. What else is in such a file does not matter here; whatever is wrong with it is a fault.
+//! Runs embedded in figures: writes and reads the text of a run file in the `<metadata>` of an SVG or in an iTXt chunk
+//! of a PNG. The rest of the file is ignored.
 
 use std::path::Path;
 
@@ -12,21 +12,21 @@ use crate::core::run::run::Run;
 pub const KEYWORD: &str = "quadfront run";
 /// The element in an SVG.
 const ELEMENT: &str = "quadfront:run";
-/// No run is longer than this: a case's text is small, and meshes are named by path.
+/// Maximum length of a run in bytes: cases are small, and meshes are stored as paths.
 const LONGEST: usize = 16 << 20;
-/// No figure is larger than this.
+/// Maximum size of a figure in bytes.
 const LARGEST: u64 = 1 << 30;
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// Whether a path names a figure, by its extension.
+/// Whether a path is a figure, by its extension.
 pub fn is_figure(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("png"))
 }
 
-/// The run that a figure carries; its `shown` says which states the figure shows.
+/// The run embedded in a figure; its `shown` lists the states in the figure.
 ///
 /// # Errors
-/// What the system says of the file; a figure without a run, cut off or damaged; and as [`run_file::parse`].
+/// Those of reading the file; a figure without a run, truncated or damaged; and those of [`run_file::parse`].
 pub fn read(path: &Path) -> Result<Run, Fault> {
     run_in(path).map_err(|fault| fault.of_kind(FaultKind::Syntax))
 }
@@ -40,7 +40,7 @@ fn run_in(path: &Path) -> Result<Run, Fault> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let run = run_file::parse(&text, &format!("{place}, its run"), folder)?;
     if run.shown.is_none() {
-        return Err(Fault::new("The run of the figure does not say which state the figure shows").at(place));
+        return Err(Fault::new("The run in the figure does not list the states shown").at(place));
     }
     Ok(run)
 }
@@ -48,26 +48,26 @@ fn run_in(path: &Path) -> Result<Run, Fault> {
 /// The text of the run in the bytes of an SVG or a PNG.
 ///
 /// # Errors
-/// Bytes without a run, cut off or damaged.
+/// Bytes without a run, truncated or damaged.
 pub fn text_in(bytes: &[u8]) -> Result<String, Fault> {
     let text = if bytes.starts_with(&SIGNATURE) { in_png(bytes)? } else { in_svg(bytes)? };
     if text.len() > LONGEST {
-        return Err(Fault::new("The run of the figure is too long to be one"));
+        return Err(Fault::new("The run in the figure is too long"));
     }
     Ok(text)
 }
 
 fn nothing() -> Fault {
-    Fault::new("This figure carries no run")
-        .remedy("It was not made by quadfront from a case, or another program has removed its metadata")
+    Fault::new("This figure contains no run")
+        .remedy("It was not drawn by quadfront from a case, or another program has removed its metadata")
 }
 
 fn damaged() -> Fault {
-    Fault::new("The figure is damaged or cut off").remedy("Take the file as quadfront wrote it")
+    Fault::new("The figure is damaged or truncated").remedy("Use the file as quadfront wrote it")
 }
 
 fn in_svg(bytes: &[u8]) -> Result<String, Fault> {
-    // The run stands before the first element that is drawn; what is no text after it does not matter.
+    // The run precedes the drawing; bytes after it need not be text.
     let start = format!("<{ELEMENT}");
     let at = find(bytes, start.as_bytes()).ok_or_else(nothing)?;
     let rest = &bytes[at + start.len()..];
@@ -75,7 +75,7 @@ fn in_svg(bytes: &[u8]) -> Result<String, Fault> {
     let rest = &rest[open + 1..];
     let end = find(rest, format!("</{ELEMENT}").as_bytes()).ok_or_else(damaged)?;
     if end > 6 * LONGEST {
-        return Err(Fault::new("The run of the figure is too long to be one"));
+        return Err(Fault::new("The run in the figure is too long"));
     }
     let text = std::str::from_utf8(&rest[..end]).map_err(|_| damaged())?;
     unescaped(text).ok_or_else(damaged)
@@ -85,7 +85,7 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     bytes.windows(what.len()).position(|window| window == what)
 }
 
-/// XML's text as it is meant: entities and CDATA sections; `None` where it is none.
+/// XML text with entities and CDATA sections resolved; `None` if malformed.
 fn unescaped(text: &str) -> Option<String> {
     const CDATA: [&str; 2] = ["<![CDATA[", "]]>"];
     let mut out = String::with_capacity(text.len());
@@ -121,7 +121,7 @@ fn unescaped(text: &str) -> Option<String> {
     Some(out)
 }
 
-/// The `<metadata>` of an SVG that carries a run.
+/// The `<metadata>` element of an SVG with a run.
 pub fn metadata(run: &str) -> String {
     let mut escaped = String::with_capacity(run.len() + run.len() / 8);
     for c in run.chars() {
@@ -135,7 +135,7 @@ pub fn metadata(run: &str) -> String {
     format!("<metadata><{ELEMENT} xmlns:quadfront=\"urn:quadfront:run\">\n{escaped}</{ELEMENT}></metadata>\n")
 }
 
-/// The text of the chunk with our keyword; chunks are walked by their lengths, which may lie.
+/// The text of the chunk with [`KEYWORD`]; the lengths of chunks are checked.
 fn in_png(bytes: &[u8]) -> Result<String, Fault> {
     let mut rest = &bytes[SIGNATURE.len()..];
     while !rest.is_empty() {
@@ -161,15 +161,15 @@ fn in_png(bytes: &[u8]) -> Result<String, Fault> {
 fn itxt(data: &[u8]) -> Result<String, Fault> {
     let (flags, rest) = data.split_at_checked(2).ok_or_else(damaged)?;
     if flags[0] != 0 {
-        return Err(Fault::new("The run of the figure was compressed by another program, and is not read")
-            .remedy("Take the file as quadfront wrote it"));
+        return Err(Fault::new("The run in the figure was compressed by another program, which is not supported")
+            .remedy("Use the file as quadfront wrote it"));
     }
     let mut parts = rest.splitn(3, |byte| *byte == 0);
     let text = parts.nth(2).ok_or_else(damaged)?;
     String::from_utf8(text.to_vec()).map_err(|_| damaged())
 }
 
-/// The checksum of a PNG's chunks (CRC-32 of ISO 3309).
+/// The checksum of a PNG chunk (CRC-32 of ISO 3309).
 fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_is_had_from_vectors_and_from_pixels_as_it_went_in() {
+    fn a_run_survives_a_round_trip_through_svg_and_png() {
         let run = "a = '''x < y && \"z\" > 'w'\n\tθ = 1'''\n";
         let svg = format!("<svg>\n<title>t</title>\n{}<path d=\"M0 0\"/></svg>", metadata(run));
         assert_eq!(text_in(svg.as_bytes()).unwrap().trim_start_matches('\n'), run);
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_that_is_cut_off_or_lies_is_a_fault() {
+    fn a_truncated_or_damaged_figure_is_a_fault() {
         let whole = png("run = 1");
         for length in 0..whole.len() {
             let read = text_in(&whole[..length]);

@@ -1,4 +1,4 @@
-//! What is kept of a run: meshes for export, statistics and reports, run files, and the run that a figure carries.
+//! The records of a run: exported meshes, statistics, reports, run files, and runs embedded in figures.
 
 pub mod statistics;
 pub mod export;

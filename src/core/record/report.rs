@@ -1,4 +1,4 @@
-//! The report of a conversion: as JSON for programs (keys in a fixed order), as a summary for people.
+//! The report of a conversion: JSON for programs (keys in a fixed order) and a summary for people.
 
 mod counts;
 
@@ -18,35 +18,35 @@ use crate::core::convert::conversion::Converted;
 use crate::core::fault::Fault;
 use crate::core::progress::Stage;
 
-/// Everything that is told about a conversion.
+/// The report of a conversion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Report {
-    /// Who made it.
+    /// The program that made it.
     pub program: Program,
-    /// What it was made from.
-    pub case: CaseTold,
-    /// The parameters that were in force, angles in degrees.
+    /// The case.
+    pub case: CaseRecord,
+    /// The parameters used, angles in degrees.
     #[serde(serialize_with = "parameters")]
     pub parameters: Parameters,
-    /// Triangles of the background mesh that was converted.
+    /// Number of triangles of the background mesh.
     pub background_triangles: usize,
     /// Number of faces (regions).
     pub regions: usize,
-    /// Whether the mesh holds all checks: all quadrilaterals, conforming, strictly convex by exact predicates.
+    /// Whether the mesh passes all checks: only quadrilaterals, conforming, strictly convex by exact predicates.
     pub valid: bool,
-    /// What the mesh is like.
+    /// Statistics of the mesh.
     pub mesh: Statistics,
-    /// Whether it lies on surfaces, so that what is seen is in space and not in the plane.
+    /// Whether the mesh lies on surfaces, so that physical values are those in space.
     #[serde(skip)]
     pub on_surfaces: bool,
-    /// What the last resort had to do.
+    /// The share of the last resort.
     pub last_resort: LastResort,
-    /// What was mended in a mesh that was given, each in words.
+    /// Repairs of a given mesh, as readable phrases.
     pub repairs: Vec<String>,
     /// Number of events by kind.
     pub events: BTreeMap<String, u64>,
-    /// Seconds by phase: the only key that differs between two runs of the same case.
+    /// Seconds by stage: the only value that differs between two runs of the same case.
     #[serde(serialize_with = "timing")]
     pub timing: Vec<(Stage, f64)>,
 }
@@ -61,27 +61,27 @@ pub struct Program {
     pub version: String,
 }
 
-/// A case as a report tells it.
+/// A case in a report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct CaseTold {
+pub struct CaseRecord {
     /// Short name.
     pub name: String,
-    /// One line.
+    /// One line for display.
     pub title: String,
-    /// The text of the case file, so that the run can be repeated; empty for a mesh without one.
+    /// The text of the case file, from which the run can be repeated; empty for a mesh without one.
     pub text: String,
 }
 
-/// What the last resort made (docs/algorithm.md, "The last resort").
+/// The part of the last resort (docs/algorithm.md, "The last resort").
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct LastResort {
-    /// Quadrilaterals made by it.
+    /// Number of quadrilaterals made by it.
     pub quads: usize,
-    /// Quadrilaterals made by all means, before clean-up takes some away and adds some.
+    /// Number of all quadrilaterals made before the clean-up.
     pub of: usize,
-    /// The share of the one in the other, 0 to 1.
+    /// The ratio of the two, 0 to 1.
     pub share: f64,
 }
 
@@ -92,15 +92,15 @@ impl Program {
     }
 }
 
-impl CaseTold {
-    /// A case as reports tell it.
-    pub fn of(case: &Case) -> CaseTold {
-        CaseTold { name: case.name.clone(), title: case.title.clone(), text: case.text.clone() }
+impl CaseRecord {
+    /// The record of a case.
+    pub fn of(case: &Case) -> CaseRecord {
+        CaseRecord { name: case.name.clone(), title: case.title.clone(), text: case.text.clone() }
     }
 }
 
 impl LastResort {
-    /// That it made so many quadrilaterals of all that were made.
+    /// `quads` of `all` quadrilaterals were made by the last resort.
     pub fn of(quads: usize, all: usize) -> LastResort {
         LastResort { quads, of: all, share: if all == 0 { 0.0 } else { quads as f64 / all as f64 } }
     }
@@ -124,7 +124,7 @@ impl Report {
         let resort = converted.last_resort.quads();
         Ok(Report {
             program: Program::this(),
-            case: CaseTold::of(case),
+            case: CaseRecord::of(case),
             parameters: case.parameters.clone(),
             background_triangles: converted.triangles,
             regions: converted.names.faces.len(),
@@ -142,7 +142,7 @@ impl Report {
     pub fn json(&self) -> String {
         let mut bytes = Vec::new();
         let mut serializer = serde_json::Serializer::with_formatter(&mut bytes, ListsOnOneLine::default());
-        self.serialize(&mut serializer).expect("a report has nothing that JSON has not");
+        self.serialize(&mut serializer).expect("a report is representable as JSON");
         bytes.push(b'\n');
         String::from_utf8(bytes).expect("JSON is UTF-8")
     }
@@ -151,9 +151,9 @@ impl Report {
     pub fn summary(&self) -> String {
         let mesh = &self.mesh;
         let mut text = format!("{}: {}\n", self.case.name, self.case.title);
-        let mut row = |head: &str, said: String| {
+        let mut row = |head: &str, value: String| {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "  {head:<16} {said}");
+            let _ = writeln!(text, "  {head:<16} {value}");
         };
         row(
             "mesh",
@@ -199,7 +199,7 @@ impl Report {
             ),
         );
         for repair in &self.repairs {
-            row("mended", repair.clone());
+            row("repaired", repair.clone());
         }
         if !self.timing.is_empty() {
             row("time", times(&self.timing));
@@ -208,7 +208,7 @@ impl Report {
     }
 }
 
-/// JSON with objects indented and arrays, which are histograms here, on one line.
+/// JSON with indented objects, and arrays (histograms) on one line.
 #[derive(Default)]
 struct ListsOnOneLine(PrettyFormatter<'static>);
 
@@ -234,7 +234,7 @@ impl Formatter for ListsOnOneLine {
     }
 }
 
-/// The summary of a background mesh: its counts, edge lengths and shape.
+/// The summary of a background mesh: counts, edge lengths and quality.
 pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], timing: &[(Stage, f64)]) -> String {
     let quality = mesh.quality.map_or_else(|| "\u{2013}".to_owned(), range);
     let mut text = format!(
@@ -249,7 +249,7 @@ pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], ti
         "quality, metric",
     );
     for repair in repairs {
-        let _ = writeln!(text, "  {:<16} {repair}", "mended");
+        let _ = writeln!(text, "  {:<16} {repair}", "repaired");
     }
     if !timing.is_empty() {
         let _ = writeln!(text, "  {:<16} {}", "time", times(timing));
@@ -257,7 +257,7 @@ pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], ti
     text
 }
 
-/// The word of a stage in reports.
+/// The key of a stage in reports.
 fn word(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "read",
@@ -276,18 +276,12 @@ fn word(stage: Stage) -> &'static str {
 fn parameters<S: Serializer>(parameters: &Parameters, serializer: S) -> Result<S::Ok, S::Error> {
     let mut map = serializer.serialize_map(Some(Parameters::KEYS.len()))?;
     for key in Parameters::KEYS {
-        if key == "layered_loops" {
-            map.serialize_entry(key, &parameters.layered_loops)?;
-            continue;
-        }
-        if key == "faces" {
-            map.serialize_entry(key, &parameters.faces)?;
-            continue;
-        }
         let text = parameters.text_of(key).unwrap_or_default();
-        match (text.parse::<u64>(), text.parse::<f64>(), text.parse::<bool>()) {
-            (Ok(count), ..) => map.serialize_entry(key, &count)?,
-            (_, Ok(number), _) => map.serialize_entry(key, &number)?,
+        match (key, text.parse::<u64>(), text.parse::<f64>(), text.parse::<bool>()) {
+            ("layered_loops", ..) => map.serialize_entry(key, &parameters.layered_loops)?,
+            ("faces", ..) => map.serialize_entry(key, &parameters.faces)?,
+            (_, Ok(count), ..) => map.serialize_entry(key, &count)?,
+            (.., Ok(number), _) => map.serialize_entry(key, &number)?,
             (.., Ok(flag)) => map.serialize_entry(key, &flag)?,
             _ => map.serialize_entry(key, &text)?,
         }
@@ -335,7 +329,7 @@ fn lengths(mesh: &Statistics) -> String {
     )
 }
 
-/// A share rounded down, so that 100 % means all.
+/// A percentage rounded down, so that 100 % means all.
 fn percent(share: f64) -> String {
     format!("{:.1} %", (share * 1000.0 + 1e-9).floor() / 10.0)
 }
@@ -389,7 +383,11 @@ mod tests {
         let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
         Report {
             program: Program { name: "quadfront".to_owned(), version: "0.0.0".to_owned() },
-            case: CaseTold { name: "three".to_owned(), title: "Three quadrilaterals".to_owned(), text: String::new() },
+            case: CaseRecord {
+                name: "three".to_owned(),
+                title: "Three quadrilaterals".to_owned(),
+                text: String::new(),
+            },
             parameters: Parameters::default(),
             background_triangles: 1234,
             regions: 1,
@@ -397,7 +395,7 @@ mod tests {
             mesh: Statistics::measure(mesh, &Growing).unwrap(),
             on_surfaces: false,
             last_resort: LastResort::of(3, 3),
-            repairs: vec!["2 triangles were turned over".to_owned()],
+            repairs: vec!["2 clockwise triangles were reversed".to_owned()],
             events: BTreeMap::from([("swap".to_owned(), 2), ("merge".to_owned(), 1)]),
             timing: vec![(Stage::Adapt, 0.25), (Stage::Convert, 1.5)],
         }

@@ -1,13 +1,13 @@
-//! Run files: a run as a small TOML file that everything else can be had from again. Read as strictly as case files.
+//! Run files: a run as a small TOML file from which everything else can be reproduced. Read as strictly as case files.
 //!
 //! ```toml
 //! run = 1                        # version of run files
-//! program = "quadfront 0.1.0"    # what wrote it, for people
+//! program = "quadfront 0.1.0"    # the program that wrote it, for information
 //!
 //! [case]
 //! name = "plate"
-//! text = '''...'''               # the case file itself; none for a bare mesh
-//! mesh = { path = "plate.msh", fingerprint = "6c62..." }   # a mesh that it starts from, and its sol
+//! text = '''...'''               # the case file itself; absent for a mesh without one
+//! mesh = { path = "plate.msh", fingerprint = "6c62..." }   # its mesh; likewise sol
 //!
 //! [parameters]                   # those that differ from the case's
 //! c = 1.8
@@ -25,7 +25,7 @@
 //! turn = [0, 0, 0, 1]
 //! height = 1.2
 //!
-//! [figure]                       # in the metadata of figures: what they show, and how they were drawn
+//! [figure]                       # in the metadata of figures: the states shown, and the drawing options
 //! drawn = ["--ink=grey"]
 //! state = [{ step = 812, at = "nq=100", fingerprint = "9c1f..." }]
 //! ```
@@ -47,24 +47,24 @@ use crate::core::kernel::fingerprint::Fingerprint;
 use crate::core::mesh::ids::NodeId;
 use crate::core::run::run::{Bookmark, Camera, Edit, EditKind, Run};
 
-/// The version of run files that this program reads and writes.
+/// The supported version of run files.
 pub const VERSION: u32 = 1;
 
-/// A file that a run starts from, beside the run file.
+/// An input file of a run, outside the run file.
 #[derive(Clone, Debug, PartialEq)]
 struct Link {
     path: PathBuf,
     fingerprint: Fingerprint,
 }
 
-/// The mesh that a run starts from and its metric, where it starts from such.
+/// The mesh of a run and its metric, if it has them.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Links {
     mesh: Option<Link>,
     sol: Option<Link>,
 }
 
-/// Whether a text is meant as a run file: it has the key `run`.
+/// Whether a text is a run file: it has the key `run`.
 pub fn is_run(text: &str) -> bool {
     DeTable::parse(text).is_ok_and(|document| document.get_ref().contains_key("run"))
 }
@@ -72,7 +72,7 @@ pub fn is_run(text: &str) -> bool {
 /// Reads a run file.
 ///
 /// # Errors
-/// What the system says of the file or of a mesh that it names, or see [`parse`].
+/// Those of reading the file, and of [`parse`].
 pub fn read(path: &Path) -> Result<Run, Fault> {
     let place = path.display().to_string();
     let bytes = load(path)?;
@@ -81,28 +81,25 @@ pub fn read(path: &Path) -> Result<Run, Fault> {
     parse(&text, &place, path.parent().unwrap_or(Path::new("")))
 }
 
-/// Parses the text of a run file; messages call the file `file`, meshes lie relative to `folder`.
+/// Parses the text of a run file; `file` is its name in messages, and mesh paths are relative to `folder`.
 ///
 /// # Errors
-/// Text that is not TOML, another version, unknown or missing keys, values of the wrong kind or out of range: with file and
-/// line; and a mesh that is not there, or not as it was.
+/// With file and line: text that is not TOML, an unsupported version, unknown or missing keys, values of the wrong type
+/// or out of range; and a mesh that is missing or has changed.
 pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
     parsed(text, file, folder).map_err(|fault| fault.of_kind(FaultKind::Syntax))
 }
 
 fn parsed(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
     let source = Source { file, text };
-    let document = DeTable::parse(text).map_err(|error| {
-        let place = error.span().map_or(file.to_owned(), |span| source.place(span.start));
-        Fault::new(format!("This is not TOML: {}", error.message().replace('\n', ", "))).at(place)
-    })?;
+    let document = source.parse()?;
     let table = Table::document(&source, &document);
     let version = table.need("run", "1")?;
     match version.count(1, u32::MAX)? {
         VERSION => {}
         newer => {
             return Err(version
-                .fault(format!("run = {newer} is newer than what this program reads"))
+                .fault(format!("run = {newer} is newer than this program supports"))
                 .remedy("Use a newer quadfront"));
         }
     }
@@ -141,14 +138,14 @@ fn case(table: &Table<'_>, file: &str, folder: &Path) -> Result<Case, Fault> {
     let mut case = match (table.get("text"), &mesh) {
         (Some(text), _) => Case::parse(text.text()?, name, &format!("{file}, its case"), folder)?,
         (None, Some(mesh)) => Case { name: name.to_owned(), ..Case::of_mesh(mesh.clone(), None) },
-        (None, None) => return Err(table.fault("The case has neither text nor mesh").remedy("Write one of them")),
+        (None, None) => return Err(table.fault("The case has neither text nor mesh").remedy("Add one of them")),
     };
     match (&mut case.domain, mesh) {
         (DomainSource::Mesh { source, .. }, Some(path)) => *source = MeshSource::File { path, sol },
         (DomainSource::Mesh { .. }, None) => {
-            return Err(table.fault("The mesh of the case is missing").remedy("Write mesh = { path = \"...\", ... }"));
+            return Err(table.fault("The mesh of the case is missing").remedy("Add mesh = { path = \"...\", ... }"));
         }
-        (_, Some(_)) => return Err(table.fault("The case starts from no mesh").remedy("Leave mesh and sol out")),
+        (_, Some(_)) => return Err(table.fault("The case has no mesh").remedy("Remove mesh and sol")),
         (_, None) => {}
     }
     if let Some(value) = table.get("split_odd") {
@@ -157,22 +154,22 @@ fn case(table: &Table<'_>, file: &str, folder: &Path) -> Result<Case, Fault> {
     Ok(case)
 }
 
-/// The path of a file that must be as it was.
+/// The path of a file, which must be unchanged.
 fn link(value: &Value<'_>, folder: &Path) -> Result<PathBuf, Fault> {
     let table = value.table()?;
     table.only(&["path", "fingerprint"])?;
     let path = folder.join(table.need("path", "\"plate.msh\"")?.text()?);
     let fingerprint = table.need("fingerprint", "\"...\"")?;
-    let told: Fingerprint = fingerprint
+    let recorded: Fingerprint = fingerprint
         .text()?
         .parse()
         .map_err(|()| fingerprint.fault("The fingerprint is not 32 hexadecimal digits").remedy("Save the run again"))?;
     let found = Fingerprint::of(&load(&path).map_err(|fault| fault.at(value.place()))?);
-    if found != told {
-        return Err(Fault::new("The file is not what it was when the run was saved")
+    if found != recorded {
+        return Err(Fault::new("The file has changed since the run was saved")
             .at(path.display().to_string())
             .at(value.place())
-            .remedy("Put the old file back, or begin a new run from this one"));
+            .remedy("Restore the old file, or start a new run from this one"));
     }
     Ok(path)
 }
@@ -181,7 +178,7 @@ fn step(table: &Table<'_>) -> Result<u64, Fault> {
     table.need("step", "812")?.count(0, u32::MAX).map(u64::from)
 }
 
-/// The edits of one table: the base, and every parameter.
+/// The edits of one table: the base and all parameters.
 fn edits_of(table: &Table<'_>) -> Result<Vec<Edit>, Fault> {
     let mut known = vec!["step", "base"];
     known.extend(Parameters::KEYS);
@@ -201,7 +198,7 @@ fn edits_of(table: &Table<'_>) -> Result<Vec<Edit>, Fault> {
         edits.push(Edit { step, kind });
     }
     if edits.is_empty() {
-        return Err(table.fault("The edit changes nothing").remedy("Write a parameter, or base = [A, B]"));
+        return Err(table.fault("The edit changes nothing").remedy("Add a parameter, or base = [A, B]"));
     }
     Ok(edits)
 }
@@ -239,7 +236,7 @@ impl Links {
             let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
             Ok(Link { fingerprint: Fingerprint::of(&load(path)?), path: absolute })
         };
-        // A mesh takes the metric of its own name where there is one: it belongs to the run too.
+        // A Medit mesh uses the .sol of the same name if it exists, so that file belongs to the run too.
         let beside = Some(path.with_extension("sol"))
             .filter(|sol| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mesh")) && sol.is_file());
         let sol = sol.clone().or(beside);
@@ -247,8 +244,7 @@ impl Links {
     }
 }
 
-/// A run file that is kept up to date: files that the run starts from are looked at once, and nothing is written where nothing
-/// has changed.
+/// Keeps a run file up to date: reads the input files once, and writes only changes.
 #[derive(Debug)]
 pub struct Keeper {
     path: PathBuf,
@@ -257,15 +253,15 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// A keeper of a run in the file of a path; nothing is written yet.
+    /// A keeper of a run in the file `path`; writes nothing yet.
     ///
     /// # Errors
-    /// Where a mesh that the run starts from cannot be read.
+    /// A mesh of the run that cannot be read.
     pub fn new(path: PathBuf, run: &Run) -> Result<Keeper, Fault> {
         Ok(Keeper { path, links: Links::of(run)?, written: String::new() })
     }
 
-    /// The file where a run is kept while the file at `path` stays as it is, until somebody saves.
+    /// The autosave file of the run file `path`.
     pub fn place_beside(path: &Path) -> PathBuf {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         path.with_file_name(format!(".{name}.autosave.toml"))
@@ -276,11 +272,10 @@ impl Keeper {
         &self.path
     }
 
-    /// Writes the run where it has changed since the last time; says whether it did. Whoever looks sees the old file or the
-    /// whole new one, also where the program is killed meanwhile.
+    /// Writes the run if it has changed since the last call, atomically; returns whether it did.
     ///
     /// # Errors
-    /// As [`save`]: the old file is as it was, and the next call tries again.
+    /// As [`save`]: the old file is unchanged, and the next call tries again.
     pub fn keep(&mut self, run: &Run) -> Result<bool, Fault> {
         let text = text(run, &self.links, self.path.parent().unwrap_or(Path::new("")));
         if text == self.written {
@@ -295,15 +290,15 @@ impl Keeper {
 /// Saves a run.
 ///
 /// # Errors
-/// As [`save`], and where a mesh that the run starts from cannot be read.
+/// As [`save`], and a mesh of the run that cannot be read.
 pub fn write(path: &Path, run: &Run) -> Result<(), Fault> {
     Keeper::new(path.to_path_buf(), run)?.keep(run).map(drop)
 }
 
-/// The text of a run file without its place: for the metadata of figures. Meshes are named by their whole path.
+/// The text of a run for the metadata of figures, with absolute paths of meshes.
 ///
 /// # Errors
-/// Where a mesh that the run starts from cannot be read.
+/// A mesh of the run that cannot be read.
 pub fn embedded(run: &Run) -> Result<String, Fault> {
     Ok(text(run, &Links::of(run)?, Path::new("")))
 }
@@ -326,7 +321,7 @@ fn text(run: &Run, links: &Links, folder: &Path) -> String {
     let folder = std::path::absolute(folder).ok();
     for (key, link) in [("mesh", &links.mesh), ("sol", &links.sol)] {
         let Some(Link { path, fingerprint }) = link else { continue };
-        // Beside the run file or in a folder there, both can be moved together.
+        // A relative path, where possible, lets both files be moved together.
         let near = folder.as_ref().and_then(|folder| path.strip_prefix(folder).ok());
         let path = near.unwrap_or(path).to_string_lossy();
         line(format_args!("{key} = {{ path = {}, fingerprint = \"{fingerprint}\" }}\n", quoted(&path)));
@@ -361,17 +356,17 @@ fn text(run: &Run, links: &Links, folder: &Path) -> String {
     text
 }
 
-/// The value of a parameter in a file: words in quotes.
+/// The value of a parameter in a file; words are quoted.
 fn parameter(key: &str, value: &str) -> String {
     if key.starts_with("selection") { quoted(value) } else { value.to_owned() }
 }
 
-/// Whether a character can stand as it is in TOML and in XML, where figures carry their run.
+/// Whether a character needs no escape in TOML and in XML (figures embed their run).
 fn is_plain(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{FFFE}' | '\u{FFFF}')
 }
 
-/// A text in quotes, on one line.
+/// A quoted string on one line.
 fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {
@@ -388,7 +383,7 @@ fn quoted(text: &str) -> String {
     quoted
 }
 
-/// A text over several lines, as it stands where that is possible.
+/// A multi-line literal string, or if that is impossible, a quoted one.
 fn block(text: &str) -> String {
     let plain = |c: char| c == '\n' || c == '\t' || is_plain(c);
     if text.contains("'''") || text.ends_with('\'') || !text.chars().all(plain) {
@@ -417,14 +412,14 @@ mod tests {
         run
     }
 
-    /// Whether two runs say the same; the places that messages give to what is in their cases differ.
+    /// Whether two runs are equal, except for the places in their cases.
     fn same(a: &Run, b: &Run) -> bool {
         let plain = |run: &Run| (run.parameters.clone(), run.edits().to_vec(), run.bookmarks.clone(), run.camera);
         plain(a) == plain(b) && (&a.case.text, &a.case.name) == (&b.case.text, &b.case.name)
     }
 
     #[test]
-    fn a_run_reads_back_as_it_was() {
+    fn a_run_survives_a_round_trip() {
         for name in built_in::CASES {
             let run = Run::of(built_in::named(name.0).unwrap().unwrap());
             assert!(same(&parse(&embedded(&run).unwrap(), "a.toml", Path::new("")).unwrap(), &run));
@@ -442,7 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_run_file_is_told_with_its_line() {
+    fn a_bad_run_file_is_reported_with_its_line() {
         let good = embedded(&run()).unwrap();
         let line = |what: &str| 1 + good[..good.find(what).unwrap()].matches('\n').count();
         for (from, to, what) in [
@@ -458,11 +453,10 @@ mod tests {
             ("step = 900\nname", "step = -900\nname", "whole number"),
         ] {
             let fault = parse(&good.replace(from, to), "a.toml", Path::new("")).unwrap_err();
-            let told = fault.to_string();
-            assert!(told.contains(what), "{to}: {told}");
-            assert!(fault.place.starts_with("a.toml, line "), "{to}: {told}");
+            assert!(fault.to_string().contains(what), "{to}: {fault}");
+            assert!(fault.place.starts_with("a.toml, line "), "{to}: {fault}");
             if !to.is_empty() && !to.starts_with("step") {
-                assert!(fault.place.starts_with(&format!("a.toml, line {}", line(from))), "{to}: {told}");
+                assert!(fault.place.starts_with(&format!("a.toml, line {}", line(from))), "{to}: {fault}");
             }
         }
         assert!(parse("run = 1", "a.toml", Path::new("")).unwrap_err().what.contains("\"case\" is missing"));
@@ -471,7 +465,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_beside_is_named_by_path_and_fingerprint_and_must_be_as_it_was() {
+    fn a_mesh_is_recorded_by_path_and_fingerprint_and_must_be_unchanged() {
         let folder = tempfile::tempdir().unwrap();
         let mesh = folder.path().join("two.obj");
         std::fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n").unwrap();
@@ -484,8 +478,8 @@ mod tests {
         let back = read(&path).unwrap();
         assert_eq!((back.case.domain, back.case.name), (run.case.domain, run.case.name));
         std::fs::write(&mesh, "v 0 0 0\nv 2 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n").unwrap();
-        assert!(read(&path).unwrap_err().what.contains("not what it was"));
+        assert!(read(&path).unwrap_err().what.contains("has changed"));
         std::fs::remove_file(&mesh).unwrap();
-        assert!(read(&path).unwrap_err().what.contains("no such file"));
+        assert!(read(&path).unwrap_err().what.contains("No such file"));
     }
 }

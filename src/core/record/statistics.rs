@@ -1,4 +1,4 @@
-//! What a mesh is like in its metric and in the plane: distributions of angles (fig. 24) and edge lengths (fig. 23),
+//! Statistics of a mesh, in its metric and physically: distributions of angles (fig. 24) and edge lengths (fig. 23),
 //! irregular nodes, scaled Jacobian, quality. Computed from plain arrays, so that any mesh can be measured.
 
 use glam::DVec2;
@@ -10,13 +10,13 @@ use crate::core::mesh::ids::PointId;
 use crate::core::metric::field::{BadMetric, MetricSource};
 use crate::core::metric::measure::{angle, length_exact, quad_quality, triangle_quality};
 
-/// Classes of angles, 10 degrees wide: the last takes in everything from 170 degrees.
+/// Number of angle classes, each 10 degrees wide; the last has no upper limit.
 pub const ANGLE_CLASSES: usize = 18;
 
-/// Classes of edge lengths, 0.1 wide: the last takes in everything from 3.
+/// Number of length classes, each 0.1 wide; the last has no upper limit.
 pub const LENGTH_CLASSES: usize = 31;
 
-/// The plane's own metric: lengths and angles as they are seen.
+/// The Euclidean metric of the plane.
 const PLANE: Metric2 = Metric2 { uu: 1.0, uv: 0.0, vv: 1.0 };
 
 /// A mesh to be measured.
@@ -24,17 +24,17 @@ const PLANE: Metric2 = Metric2 { uu: 1.0, uv: 0.0, vv: 1.0 };
 pub struct Measured<'a> {
     /// Coordinates of each node.
     pub uv: &'a [DVec2],
-    /// Output point of each node: copies of a node on both sides of a curve share one.
+    /// Output point of each node; copies of a node on both sides of a curve share one.
     pub points: &'a [PointId],
     /// Triangles, anticlockwise.
     pub triangles: &'a [[u32; 3]],
     /// Quadrilaterals, anticlockwise.
     pub quads: &'a [[u32; 4]],
-    /// The surfaces on which it lies; none in the plane.
+    /// The surfaces of the mesh; `None` in the plane.
     pub atlas: Option<&'a Atlas>,
 }
 
-/// Everything that is measured.
+/// Statistics of a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Statistics {
@@ -44,28 +44,28 @@ pub struct Statistics {
     pub triangles: usize,
     /// Quadrilaterals.
     pub quads: usize,
-    /// Edges, those between copies of the same two points once.
+    /// Edges; edges between copies of the same two points count once.
     pub edges: usize,
-    /// Angles with the metric at the corner.
+    /// Angles in the metric at the corner.
     pub metric_angles: Angles,
-    /// Angles as they are seen.
+    /// Physical angles.
     pub physical_angles: Angles,
-    /// Lengths of edges in the metric, by the integral along them.
+    /// Edge lengths in the metric, integrated along the edge.
     pub lengths: Lengths,
-    /// Nodes inside faces that have not the valence of a regular mesh.
+    /// Irregular nodes inside faces.
     pub irregular: Irregular,
-    /// Scaled Jacobian of the quadrilaterals, least over the corners, in the metric; `None` without quadrilaterals.
+    /// Scaled Jacobian of the quadrilaterals in the metric, minimum over the corners; `None` without quadrilaterals.
     pub metric_scaled_jacobian: Option<Range>,
-    /// Scaled Jacobian of the quadrilaterals, least over the corners, as they are seen; `None` without quadrilaterals.
+    /// Physical scaled Jacobian of the quadrilaterals, minimum over the corners; `None` without quadrilaterals.
     pub physical_scaled_jacobian: Option<Range>,
     /// Shape in the metric (docs/algorithm.md, "Quality"): 1 for the square and the equilateral triangle.
     pub quality: Option<Range>,
 }
 
-/// Least and mean.
+/// Minimum and mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Range {
-    /// The least.
+    /// The minimum.
     pub min: f64,
     /// The mean.
     pub mean: f64,
@@ -74,9 +74,9 @@ pub struct Range {
 /// A distribution of corner angles, in degrees.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Angles {
-    /// The least.
+    /// The minimum.
     pub min: f64,
-    /// The greatest.
+    /// The maximum.
     pub max: f64,
     /// Share of corners within [60, 120].
     pub share_60_120: f64,
@@ -84,18 +84,18 @@ pub struct Angles {
     pub share_30_160: f64,
     /// Number of corners in each class of 10 degrees.
     pub corners: [u64; ANGLE_CLASSES],
-    /// Number of elements whose least angle is in each class (fig. 24).
+    /// Number of elements by class of their smallest angle (fig. 24).
     pub least_of_element: [u64; ANGLE_CLASSES],
-    /// Number of elements whose greatest angle is in each class (fig. 24).
+    /// Number of elements by class of their largest angle (fig. 24).
     pub greatest_of_element: [u64; ANGLE_CLASSES],
 }
 
 /// A distribution of edge lengths in the metric.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Lengths {
-    /// The least.
+    /// The minimum.
     pub min: f64,
-    /// The greatest.
+    /// The maximum.
     pub max: f64,
     /// The mean.
     pub mean: f64,
@@ -110,22 +110,22 @@ pub struct Lengths {
 /// Nodes inside faces, away from every curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Irregular {
-    /// How many there are.
+    /// Their number.
     pub interior: usize,
-    /// How many of them are irregular: not four quadrilaterals or six triangles, or a mixture of a full turn.
+    /// Number of irregular ones: not four quadrilaterals, six triangles, or an equivalent mixture.
     pub irregular: usize,
-    /// Their share in percent.
+    /// Percentage of irregular ones.
     pub percent: f64,
 }
 
 impl Statistics {
-    /// Measures a mesh whose indices are in range; angles and lengths in the metric of `source`.
+    /// Measures a mesh with valid indices in the metric of `source`.
     ///
     /// # Errors
-    /// Where the source has no metric at a node or along an edge.
+    /// A node or edge at which `source` has no metric.
     pub fn measure(mesh: Measured<'_>, source: &dyn MetricSource) -> Result<Statistics, Box<BadMetric>> {
         let metrics = mesh.uv.iter().map(|&uv| source.metric(uv)).collect::<Result<Vec<_>, _>>()?;
-        // What is seen at a node: the plane, or the surface's own lengths and angles in its tangent plane.
+        // The physical metric at a node: Euclidean, or the first fundamental form of the surface.
         let seen: Vec<Metric2> = match mesh.atlas {
             None => Vec::new(),
             Some(atlas) => mesh.uv.iter().map(|&uv| atlas.at(uv).first_form()).collect(),
@@ -168,7 +168,7 @@ impl Statistics {
     }
 }
 
-/// The least sine of the corners' angles, negative where a corner is not convex.
+/// The smallest sine of the corner angles, negative at a reflex corner.
 fn scaled_jacobian(p: &[DVec2; 4], m: &[Metric2; 4]) -> f64 {
     let sine = |k: usize| {
         let (a, b) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
@@ -177,7 +177,7 @@ fn scaled_jacobian(p: &[DVec2; 4], m: &[Metric2; 4]) -> f64 {
     (0..4).map(sine).fold(f64::INFINITY, f64::min)
 }
 
-/// Every edge once (copies of the same two points are one edge), and which nodes are away from every curve.
+/// Every edge once (copies of the same two points are one edge), and for each node whether it is on no curve.
 fn edges_and_interior(mesh: &Measured<'_>) -> (Vec<[u32; 2]>, Vec<bool>) {
     let mut sides = Vec::with_capacity(mesh.triangles.len() * 3 + mesh.quads.len() * 4);
     let mut walk = |nodes: &[u32]| {
@@ -222,7 +222,7 @@ fn share(part: u64, whole: u64) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
 
-/// What is summed up while elements go by.
+/// Running sums over the elements.
 #[derive(Default)]
 struct Tally {
     metric_angles: AngleTally,
@@ -276,7 +276,7 @@ impl AngleTally {
         let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
         for k in 0..N {
             let theta = angle(&m[k], p[(k + 1) % N] - p[k], p[(k + N - 1) % N] - p[k]).to_degrees();
-            // What is 60 degrees but for its last digits counts as 60.
+            // Tolerates rounding at the limits.
             let within = |low: f64, high: f64| u64::from(theta > low - 1e-9 && theta < high + 1e-9);
             self.within_60_120 += within(60.0, 120.0);
             self.within_30_160 += within(30.0, 160.0);
@@ -329,7 +329,7 @@ mod tests {
     use super::*;
     use crate::core::kernel::tensor::Metric2;
 
-    /// A metric that is the same everywhere.
+    /// A constant metric.
     struct Constant(Metric2);
 
     impl MetricSource for Constant {
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stretched_metric_is_seen_in_its_angles_and_lengths_and_not_in_those_of_the_plane() {
+    fn a_sheared_metric_changes_metric_but_not_physical_angles_and_lengths() {
         let uv = [(0.0, 0.0), (2.0, 0.0), (2.5, 1.0), (0.5, 1.0)].map(|(x, y)| DVec2::new(x, y));
         let points = [0, 1, 2, 3].map(PointId);
         let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &[[0, 1, 2, 3]], atlas: None };
@@ -382,7 +382,7 @@ mod tests {
 
     #[test]
     fn an_edge_on_a_shared_curve_counts_once_and_on_a_crack_twice() {
-        // Two squares side by side, whose nodes along the line between them are doubled.
+        // Two adjacent squares with doubled nodes along their common line.
         let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0)];
         let uv = uv.map(|(x, y)| DVec2::new(x, y));
         let quads = [[0, 1, 2, 3], [4, 5, 6, 7]];

@@ -7,4 +7,4 @@ mod in_memory;
 pub mod polygons;
 pub(in crate::core) mod weld;
 pub mod soundness;
-pub mod repairs;
+pub(in crate::core) mod repairs;

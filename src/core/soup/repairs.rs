@@ -1,90 +1,54 @@
 //! The kinds of repairs of a mesh and how reports word them, for meshes in the plane and in space.
 
-/// A kind of repair, or of deviation from the file that is reported with the repairs.
+/// A kind of repair, or of deviation from the file that is reported with the repairs; [`Repair::words`] describes each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Repair {
-    /// Quadrilaterals and polygons split into triangles.
+pub(in crate::core) enum Repair {
     Triangulated,
-    /// Points of no triangle, removed.
     UnusedPoint,
-    /// Coincident points, merged.
     MergedPoint,
-    /// Coincident points, kept as the two sides of a crack.
     CrackPoint,
-    /// Points on the side of a triangle, which is split there.
     HangingPoint,
-    /// Triangles with the nodes of another, removed.
     DuplicateTriangle,
-    /// Triangles without area, removed.
     DegenerateTriangle,
-    /// Clockwise triangles in the plane, reversed.
     ClockwiseTriangle,
-    /// Triangles in space oriented against their neighbours, reversed.
     ReversedTriangle,
-    /// Points at which closed parts touch, duplicated and set apart.
     ContactPoint,
-    /// Nodes with several fans of triangles, split.
     PinchedNode,
-    /// Lines of the file on no edge.
     LineOffEdges,
-    /// Lines inside regions without a group.
     UngroupedLine,
-    /// Boundary segments divided for an even number of triangles.
     DividedSegment,
-    /// Sides of triangles between charts divided for even counts.
     DividedSide,
 }
 
 impl Repair {
+    /// What was repaired, singular and plural, and how.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            Repair::Triangulated => ["quadrilateral or polygon", "quadrilaterals and polygons", "split into triangles"],
+            Repair::UnusedPoint => ["unused point", "unused points", "removed"],
+            Repair::MergedPoint => ["coincident point", "coincident points", "merged"],
+            Repair::CrackPoint => ["coincident point", "coincident points", "kept as the other side of a crack"],
+            Repair::HangingPoint => ["hanging point", "hanging points", "joined to the mesh"],
+            Repair::DuplicateTriangle => ["duplicate triangle", "duplicate triangles", "removed"],
+            Repair::DegenerateTriangle => ["degenerate triangle", "degenerate triangles", "removed"],
+            Repair::ClockwiseTriangle => ["clockwise triangle", "clockwise triangles", "reversed"],
+            Repair::ReversedTriangle => ["triangle", "triangles", "reversed to match neighbours"],
+            Repair::ContactPoint => ["contact point between parts", "contact points between parts", "split"],
+            Repair::PinchedNode => ["node", "nodes", "split where triangles share only a point"],
+            Repair::LineOffEdges => ["line on no edge of the mesh", "lines on no edge of the mesh", "ignored"],
+            Repair::UngroupedLine => ["ungrouped line inside a region", "ungrouped lines inside regions", "ignored"],
+            Repair::DividedSegment => ["boundary segment", "boundary segments", "divided to make triangle counts even"],
+            Repair::DividedSide => ["side of a triangle", "sides of triangles", "divided to make counts even"],
+        }
+    }
+
     /// Appends a phrase such as "2 degenerate triangles were removed" to `repairs`; nothing for a count of 0.
-    pub(in crate::core) fn report(self, count: usize, repairs: &mut Vec<String>) {
-        let (one, many) = match self {
-            Repair::Triangulated => (
-                "quadrilateral or polygon was split into triangles",
-                "quadrilaterals and polygons were split into triangles",
-            ),
-            Repair::UnusedPoint => ("unused point was removed", "unused points were removed"),
-            Repair::MergedPoint => ("coincident point was merged", "coincident points were merged"),
-            Repair::CrackPoint => (
-                "coincident point was kept as the other side of a crack",
-                "coincident points were kept as the other sides of cracks",
-            ),
-            Repair::HangingPoint => {
-                ("hanging point was inserted into its edge", "hanging points were inserted into their edges")
-            }
-            Repair::DuplicateTriangle => ("duplicate triangle was removed", "duplicate triangles were removed"),
-            Repair::DegenerateTriangle => ("degenerate triangle was removed", "degenerate triangles were removed"),
-            Repair::ClockwiseTriangle => ("clockwise triangle was reversed", "clockwise triangles were reversed"),
-            Repair::ReversedTriangle => {
-                ("triangle was reversed to match its neighbours", "triangles were reversed to match their neighbours")
-            }
-            Repair::ContactPoint => {
-                ("contact point between parts was split", "contact points between parts were split")
-            }
-            Repair::PinchedNode => (
-                "node was split where triangles share only a point",
-                "nodes were split where triangles share only a point",
-            ),
-            Repair::LineOffEdges => {
-                ("line on no edge of the mesh was ignored", "lines on no edge of the mesh were ignored")
-            }
-            Repair::UngroupedLine => (
-                "line inside a region without a group was ignored",
-                "lines inside regions without a group were ignored",
-            ),
-            Repair::DividedSegment => (
-                "boundary segment was divided to make a triangle count even",
-                "boundary segments were divided to make triangle counts even",
-            ),
-            Repair::DividedSide => (
-                "side of a triangle was divided to make counts even",
-                "sides of triangles were divided to make counts even",
-            ),
-        };
+    pub fn report(self, count: usize, repairs: &mut Vec<String>) {
+        let [one, many, how] = self.words();
         match count {
             0 => {}
-            1 => repairs.push(format!("1 {one}")),
-            n => repairs.push(format!("{n} {many}")),
+            1 => repairs.push(format!("1 {one} was {how}")),
+            n => repairs.push(format!("{n} {many} were {how}")),
         }
     }
 }

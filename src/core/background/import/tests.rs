@@ -152,7 +152,7 @@ fn hanging_nodes_are_connected_unless_there_is_a_gap() {
     file.points.extend([(0.5, 1.0), (0.0, 2.0), (1.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0)));
     file.triangles.extend([[3, 5, 6], [5, 7, 6], [5, 2, 7]]);
     let imported = import(&file, true).unwrap();
-    assert_eq!(imported.repairs[0], "1 hanging point was inserted into its edge");
+    assert_eq!(imported.repairs[0], "1 hanging point was joined to the mesh");
     assert_eq!(imported.set.triangles.len(), 8);
     // The square has points of its own, at the ends of the side too.
     file.points.extend([file.points[3], file.points[2]]);
@@ -283,7 +283,7 @@ fn odd_loops_of_an_even_part_are_fine() {
 fn lost_lines_inside_regions_are_reported() {
     let mut file = star();
     file.lines = vec![[0, 1], [4, 0]];
-    assert_eq!(import(&file, false).unwrap().repairs, ["1 line inside a region without a group was ignored"]);
+    assert_eq!(import(&file, false).unwrap().repairs, ["1 ungrouped line inside a region was ignored"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The table `[figure]`: what the figure shows that carries the run.
+//! The table `[figure]`: the states shown by the figure that embeds the run.
 
 use super::quoted;
 use crate::core::case::table::{Table, Value};
@@ -6,14 +6,14 @@ use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::run::shown::{Shown, ShownState};
 
-/// Frames of a figure at most.
+/// Maximum number of states in a figure.
 const MOST_STATES: usize = 1000;
 
 pub(super) fn shown(table: &Table<'_>) -> Result<Shown, Fault> {
     table.only(&["drawn", "state"])?;
     let states = table.tables("state")?;
     if states.is_empty() || states.len() > MOST_STATES {
-        return Err(table.fault(format!("A figure shows 1 to {MOST_STATES} states, and this has {}", states.len())));
+        return Err(table.fault(format!("A figure shows 1 to {MOST_STATES} states, but this has {}", states.len())));
     }
     Ok(Shown {
         states: states.iter().map(state).collect::<Result<_, _>>()?,

@@ -5,6 +5,7 @@ use super::{Defect, Found};
 use crate::core::kernel::disjoint_sets::DisjointSets;
 
 /// The connectivity of the elements' sides.
+#[derive(Default)]
 pub struct Sides {
     /// Number of edges.
     pub edges: u64,
@@ -26,15 +27,7 @@ impl Sides {
     /// Builds the connectivity and notes its defects.
     pub fn of(faces: &Faces, found: &mut Found) -> Sides {
         let nodes = faces.nodes();
-        let mut sides = Sides {
-            edges: 0,
-            boundary: Vec::new(),
-            odd: Vec::new(),
-            used: vec![false; nodes],
-            outer: vec![false; nodes],
-            loops: 0,
-            components: 0,
-        };
+        let mut sides = Sides { used: vec![false; nodes], outer: vec![false; nodes], ..Sides::default() };
         elements(faces, &mut sides, found);
         let mut fans = DisjointSets::new(4 * faces.len());
         let mut branching = vec![false; nodes];
