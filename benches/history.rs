@@ -12,7 +12,7 @@ use quadfront::core::mesh::ids::PointId;
 use quadfront::core::mesh::triangle_set::TriangleSet;
 use quadfront::core::metric::field::{Field, FieldSpec, Sizing};
 use quadfront::core::progress::Nobody;
-use quadfront::core::run::explain::SegmentTold;
+use quadfront::core::run::explain::SegmentFacts;
 use quadfront::core::run::front_table::FrontTable;
 use quadfront::core::run::history::{BUDGET, History};
 use quadfront::core::run::run::Run;
@@ -105,7 +105,7 @@ fn front_table() {
     let converter = Converter::new(mesh, Sizing::new(vec![field], 1.0), Parameters::default());
     let (table, seconds) = meter::median_of(5, || FrontTable::of(&converter));
     let row = *table.choice().unwrap();
-    let (_, told) = meter::median_of(5, || SegmentTold::in_table(&converter, &table, row.a, row.b).unwrap());
+    let (_, told) = meter::median_of(5, || SegmentFacts::in_table(&converter, &table, row.a, row.b).unwrap());
     println!(
         "Front table of {} rows: {:.1} ms; one segment explained in it: {:.1} ms",
         table.rows.len(),

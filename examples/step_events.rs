@@ -28,7 +28,7 @@ fn main() -> Result<(), Fault> {
         let event = converter.step()?;
         let step = converter.counts.steps;
         if step > printed {
-            *rest.entry(event.kind()).or_default() += 1;
+            *rest.entry(event.kind().name()).or_default() += 1;
             continue;
         }
         match event {
@@ -36,7 +36,7 @@ fn main() -> Result<(), Fault> {
                 println!("step {step}: base segment from node {} to node {}, class {class}", a.0, b.0);
             }
             Event::Formed { .. } => println!("step {step}: quadrilateral {} formed", converter.counts.formed),
-            other => println!("step {step}: {}", other.kind()),
+            other => println!("step {step}: {}", other.kind().name()),
         }
     }
     println!("the rest:");

@@ -247,7 +247,7 @@ fn switches_are_read_from_a_case_file() {
 }
 
 #[test]
-fn a_result_that_is_not_valid_is_told_and_not_written() {
+fn an_invalid_result_is_reported_and_not_written() {
     let folder = tempfile::tempdir().unwrap();
     // Three quadrilaterals on a whole sphere lie in a plane.
     let line = ["convert", "sphere", "--set", "size_scale=6", "-o", "a.obj", "--report", "a.json"];
@@ -264,7 +264,7 @@ fn a_result_that_is_not_valid_is_told_and_not_written() {
 }
 
 #[test]
-fn a_checked_mesh_that_falls_short_is_exit_1_and_one_that_cannot_be_read_exit_2() {
+fn an_invalid_mesh_is_exit_1_and_an_unreadable_one_exit_2() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("good.obj"), square_obj(false)).unwrap();
     std::fs::write(folder.path().join("bad.obj"), square_obj(true)).unwrap();
@@ -302,12 +302,12 @@ fn whatever_is_wrong_is_one_line_with_exit_2() {
         (&["convert", "uniform", "-o", "nowhere/a.msh"], "\"nowhere\" does not exist"),
         (&["convert", "uniform", "-o", "-"], "--format"),
         (&["convert", "uniform", "-o", "a.obj", "--msh2"], "--msh2"),
-        (&["convert", "uniform", "-o", "a.msh", "--report", "a.msh"], "same place"),
+        (&["convert", "uniform", "-o", "a.msh", "--report", "a.msh"], "same target"),
         (&["convert", "uniform", "--picture", "a.jpg"], ".svg"),
         (&["convert", "uniform", "--sol", "a.sol"], "--sol"),
         (&["convert", "uniform", "--set", "theta_rect=135deg"], "Write degrees without a unit: theta_rect = 135"),
         (&["convert", "uniform", "--set", "size=1"], "size_scale"),
-        (&["convert", "uniform", "--report", "a", "--events", "a"], "same place"),
+        (&["convert", "uniform", "--report", "a", "--events", "a"], "same target"),
         (&["cases", "gaer"], "\"gear\""),
     ];
     for (arguments, words) in lines {
@@ -325,7 +325,7 @@ fn usage_that_is_not_understood_is_exit_2_and_help_is_not() {
         assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
     }
     let (code, out, _) = said(&run(&["--help"], folder.path()));
-    assert!(code == 0 && out.contains("Exit codes: 0 done; 1"), "{out}");
+    assert!(code == 0 && out.contains("Exit codes: 0 success; 1"), "{out}");
 }
 
 #[test]
@@ -452,12 +452,12 @@ fn a_pipe_that_is_closed_early_is_no_error() {
 }
 
 #[test]
-fn a_metric_that_is_not_written_is_told() {
+fn a_metric_that_is_not_written_is_reported() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, told) in [("a.obj", true), ("a.inp", true), ("a.mesh", false), ("a.msh", false), ("a.vtu", false)] {
+    for (name, reported) in [("a.obj", true), ("a.inp", true), ("a.mesh", false), ("a.msh", false), ("a.vtu", false)] {
         let (code, _, err) = said(&run(&["background", "gear", "-o", name], folder.path()));
-        assert_eq!((code, err.contains("The metric is not written")), (0, told), "{name}: {err}");
-        assert_eq!(err.lines().count(), usize::from(told), "{err}");
+        assert_eq!((code, err.contains("The metric was not written")), (0, reported), "{name}: {err}");
+        assert_eq!(err.lines().count(), usize::from(reported), "{err}");
     }
 }
 
@@ -470,6 +470,6 @@ fn a_metric_is_not_written_over_the_one_that_was_read() {
     let arguments = ["background", "b.mesh", "--sol", "a.sol", "-o", "./a.mesh"];
     let (code, _, err) = said(&run(&arguments, folder.path()));
     assert_eq!(code, 2);
-    assert!(err.contains("a.sol") && err.contains("over the file"), "{err}");
+    assert!(err.contains("a.sol") && err.contains("overwrite the file"), "{err}");
     assert_eq!(std::fs::read(folder.path().join("a.sol")).unwrap(), before);
 }

@@ -9,7 +9,7 @@ use quadfront::core::convert::event::Event;
 use quadfront::core::convert::phase::Phase;
 use quadfront::core::mesh::ids::NodeId;
 use quadfront::core::progress::Nobody;
-use quadfront::core::run::explain::{Corner, EdgeKind, EdgeTold, ElementTold, NodeTold, SegmentTold, Verdict};
+use quadfront::core::run::explain::{Corner, EdgeFacts, EdgeKind, ElementFacts, NodeFacts, SegmentFacts, Verdict};
 use quadfront::core::run::front_table::FrontTable;
 use quadfront::core::run::run::Run;
 
@@ -72,7 +72,7 @@ fn within_its_margins_a_choice_stays_and_beyond_them_it_does_not() {
         if !step.is_multiple_of(3) {
             return;
         }
-        let told = SegmentTold::of(state, base[0], base[1]).unwrap();
+        let told = SegmentFacts::of(state, base[0], base[1]).unwrap();
         assert_eq!(told.verdict, Verdict::First);
         let [low, high] = told.margin_of_c.unwrap();
         let with_c = |c: f64| selected(state, |p| p.c = c);
@@ -118,11 +118,11 @@ fn every_segment_has_its_reason_in_words() {
         }
         let table = FrontTable::of(state);
         for row in &table.rows {
-            let told = SegmentTold::in_table(state, &table, row.a, row.b).unwrap();
+            let told = SegmentFacts::in_table(state, &table, row.a, row.b).unwrap();
             assert_eq!(told.verdict == Verdict::First, [row.a, row.b] == base);
             assert_eq!(told.rank.is_none(), told.verdict == Verdict::PutOff);
             let text = told.to_string();
-            assert!(text.contains("eq. 6") && text.contains("hosen") || text.contains("put off"), "{text}");
+            assert!(text.contains("eq. 6") && text.contains("hosen") || text.contains("deferred"), "{text}");
             seen.insert(format!("{:?}", told.verdict).split([' ', '{']).next().unwrap().to_owned());
         }
     });
@@ -138,27 +138,27 @@ fn the_explanations_put_the_numbers_into_the_formulas() {
     selections("figure-19", &[("selection", "table1")], |_, state, [a, b]| {
         if texts.is_empty() {
             let mesh = &state.mesh;
-            let told = SegmentTold::of(state, a, b).unwrap();
+            let told = SegmentFacts::of(state, a, b).unwrap();
             let by_equation = 0.5 * told.metric.map(|m| 1.0 / m.lambda[1].sqrt()).iter().sum::<f64>();
             assert!((told.row.h_value / by_equation - 1.0).abs() < 1e-12, "eq. (6)");
             assert_eq!(told.corners[0] == Corner::Rectangle, told.row.theta[0] < 135_f64.to_radians());
             texts.push(told.to_string());
-            let node = NodeTold::of(mesh, a).unwrap();
+            let node = NodeFacts::of(mesh, a).unwrap();
             assert_eq!(node.live.len() + node.dead.len(), mesh.fan(a).count());
             assert!(!node.sectors.is_empty());
             texts.push(node.to_string());
-            let edge = EdgeTold::of(mesh, a, b).unwrap();
+            let edge = EdgeFacts::of(mesh, a, b).unwrap();
             assert_eq!(edge.kind, EdgeKind::Front);
-            assert_eq!(edge, EdgeTold { ends: [a, b], ..EdgeTold::of(mesh, b, a).unwrap() });
+            assert_eq!(edge, EdgeFacts { ends: [a, b], ..EdgeFacts::of(mesh, b, a).unwrap() });
             texts.push(edge.to_string());
             let quad = mesh.elements().find(|&e| mesh.is_quad(e));
             for e in quad.into_iter().chain([mesh.half_edge_between(a, b).unwrap().element()]) {
-                let told = ElementTold::of(mesh, e).unwrap();
+                let told = ElementFacts::of(mesh, e).unwrap();
                 let sum: f64 = told.angles_physical.iter().sum();
                 assert!((sum - 180.0 * (told.nodes.len() as f64 - 2.0)).abs() < 1e-9, "{told}");
                 texts.push(told.to_string());
             }
-            assert!(NodeTold::of(mesh, NodeId(1_000_000)).is_none());
+            assert!(NodeFacts::of(mesh, NodeId(1_000_000)).is_none());
         }
     });
     insta::assert_snapshot!(texts.join("\n"));

@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use proptest::prelude::*;
 use quadfront::core::case::built_in;
 use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::Event;
+use quadfront::core::convert::event::{Event, EventKind};
 use quadfront::core::convert::phase::Phase;
 use quadfront::core::mesh::ids::NodeId;
 use quadfront::core::prepare::Background;
@@ -19,7 +19,7 @@ use quadfront::core::run::breakpoint::Condition;
 use quadfront::core::run::history::{BUDGET, Changes, History};
 use quadfront::core::run::run::{Edit, EditKind, Run};
 use quadfront::core::run::timeline::lanes;
-use quadfront::core::run::watch::{Look, Watched};
+use quadfront::core::run::watch::{Appearance, Watched};
 
 fn run_of(name: &str, size_scale: f64) -> (Run, Background) {
     let mut run = Run::of(built_in::named(name).unwrap().unwrap());
@@ -156,9 +156,9 @@ fn a_pick_that_is_not_on_the_front_any_more_is_told_and_the_rules_choose() {
     run.set_edits(vec![Edit { step: 10, kind }]);
     let mut history = History::of(run, &background, BUDGET).unwrap();
     let end = history.seek(u64::MAX).unwrap();
-    let lost = history.log().next_of(0, |kind| kind == "pick_lost").unwrap();
+    let lost = history.log().next_of(0, |kind| kind == EventKind::PickLost).unwrap();
     assert!(10 < lost && lost < end);
-    assert_eq!(history.log().kind(lost + 1), Some("base_selected"));
+    assert_eq!(history.log().kind(lost + 1), Some(EventKind::BaseSelected));
 }
 
 #[test]
@@ -250,9 +250,9 @@ fn the_next_and_previous_quadrilaterals_are_where_their_local_work_is_done() {
     }
     history.seek(0).unwrap();
     assert_eq!(history.previous_quad(), None);
-    let seam = history.next_of_kind("rolled_back").unwrap();
+    let seam = history.next_of_kind(EventKind::RolledBack).unwrap();
     history.seek(seam + 1).unwrap();
-    assert_eq!(history.previous_of_kind("rolled_back"), Some(seam));
+    assert_eq!(history.previous_of_kind(EventKind::RolledBack), Some(seam));
 }
 
 #[test]
@@ -300,20 +300,20 @@ fn what_touched_a_thing_is_found_forward_and_back_as_by_looking_at_every_state()
         .collect();
     // By looking at every state.
     let mut converter = run.start(&background).unwrap();
-    let mut looks: Vec<_> = watched.iter().map(|&w| Look::at(&converter.mesh, w)).collect();
+    let mut looks: Vec<_> = watched.iter().map(|&w| Appearance::at(&converter.mesh, w)).collect();
     let mut touches = vec![Vec::new(); watched.len()];
     let mut made = vec![None; watched.len()];
     let mut killed = vec![None; watched.len()];
     for step in 1..=end {
         converter.step().unwrap();
         for (k, &w) in watched.iter().enumerate() {
-            let look = Look::at(&converter.mesh, w);
+            let look = Appearance::at(&converter.mesh, w);
             if look != looks[k] {
                 touches[k].push(step);
                 if look.is_quad() && !looks[k].is_quad() {
                     made[k] = Some(step);
                 }
-                let lives = |look: &Look| *look == Look::Absent || look.is_live_edge();
+                let lives = |look: &Appearance| *look == Appearance::Absent || look.is_live_edge();
                 if lives(&looks[k]) && !lives(&look) {
                     killed[k] = Some(step);
                 }
@@ -323,7 +323,8 @@ fn what_touched_a_thing_is_found_forward_and_back_as_by_looking_at_every_state()
     }
     for (k, &w) in watched.iter().enumerate() {
         assert_eq!(history.touches(w, usize::MAX).unwrap(), touches[k], "{w:?}");
-        assert_eq!(history.last_touch(w, true).unwrap(), touches[k].last().copied());
+        let before = touches[k].iter().copied().rfind(|&step| step < history.step());
+        assert_eq!(history.last_touch(w).unwrap(), before, "{w:?}");
         if let Watched::Element(e) = w {
             assert_eq!(history.made(e).unwrap(), made[k], "{w:?}");
         }

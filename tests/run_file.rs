@@ -7,6 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use quadfront::core::case::built_in;
+use quadfront::core::convert::event::EventKind;
 use quadfront::core::mesh::ids::NodeId;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::run_file::{self, Keeper};
@@ -87,7 +88,7 @@ fn the_command_line_goes_the_way_of_a_run_file() {
     let kinds: Vec<&str> = events.lines().map(|line| between(line, "\"kind\":\"", "\"")).collect();
     assert_eq!(kinds.len() as u64, end);
     for (step, kind) in (1..).zip(kinds) {
-        assert_eq!(Some(kind), history.log().kind(step), "step {step}");
+        assert_eq!(Some(kind), history.log().kind(step).map(EventKind::name), "step {step}");
     }
     let NodeId(a) = picked.0;
     assert!(events.lines().any(|line| line.contains("\"picked\":true") && line.contains(&format!("\"a\":{a},"))));

@@ -79,7 +79,10 @@ fn every_walk_of_steps_forward_and_back_meets_the_same_states() {
             }
             assert!(rolled_back > 0, "{name} shows that rollbacks are taken back too");
             for kind in ["swept", "cleaned"] {
-                assert!(events.iter().any(|event| event.kind() == kind), "{name} shows that {kind} is taken back too");
+                assert!(
+                    events.iter().any(|event| event.kind().name() == kind),
+                    "{name} shows that {kind} is taken back too"
+                );
             }
             // A walk that turns around at every scale, from the end to the beginning and again to the end.
             let mut at = states.len() - 1;

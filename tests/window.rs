@@ -13,6 +13,7 @@ use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
 use quadfront::app::window::{App, Command, Direction, Goal, Lost, Source, SurfaceView, ViewLayer};
+use quadfront::core::convert::event::EventKind;
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -93,7 +94,8 @@ fn a_parameter_changes_what_follows_and_nothing_before_and_undo_takes_it_back() 
 fn breakpoints_stop_forward_and_backward() {
     let Some(mut harness) = window() else { return };
     apply(&mut harness, Command::AddBreakpoint("kind == rolled_back".to_owned()));
-    let first = harness.state().state.run().track.iter().position(|t| t.kind == "rolled_back").unwrap() as u64 + 1;
+    let first =
+        harness.state().state.run().track.iter().position(|t| t.kind == EventKind::RolledBack).unwrap() as u64 + 1;
     press(&mut harness, Modifiers::NONE, Key::F5);
     assert_eq!(step(&harness), first);
     press(&mut harness, Modifiers::NONE, Key::F5);
@@ -305,12 +307,12 @@ fn fields_of_conditions_are_offered_and_an_error_stays_where_it_can_be_mended() 
 #[test]
 fn the_inspector_says_why_with_the_numbers_of_the_paper() {
     let Some(mut harness) = window() else { return };
-    apply(&mut harness, Command::Go(Goal::Kind("base_selected", Direction::Forward)));
+    apply(&mut harness, Command::Go(Goal::Kind(EventKind::BaseSelected, Direction::Forward)));
     for label in ["H-value", "Frontal angles", "Why this segment", "Length", "Ends"] {
         harness.get_by_label(label);
     }
     assert!(harness.query_by_label_contains("Same choice for").is_some());
-    apply(&mut harness, Command::Go(Goal::Kind("side_chosen", Direction::Forward)));
+    apply(&mut harness, Command::Go(Goal::Kind(EventKind::SideChosen, Direction::Forward)));
     assert!(harness.query_by_label_contains("tried").is_some(), "what the side was chosen from");
     assert!(harness.query_all_by_label_contains("chosen").next().is_some());
 }

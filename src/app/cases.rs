@@ -1,4 +1,4 @@
-//! `cases`: what is built in.
+//! `cases`: the built-in cases.
 
 use serde_json::json;
 
@@ -20,10 +20,10 @@ pub(super) fn cases(arguments: &CasesArguments) -> Result<(), Fault> {
 fn file(name: &str) -> Result<&'static str, Fault> {
     let case = built_in::all().find(|case| case.0 == name);
     case.map(|case| case.1).ok_or_else(|| {
-        let fault = Fault::new("There is no built-in case of this name").at(name);
+        let fault = Fault::new("No built-in case has this name").at(name);
         match nearest(name, built_in::all().map(|case| case.0)) {
             Some(near) => fault.remedy(format!("The nearest is \"{near}\"; quadfront cases lists all")),
-            None => fault.remedy("quadfront cases lists them"),
+            None => fault.remedy("quadfront cases lists all"),
         }
     })
 }

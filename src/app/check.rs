@@ -1,43 +1,47 @@
-//! `check`: whether a mesh in a file is sound.
+//! `check`: whether a mesh in a file is valid.
 
 use std::process::ExitCode;
 
 use super::command_line::CheckArguments;
 use super::input::{self, InputFormat};
-use super::output::{self, tell};
+use super::output;
 use super::progress::Progress;
 use super::{FALLS_SHORT, complain};
 use crate::core::fault::Fault;
 use crate::core::formats::format::Format;
 use crate::core::soup::soundness::{Allow, Soundness, examine};
 
-/// Examines a mesh: success where it is sound, exit 1 where it falls short.
+/// Checks a mesh: success where it is valid, exit code 1 where not.
 pub(super) fn check(arguments: &CheckArguments) -> Result<ExitCode, Fault> {
-    let output_taken = output::check(&[arguments.report.as_ref()], None)?;
+    let messages = output::check(&[arguments.report.as_ref()], None)?;
     let from = arguments.from.map(InputFormat::Mesh);
     let name = arguments.mesh.as_str();
     if name == "-" && from.is_none() {
-        return Err(Fault::new("The format is not known").at("standard input").remedy("Write --from msh"));
+        return Err(Fault::new("The format is not known")
+            .at("standard input")
+            .remedy("Name it, for example --from msh"));
     }
     let mut progress = Progress::new(arguments.quiet);
     let mesh = input::read_mesh(name, from, &mut progress)?.ok_or_else(|| {
         let known = Format::ALL.map(|format| format!(".{}", format.extension())).join(", ");
-        Fault::new("This is a case, and meshes are checked").at(name).remedy(format!("Name a mesh: {known}"))
+        Fault::new("This is not a mesh, and only meshes can be checked")
+            .at(name)
+            .remedy(format!("Name a file of one of: {known}"))
     })?;
     let found = examine(&mesh);
     progress.finish();
     if let Some(target) = &arguments.report {
-        let json = serde_json::to_string_pretty(&found).expect("findings have nothing that JSON has not");
+        let json = serde_json::to_string_pretty(&found).expect("JSON can express all findings");
         target.write(|out| writeln!(out, "{json}"))?;
     }
     if !arguments.quiet {
-        tell(&facts(name, &found), output_taken);
+        messages.print(&facts(name, &found));
     }
     let allow = Allow { triangles: arguments.triangles, seams: arguments.seams, branching: arguments.branching };
     Ok(match found.verdict(allow) {
         Ok(()) => {
             if !arguments.quiet {
-                tell("sound\n", output_taken);
+                messages.print("sound\n");
             }
             ExitCode::SUCCESS
         }

@@ -1,121 +1,128 @@
-//! The words of the command line.
+//! The arguments of the command line.
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
 use super::figure::FigureOptions;
-use super::input::{InputFormat, Stops, Until, input_format, mesh_format, setting, stops, until};
+use super::input::{InputFormat, Stops, Until, input_format, mesh_format, mesh_use, setting, stops, until};
 use super::output::Target;
+use crate::core::case::{ImportOptions, MeshUse};
 use crate::core::formats::format::Format;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
 #[derive(Parser)]
 #[command(name = "quadfront", version, about, max_term_width = 100)]
-#[command(
-    after_help = "Exit codes: 0 done; 1 a checked mesh falls short; 2 bad input or usage; 130 stopped by Ctrl-C."
-)]
+#[command(after_help = "Exit codes: 0 success; 1 the checked or converted mesh is invalid; 2 bad input or usage; \
+                  130 stopped by Ctrl-C.")]
 pub(super) struct Cli {
-    /// Without a command the window opens on example 1
+    /// Without a command, the window opens with example 1
     #[command(subcommand)]
     pub command: Option<Command>,
 }
 
 #[derive(Subcommand)]
 pub(super) enum Command {
-    /// Open the window: step through a conversion, forward and back. Of a mesh it shows first what it is like and asks how it is
-    /// taken, unless one of the options below says it
+    /// Open the window: step through a conversion, forward and back. A mesh is previewed first with its import options,
+    /// unless one of them is given here
     Open(OpenArguments),
     /// Make an all-quadrilateral mesh of a case or of a triangle mesh
     Convert(ConvertArguments),
-    /// Make the triangles that a conversion starts from, with their metric
+    /// Make the background mesh: the triangles that a conversion starts from, with their metric
     Background(BackgroundArguments),
-    /// Examine a quadrilateral mesh in a file: exit 1 when it falls short
+    /// Check a quadrilateral mesh in a file (exit code 1 if it is invalid)
     Check(CheckArguments),
-    /// Draw a mesh, or the mesh of a case, as SVG or PNG
+    /// Draw a mesh, or states of a conversion, as SVG or PNG
     Render(RenderArguments),
     /// List the built-in cases
     Cases(CasesArguments),
 }
 
-/// What a mesh is made from.
+/// The input of a conversion.
 #[derive(Args, Default)]
 pub(super) struct Source {
-    /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp .ply .stl .gltf .glb), a figure that carries its run (.svg
-    /// .png), or - for standard input
+    /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp .ply .stl .gltf .glb), a
+    /// figure with an embedded run (.svg .png), or - for standard input
     #[arg(value_name = "CASE|MESH|FIGURE")]
     pub input: String,
-    /// What is read where the name does not tell: toml (a case), msh, mesh, vtu, obj, inp, ply, stl, gltf, glb
+    /// Format of standard input: toml (a case), msh, mesh, vtu, obj, inp, ply, stl, gltf, glb
     #[arg(long, value_name = "FORMAT", value_parser = input_format)]
     pub from: Option<InputFormat>,
-    /// The metric at the nodes of MESH (Medit)
+    /// Metric at the nodes of MESH (Medit .sol)
     #[arg(long, value_name = "FILE")]
     pub sol: Option<PathBuf>,
-    /// Set a parameter of the case, for example size_scale=0.5 (may be given several times)
+    /// Set a parameter of the case, for example size_scale=0.5 (repeatable)
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
-    /// Convert this face only and leave the others out (may be given several times)
+    /// Convert only this face (repeatable)
     #[arg(long = "face", value_name = "NAME")]
     pub faces: Vec<String>,
-    /// The paper's own reading of every parameter of the front, in place of the case's; --set comes after it
+    /// Use the paper's own rules for every parameter of the front instead of the case's; --set applies afterwards
     #[arg(long)]
     pub paper: bool,
-    /// No progress and no summary
+    /// Print no progress and no summary
     #[arg(short, long)]
     pub quiet: bool,
 }
 
-/// How a mesh that is given is used.
-#[derive(Args, Clone, Debug, Default, PartialEq)]
-pub struct MeshOptions {
-    /// What MESH is used for: its triangles, converted as they are (what a mesh in the plane is used for where nothing is said), or
-    /// its shape, meshed anew (a mesh in space)
-    #[arg(long = "use", value_name = "triangles|shape", value_parser = ["triangles", "shape"], hide_possible_values = true)]
-    pub used: Option<String>,
-    /// Divide a side where triangles that are converted as they are have a border with an odd count of sides, instead of refusing them
+/// How a mesh is imported.
+#[derive(Args, Default)]
+pub(super) struct MeshArguments {
+    /// Use of MESH: convert its triangles, or remesh its shape [default: triangles in the plane, shape in space]
+    #[arg(long = "use", value_name = "triangles|shape", value_parser = mesh_use)]
+    used: Option<MeshUse>,
+    /// With --use triangles, divide one side of each border that has an odd number of sides, instead of refusing MESH
     #[arg(long)]
-    pub split_odd: bool,
-    /// Size of elements on MESH, everywhere; with --curvature where it is flat
+    split_odd: bool,
+    /// Element size on MESH; with --curvature that of flat regions
     #[arg(long, value_name = "H")]
-    pub mesh_size: Option<f64>,
-    /// Smaller elements where MESH is curved: how far a chord may be from its arc, over the radius (0.01)
+    mesh_size: Option<f64>,
+    /// Smaller elements where MESH is curved: distance between chord and arc, divided by the radius (0.01)
     #[arg(long, value_name = "ERR", requires = "mesh_size")]
-    pub curvature: Option<f64>,
-    /// Folds of MESH beyond this angle in degrees are edges to keep (default 40)
+    curvature: Option<f64>,
+    /// Keep edges of MESH with a fold beyond this angle, in degrees [default: 40]
     #[arg(long, value_name = "DEGREES")]
-    pub feature_angle: Option<f64>,
-    /// How far shapes may be stretched where MESH is laid into the plane (default 4)
+    feature_angle: Option<f64>,
+    /// Limit of the distortion of shapes where MESH is flattened [default: 4]
     #[arg(long, value_name = "RATIO")]
-    pub chart_stretch: Option<f64>,
+    chart_stretch: Option<f64>,
     /// Multiply the coordinates of MESH (0.001: from millimetres to metres)
     #[arg(long, value_name = "FACTOR")]
-    pub scale: Option<f64>,
+    scale: Option<f64>,
 }
 
-/// Where a mesh goes.
+impl MeshArguments {
+    /// The options that they set.
+    pub fn options(&self) -> ImportOptions {
+        let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale } = self;
+        ImportOptions { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale }
+    }
+}
+
+/// The outputs of a mesh.
 #[derive(Args)]
 pub(super) struct Destination {
-    /// The mesh: .msh .mesh .vtu .obj .inp .ply, or - for standard output
+    /// Write the mesh (.msh .mesh .vtu .obj .inp .ply), or - for standard output
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<Target>,
-    /// The format of the mesh where its name does not tell: msh, mesh, vtu, obj, inp, ply
+    /// Format of the mesh, where the extension does not name it: msh, mesh, vtu, obj, inp, ply
     #[arg(long, value_name = "FORMAT", value_parser = mesh_format)]
     pub format: Option<Format>,
-    /// Write Gmsh's version 2.2 instead of 4.1
+    /// Write Gmsh format 2.2 instead of 4.1
     #[arg(long)]
     pub msh2: bool,
-    /// A picture (.svg .png), or - for standard output (SVG)
+    /// Write a picture (.svg .png), or - for standard output (SVG)
     #[arg(long, value_name = "FILE")]
     pub picture: Option<Target>,
 }
 
 #[derive(Args)]
 pub(super) struct OpenArguments {
-    /// A built-in case, a case file or a run file (.toml), a mesh, or a figure, which opens at the state that it shows
+    /// A built-in case, a case file or a run file (.toml), a mesh, or a figure, which opens at the state it shows
     #[arg(value_name = "CASE|MESH|FIGURE", default_value = "example1")]
     pub input: String,
     #[command(flatten)]
-    pub mesh: MeshOptions,
+    pub mesh: MeshArguments,
 }
 
 #[derive(Args)]
@@ -123,17 +130,17 @@ pub(super) struct ConvertArguments {
     #[command(flatten)]
     pub source: Source,
     #[command(flatten)]
-    pub mesh: MeshOptions,
+    pub mesh: MeshArguments,
     #[command(flatten)]
     pub destination: Destination,
-    /// The report as JSON, or - for standard output
+    /// Write the report as JSON, or - for standard output
     #[arg(long, value_name = "FILE")]
     pub report: Option<Target>,
-    /// What each step did, as one JSON object a line, or - for standard output
+    /// Write the event of each step, one JSON object per line, or - for standard output
     #[arg(long, value_name = "FILE.jsonl")]
     pub events: Option<Target>,
-    /// Stop where so many quadrilaterals stand (nq=100) or after so many steps (step=812), and write the mesh as it is then; a
-    /// figure stops where it was drawn, unless this says end
+    /// Stop at a number of quadrilaterals (nq=100) or steps (step=812) and write the mesh of that state. The run of a
+    /// figure stops where it was drawn; end continues to the end
     #[arg(long, value_name = "STOP", value_parser = until)]
     pub at: Option<Until>,
 }
@@ -143,7 +150,7 @@ pub(super) struct BackgroundArguments {
     #[command(flatten)]
     pub source: Source,
     #[command(flatten)]
-    pub mesh: MeshOptions,
+    pub mesh: MeshArguments,
     #[command(flatten)]
     pub destination: Destination,
 }
@@ -152,22 +159,22 @@ pub(super) struct BackgroundArguments {
 pub(super) struct CheckArguments {
     /// The mesh, or - for standard input
     pub mesh: String,
-    /// The format of the mesh where its name does not tell: msh, mesh, vtu, obj, inp
+    /// Format of standard input: msh, mesh, vtu, obj, inp, ply, stl, gltf, glb
     #[arg(long, value_name = "FORMAT", value_parser = mesh_format)]
     pub from: Option<Format>,
     /// Allow triangles
     #[arg(long)]
     pub triangles: bool,
-    /// Allow nodes at one place on the boundary (cracks, surfaces cut open)
+    /// Allow coincident nodes on the boundary (cracks, surfaces cut open)
     #[arg(long)]
     pub seams: bool,
     /// Allow edges of more than two elements (surfaces that meet in a curve)
     #[arg(long)]
     pub branching: bool,
-    /// What was found as JSON, or - for standard output
+    /// Write the findings as JSON, or - for standard output
     #[arg(long, value_name = "FILE")]
     pub report: Option<Target>,
-    /// Say nothing but what is wrong
+    /// Print only what is wrong
     #[arg(short, long)]
     pub quiet: bool,
 }
@@ -176,26 +183,26 @@ pub(super) struct CheckArguments {
 pub(super) struct RenderArguments {
     #[command(flatten)]
     pub source: Source,
-    /// Divide a side where a border of MESH has an odd count of sides, instead of refusing it
+    /// Divide one side of each border of MESH that has an odd number of sides, instead of refusing it
     #[arg(long)]
     pub split_odd: bool,
-    /// Draw the conversion where so many quadrilaterals stand (nq=100) or after so many steps (step=812); several, in their
-    /// order, side by side (nq=50,100,150,end)
+    /// Draw the conversion at a number of quadrilaterals (nq=100) or steps (step=812); several in ascending order are
+    /// drawn side by side (nq=50,100,150,end)
     #[arg(long, visible_alias = "strip", value_name = "STOPS", value_parser = stops)]
     pub at: Option<Stops>,
     #[command(flatten)]
     pub figure: FigureOptions,
-    /// The picture (.svg .png), or - for standard output (SVG)
+    /// Write the picture (.svg .png), or - for standard output (SVG)
     #[arg(short, long, value_name = "FILE")]
     pub out: Target,
 }
 
 #[derive(Args)]
 pub(super) struct CasesArguments {
-    /// As JSON: name and title of each
+    /// Print name and title of each case as JSON
     #[arg(long)]
     pub json: bool,
-    /// Print the file of one case, to begin one's own from
+    /// Print the file of one case, as a start for your own
     #[arg(value_name = "CASE", conflicts_with = "json")]
     pub name: Option<String>,
 }
@@ -206,12 +213,12 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
-    fn the_words_do_not_contradict_each_other() {
+    fn the_arguments_do_not_contradict_each_other() {
         Cli::command().debug_assert();
     }
 
     #[test]
-    fn what_the_issue_writes_is_understood() {
+    fn documented_command_lines_are_accepted() {
         for line in [
             "quadfront convert example1 --out example1.msh --report example1.json",
             "quadfront convert - -o - --format msh --from toml --set size_scale=0.5 --set c=1.5 --msh2 --quiet",

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use super::command_line::{BackgroundArguments, ConvertArguments};
 use super::figure::{self, Figure, FigureOptions, LayerWords};
 use super::input::Until;
-use super::output::{self, MeshTarget, tell};
+use super::output::{self, MeshTarget, Stream};
 use super::progress::Progress;
 use super::{FALLS_SHORT, complain, input, work};
 use crate::core::case::Case;
@@ -17,36 +17,36 @@ use crate::core::record::report::background_summary;
 use crate::core::run::shown::Shown;
 use crate::core::soup::mesh_file::MeshFile;
 
-/// Converts, and writes the mesh, the report and the picture that are asked for.
+/// Converts, and writes the requested mesh, report, events and picture.
 ///
-/// Exit 1, as of a check, where the result is not valid: then no mesh is written, and report and picture tell what it would be.
+/// Exit code 1 where the result is not valid, as for `check`: then no mesh is written, but report and picture show it.
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
     let (source, destination) = (&arguments.source, &arguments.destination);
     let mesh_target = MeshTarget::of(destination)?;
     let targets = [destination.out.as_ref(), arguments.report.as_ref(), arguments.events.as_ref()];
-    let output_taken = output::check(&targets, destination.picture.as_ref())?;
+    let messages = output::check(&targets, destination.picture.as_ref())?;
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
-    let input = input::read(source, &arguments.mesh)?;
+    let input = input::read(source, &arguments.mesh.options())?;
     let shown = input.figure.as_ref().and_then(Shown::state);
     let at = match (arguments.at, shown) {
         (Some(Until::Stop(stop)), _) => Some(stop),
         (Some(Until::End), _) => None,
-        // A figure stands for the state that it shows.
+        // A figure selects the state that it shows.
         (None, shown) => shown.and_then(|shown| shown.at.map(|_| Stop::Step(shown.step))),
     };
     let shows_data = mesh_target.as_ref().is_some_and(MeshTarget::shows_data);
-    let mut quads = work::convert_telling(&input.run, at, arguments.events.as_ref(), shows_data, &mut progress)
+    let mut quads = work::convert_writing_events(&input.run, at, arguments.events.as_ref(), shows_data, &mut progress)
         .map_err(|fault| if shown.is_some() { fault.at(source.input.clone()) } else { fault })?;
     progress.tell(Stage::Write, 0, 0);
-    // What is not valid is no mesh for anybody to go on with.
+    // Write only valid meshes.
     if quads.flaw.is_none() {
         write(mesh_target.as_ref(), &quads.file)?;
     }
     if let Some(target) = &destination.picture {
         let options = FigureOptions::default();
         let frame = quads.frame(&options.look(false));
-        let figure = Figure::of_run(&input.run, &[frame], &options, input.can_be_carried())?;
+        let figure = Figure::of_run(&input.run, &[frame], &options, input.can_be_embedded())?;
         output::write_figure(target, &figure)?;
     }
     quads.report.timing = progress.finish();
@@ -54,22 +54,19 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
         target.write(|out| out.write_all(quads.report.json().as_bytes()))?;
     }
     if let Some(shown) = shown.filter(|shown| arguments.at.is_none() && shown.state != quads.shown.state) {
-        tell(&format!("{}\n", figure::another_state(&source.input, shown.step)), true);
+        Stream::Error.print(&format!("{}\n", figure::another_state(&source.input, shown.step)));
     }
     if !source.quiet {
-        tell(&quads.report.summary(), output_taken);
+        messages.print(&quads.report.summary());
         if let Some(at) = at.filter(|_| arguments.at.is_none()) {
-            tell(
-                &format!("This is the state that the figure shows, {at}; --at end converts it to the end.\n"),
-                output_taken,
-            );
+            messages.print(&format!("This is the state that the figure shows, {at}. --at end converts to the end.\n"));
         }
-        remind(mesh_target.is_none() && destination.picture.is_none() && arguments.events.is_none(), output_taken);
+        remind(mesh_target.is_none() && destination.picture.is_none() && arguments.events.is_none(), messages);
     }
     let Some(flaw) = &quads.flaw else { return Ok(ExitCode::SUCCESS) };
     complain(flaw);
     if mesh_target.is_some() {
-        tell("No mesh was written.\n", true);
+        Stream::Error.print("No mesh was written.\n");
     }
     Ok(ExitCode::from(FALLS_SHORT))
 }
@@ -78,27 +75,27 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
 pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     let (source, destination) = (&arguments.source, &arguments.destination);
     let mesh_target = MeshTarget::of(destination)?;
-    let output_taken = output::check(&[destination.out.as_ref()], destination.picture.as_ref())?;
+    let messages = output::check(&[destination.out.as_ref()], destination.picture.as_ref())?;
     mesh_target.as_ref().map_or(Ok(()), |target| target.spare(source.sol.as_deref()))?;
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
-    let input = input::read(source, &arguments.mesh)?;
+    let input = input::read(source, &arguments.mesh.options())?;
     let shows_data = mesh_target.as_ref().is_some_and(MeshTarget::shows_data);
     let triangles = work::background(&input.run.case, shows_data, &mut progress)?;
     progress.tell(Stage::Write, 0, 0);
     write(mesh_target.as_ref(), &triangles.file)?;
     if let Some(target) = &destination.picture {
         let options = FigureOptions { layers: Some(LayerWords::mesh()), ..FigureOptions::default() };
-        let figure = Figure::of_run(&input.run, &[triangles.frame], &options, input.can_be_carried())?;
+        let figure = Figure::of_run(&input.run, &[triangles.frame], &options, input.can_be_embedded())?;
         output::write_figure(target, &figure)?;
     }
     let timing = progress.finish();
     if !source.quiet {
-        tell(&background_summary(&input.run.case, &triangles.statistics, &triangles.repairs, &timing), output_taken);
+        messages.print(&background_summary(&input.run.case, &triangles.statistics, &triangles.repairs, &timing));
         if let Some(lack) = mesh_target.as_ref().and_then(MeshTarget::lacks_metric) {
-            tell(&lack, true);
+            Stream::Error.print(&lack);
         }
-        remind(mesh_target.is_none() && destination.picture.is_none(), output_taken);
+        remind(mesh_target.is_none() && destination.picture.is_none(), messages);
     }
     Ok(())
 }
@@ -107,7 +104,7 @@ fn write(target: Option<&MeshTarget>, mesh: &MeshFile) -> Result<(), Fault> {
     target.map_or(Ok(()), |target| target.write(mesh))
 }
 
-/// What made a picture: program, case, and the parameters that differ from the default.
+/// The origin of a picture: program, case, and parameters that differ from the default.
 pub(super) fn describe(case: &Case) -> String {
     let set: Vec<_> = Parameters::KEYS
         .iter()
@@ -126,9 +123,9 @@ pub(super) fn describe(case: &Case) -> String {
     )
 }
 
-/// Says that the mesh is nowhere, to who has forgotten to name a place for it.
-fn remind(nowhere: bool, output_taken: bool) {
-    if nowhere {
-        tell("No mesh was written: -o FILE writes it.\n", output_taken);
+/// Reminds that no output was requested.
+fn remind(no_output: bool, messages: Stream) {
+    if no_output {
+        messages.print("No mesh was written: -o FILE writes it.\n");
     }
 }

@@ -1,4 +1,4 @@
-//! Figures as commands and the window make them: what is drawn of a run, how, how large, and what the file carries.
+//! Figures for commands and the window: the states drawn, the style, the size, and the run embedded in the file.
 
 mod options;
 
@@ -7,7 +7,7 @@ pub(super) use options::{FigureOptions, LayerWords, Plot};
 pub(super) use options::{PartWords, Size};
 
 use super::convert::describe;
-use super::work::{self, Frame};
+use super::work::{self, FigureFrame};
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::progress::Watch;
@@ -19,37 +19,38 @@ use crate::render::vector::histogram::Histogram;
 use crate::render::vector::svg;
 
 /// A figure, ready to be written.
-#[cfg_attr(not(feature = "window"), expect(dead_code, reason = "what a PNG carries beside the vectors"))]
+#[cfg_attr(not(feature = "window"), expect(dead_code, reason = "a PNG embeds them"))]
 pub(super) struct Figure {
-    /// Its vectors.
+    /// The SVG.
     pub svg: String,
-    /// What it shows, in words.
+    /// A description of what it shows.
     pub description: String,
-    /// The text of the run that it carries.
+    /// The text of the embedded run.
     pub run: Option<String>,
+    /// Dots per inch.
     dots: f64,
 }
 
 impl Figure {
-    /// The figure of a mesh that belongs to no run.
+    /// A figure of a mesh without a run.
     pub fn of_mesh(picture: &Picture, options: &FigureOptions) -> Figure {
         let svg = svg::write(picture, &options.sheet(false, &picture.title, &picture.description, None));
         Figure { svg, description: picture.title.clone(), run: None, dots: options.dots() }
     }
 
-    /// The figure of a run at some of its states.
+    /// A figure of states of a run; with `embeds` it contains the run.
     ///
     /// # Errors
-    /// Where a mesh that the run starts from cannot be read any more.
-    pub fn of_run(run: &Run, frames: &[Frame], options: &FigureOptions, carries: bool) -> Result<Figure, Fault> {
+    /// The mesh file of the run can no longer be read.
+    pub fn of_run(run: &Run, frames: &[FigureFrame], options: &FigureOptions, embeds: bool) -> Result<Figure, Fault> {
         let strip = frames.len() > 1;
         let mut description = describe(&run.case);
-        if let [Frame { shown, .. }] = frames
+        if let [FigureFrame { shown, .. }] = frames
             && let Some(at) = shown.at
         {
             description = format!("{description}, at {at}");
         }
-        let carried = if carries {
+        let embedded = if embeds {
             let states = frames.iter().map(|frame| frame.shown).collect();
             let shown = Shown { states, drawn: options.words() };
             let mut run = run.clone();
@@ -58,25 +59,26 @@ impl Figure {
         } else {
             None
         };
-        let sheet = options.sheet(strip, &run.case.title, &description, carried.as_deref());
+        let sheet = options.sheet(strip, &run.case.title, &description, embedded.as_deref());
         let svg = match frames {
-            [Frame { statistics: Some(statistics), .. }] => match options.plot {
+            [FigureFrame { statistics: Some(statistics), .. }] => match options.plot {
                 Some(Plot::Angles) => Histogram::of_angles(statistics).write(&sheet),
                 _ => Histogram::of_lengths(statistics).write(&sheet),
             },
             [frame] => svg::write(&frame.picture, &sheet),
             _ => {
-                let captioned = |frame: &Frame| Picture { title: caption(frame.shown.at), ..frame.picture.clone() };
+                let captioned =
+                    |frame: &FigureFrame| Picture { title: caption(frame.shown.at), ..frame.picture.clone() };
                 svg::strip(&frames.iter().map(captioned).collect::<Vec<_>>(), &sheet)
             }
         };
-        Ok(Figure { svg, description, run: carried, dots: options.dots() })
+        Ok(Figure { svg, description, run: embedded, dots: options.dots() })
     }
 
     /// The figure as pixels.
     ///
     /// # Errors
-    /// A size that no picture can have.
+    /// A size that is not possible.
     #[cfg(feature = "window")]
     pub fn png(&self) -> Result<Vec<u8>, Fault> {
         use crate::render::vector::png;
@@ -84,7 +86,7 @@ impl Figure {
     }
 }
 
-/// How a stop is called under a frame.
+/// The caption of a stop below its frame.
 fn caption(at: Option<Stop>) -> String {
     match at {
         Some(Stop::Quads(quads)) => format!("NQ = {quads}"),
@@ -93,17 +95,17 @@ fn caption(at: Option<Stop>) -> String {
     }
 }
 
-/// Where to go for a figure, and what it is called there.
+/// A state that a figure shall show, with its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wanted {
-    /// Where to go; `None`: to the end.
+    /// Where to stop; `None`: at the end.
     pub stop: Option<Stop>,
-    /// How it is called.
+    /// The stop that names it; `None`: the end.
     pub at: Option<Stop>,
 }
 
 impl Wanted {
-    /// What is called by the way to it.
+    /// A state named by its stop.
     pub fn at(stop: Option<Stop>) -> Wanted {
         Wanted { stop, at: stop }
     }
@@ -115,7 +117,7 @@ impl Wanted {
     }
 }
 
-/// Runs to the states that are wanted and makes their figure.
+/// Runs to the wanted states and draws their figure; with `embeds` it contains the run.
 ///
 /// # Errors
 /// As the conversion; several states in one histogram.
@@ -123,27 +125,27 @@ pub(super) fn make(
     run: &Run,
     wanted: &[Wanted],
     options: &FigureOptions,
-    carries: bool,
+    embeds: bool,
     watch: &mut dyn Watch,
-) -> Result<(Figure, Vec<Frame>), Fault> {
+) -> Result<(Figure, Vec<FigureFrame>), Fault> {
     if options.plot.is_some() && wanted.len() > 1 {
-        return Err(Fault::new("A histogram is of one state").at("--plot").remedy("Name one stop with --at"));
+        return Err(Fault::new("A histogram shows one state").at("--plot").remedy("Name one stop with --at"));
     }
     let look = options.look(wanted.len() > 1);
     let frames = work::frames(run, wanted, &look, options.plot.is_some(), watch)?;
-    Ok((Figure::of_run(run, &frames, options, carries)?, frames))
+    Ok((Figure::of_run(run, &frames, options, embeds)?, frames))
 }
 
-/// What is to be told where a state is not the one that a figure shows.
-pub(super) fn difference(name: &str, shown: &Shown, frames: &[Frame]) -> Option<String> {
+/// A warning where a state differs from the one that the figure shows.
+pub(super) fn difference(name: &str, shown: &Shown, frames: &[FigureFrame]) -> Option<String> {
     let other = shown.states.iter().zip(frames).find(|(then, now)| then.state != now.shown.state)?;
     Some(another_state(name, other.0.step).to_string())
 }
 
-/// That a state is not the one that a figure shows.
+/// The fault that a state differs from the one that the figure shows.
 pub(super) fn another_state(name: &str, step: u64) -> Fault {
     let version = env!("CARGO_PKG_VERSION");
     Fault::new(format!("quadfront {version} reaches another state at step {step} than the figure shows"))
         .at(name)
-        .remedy("It was drawn by another version, or with other parameters")
+        .remedy("The figure was drawn by another version or with other parameters")
 }

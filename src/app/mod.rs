@@ -1,4 +1,4 @@
-//! The command line (and, with the next issues, the window): ties `core` and `render` together.
+//! The command line and the window: they tie `core` and `render` together.
 
 mod command_line;
 mod input;
@@ -24,13 +24,13 @@ use crate::core::formats::save;
 use command_line::{Cli, Command, OpenArguments};
 use progress::INTERRUPT;
 
-/// A checked mesh falls short.
+/// A mesh that was checked or converted is not valid.
 const FALLS_SHORT: u8 = 1;
 /// Bad input or usage.
 const BAD_INPUT: u8 = 2;
-/// Ctrl-C, as shells tell it.
+/// Ctrl-C, as shells report it.
 const INTERRUPTED: u8 = 130;
-/// So long work has to end by itself.
+/// The time that work has to end by itself after Ctrl-C.
 const GRACE: Duration = Duration::from_millis(500);
 
 /// Runs the program with the process's own arguments.
@@ -38,17 +38,18 @@ pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version are "errors" of clap's that go to standard output; whether they arrive is not ours to mend.
+            // clap returns help and version as "errors" for standard output. A failed write cannot be reported
+            // anywhere.
             let _ = error.print();
             return if error.use_stderr() { ExitCode::from(BAD_INPUT) } else { ExitCode::SUCCESS };
         }
     };
-    // Files are renamed into place when they are whole; what is half-written is removed before the process ends. Without a
-    // handler (no system refuses one) Ctrl-C would end the process all the same and leave a temporary file.
+    // Files are renamed into place when complete; the handler removes incomplete ones. Without a handler (no system
+    // refuses one) Ctrl-C would still end the process, but leave a temporary file.
     let _ = ctrlc::set_handler(|| {
         save::abandon();
         INTERRUPT.ask();
-        // Work that hears of it ends by itself, and takes with it what it has put down elsewhere.
+        // Work that notices ends by itself and removes its own temporary files.
         std::thread::sleep(GRACE);
         std::process::exit(i32::from(INTERRUPTED));
     });
@@ -76,14 +77,14 @@ pub fn run() -> ExitCode {
 /// Opens the window.
 #[cfg(feature = "window")]
 fn open(arguments: &OpenArguments) -> Result<ExitCode, Fault> {
-    let OpenArguments { input, mesh } = arguments;
+    let (input, options) = (&arguments.input, arguments.mesh.options());
     let mut source = window::Source::named(input);
-    // What does not exist, and options that do not fit, are said where the command was given.
-    input::run_of(std::path::Path::new(input), mesh)?;
+    // Report missing files and unsuitable options on the terminal, before the window opens.
+    input::run_of(std::path::Path::new(input), &options)?;
     if let window::Source::File(path) = &source {
         save::find(path)?;
-        if *mesh != Default::default() {
-            source = window::Source::Mesh(path.clone(), mesh.clone());
+        if options != Default::default() {
+            source = window::Source::Mesh(path.clone(), options);
         }
     }
     window::open(source)
@@ -95,9 +96,9 @@ fn open(_: &OpenArguments) -> Result<ExitCode, Fault> {
         .remedy("Build it with the feature \"window\", or use quadfront convert and quadfront render"))
 }
 
-/// Tells a fault as one line on standard error.
+/// Reports a fault as one line on standard error.
 fn complain(fault: &Fault) {
     let line: String = fault.to_string().chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    // Where standard error is closed there is nobody to tell.
+    // A closed standard error leaves nowhere to report to.
     let _ = writeln!(io::stderr(), "error: {line}");
 }

@@ -1,4 +1,4 @@
-//! Where things go: files, which appear whole or not at all, and standard output.
+//! Outputs: files, which appear complete or not at all, and standard output.
 
 use std::convert::Infallible;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -30,7 +30,7 @@ impl FromStr for Target {
 }
 
 impl Target {
-    /// Refuses what could not be written, before any work is done for it.
+    /// Refuses a target that could not be written, before any work is done.
     fn check(&self) -> Result<(), Fault> {
         let Target::File(path) = self else { return Ok(()) };
         let place = path.display().to_string();
@@ -41,13 +41,13 @@ impl Target {
             Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
                 Err(Fault::new(format!("The folder \"{}\" does not exist", folder.display()))
                     .at(place)
-                    .remedy("Make it first, or name another place"))
+                    .remedy("Create it, or name another folder"))
             }
             _ => Ok(()),
         }
     }
 
-    /// Writes by `write`.
+    /// Writes with `write`.
     pub fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Fault> {
         match self {
             Target::File(path) => save::save(path, write),
@@ -56,18 +56,18 @@ impl Target {
                 match write(&mut out).and_then(|()| out.flush()) {
                     Ok(()) => Ok(()),
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => {
-                        // Who has closed the pipe has what is wanted; what waits to be written is not tried again.
+                        // The reader closed the pipe and needs no more: discard what is buffered.
                         let _ = out.into_parts();
                         Ok(())
                     }
-                    Err(error) => Err(Fault::new(format!("It cannot be written: {error}")).at("standard output")),
+                    Err(error) => Err(Fault::new(format!("Cannot write: {error}")).at("standard output")),
                 }
             }
         }
     }
 }
 
-/// A mesh's place and format.
+/// The target and format of a mesh.
 pub(super) struct MeshTarget {
     target: Target,
     format: Format,
@@ -75,7 +75,7 @@ pub(super) struct MeshTarget {
 }
 
 impl MeshTarget {
-    /// The place and format that the arguments name, if they name one.
+    /// The target and format that the arguments name, if any.
     pub fn of(destination: &Destination) -> Result<Option<MeshTarget>, Fault> {
         let Some(target) = destination.out.clone() else { return Ok(None) };
         MeshTarget::new(target, destination.format, destination.msh2).map(Some)
@@ -92,24 +92,26 @@ impl MeshTarget {
             (_, Some(format)) => format,
             (Target::File(path), None) => Format::from_path(path)?,
             (Target::StandardOutput, None) => {
-                return Err(Fault::new("The format is not known").at("standard output").remedy("Write --format msh"));
+                return Err(Fault::new("The format is not known")
+                    .at("standard output")
+                    .remedy("Name it, for example --format msh"));
             }
         };
         if !format.is_written() {
             let known: Vec<String> = Format::written().map(|format| format!(".{}", format.extension())).collect();
             return Err(Fault::new(format!(
-                "The format .{} is read and not written: it has no quadrilaterals",
+                "The format .{} can only be read: it has no quadrilaterals",
                 format.extension()
             ))
-            .remedy(format!("Write one of {}", known.join(", "))));
+            .remedy(format!("Use one of {}", known.join(", "))));
         }
         if msh2 && format != Format::Msh {
-            return Err(Fault::new("--msh2 is for .msh").remedy("Leave it out, or write a .msh"));
+            return Err(Fault::new("--msh2 applies to .msh only").remedy("Leave it out, or write a .msh file"));
         }
         Ok(MeshTarget { target, format, options: WriteOptions { msh2 } })
     }
 
-    /// Refuses a place where the metric would fall on the file that it is read from.
+    /// Refuses a target whose metric file would overwrite the one that the metric is read from.
     pub fn spare(&self, sol: Option<&Path>) -> Result<(), Fault> {
         let (Target::File(path), Format::Medit, Some(sol)) = (&self.target, self.format, sol) else { return Ok(()) };
         let beside = path.with_extension("sol");
@@ -117,36 +119,36 @@ impl MeshTarget {
         if !is_same {
             return Ok(());
         }
-        Err(Fault::new("The metric would be written over the file that it is read from")
+        Err(Fault::new("The metric would overwrite the file that it is read from")
             .at(sol.display().to_string())
-            .remedy("Name the mesh otherwise: its metric goes to the .sol of the same name"))
+            .remedy("Choose another name for the mesh: its metric goes to the .sol file of the same name"))
     }
 
-    /// Refuses a place that could not be written.
+    /// Refuses a target that could not be written.
     #[cfg(feature = "window")]
     pub fn check(&self) -> Result<(), Fault> {
         self.target.check()
     }
 
-    /// Whether the format is for looking at what there is besides the mesh: data of elements and points.
+    /// Whether the format is for viewing data of elements and points besides the mesh.
     pub fn shows_data(&self) -> bool {
         self.format == Format::Vtu
     }
 
-    /// Why the metric is not written with the mesh, where it is not.
+    /// Why the metric is not written with the mesh; `None` where it is.
     pub fn lacks_metric(&self) -> Option<String> {
         match (&self.target, self.format) {
             (_, Format::Obj | Format::Inp | Format::Ply) => {
-                Some(format!("The metric is not written: .{} has no place for it.\n", self.format.extension()))
+                Some(format!("The metric was not written: .{} cannot store it.\n", self.format.extension()))
             }
             (Target::StandardOutput, Format::Medit) => {
-                Some("The metric is not written: a .mesh has it in a second file.\n".to_owned())
+                Some("The metric was not written: for .mesh it goes to a second file.\n".to_owned())
             }
             _ => None,
         }
     }
 
-    /// Writes the mesh; to standard output without what Medit keeps in a second file.
+    /// Writes the mesh; to standard output without the second file of Medit.
     pub fn write(&self, mesh: &MeshFile) -> Result<(), Fault> {
         match &self.target {
             Target::File(path) => format::write_mesh(path, self.format, mesh, self.options),
@@ -155,15 +157,15 @@ impl MeshTarget {
     }
 }
 
-/// Checks that each target can be written, that no two are the same place, and that a picture is an SVG.
+/// Checks that each target can be written, that no two are the same, and that the extension of a picture is known.
 ///
-/// Returns whether standard output is one of them: then people are told on standard error.
-pub(super) fn check(targets: &[Option<&Target>], picture: Option<&Target>) -> Result<bool, Fault> {
+/// Returns the stream for messages: standard error where standard output is one of the targets.
+pub(super) fn check(targets: &[Option<&Target>], picture: Option<&Target>) -> Result<Stream, Fault> {
     let all: Vec<&Target> = targets.iter().copied().flatten().chain(picture).collect();
     for (k, target) in all.iter().enumerate() {
         target.check()?;
         if all[..k].contains(target) {
-            let fault = Fault::new("Two outputs have the same place");
+            let fault = Fault::new("Two outputs have the same target");
             return Err(match target {
                 Target::StandardOutput => fault.at("standard output").remedy("Name a file for one of them"),
                 Target::File(path) => fault.at(path.display().to_string()).remedy("Name another file for one of them"),
@@ -173,10 +175,10 @@ pub(super) fn check(targets: &[Option<&Target>], picture: Option<&Target>) -> Re
     if let Some(Target::File(path)) = picture {
         image_format(path)?;
     }
-    Ok(all.contains(&&Target::StandardOutput))
+    Ok(if all.contains(&&Target::StandardOutput) { Stream::Error } else { Stream::Output })
 }
 
-/// What a picture is written as.
+/// The format of a picture.
 enum Image {
     Svg,
     #[cfg(feature = "window")]
@@ -191,14 +193,14 @@ fn image_format(path: &Path) -> Result<Image, Fault> {
         () if is("png") => Ok(Image::Png),
         () => {
             let known = if cfg!(feature = "window") { ".svg or .png" } else { ".svg" };
-            Err(Fault::new(format!("Pictures are written as {known}"))
+            Err(Fault::new(format!("Pictures are written as {known} files"))
                 .at(path.display().to_string())
-                .remedy("Give the name such an extension"))
+                .remedy("Use such an extension"))
         }
     }
 }
 
-/// Writes a figure as vectors or, by the name's extension, as pixels.
+/// Writes a figure as vectors or pixels, according to its extension.
 pub(super) fn write_figure(target: &Target, figure: &Figure) -> Result<(), Fault> {
     let bytes = match target {
         Target::StandardOutput => figure.svg.as_bytes().to_vec(),
@@ -211,8 +213,22 @@ pub(super) fn write_figure(target: &Target, figure: &Figure) -> Result<(), Fault
     target.write(|out| out.write_all(&bytes))
 }
 
-/// Tells people: on standard output, or on standard error where something else is written to standard output.
-pub(super) fn tell(text: &str, on_standard_error: bool) {
-    // Who has closed the stream does not want to know.
-    let _ = if on_standard_error { write!(io::stderr(), "{text}") } else { write!(io::stdout(), "{text}") };
+/// A stream for messages.
+#[derive(Clone, Copy)]
+pub(super) enum Stream {
+    /// Standard output.
+    Output,
+    /// Standard error.
+    Error,
+}
+
+impl Stream {
+    /// Prints a message.
+    pub fn print(self, text: &str) {
+        // A reader that closed the stream does not want the message.
+        let _ = match self {
+            Stream::Output => write!(io::stdout(), "{text}"),
+            Stream::Error => write!(io::stderr(), "{text}"),
+        };
+    }
 }

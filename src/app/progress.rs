@@ -1,4 +1,4 @@
-//! How far the work is, shown on a terminal, and how long its parts took: `core` has no clock, this has.
+//! Progress on a terminal, and the time of each stage; `core` itself has no clock.
 
 use std::fmt::Write;
 use std::sync::LazyLock;
@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::core::record::report::grouped;
 
-/// What Ctrl-C asks.
+/// The cancellation by Ctrl-C.
 pub(super) static INTERRUPT: LazyLock<Cancel> = LazyLock::new(Cancel::new);
 
 /// Shows progress on standard error where that is a terminal, and measures the time of each stage.
@@ -21,14 +21,14 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Nothing is shown where `quiet` or where standard error is no terminal.
+    /// Shows nothing where `quiet` or where standard error is not a terminal.
     pub fn new(quiet: bool) -> Progress {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(None, target).with_style(style("{msg}"));
         Progress { bar, now: None, times: Vec::new(), total: 0 }
     }
 
-    /// Clears the line, and tells the seconds of each stage in the order of the work.
+    /// Clears the line and returns the seconds of each stage, in the order of the work.
     pub fn finish(mut self) -> Vec<(Stage, f64)> {
         self.close();
         std::mem::take(&mut self.times)
@@ -46,7 +46,7 @@ impl Progress {
     fn begin(&mut self, stage: Stage, total: u64) {
         self.close();
         self.now = Some((stage, Instant::now()));
-        // First a style without numbers: each of the changes below may be drawn.
+        // Set a style without numbers first, since each of the changes below may be drawn.
         self.bar.set_style(style("{msg}"));
         self.bar.set_message(words(stage));
         self.bar.reset();
@@ -59,7 +59,7 @@ impl Progress {
         self.bar.reset_eta();
         let parts = match self.now {
             _ if total == 0 => "{msg}",
-            // Bytes, and steps of unequal length.
+            // These count bytes or steps of unequal length.
             Some((Stage::Read | Stage::Repair, _)) => "{msg}: {percent} % {bar:20} {left}",
             _ => "{msg}: {done} of about {all} {bar:20} {left}",
         };
@@ -73,7 +73,7 @@ impl Drop for Progress {
     }
 }
 
-/// A style whose numbers are written as everywhere else in the program.
+/// A style with numbers formatted as in the rest of the program.
 fn style(template: &str) -> ProgressStyle {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     // Writing to a line of text cannot fail.
@@ -111,7 +111,7 @@ fn words(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "Reading",
         Stage::Repair => "Repairing the mesh",
-        Stage::Chart => "Laying the surface flat",
+        Stage::Chart => "Flattening the surface",
         Stage::Divide => "Dividing the curves",
         Stage::Triangulate => "Triangulating",
         Stage::Adapt => "Adapting the triangles",
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stage_that_comes_back_is_told_once_and_in_its_first_place() {
+    fn a_stage_that_recurs_is_listed_once_at_its_first_position() {
         let mut progress = Progress::new(true);
         for (stage, done) in
             [(Stage::Divide, 0), (Stage::Adapt, 0), (Stage::Adapt, 5), (Stage::Divide, 0), (Stage::Convert, 0)]

@@ -1,10 +1,11 @@
-//! `render`: a mesh as it is, the mesh of a case, or a conversion on the way, as a figure.
+//! `render`: draws a mesh file, the mesh of a case, or states of a conversion as a figure.
 
-use super::command_line::{MeshOptions, RenderArguments};
+use super::command_line::RenderArguments;
 use super::figure::{self, Figure, Wanted};
 use super::input;
-use super::output::{self, tell};
+use super::output::{self, Stream};
 use super::progress::Progress;
+use crate::core::case::ImportOptions;
 use crate::core::fault::Fault;
 use crate::core::progress::{Stage, Watch};
 use crate::render::picture::Picture;
@@ -23,7 +24,7 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
     }
     let mut progress = Progress::new(source.quiet);
     progress.tell(Stage::Read, 0, 0);
-    let mesh = MeshOptions { split_odd: arguments.split_odd, ..MeshOptions::default() };
+    let mesh = ImportOptions { split_odd: arguments.split_odd, ..ImportOptions::default() };
     let input = input::read(source, &mesh)?;
     let shown = input.figure.as_ref();
     let options = arguments.figure.or(shown).map_err(|fault| fault.at(source.input.clone()))?;
@@ -32,14 +33,14 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
         (None, Some(shown)) => Wanted::of(shown),
         (None, None) => vec![Wanted::at(None)],
     };
-    let (figure, frames) = figure::make(&input.run, &wanted, &options, input.can_be_carried(), &mut progress)
-        // What a figure carries was not written by hand: its faults are the figure's.
+    let (figure, frames) = figure::make(&input.run, &wanted, &options, input.can_be_embedded(), &mut progress)
+        // The embedded run was not written by hand: report its faults as the figure's.
         .map_err(|fault| if shown.is_some() { fault.at(source.input.clone()) } else { fault })?;
     progress.finish();
     if let Some(shown) = shown.filter(|_| arguments.at.is_none())
         && let Some(difference) = figure::difference(&source.input, shown, &frames)
     {
-        tell(&format!("{difference}\n"), true);
+        Stream::Error.print(&format!("{difference}\n"));
     }
     output::write_figure(&arguments.out, &figure)
 }

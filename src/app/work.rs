@@ -1,4 +1,4 @@
-//! The work of `core` as the commands need it: from a case to a mesh that can be written, and what is told about it.
+//! The work of `core` as the commands need it: from a case to a mesh ready to be written, with its report.
 
 use std::io;
 
@@ -28,37 +28,37 @@ use crate::render::picture::{Picture, Seen};
 use super::figure::Wanted;
 use super::output::Target;
 
-/// Steps that are kept where the last one's changes are drawn.
+/// Steps kept in the journal where the changes of the last one are drawn.
 const HISTORY: usize = 256;
 
 /// The triangles that a conversion starts from.
 pub(super) struct Triangles {
     /// Step 0 as a frame of a figure.
-    pub frame: Frame,
+    pub frame: FigureFrame,
     /// The mesh with its metric, for files.
     pub file: MeshFile,
-    /// What it is like.
+    /// Its statistics.
     pub statistics: Statistics,
-    /// Repairs of a given mesh, as readable phrases.
+    /// Repairs made to an imported mesh.
     pub repairs: Vec<String>,
 }
 
-/// A conversion at its end, or at a stop before it.
+/// A conversion at its end or at an earlier stop.
 pub(super) struct Quads {
     mesh: Mesh,
-    /// The state that it is.
+    /// The state it is in.
     pub shown: ShownState,
     phase: Phase,
     in_force: Parameters,
     /// The mesh, for files.
     pub file: MeshFile,
-    /// What is told about it; its timing is still empty.
+    /// The report, with its timing still empty.
     pub report: Report,
-    /// What a check of the mesh found wrong: then there is a bug, and the mesh must not pass for valid.
+    /// What a check of the mesh found wrong: then the mesh must not pass for valid.
     pub flaw: Option<Fault>,
 }
 
-/// Makes the triangles of a case; with the data that are to be looked at where these are shown.
+/// Makes the background mesh of a case, with data for viewing where `shows_data`.
 pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
     let Background { mesh, sizing, names, repairs, .. } = prepare::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
@@ -66,7 +66,7 @@ pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -
         let (parameters, phase) = (&case.parameters, &Phase::Select);
         let shown = ShownState { step: 0, at: Some(Stop::Step(0)), state: fingerprint(&mesh, phase) };
         let seen = Seen { mesh: &mesh, parameters, phase, changed: &[] };
-        Frame { picture: Picture::of_state(&seen, &Look::default()), shown, statistics: None }
+        FigureFrame { picture: Picture::of_state(&seen, &Look::default()), shown, statistics: None }
     };
     let mut export = Export::of(&mesh, &names);
     let statistics = Statistics::measure(export.measured(), &sizing)?;
@@ -78,8 +78,9 @@ pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -
     Ok(Triangles { frame, file: export.file, statistics, repairs })
 }
 
-/// Converts the case of a run and writes each event to `events` as it happens: the file appears when the conversion is done.
-pub(super) fn convert_telling(
+/// Converts the case of a run and writes each event to `events` as it happens. The file appears when the conversion is
+/// finished.
+pub(super) fn convert_writing_events(
     run: &Run,
     at: Option<Stop>,
     events: Option<&Target>,
@@ -90,25 +91,25 @@ pub(super) fn convert_telling(
     let mut quads = None;
     let written = events.write(|out| {
         let mut written = Ok(());
-        let mut tell = |told: &StepReport<'_>| {
+        let mut tell = |step: &StepReport<'_>| {
             if written.is_ok() {
-                written = serde_json::to_writer(&mut *out, told).map_err(io::Error::from).and_then(|()| writeln!(out));
+                written = serde_json::to_writer(&mut *out, step).map_err(io::Error::from).and_then(|()| writeln!(out));
             }
         };
         let done = quads.insert(convert(run, at, Some(&mut tell), shows_data, watch));
-        // What went wrong with the conversion is told in its own words; no file is left of it.
+        // The conversion's own fault is reported below; this error only makes `write` discard the file.
         if done.is_err() { Err(io::Error::other("the conversion failed")) } else { written }
     });
     match quads {
         Some(Err(fault)) => Err(fault),
         Some(Ok(quads)) => written.map(|()| quads),
-        // The file could not even be begun.
+        // The file could not be created.
         None => Err(written.err().unwrap_or_else(|| Fault::new("Nothing was written"))),
     }
 }
 
-/// Converts the case of a run to its end or to a stop, with the run's edits, checks and measures the result; where its data are shown,
-/// with these, for which the faces go one after another.
+/// Converts the case of a run to its end or to a stop, with the run's edits, then checks and measures the result. Data
+/// for viewing (`shows_data`) are recorded on the way, for which the faces are converted one after another.
 pub(super) fn convert(
     run: &Run,
     at: Option<Stop>,
@@ -122,7 +123,7 @@ pub(super) fn convert(
     let converted = conversion::convert_by(case, watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
         match tell.take() {
-            // Nobody looks on the way: the faces go at the same time, to the same state.
+            // Nothing observes the steps: convert the faces in parallel, which gives the same state.
             None if at.is_none() && run.edits().is_empty() && !shows_data => converter.run_by_faces(watch)?,
             tell => {
                 if shows_data {
@@ -145,7 +146,8 @@ pub(super) fn convert(
     let data = shows_data.then_some((&converted.sizing, births.as_ref()));
     let (export, mut flaw) = exported(&converted.mesh, &converted.names, data, at.is_some())?;
     if converted.mesh.embedding().is_some() && takes_triangles(case) {
-        flaw = flaw.map(|fault| fault.remedy("Its triangles leave no better here: mesh its shape anew (--use shape)"));
+        flaw =
+            flaw.map(|fault| fault.remedy("Its triangles allow nothing better here: remesh its shape (--use shape)"));
     }
     let report = Report::of_export(case, &converted, &export, flaw.is_none())?;
     let (phase, in_force) = end;
@@ -155,35 +157,35 @@ pub(super) fn convert(
 }
 
 impl Quads {
-    /// The frame of it, for a figure.
-    pub fn frame(&self, look: &Look) -> Frame {
+    /// Its frame for a figure.
+    pub fn frame(&self, look: &Look) -> FigureFrame {
         let (mesh, parameters, phase) = (&self.mesh, &self.in_force, &self.phase);
         let seen = Seen { mesh, parameters, phase, changed: &[] };
-        Frame { picture: Picture::of_state(&seen, look), shown: self.shown, statistics: None }
+        FigureFrame { picture: Picture::of_state(&seen, look), shown: self.shown, statistics: None }
     }
 }
 
 /// A state of a run, for a figure.
-pub(super) struct Frame {
-    /// What is to be seen.
+pub(super) struct FigureFrame {
+    /// The picture.
     pub picture: Picture,
-    /// Which state it is.
+    /// The state that it shows.
     pub shown: ShownState,
-    /// What it is like, where that is plotted: its quadrilaterals, where there are any.
+    /// Its statistics, where they are plotted: of its quadrilaterals, or of its triangles where it has none.
     pub statistics: Option<Statistics>,
 }
 
 /// The states of a run at several stops.
 ///
 /// # Errors
-/// As the conversion, and where it ends before a stop.
+/// As the conversion; it ends before a stop.
 pub(super) fn frames(
     run: &Run,
     wanted: &[Wanted],
     look: &Look,
     plotted: bool,
     watch: &mut dyn Watch,
-) -> Result<Vec<Frame>, Fault> {
+) -> Result<Vec<FigureFrame>, Fault> {
     let mut frames = Vec::new();
     let mut meshes = Vec::new();
     let watches_changes = look.layers.has(Layer::Changed);
@@ -203,7 +205,7 @@ pub(super) fn frames(
             let (parameters, changed) = (converter.parameters(), changed.elements());
             let seen = Seen { mesh, parameters, phase, changed };
             let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
-            frames.push(Frame { picture: Picture::of_state(&seen, look), shown, statistics: None });
+            frames.push(FigureFrame { picture: Picture::of_state(&seen, look), shown, statistics: None });
             if plotted {
                 meshes.push(Export::of(mesh, &Names::default()));
             }
@@ -216,25 +218,25 @@ pub(super) fn frames(
     Ok(frames)
 }
 
-/// Forgets all but the last step now and then, where a history is kept for that one alone.
+/// Drops all but the last step of the journal now and then, where only that one is needed.
 fn shorten(converter: &mut Converter<'_>) {
     if converter.history_len() > HISTORY {
         converter.shorten_history(1);
     }
 }
 
-/// What a state is like: its quadrilaterals, where there are any, and else its triangles.
+/// The statistics of a state: of its quadrilaterals, or of its triangles where it has none.
 pub(super) fn statistics(export: &Export, sizing: &Sizing) -> Result<Statistics, Fault> {
     let all = export.measured();
     let of = if all.quads.is_empty() { all } else { Measured { triangles: &[], ..all } };
     Ok(Statistics::measure(of, sizing)?)
 }
 
-/// A mesh for other programs, with its data where they are to be looked at, and what a check finds wrong with it. On the way to the
-/// end there are triangles and a front.
+/// The mesh for other programs, with `data` for viewing, and what the checks of topology, exact convexity and the
+/// exported file find wrong with it. Before the end of a conversion (`on_the_way`) it has triangles and a front.
 ///
 /// # Errors
-/// Where the metric fails.
+/// The metric cannot be evaluated.
 pub(super) fn exported(
     mesh: &Mesh,
     names: &Names,

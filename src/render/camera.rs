@@ -1,33 +1,34 @@
-//! From the mesh to the screen and back: an orthographic camera in f64, so that a mesh of sizes 1 and 1e-4 can be looked at
-//! from near without jitter. Screens are measured in points, x to the right and y down, from the upper left corner of a view.
+//! From the mesh to the screen and back: an orthographic camera in f64, so that a mesh with sizes 1 and 1e-4 can be
+//! viewed closely without jitter. Screen positions are in points, x to the right and y down, from the top left corner
+//! of a view.
 
 use crate::core::run::run;
 use glam::{DMat2, DMat3, DQuat, DVec2, DVec3, Mat4};
 
-/// The least and greatest number of points for one unit of the mesh, in terms of the whole mesh fitted to the view.
+/// The range of scales, relative to that of the whole mesh fitted to the view.
 const ZOOM: [f64; 2] = [0.1, 1e7];
 
-/// Where a view looks, and how large.
+/// The position and scale of a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The point of the mesh in the middle of the view.
+    /// The point of the mesh at the centre of the view.
     pub centre: DVec3,
-    /// Points for one unit of the mesh.
+    /// Points per unit of the mesh.
     pub scale: f64,
-    /// The turn of the mesh; none for a look straight down at a plane.
+    /// The rotation of the mesh; the identity for a plane seen from above.
     pub turn: DQuat,
     /// A map of the plane before everything else: the metric lens.
     pub lens: DMat2,
-    /// Points for one unit at which the whole mesh fits.
+    /// Points per unit at which the whole mesh fits.
     fitted: f64,
-    /// A length that nothing seen is farther from the middle than, about.
+    /// An approximate bound of the distance of all visible points from the centre.
     reach: f64,
 }
 
-/// From where a mesh in space is looked at.
+/// The direction from which a mesh in space is viewed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Bearing {
-    /// From before, to the right and above.
+    /// From the front, right and above.
     #[default]
     Iso,
     /// From +x.
@@ -36,12 +37,12 @@ pub enum Bearing {
     Y,
     /// From +z.
     Z,
-    /// From so many degrees to the right of -y, and so many up, the picture turned by so many anticlockwise.
+    /// Azimuth in degrees from -y to the right, elevation, and anticlockwise roll of the picture.
     Angles([f64; 3]),
 }
 
 impl Bearing {
-    /// The same, read from `iso`, `x`, `y`, `z`, or degrees: `AZ,EL` or `AZ,EL,ROLL`.
+    /// Parses `iso`, `x`, `y`, `z`, or degrees: `AZ,EL` or `AZ,EL,ROLL`.
     pub fn parse(text: &str) -> Option<Bearing> {
         Some(match text.trim().to_lowercase().as_str() {
             "iso" => Bearing::Iso,
@@ -72,18 +73,18 @@ impl Bearing {
         }
     }
 
-    /// The turn of the mesh that shows it from there, with z up as far as that can be.
+    /// The rotation of the mesh that shows it from this direction, with z upwards as far as possible.
     pub fn turn(self) -> DQuat {
         let [azimuth, elevation, roll] = self.angles().map(f64::to_radians);
         let tilt = elevation - 0.5 * std::f64::consts::PI;
         DQuat::from_rotation_z(roll) * DQuat::from_rotation_x(tilt) * DQuat::from_rotation_z(-azimuth)
     }
 
-    /// The side from which a turn shows the mesh, to a thousandth of a degree.
+    /// The bearing of a rotation, to a thousandth of a degree.
     pub fn of_turn(turn: DQuat) -> Bearing {
         let towards = turn.inverse() * DVec3::Z;
         let elevation = libm::asin(towards.z.clamp(-1.0, 1.0));
-        // From straight above or below only azimuth and roll together are known.
+        // Straight from above or below, only the sum of azimuth and roll is defined.
         let level = libm::hypot(towards.x, towards.y) > 1e-6;
         let azimuth = if level { libm::atan2(towards.x, -towards.y) } else { 0.0 };
         let upright = Bearing::Angles([azimuth, elevation, 0.0].map(f64::to_degrees)).turn();
@@ -120,7 +121,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// A camera that sees a box of the plane in a view of `size` points with `margin` points left free on all sides.
+    /// A camera that fits a box of the plane into a view of `size` points with a margin of `margin` points.
     pub fn fit(bounds: [DVec2; 2], size: DVec2, margin: f64) -> Camera {
         let extent = (bounds[1] - bounds[0]).max(DVec2::splat(f64::MIN_POSITIVE));
         let room = (size - 2.0 * margin).max(DVec2::ONE);
@@ -130,7 +131,7 @@ impl Camera {
         Camera { centre, scale, fitted: scale, reach: size.max_element() / scale, ..Camera::default() }
     }
 
-    /// A camera that sees all places from a side, in a view of `size` points with `margin` points left free around them.
+    /// A camera with a rotation that fits all positions into a view of `size` points with a margin of `margin` points.
     pub fn fit_in_space(places: impl Iterator<Item = DVec3>, turn: DQuat, size: DVec2, margin: f64) -> Camera {
         let empty = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         let [low, high] = places.map(|p| turn * p).fold(empty, |[low, high], p| [low.min(p), high.max(p)]);
@@ -144,35 +145,35 @@ impl Camera {
         Camera { centre: turn.inverse() * middle, turn, reach, ..flat }
     }
 
-    /// This camera, as one that has come nearer from where `all` sees everything.
+    /// This camera, with the fit of `all`, which sees everything.
     #[must_use]
     pub fn come_from(self, all: &Camera) -> Camera {
         Camera { reach: all.reach, fitted: all.fitted, ..self }
     }
 
-    /// A camera on `centre` in which lengths of the symmetric root `lens` are `scale` points a unit.
+    /// A camera on `centre` with the symmetric root `lens` as metric lens and `scale` points per unit of metric length.
     pub fn through_lens(centre: DVec2, lens: DMat2, scale: f64) -> Camera {
         Camera { centre: centre.extend(0.0), scale, lens, fitted: scale, turn: DQuat::IDENTITY, reach: 1.0 }
     }
 
-    /// From differences in the mesh to points on the screen: x to the right, y up, z towards the eye.
+    /// The map from differences in the mesh to points on the screen: x to the right, y up, z towards the eye.
     fn linear(&self) -> DMat3 {
         DMat3::from_quat(self.turn) * DMat3::from_mat2(self.lens) * self.scale
     }
 
-    /// Where a point of the mesh lies in a view of `size` points.
+    /// The position of a point of the mesh in a view of `size` points.
     pub fn project(&self, p: DVec3, size: DVec2) -> DVec2 {
         let q = self.linear() * (p - self.centre);
         DVec2::new(0.5 * size.x + q.x, 0.5 * size.y - q.y)
     }
 
-    /// The same with how near it is to the eye, in points.
+    /// The same with its nearness to the eye, in points.
     pub fn seen(&self, p: DVec3, size: DVec2) -> DVec3 {
         let q = self.linear() * (p - self.centre);
         DVec3::new(0.5 * size.x + q.x, 0.5 * size.y - q.y, q.z)
     }
 
-    /// The place in space that is seen there, so near to the eye: what `seen` turns round.
+    /// The position in space at a screen position and nearness: the inverse of `seen`.
     pub fn place(&self, seen: DVec3, size: DVec2) -> DVec3 {
         let q = DVec3::new(seen.x - 0.5 * size.x, 0.5 * size.y - seen.y, seen.z);
         self.centre + self.linear().inverse() * q
@@ -183,76 +184,77 @@ impl Camera {
         self.turn.inverse() * DVec3::Z
     }
 
-    /// The point of the plane z = 0 under a point of the screen; `None` where the plane is seen from its edge.
+    /// The point of the plane z = 0 at a screen position; `None` where the plane is seen edge-on.
     pub fn unproject(&self, at: DVec2, size: DVec2) -> Option<DVec2> {
         let linear = self.linear();
         let plane = DMat2::from_cols(linear.x_axis.truncate(), linear.y_axis.truncate());
-        // The plane may lie off the centre of a turned camera.
+        // The centre of a rotated camera may lie off the plane.
         let lift = linear * DVec3::new(0.0, 0.0, -self.centre.z);
         let q = DVec2::new(at.x - 0.5 * size.x, 0.5 * size.y - at.y) - lift.truncate();
         let area = plane.determinant();
         (area.abs() > 1e-12 * self.scale * self.scale).then(|| plane.inverse() * q + self.centre.truncate())
     }
 
-    /// Points for one unit, in the middle of what directions see.
+    /// Points per unit; with a metric lens the geometric mean over its axes.
     pub fn points_per_unit(&self) -> f64 {
         self.scale * self.lens.determinant().abs().sqrt()
     }
 
-    /// Moves what is seen by `by` points.
+    /// Pans the view by `by` points.
     pub fn pan(&mut self, by: DVec2) {
         let q = DVec3::new(by.x, -by.y, 0.0);
         self.centre -= self.linear().inverse() * q;
     }
 
-    /// Makes everything larger by `factor`, around the point `at` of a view of `size` points.
+    /// Zooms by `factor` about the position `at` in a view of `size` points.
     pub fn zoom(&mut self, factor: f64, at: DVec2, size: DVec2) {
         let scale = (self.scale * factor).clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
         let factor = scale / self.scale;
-        // `at` stays where it is: the centre moves towards it.
+        // `at` stays fixed: the centre moves towards it.
         let away = at - 0.5 * size;
         self.pan(away * (1.0 / factor - 1.0));
         self.scale = scale;
     }
 
-    /// Turns the mesh: by `by.x` points about the vertical of the screen and by `by.y` about its horizontal.
+    /// Rotates the mesh: by `by.x` points about the vertical axis of the screen and by `by.y` about its horizontal
+    /// axis.
     pub fn orbit(&mut self, by: DVec2) {
         const RADIANS_PER_POINT: f64 = 0.006;
         let turn = DQuat::from_rotation_y(by.x * RADIANS_PER_POINT) * DQuat::from_rotation_x(by.y * RADIANS_PER_POINT);
         self.turn = (turn * self.turn).normalize();
     }
 
-    /// Turns the mesh about a place of it, which stays where it is on the screen.
+    /// Rotates the mesh about a pivot, which stays fixed on the screen.
     pub fn orbit_about(&mut self, by: DVec2, pivot: DVec3) {
         let away = self.turn * (self.centre - pivot);
         self.orbit(by);
         self.centre = pivot + self.turn.inverse() * away;
     }
 
-    /// Shows a place in the middle, as large as before.
+    /// Centres a position, at the same scale.
     pub fn centre_on(&mut self, p: DVec3) {
         self.centre = p;
     }
 
-    /// Shows a place of space in the middle, at `scale` points a unit.
+    /// Centres a position in space, at `scale` points per unit.
     pub fn look_at_place(&mut self, p: DVec3, scale: f64) {
         self.centre = p;
         self.scale = scale.clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
     }
 
-    /// Turns the mesh the shortest way so that a direction of it comes towards the eye.
+    /// Rotates the mesh by the smallest angle that turns a direction of it towards the eye.
     pub fn face(&mut self, direction: DVec3) {
         let now = self.turn * direction.normalize_or(DVec3::Z);
         self.turn = (DQuat::from_rotation_arc(now, DVec3::Z) * self.turn).normalize();
     }
 
-    /// Shows `p` in the middle, at `scale` points a unit.
+    /// Centres `p`, at `scale` points per unit.
     pub fn look_at(&mut self, p: DVec2, scale: f64) {
         self.centre = p.extend(0.0);
         self.scale = scale.clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
     }
 
-    /// What a run keeps of it, in a view of `size` points.
+    /// The view that a run stores, from a view of `size` points.
     pub fn kept(&self, size: DVec2) -> run::Camera {
         run::Camera {
             target: self.centre.to_array(),
@@ -261,7 +263,7 @@ impl Camera {
         }
     }
 
-    /// Looks as a run has kept it, in a view of `size` points.
+    /// Restores a stored view in a view of `size` points.
     pub fn take_up(&mut self, kept: &run::Camera, size: DVec2) {
         self.centre = DVec3::from_array(kept.target);
         self.turn = DQuat::from_array(kept.turn);
@@ -269,11 +271,11 @@ impl Camera {
         self.scale = (size.y.max(1.0) / kept.height).clamp(ZOOM[0] * self.fitted, ZOOM[1] * self.fitted);
     }
 
-    /// The map from positions relative to `anchor` to clip space, for a view of `size` points. Differences of large numbers
-    /// are taken here, in f64.
+    /// The map from positions relative to `anchor` to clip space, for a view of `size` points. Differences of large
+    /// numbers are taken here, in f64.
     pub fn clip(&self, anchor: DVec3, size: DVec2) -> Mat4 {
         let to_clip = DVec3::new(2.0 / size.x, 2.0 / size.y, 0.0);
-        // Depth by a soft bound: everything between the ends of the world is in front of the far plane.
+        // Depth with a soft bound: everything stays in front of the far plane.
         let linear = DMat3::from_diagonal(to_clip.with_z(-self.depth_of_point())) * self.linear();
         let offset = linear * (anchor - self.centre) + DVec3::new(0.0, 0.0, 0.5);
         let mut clip = glam::DMat4::from_mat3(linear);
@@ -281,13 +283,13 @@ impl Camera {
         clip.as_mat4()
     }
 
-    /// The depth in clip space of one point on the screen.
+    /// The depth in clip space of one screen point.
     pub fn depth_of_point(&self) -> f64 {
         0.25 / (self.scale * self.reach)
     }
 
-    /// Whether positions relative to `anchor` are good enough for a view of `size` points: a step of f32 must stay well
-    /// under a point.
+    /// Whether positions relative to `anchor` are precise enough for a view of `size` points: a step of f32 must stay
+    /// well below a point.
     pub fn is_served_by(&self, anchor: DVec3, size: DVec2) -> bool {
         let away = (self.linear() * (anchor - self.centre)).length();
         away <= 50.0 * size.max_element()
@@ -378,7 +380,7 @@ mod tests {
         camera.orbit_about(DVec2::new(80.0, -50.0), places[7]);
         assert!(camera.project(places[7], SIZE).distance(before) < 1e-9);
         assert!(camera.project(places[8], SIZE).distance(before) > 1.0);
-        // Nearer to the eye is less deep.
+        // Nearer to the eye means a smaller depth.
         let clip = |p: DVec3| (camera.clip(DVec3::ZERO, SIZE) * p.as_vec3().extend(1.0)).z;
         assert!(clip(places[3] + 0.5 * camera.towards()) < clip(places[3]));
     }

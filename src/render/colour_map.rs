@@ -1,4 +1,4 @@
-//! Even colour maps that readers of all kinds of colour vision can use: viridis, cividis, batlow.
+//! Perceptually uniform colour maps for all kinds of colour vision: viridis, cividis, batlow.
 
 use super::palette::Rgba;
 
@@ -13,13 +13,13 @@ pub enum ColourMap {
     Batlow,
 }
 
-/// Nine colours at equal distances of each map; between them the maps are straight to within what an eye sees.
+/// Nine equidistant colours of each map; between them, linear interpolation is visually exact.
 const VIRIDIS: [u32; 9] = [0x440154, 0x472D7B, 0x3B528B, 0x2C728E, 0x21918C, 0x28AE80, 0x5EC962, 0xADDC30, 0xFDE725];
 const CIVIDIS: [u32; 9] = [0x00224E, 0x1A386F, 0x434E6C, 0x61656F, 0x7D7C78, 0x9B9476, 0xBCAF6F, 0xDECB5F, 0xFEE838];
 const BATLOW: [u32; 9] = [0x011959, 0x0F3C5F, 0x1C5460, 0x3C6D56, 0x687B3E, 0x9D892B, 0xD29343, 0xF8A17B, 0xFACCFA];
 
 impl ColourMap {
-    /// The colour at `t` in [0, 1]; beyond it that of the end, and that of the beginning for what is no number.
+    /// The colour at `t`, which is clamped to [0, 1]; NaN counts as 0.
     pub fn at(self, t: f32) -> Rgba {
         let stops = match self {
             ColourMap::Viridis => &VIRIDIS,

@@ -1,4 +1,4 @@
-//! How a figure looks: ink, ground, what of a state is drawn, and which part of it.
+//! The look of a figure: ink, background, layers, and the part drawn.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -9,29 +9,29 @@ use super::picture::Role;
 /// The inks of figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ink {
-    /// For pages that are printed in black.
+    /// For print in black.
     Grey,
-    /// For pages in colour.
+    /// For print in colour.
     #[default]
     Colour,
 }
 
-/// What can be drawn of a state.
+/// A layer of the drawing of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
     /// Live triangles.
     Live,
     /// Dead quadrilaterals.
     Dead,
-    /// What the last step changed.
+    /// Elements that the last step changed.
     Changed,
-    /// Boundary, cracks, lines inside.
+    /// Boundary, cracks, interior lines.
     Boundary,
-    /// The merging front by the classes of table 1.
+    /// The merging front, by the classes of table 1.
     Front,
-    /// A wedge at every end of a front segment that is a side already: it tells the classes apart without colours.
+    /// A wedge at every end of a front segment that already has a side: it distinguishes the classes without colours.
     Wedges,
-    /// Base, sides and top of the quadrilateral in the making.
+    /// Base, sides and top of the current quadrilateral.
     Decision,
     /// The letters A, B, C and D.
     Letters,
@@ -41,7 +41,7 @@ pub enum Layer {
     H,
     /// Frontal angles in degrees.
     Angles,
-    /// Metric ellipses, at a quarter of unit length.
+    /// Metric ellipses, scaled to a quarter of unit length.
     Ellipses,
     /// A scale bar.
     Scale,
@@ -84,7 +84,7 @@ impl Layer {
         }
     }
 
-    /// The layer that a role belongs to.
+    /// The layer of a role.
     pub fn of(role: Role) -> Layer {
         match role {
             Role::LiveTriangle | Role::LiveEdge => Layer::Live,
@@ -102,8 +102,8 @@ impl Layer {
 pub struct Layers(u32);
 
 impl Layers {
-    /// What figures show where nothing else is asked for; in grey, wedges tell the classes apart, in a strip letters and the
-    /// like would be too many, and one scale bar serves all.
+    /// The default layers of figures. In grey, wedges distinguish the classes; a strip has no room for letters and
+    /// similar marks, and one scale bar serves all its frames.
     pub fn usual(ink: Ink, strip: bool) -> Layers {
         let mut layers = Layers::default();
         for layer in [Layer::Live, Layer::Dead, Layer::Boundary, Layer::Front, Layer::Decision] {
@@ -120,31 +120,31 @@ impl Layers {
         self.0 & (1 << layer as u32) != 0
     }
 
-    /// Switches a layer.
+    /// Switches a layer on or off.
     pub fn set(&mut self, layer: Layer, on: bool) {
         let bit = 1 << layer as u32;
         self.0 = if on { self.0 | bit } else { self.0 & !bit };
     }
 }
 
-/// How lines that faces cover are drawn.
+/// How hidden lines are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HiddenLines {
-    /// They are not.
+    /// Not drawn.
     #[default]
     Off,
-    /// Faintly.
+    /// Drawn faintly.
     Faint,
-    /// Nearly as those that are seen.
+    /// Drawn almost like visible lines.
     Shown,
 }
 
 impl HiddenLines {
-    /// All of them.
+    /// All styles.
     pub const ALL: [HiddenLines; 3] = [HiddenLines::Off, HiddenLines::Faint, HiddenLines::Shown];
 
-    /// The next one.
+    /// The next style, cyclically.
     pub fn next(self) -> HiddenLines {
         match self {
             HiddenLines::Off => HiddenLines::Faint,
@@ -162,7 +162,7 @@ impl HiddenLines {
         }
     }
 
-    /// How much is seen of such lines.
+    /// The opacity of hidden lines.
     pub fn share(self) -> f32 {
         match self {
             HiddenLines::Off => 0.0,
@@ -174,26 +174,26 @@ impl HiddenLines {
 
 /// A part of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
-    /// Its middle.
+pub struct FigurePart {
+    /// Its centre.
     pub centre: DVec2,
-    /// Its height, in units of the case; its width follows from the shape of the page.
+    /// Its height in units of the case; its width follows from the aspect ratio of the page.
     pub height: f64,
 }
 
-/// How a figure looks.
+/// The look of a figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Look {
     /// Its ink.
     pub ink: Ink,
-    /// Whether its ground is left out.
+    /// Whether the background is left out.
     pub transparent: bool,
-    /// What is drawn.
+    /// The layers drawn.
     pub layers: Layers,
-    /// The part that is drawn; all where there is none.
-    pub part: Option<Part>,
-    /// From where a mesh in space is seen.
+    /// The part drawn; `None`: everything.
+    pub part: Option<FigurePart>,
+    /// The direction of view on a mesh in space.
     pub from: Bearing,
-    /// How its covered lines are drawn.
+    /// How hidden lines are drawn.
     pub hidden: HiddenLines,
 }

@@ -12,3 +12,5 @@ pub mod pick;
 pub mod vector;
 #[cfg(feature = "window")]
 pub mod gpu;
+#[cfg(test)]
+mod fixtures;

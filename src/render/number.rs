@@ -1,7 +1,7 @@
-//! Numbers as people read them, in figures and in the window: integers grouped by thin spaces, a true minus, an en dash for what
-//! is not defined.
+//! Numbers for figures and the window: integers grouped by thin spaces, a true minus sign, an en dash for undefined
+//! values. is not defined.
 
-/// What stands for a number that is not defined.
+/// The text of an undefined number.
 pub const UNDEFINED: &str = "–";
 const THIN_SPACE: char = '\u{2009}';
 const MINUS: char = '\u{2212}';
@@ -19,7 +19,7 @@ pub fn grouped(n: u64) -> String {
     text
 }
 
-/// A number with so many decimals.
+/// A number with this many decimals.
 pub fn fixed(x: f64, decimals: usize) -> String {
     if !x.is_finite() {
         return UNDEFINED.to_owned();
@@ -29,12 +29,13 @@ pub fn fixed(x: f64, decimals: usize) -> String {
     if zero { text.replace('-', "") } else { text.replace('-', &MINUS.to_string()) }
 }
 
-/// An angle in radians, told in degrees without its sign.
+/// An angle given in radians, written in degrees without the degree sign.
 pub fn degrees(radians: f64) -> String {
     fixed(radians.to_degrees(), 1)
 }
 
-/// A size or coordinate: three significant digits at least, four decimals where that is enough; powers only where they must be.
+/// A size or coordinate: at least three significant digits, four decimals where that is enough, powers of ten only
+/// where necessary.
 pub fn size(x: f64) -> String {
     if !x.is_finite() || x == 0.0 {
         return if x == 0.0 { "0".to_owned() } else { UNDEFINED.to_owned() };
@@ -57,7 +58,7 @@ pub fn size(x: f64) -> String {
     fixed(x, decimals)
 }
 
-/// Decimals with which the smallest of some sizes has three digits: the same down a column.
+/// The number of decimals with which the smallest of some sizes has three digits, for a whole column.
 pub fn decimals(values: impl Iterator<Item = f64>) -> usize {
     let least = values.map(f64::abs).filter(|v| *v > 0.0 && v.is_finite()).fold(f64::INFINITY, f64::min);
     if least.is_finite() { (2 - libm::floor(libm::log10(least)) as i32).clamp(0, 6) as usize } else { 4 }

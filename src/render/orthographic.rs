@@ -1,6 +1,6 @@
-//! Meshes in space as pictures: seen from afar, from a side (slightly from above where none is asked for). Areas (they are
-//! of one colour each) are drawn that are not wholly hidden, and of every line the parts that no nearer element covers; the others are
-//! left out, or drawn more faintly.
+//! Orthographic pictures of meshes in space, by default slightly from above. Areas (each of one colour) are drawn
+//! unless entirely hidden. Of every line the visible parts are drawn; the hidden parts are left out or drawn more
+//! faintly.
 
 use glam::{DVec2, DVec3};
 
@@ -9,9 +9,9 @@ use super::look::HiddenLines;
 use super::picture::{Line, Picture};
 use crate::core::soup::mesh_file::MeshFile;
 
-/// Parts of a line that are judged each for itself.
+/// The number of parts of a line that are tested for visibility.
 const PARTS: usize = 12;
-/// So far from its corners towards its middle an area is asked whether it is hidden.
+/// The test points of an area lie at this share of the way from its corners to its centre.
 const WITHIN: f64 = 0.05;
 
 /// The direction of a view.
@@ -35,29 +35,29 @@ impl View {
         }
     }
 
-    /// Where a point comes to lie in the picture.
+    /// The position of a point in the picture.
     pub fn place(&self, p: DVec3) -> DVec2 {
         DVec2::new(p.dot(self.right), p.dot(self.up))
     }
 
-    /// How near it is to who looks.
+    /// Its nearness to the viewer.
     fn depth(&self, p: DVec3) -> f64 {
         p.dot(self.towards)
     }
 }
 
-/// Whether a mesh lies in a plane z = constant, and is drawn as it is.
+/// Whether a mesh lies in a plane z = constant and needs no projection.
 pub fn is_flat(mesh: &MeshFile) -> bool {
     mesh.points.windows(2).all(|w| w[0].z == w[1].z)
 }
 
-/// The mesh with its points where they come to lie in the picture.
+/// The mesh with its points projected to the picture.
 pub fn flattened(mesh: &MeshFile, view: &View) -> MeshFile {
     let points = mesh.points.iter().map(|p| view.place(*p).extend(0.0)).collect();
     MeshFile { points, ..mesh.clone() }
 }
 
-/// Turns areas that are seen from behind, so that all run anticlockwise and none takes away from another that it covers.
+/// Reverses areas seen from behind, so that all run anticlockwise and overlapping areas of one path do not cancel.
 pub fn turn_over(picture: &mut Picture) {
     for area in &mut picture.areas {
         let [a, b, c, d] = area.corners;
@@ -67,7 +67,7 @@ pub fn turn_over(picture: &mut Picture) {
     }
 }
 
-/// The elements of a mesh as triangles in the picture, by the cells of a grid: what hides what.
+/// The elements of a mesh as triangles in the picture, sorted into the cells of a grid, for visibility tests.
 pub struct Cover {
     view: View,
     triangles: Vec<[DVec3; 3]>,
@@ -76,12 +76,12 @@ pub struct Cover {
     cell: f64,
     columns: usize,
     rows: usize,
-    /// Nearer than this is in the same place.
+    /// Differences in depth below this do not count.
     thickness: f64,
 }
 
 impl Cover {
-    /// What the elements of a mesh hide, seen from a side.
+    /// The elements of a mesh that hide others in a view.
     pub fn of(mesh: &MeshFile, view: View) -> Cover {
         let at = |n: u32| {
             let p = mesh.points[n as usize];
@@ -119,25 +119,25 @@ impl Cover {
         cover
     }
 
-    /// From where it is seen.
+    /// The direction of view.
     pub fn view(&self) -> &View {
         &self.view
     }
 
-    /// Leaves out the areas that are wholly hidden, where there is one of each triangle and quadrilateral of the mesh in turn.
+    /// Removes areas that are entirely hidden. The picture must have one area for each triangle, then for each
+    /// quadrilateral.
     pub fn hide_areas(&self, picture: &mut Picture, mesh: &MeshFile) {
         let elements = mesh.triangles.iter().map(|t| &t[..]).chain(mesh.quads.iter().map(|q| &q[..]));
         let mut shows = elements.map(|nodes| {
             let places = || nodes.iter().map(|&n| mesh.points[n as usize]);
             let middle = places().sum::<DVec3>() / nodes.len() as f64;
-            // A corner may be hidden by its neighbours: what lies a little within is asked for.
+            // Neighbours may hide a corner itself: test points a little inside.
             !places().map(|p| p.lerp(middle, WITHIN)).chain([middle]).all(|p| self.hides(p))
         });
         picture.areas.retain(|_| shows.next().unwrap_or(true));
     }
 
-    /// Leaves out the parts of lines that elements hide, or marks them as hidden; `ends` gives the points in space between which
-    /// each line runs.
+    /// Removes the hidden parts of lines, or marks them as hidden. `ends` gives the end points of each line in space.
     pub fn hide_lines(&self, picture: &mut Picture, ends: &[[DVec3; 2]], hidden: HiddenLines) {
         let mut lines = Vec::with_capacity(picture.lines.len());
         for (line, [a, b]) in picture.lines.iter().zip(ends) {
@@ -161,7 +161,7 @@ impl Cover {
         ((q.x as usize).min(self.columns - 1), (q.y as usize).min(self.rows - 1))
     }
 
-    /// Whether an element lies before the point.
+    /// Whether an element lies in front of the point.
     fn hides(&self, p: DVec3) -> bool {
         let (place, depth) = (self.view.place(p), self.view.depth(p));
         let (column, row) = self.cell_of(place);

@@ -1,5 +1,5 @@
-//! Colours and strokes: the window's palette, dark and light, and that of figures, which are made for print and independent
-//! of any window.
+//! Colours and strokes: the palettes of the window, dark and light, and that of figures, which is made for print and
+//! independent of any window.
 
 use super::look::Ink;
 use super::picture::Role;
@@ -26,7 +26,7 @@ impl Rgba {
         Rgba([r, g, b, (f32::from(a) * factor.clamp(0.0, 1.0)).round() as u8])
     }
 
-    /// This colour with so much (0 to 1) of another one laid over it.
+    /// This colour blended with a share (0 to 1) of another one.
     #[must_use]
     pub fn mixed(self, other: Rgba, share: f32) -> Rgba {
         let share = share.clamp(0.0, 1.0);
@@ -40,12 +40,13 @@ impl Rgba {
     }
 }
 
-/// Every colour of the window. Amber means now, neutral means you, cool means the front, quiet means the mesh.
+/// All colours of the window: amber for the current step, neutral for the selection, cool for the front, quiet for the
+/// mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
-    /// Whether it is for dark rooms.
+    /// Whether it is the dark theme.
     pub dark: bool,
-    /// Ground of the views.
+    /// Background of the views.
     pub ground: Rgba,
     /// Fill of live triangles.
     pub live: Rgba,
@@ -55,19 +56,19 @@ pub struct Palette {
     pub dead: Rgba,
     /// Edges of dead quadrilaterals.
     pub dead_edge: Rgba,
-    /// Fill of what the last operation changed.
+    /// Fill of elements that the last operation changed.
     pub changed: Rgba,
-    /// Edges of it.
+    /// Edges of elements that the last operation changed.
     pub changed_edge: Rgba,
     /// Boundary of the domain.
     pub boundary: Rgba,
-    /// What a person has selected.
+    /// The selection.
     pub selection: Rgba,
-    /// What the pointer is over.
+    /// What is under the pointer.
     pub hover: Rgba,
     /// Labels in the views.
     pub label: Rgba,
-    /// What labels stand on.
+    /// Background of labels.
     pub label_plate: Rgba,
     /// Front segments by their class of table 1, 1 to 4.
     pub front: [Rgba; 4],
@@ -75,13 +76,13 @@ pub struct Palette {
     pub base: Rgba,
     /// Side edges, and the top edge (dashed).
     pub side: Rgba,
-    /// Candidates that were refused.
+    /// Rejected candidates.
     pub refused: Rgba,
     /// Invariants hold.
     pub holds: Rgba,
     /// An invariant is broken; errors.
     pub broken: Rgba,
-    /// Ground of panels.
+    /// Background of panels.
     pub panel: Rgba,
     /// Buttons, chips, hovered rows.
     pub button: Rgba,
@@ -95,21 +96,21 @@ pub struct Palette {
     pub strong: Rgba,
     /// Units, headings.
     pub weak: Rgba,
-    /// Hints, what is disabled.
+    /// Hints, disabled items.
     pub hint: Rgba,
-    /// Text in the accent.
+    /// Text in the accent colour.
     pub accent: Rgba,
-    /// The row that the algorithm is at.
+    /// The row of the current step.
     pub accent_row: Rgba,
     /// Every other row.
     pub stripe: Rgba,
     /// Metric ellipses.
     pub ellipse: Rgba,
-    /// Fills of charts that lie beside each other: quiet, as everything of the mesh.
+    /// Fills of adjacent charts, in quiet colours like the mesh.
     pub charts: [Rgba; 6],
 }
 
-/// For dark rooms.
+/// The dark theme.
 pub const DARK: Palette = Palette {
     dark: true,
     ground: Rgba::hex(0x0C0F12),
@@ -152,7 +153,7 @@ pub const DARK: Palette = Palette {
     ],
 };
 
-/// For light rooms.
+/// The light theme.
 pub const LIGHT: Palette = Palette {
     dark: false,
     ground: Rgba::hex(0xF4F4F2),
@@ -195,26 +196,26 @@ pub const LIGHT: Palette = Palette {
     ],
 };
 
-/// How a role looks in a figure: colours as `#RRGGBB`, widths in points.
+/// The style of a role in a figure: colours as `#RRGGBB`, widths in points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
-    /// Colour of areas; `None` leaves the ground.
+    /// Colour of areas; `None` shows the background.
     pub fill: Option<&'static str>,
     /// Colour of lines.
     pub stroke: Option<&'static str>,
-    /// Width of lines in points, whatever the scale of the mesh.
+    /// Width of lines in points, independent of the scale of the mesh.
     pub width: f64,
-    /// Points drawn and points left out, by turns.
+    /// The dash pattern: points drawn and points left out.
     pub dash: Option<[f64; 2]>,
 }
 
-/// The width in points of edges that are closer to each other than [`CROWDED`].
+/// The width in points of edges closer to each other than [`CROWDED`].
 pub const THIN: f64 = 0.12;
 
-/// Edges of elements whose height is under this many points are drawn thin, so that they do not run together.
+/// Edges of elements with a height below this many points are drawn thin, so that they do not merge.
 pub const CROWDED: f64 = 0.4;
 
-/// What an area is filled with that the last step changed, where there are no colours: the hatching that the writer defines.
+/// The fill of areas that the last step changed, without colours: the hatching that the writer defines.
 pub const HATCH: &str = "url(#hatch)";
 
 /// The ink of letters and wedges in figures.
@@ -300,7 +301,7 @@ mod tests {
         }
     }
 
-    /// How far apart two colours are seen, in OKLab times 100.
+    /// The perceived distance of two colours, in OKLab times 100.
     fn apart(a: Rgba, b: Rgba) -> f64 {
         let lab = |Rgba([r, g, b, _]): Rgba| {
             let linear = |c: u8| {

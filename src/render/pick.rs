@@ -1,4 +1,4 @@
-//! What lies under the pointer: a node, an edge or front segment, or an element.
+//! What is under the pointer: a node, an edge or front segment, or an element.
 
 mod space;
 
@@ -10,10 +10,10 @@ use super::scene::Outlined;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
-/// How near the pointer must be, in points: to a node, to an edge, to a front segment.
+/// How close the pointer must be, in points: to a node, to an edge, to a front segment.
 const NEAR: [f64; 3] = [7.0, 4.0, 7.0];
 
-/// The element that contains `p`, where there is one. `hint` is looked at first, with what is around it.
+/// The element that contains `p`, if any. The search starts at `hint` and its surroundings.
 pub fn element_at(mesh: &Mesh, p: DVec2, hint: Option<ElementId>) -> Option<ElementId> {
     let contains = |e: ElementId| {
         mesh.half_edges(e).all(|h| {
@@ -30,8 +30,8 @@ pub fn element_at(mesh: &Mesh, p: DVec2, hint: Option<ElementId>) -> Option<Elem
     near.next().or_else(|| mesh.elements().find(|e| contains(*e)))
 }
 
-/// What lies under a place of the screen. `project` maps the plane to the screen, `p` is the place in the plane, `at` on the
-/// screen. Front segments go before other edges, and small things before large ones.
+/// What is at a position: `p` in the plane, `at` on the screen; `project` maps the plane to the screen. Front segments
+/// precede other edges, and small items precede large ones.
 pub fn pick(
     mesh: &Mesh,
     p: DVec2,
@@ -40,10 +40,10 @@ pub fn pick(
     hint: Option<ElementId>,
 ) -> Option<Outlined> {
     let inside = element_at(mesh, p, hint);
-    // Outside of the mesh a thick front segment on the boundary can still be met.
+    // Outside the mesh, a thick front segment on the boundary can still be hit.
     let sides: Vec<HalfEdgeId> = match inside {
         Some(e) => {
-            // The element's own sides, and those that leave its corners: a short one beside it may be nearer.
+            // The sides of the element, and those that leave its corners: a short one beside it may be closer.
             let corners: Vec<NodeId> = mesh.corners(e).collect();
             let spokes = corners.iter().flat_map(|n| mesh.fan(*n));
             spokes.flat_map(|h| [h, mesh.previous(h)]).chain(mesh.half_edges(e)).collect()
@@ -53,8 +53,8 @@ pub fn pick(
     nearest(mesh, &sides, at, &|n| project(mesh.uv(n)), &|_, _| true).or(inside.map(Outlined::Element))
 }
 
-/// The node or edge among sides that is near enough to be meant. `place` has nodes on the screen; `is_seen`: whether the place
-/// at a share of the way between two nodes is.
+/// The node or edge, among these sides, that is close enough to be picked. `place` gives the screen position of a node;
+/// `is_seen` says whether the point at a parameter between two nodes is visible.
 fn nearest(
     mesh: &Mesh,
     sides: &[HalfEdgeId],
@@ -74,13 +74,13 @@ fn nearest(
         let [a, b] = ends.map(place);
         let share = share(at, a, b);
         let away = at.distance(a.lerp(b, share));
-        // A segment is named in its own direction, from A to B.
+        // Name a segment in its own direction, from A to B.
         let directed = on_front.map_or(ends, |f| mesh.ends(f));
         (away <= reach && is_seen(ends, share)).then_some((on_front.is_none(), away, a.distance(b), directed))
     });
     let nearest_edge = edges.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.3.cmp(&b.3)));
     match (nearest_node, nearest_edge) {
-        // Of an edge that is short on the screen the nodes would leave nothing to be met.
+        // On an edge that is short on the screen, the nodes would leave nothing to hit.
         (Some((_, node)), edge) if edge.is_none_or(|e| e.2 > 3.0 * NEAR[0]) => Some(Outlined::Node(node)),
         (_, Some((_, _, _, ends))) => Some(Outlined::Edge(ends)),
         (Some((_, node)), _) => Some(Outlined::Node(node)),
@@ -88,12 +88,12 @@ fn nearest(
     }
 }
 
-/// The half-edge of an edge that is a front segment, if one is.
+/// The half-edge of an edge that is a front segment, if any.
 fn front_side(mesh: &Mesh, h: HalfEdgeId) -> Option<HalfEdgeId> {
     if mesh.is_front(h) { Some(h) } else { mesh.twin(h).filter(|t| mesh.is_front(*t)) }
 }
 
-/// How far along from `a` to `b` is nearest to `p`, 0 to 1.
+/// The parameter (0 to 1) of the point from `a` to `b` closest to `p`.
 fn share(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
     if along == DVec2::ZERO { 0.0 } else { ((p - a).dot(along) / along.length_squared()).clamp(0.0, 1.0) }
@@ -102,22 +102,7 @@ fn share(p: DVec2, a: DVec2, b: DVec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::kernel::tensor::Metric2;
-    use crate::core::mesh::ids::PointId;
-    use crate::core::mesh::triangle_set::TriangleSet;
-
-    fn square() -> Mesh {
-        let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
-        let point = (0..4).map(PointId).collect();
-        let set = TriangleSet {
-            uv,
-            point,
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-            region: vec![0; 2],
-            ..TriangleSet::default()
-        };
-        Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4])
-    }
+    use crate::render::fixtures::square;
 
     #[test]
     fn nodes_go_before_edges_and_edges_before_elements() {

@@ -1,5 +1,5 @@
-//! What is to be seen: areas and lines with a role, in the coordinates of the mesh. Deliberately absent: colours, widths,
-//! pixels (`palette` and the writers know them).
+//! The content of a drawing: areas and lines with a role, in coordinates of the mesh. Deliberately absent: colours,
+//! widths, pixels (which `palette` and the writers know).
 
 use glam::{DVec2, DVec3};
 
@@ -21,30 +21,30 @@ use crate::core::soup::mesh_file::MeshFile;
 /// Metric ellipses are drawn at this share of unit length.
 const ELLIPSE: f64 = 0.25;
 
-/// What an area or a line is; writers draw in the order of [`Role::ALL`].
+/// The role of an area or a line; writers draw in the order of [`Role::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// A triangle that is still unconverted.
+    /// A live triangle.
     LiveTriangle,
     /// A quadrilateral of the result.
     DeadQuad,
-    /// An element that the last step changed, over what it is.
+    /// An element that the last step changed, drawn over its own area.
     Changed,
     /// An edge between live triangles.
     LiveEdge,
     /// An edge of a quadrilateral.
     DeadEdge,
-    /// An edge of what the last step changed.
+    /// An edge of an element that the last step changed.
     ChangedEdge,
-    /// An edge of the boundary, a crack or a line inside.
+    /// An edge of the boundary, of a crack or of an interior line.
     Boundary,
     /// A segment of the merging front, with its class of table 1 (1 to 4).
     Front(u8),
-    /// A side edge of the quadrilateral at hand.
+    /// A side edge of the current quadrilateral.
     Side,
-    /// Its top edge, there or still to be recovered.
+    /// Its top edge, existing or still to be recovered.
     Top,
-    /// The base segment of the quadrilateral at hand.
+    /// The base segment of the current quadrilateral.
     Base,
 }
 
@@ -71,33 +71,33 @@ impl Role {
 /// An area: three or four corners, anticlockwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Area {
-    /// What it is.
+    /// Its role.
     pub role: Role,
-    /// Corners; a triangle's last one is there twice.
+    /// Corners; a triangle repeats its last one.
     pub corners: [DVec2; 4],
 }
 
 /// A straight line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it is.
+    /// Its role.
     pub role: Role,
     /// Ends.
     pub ends: [DVec2; 2],
-    /// The least height over this line of the elements beside it, in the units of the mesh: how much room it has.
+    /// The smallest height over this line of the elements beside it, in units of the mesh: the room around it.
     pub room: f64,
-    /// Whether elements cover it.
+    /// Whether elements hide it.
     pub hidden: bool,
 }
 
-/// A mark of constant size on the page; what has no room there is left out.
+/// A mark of constant size on the page; marks without room are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     /// A letter at a point.
     Letter {
         /// The point.
         at: DVec2,
-        /// The point that it keeps away from.
+        /// The point on whose opposite side it is placed.
         from: DVec2,
         /// The letter.
         letter: char,
@@ -115,9 +115,9 @@ pub enum Mark {
         at: DVec2,
         /// Its legs.
         legs: [DVec2; 2],
-        /// The angle in words.
+        /// The angle as text.
         text: String,
-        /// Whether it is drawn however short the legs are.
+        /// Whether it is drawn even where the legs are short.
         always: bool,
     },
     /// A text beside a line, on its right side where there is room.
@@ -129,44 +129,44 @@ pub enum Mark {
     },
     /// A node.
     Node(DVec2),
-    /// An ellipse by its half axes.
+    /// An ellipse given by its semi-axes.
     Ellipse {
-        /// Its middle.
+        /// Its centre.
         at: DVec2,
-        /// Its half axes.
+        /// Its semi-axes.
         axes: [DVec2; 2],
     },
 }
 
-/// A picture: areas, lines over them, marks over all.
+/// A picture: areas, lines over them, marks on top.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// One line on what it shows.
     pub title: String,
-    /// More on what it shows: the case and its parameters.
+    /// A longer description: the case and its parameters.
     pub description: String,
     /// Areas.
     pub areas: Vec<Area>,
     /// Lines, each edge once.
     pub lines: Vec<Line>,
-    /// Marks; of those that would cover each other the first stays.
+    /// Marks; of overlapping ones the first is drawn.
     pub marks: Vec<Mark>,
 }
 
-/// A state of a conversion, as far as it is to be seen.
+/// The state of a conversion, as far as pictures show it.
 #[derive(Clone, Copy)]
 pub struct Seen<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
     /// The parameters in force.
     pub parameters: &'a Parameters,
-    /// Where the converter stands.
+    /// The phase of the converter.
     pub phase: &'a Phase,
-    /// What the last step changed.
+    /// Elements that the last step changed.
     pub changed: &'a [ElementId],
 }
 
-/// One side of an element on its way to a line.
+/// One side of an element, which becomes a line.
 struct Edge {
     edge: [u32; 2],
     role: Role,
@@ -174,20 +174,20 @@ struct Edge {
 }
 
 impl Picture {
-    /// The picture of a mesh: elements by kind, edges once, the boundary and lines inside over them. A mesh in a plane z =
-    /// constant is seen from +z, one in space as `orthographic` has it.
+    /// The picture of a mesh: elements by kind, each edge once, the boundary and interior lines over them. A mesh in a
+    /// plane z = constant is viewed from +z, one in space by the default view of `orthographic`.
     ///
-    /// An edge is of the boundary where one element has it or where the mesh has a line there.
+    /// An edge belongs to the boundary where only one element has it or where the mesh has a line.
     pub fn of_mesh(mesh: &MeshFile) -> Picture {
         Picture::of_mesh_by(mesh, &Look::default())
     }
 
-    /// The same as a look has it, where the mesh is in space.
+    /// The same with a look, for meshes in space.
     pub fn of_mesh_by(mesh: &MeshFile, look: &Look) -> Picture {
         Picture::with_cover(mesh, look).0
     }
 
-    /// The same, and what covers what where it is in space.
+    /// The same, with what hides lines of a mesh in space.
     fn with_cover(mesh: &MeshFile, look: &Look) -> (Picture, Option<Cover>) {
         if orthographic::is_flat(mesh) {
             return (Picture::as_it_lies(mesh).0, None);
@@ -201,7 +201,7 @@ impl Picture {
         (picture, Some(cover))
     }
 
-    /// The picture of a mesh in the plane, and the nodes of each line.
+    /// The picture of a mesh in the plane, with the nodes of each line.
     fn as_it_lies(mesh: &MeshFile) -> (Picture, Vec<[u32; 2]>) {
         let at = |n: u32| mesh.points[n as usize].truncate();
         let mut picture = Picture::default();
@@ -214,7 +214,7 @@ impl Picture {
                 let along = at(b) - at(a);
                 let height = |n: u32| (along.perp_dot(at(n) - at(a)) / along.length()).abs();
                 let others = nodes.iter().filter(|n| **n != a && **n != b);
-                // A quadrilateral's two other corners may stand at different heights; the mean tells how crowded it is.
+                // The two other corners of a quadrilateral may have different heights; use their mean.
                 let room = others.map(|n| height(*n)).sum::<f64>() / (nodes.len() - 2) as f64;
                 sides.push(Edge { edge: [a.min(b), a.max(b)], role: edge_role, room });
             }
@@ -223,7 +223,7 @@ impl Picture {
         mesh.quads.iter().for_each(|q| element(q, Role::DeadQuad, Role::DeadEdge));
         let line =
             |l: &[u32; 2]| Edge { edge: [l[0].min(l[1]), l[0].max(l[1])], role: Role::Boundary, room: f64::INFINITY };
-        // The front of a state is no line of the mesh, and its classes are not in the file.
+        // The front is not a line of the mesh, and the file does not contain its classes.
         let front: Vec<usize> = mesh.front_lines().collect();
         sides.extend(
             mesh.lines.iter().enumerate().filter(|(i, _)| front.binary_search(i).is_err()).map(|(_, l)| line(l)),
@@ -240,8 +240,8 @@ impl Picture {
         (picture, edges)
     }
 
-    /// The picture of a conversion on surfaces: the mesh, over it the front by the classes of table 1 and the base segment. Marks are
-    /// drawn in planar domains only.
+    /// The picture of a conversion on surfaces: the mesh, and over it the front by the classes of table 1 and the base
+    /// segment. Marks are drawn only in planar domains.
     fn of_state_in_space(seen: &Seen<'_>, look: &Look) -> Picture {
         let Seen { mesh, parameters, phase, .. } = *seen;
         let file = Export::of(mesh, &Names::default()).file;
@@ -264,8 +264,8 @@ impl Picture {
         picture
     }
 
-    /// The picture of a conversion at some step: the mesh, over it the front by the classes of table 1, the quadrilateral in
-    /// the making, and the marks that are asked for.
+    /// The picture of a conversion at some step: the mesh, and over it the front by the classes of table 1, the current
+    /// quadrilateral, and the marks of the layers that are on.
     pub fn of_state(seen: &Seen<'_>, look: &Look) -> Picture {
         let (Seen { mesh, parameters, phase, changed }, layers) = (*seen, look.layers);
         if mesh.embedding().is_some() {
@@ -310,7 +310,7 @@ impl Picture {
         }
     }
 
-    /// Marks in the order in which they find their room.
+    /// The marks in the order in which they are placed.
     fn add_marks(
         &mut self,
         mesh: &Mesh,
@@ -339,7 +339,7 @@ impl Picture {
             for side in Side::BOTH {
                 let (at, legs) = corner(mesh, segment, side);
                 let theta = segment.theta[side.index()];
-                // Every corner of the front is the left one of one segment.
+                // Every corner of the front is the left end of one segment.
                 let of_base = decision.base == Some([segment.a, segment.b]);
                 let at_base = decision.base.is_some_and(|base| base.contains(&segment.a));
                 if layers.has(Layer::Angles) && (of_base || side == Side::Left && !at_base) {
@@ -358,7 +358,7 @@ impl Picture {
         }
     }
 
-    /// The least and greatest coordinates of what is shown; `None` for an empty picture.
+    /// The bounding box of the picture; `None` where it is empty.
     pub fn bounds(&self) -> Option<[DVec2; 2]> {
         let points = self.areas.iter().flat_map(|a| a.corners).chain(self.lines.iter().flat_map(|l| l.ends));
         let points = points.filter(|p| p.is_finite());
@@ -366,7 +366,7 @@ impl Picture {
     }
 }
 
-/// A corner of the front: its place and its legs, anticlockwise.
+/// A corner of the front: its position and its legs, anticlockwise.
 fn corner(mesh: &Mesh, segment: &Segment, side: Side) -> (DVec2, [DVec2; 2]) {
     let (at, from, to) = match side {
         Side::Left => (segment.a, segment.b, mesh.origin(mesh.front_before(segment.h))),
@@ -380,9 +380,7 @@ fn corner(mesh: &Mesh, segment: &Segment, side: Side) -> (DVec2, [DVec2; 2]) {
 mod tests {
     use super::*;
     use crate::core::convert::phase::Base;
-    use crate::core::kernel::tensor::Metric2;
-    use crate::core::mesh::ids::PointId;
-    use crate::core::mesh::triangle_set::TriangleSet;
+    use crate::render::fixtures::square;
     use crate::render::look::Ink;
     use glam::DVec3;
 
@@ -409,16 +407,7 @@ mod tests {
 
     #[test]
     fn a_state_shows_every_front_segment_once_by_its_class_and_the_base_on_top() {
-        let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
-        let point = (0..4).map(PointId).collect();
-        let set = TriangleSet {
-            uv,
-            point,
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-            region: vec![0; 2],
-            ..TriangleSet::default()
-        };
-        let mesh = Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4]);
+        let mesh = square();
         let base = Base { a: NodeId(0), b: NodeId(1), theta: [1.5; 2], length: 1.0, level: 0 };
         let phase = Phase::Defer { base };
         let parameters = Parameters::default();

@@ -1,8 +1,8 @@
-//! A state as the graphics card draws it: faces, lines and points with a colour each, in f32 relative to an anchor.
+//! A state in the form that the graphics card draws: coloured faces, lines and points, in f32 relative to an anchor.
 //!
-//! Every edge keeps its place for as long as it lives, so that a step of the converter changes a few places of long lists,
-//! and only those are sent to the card. Deliberately absent: wgpu (`gpu`), and text, arcs and ellipses, which the window
-//! lays over the picture.
+//! Every edge keeps its slot as long as it exists, so that a step of the converter changes a few slots of long lists,
+//! and only those are sent to the card. Deliberately absent: wgpu (see `gpu`), and text, arcs and ellipses, which the
+//! window draws over the picture.
 
 mod placed;
 mod form;
@@ -30,11 +30,11 @@ use placed::Places;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "window", derive(bytemuck::Pod, bytemuck::Zeroable))]
 pub struct Face {
-    /// Corners, anticlockwise; a triangle's last one is there twice.
+    /// Corners, anticlockwise; a triangle repeats its last one.
     pub corners: [[f32; 3]; 4],
-    /// The surface's unit normals at them, folded into two numbers each (`form`).
+    /// The unit normals of the surface at the corners, packed into two numbers each (`form`).
     pub normals: [[i16; 2]; 4],
-    /// Its colour; nothing is drawn where it is 0.
+    /// Its colour; 0 draws nothing.
     pub colour: u32,
 }
 
@@ -45,14 +45,14 @@ pub struct Face {
 pub struct Line {
     /// Its ends.
     pub ends: [[f32; 3]; 2],
-    /// Its colour; nothing is drawn where it is 0.
+    /// Its colour; 0 draws nothing.
     pub colour: u32,
     /// Its width in points.
     pub width: f32,
-    /// Points drawn and points left out, by turns; a whole line where both are 0.
+    /// The dash pattern: points drawn and points left out; solid where both are 0.
     pub dash: [f32; 2],
-    /// The room that it has: the least height over it of the elements beside it, by which it fades when they become small
-    /// on the screen. Negative: it never fades.
+    /// The room around it: the smallest height over it of the elements beside it. The line fades where they become
+    /// small on the screen; with a negative value it never fades.
     pub room: f32,
 }
 
@@ -61,11 +61,11 @@ pub struct Line {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "window", derive(bytemuck::Pod, bytemuck::Zeroable))]
 pub struct Dot {
-    /// Its middle.
+    /// Its centre.
     pub at: [f32; 3],
     /// Radius in points, the ring included.
     pub radius: f32,
-    /// Colour within.
+    /// Colour inside.
     pub fill: u32,
     /// Colour of the ring.
     pub ring: u32,
@@ -73,11 +73,11 @@ pub struct Dot {
     pub ring_width: f32,
     /// Distance of the nearest neighbour.
     pub room: f32,
-    /// Shown where `room` is at least so many points on the screen.
+    /// It is drawn where `room` is at least this many points on the screen.
     pub least: f32,
 }
 
-/// What is drawn of the mesh.
+/// A layer of the window's views.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layers {
     /// Live triangles.
@@ -116,53 +116,54 @@ impl Default for Layers {
     }
 }
 
-/// Everything of one state that the card draws, from back to front: `faces`, `edges`, `under`, `boundary`, `over`, `dots`,
+/// Everything that the card draws of one state, from back to front: `faces`, `edges`, `under`, `boundary`, `over`,
+/// `dots`,
 /// `over_dots`.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// What all positions are relative to.
+    /// The origin of all positions.
     pub anchor: DVec3,
-    /// One for each element slot, or where elements are drawn curved so many as `pieces` says.
+    /// One for each element slot; where elements are drawn curved, as many as `pieces` says.
     pub faces: Placed<Face>,
-    /// Edges of the mesh, each in its place for as long as it lives.
+    /// Edges of the mesh, each in its slot as long as it exists.
     pub edges: Placed<Line>,
-    /// The background mesh, and what the last operations changed.
+    /// The background mesh, and edges that the last operations changed.
     pub under: Placed<Line>,
-    /// Edges on the boundary, in places as those of the mesh.
+    /// Edges on the boundary, in slots like those of the mesh.
     pub boundary: Placed<Line>,
-    /// Front, decision, selection: in the order in which they are drawn.
+    /// Front, decision and selection, in drawing order.
     pub over: Placed<Line>,
     /// One for each node slot.
     pub dots: Placed<Dot>,
-    /// Dots over everything: the ends of the decision.
+    /// Dots on top: the ends of the decision.
     pub over_dots: Placed<Dot>,
-    /// Changes with everything above.
+    /// It increases with every change of the lists above.
     pub generation: u64,
-    /// How the mesh is laid out.
+    /// The form in which the mesh is drawn.
     form: Form,
-    /// Faces for an element and lines for an edge, each way, where they are drawn curved.
+    /// Faces per element and lines per edge, in each direction, where they are drawn curved.
     pieces: usize,
-    /// Where each node stands.
+    /// The position of each node.
     spots: Vec<Spot>,
     /// The nodes at each point that faces share, where elements are drawn curved.
     copies: Vec<Vec<NodeId>>,
     places: Places,
     boundary_places: Places,
-    /// What stands out as just changed.
+    /// The elements highlighted as just changed.
     standing_out: Vec<ElementId>,
 }
 
-/// A place relative to the anchor.
+/// A position relative to the anchor.
 fn relative(p: DVec3, anchor: DVec3) -> [f32; 3] {
     (p - anchor).as_vec3().to_array()
 }
 
-/// A colour that is drawn: 0 stands for nothing.
+/// A colour that is drawn; 0 would mean nothing.
 fn ink(colour: Rgba) -> u32 {
     colour.packed()
 }
 
-/// The least and greatest coordinates of a mesh; `None` for an empty one.
+/// The bounding box of a mesh; `None` for an empty one.
 pub fn bounds(mesh: &Mesh) -> Option<[DVec2; 2]> {
     mesh.nodes().map(|n| mesh.uv(n)).map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }

@@ -1,4 +1,4 @@
-//! The words in which a person says how a figure is to be made: on the command line, and in the figure itself.
+//! The options of figures, on the command line and embedded in the figure.
 
 use std::str::FromStr;
 
@@ -8,14 +8,14 @@ use glam::DVec2;
 use crate::core::fault::Fault;
 use crate::core::run::shown::Shown;
 use crate::render::camera::Bearing;
-use crate::render::look::{HiddenLines, Ink, Layer, Layers, Look, Part};
+use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers, Look};
 use crate::render::vector::svg::{COLUMN, MILLIMETRE, PAGE, Sheet};
 
-/// Dots an inch of line art in print, and of screens.
+/// Dots per inch of line art in print, and of screens.
 const PRINT: f64 = 300.0;
 const SCREEN: f64 = 96.0;
 
-/// How large a figure is; without a height as high as it must be.
+/// The size of a figure; the height is optional and follows from the content.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::app) enum Size {
     Millimetres(f64, Option<f64>),
@@ -58,16 +58,16 @@ impl std::fmt::Display for Size {
     }
 }
 
-/// What is plotted in place of the mesh.
+/// What a histogram shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(in crate::app) enum Plot {
     /// Edge lengths in the metric (fig. 23)
     Lengths,
-    /// Least and greatest angles of the elements (fig. 24)
+    /// Smallest and largest angles of the elements (fig. 24)
     Angles,
 }
 
-/// The layers of a figure as a person names them: all of them, or changes of what is usual.
+/// The layers of a figure as text: names of all layers, or changes to the default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::app) struct LayerWords(String);
 
@@ -81,19 +81,19 @@ impl FromStr for LayerWords {
 }
 
 impl LayerWords {
-    /// These layers and no others.
+    /// Exactly these layers.
     #[cfg(any(test, feature = "window"))]
     pub fn exactly(layers: Layers) -> LayerWords {
         let names: Vec<_> = Layer::ALL.into_iter().filter(|l| layers.has(*l)).map(Layer::name).collect();
         LayerWords(if names.is_empty() { "none".to_owned() } else { names.join(",") })
     }
 
-    /// The mesh alone.
+    /// The mesh only.
     pub fn mesh() -> LayerWords {
         LayerWords([Layer::Live, Layer::Dead, Layer::Boundary].map(Layer::name).join(","))
     }
 
-    /// Each name with its sign: `None` where it has none.
+    /// Each name with its sign, `None` where it has none.
     fn named(&self) -> Result<Vec<(Option<bool>, Layer)>, String> {
         if self.0 == "none" {
             return Ok(Vec::new());
@@ -107,7 +107,7 @@ impl LayerWords {
             let found = Layer::ALL.into_iter().find(|layer| layer.name() == name);
             found.map(|layer| (sign, layer)).ok_or_else(|| {
                 let all = Layer::ALL.map(Layer::name).join(", ");
-                format!("\"{name}\" is none of {all}; write names, or +NAME and -NAME to change what is usual")
+                format!("\"{name}\" is not one of {all}; write names, or +NAME and -NAME to change the default")
             })
         };
         self.0.split(',').map(|word| one(word.trim())).collect()
@@ -124,7 +124,7 @@ impl LayerWords {
 
 /// X,Y,HEIGHT in units of the case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::app) struct PartWords(pub Part);
+pub(in crate::app) struct PartWords(pub FigurePart);
 
 impl FromStr for PartWords {
     type Err = String;
@@ -133,13 +133,13 @@ impl FromStr for PartWords {
         let numbers: Option<Vec<f64>> =
             text.split(',').map(|n| n.trim().parse().ok().filter(|x: &f64| x.is_finite())).collect();
         match numbers.as_deref() {
-            Some(&[x, y, height]) if height > 0.0 => Ok(PartWords(Part { centre: DVec2::new(x, y), height })),
+            Some(&[x, y, height]) if height > 0.0 => Ok(PartWords(FigurePart { centre: DVec2::new(x, y), height })),
             _ => Err("write X,Y,HEIGHT in units of the case, for example 0.5,0.5,0.1".to_owned()),
         }
     }
 }
 
-/// The inks by name.
+/// Parses an ink.
 fn ink(text: &str) -> Result<Ink, String> {
     match text {
         "grey" | "gray" => Ok(Ink::Grey),
@@ -148,13 +148,13 @@ fn ink(text: &str) -> Result<Ink, String> {
     }
 }
 
-/// How hidden lines are drawn, by name.
+/// Parses a style of hidden lines.
 fn hidden_lines(text: &str) -> Result<HiddenLines, String> {
     let found = HiddenLines::ALL.into_iter().find(|hidden| hidden.name() == text);
     found.ok_or_else(|| "write off, faint or shown".to_owned())
 }
 
-/// Bearings by name.
+/// Parses a bearing.
 fn bearing(text: &str) -> Result<Bearing, String> {
     Bearing::parse(text).ok_or_else(|| "write iso, x, y, z, or degrees AZ,EL such as 33,27".to_owned())
 }
@@ -164,45 +164,45 @@ fn dpi(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "write a number from 10 to 2400".to_owned())
 }
 
-/// How a figure is made.
+/// Options of a figure.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 pub(in crate::app) struct FigureOptions {
-    /// Width, or width and height: in millimetres (84mm, 84x60mm), or in pixels (1920x1080); without it a column of 84 mm, a
-    /// strip 174 mm
+    /// Width, or width and height, in millimetres (84mm, 84x60mm) or in pixels (1920x1080) [default: 84mm, a strip
+    /// 174mm]
     #[arg(long, value_name = "SIZE")]
     pub size: Option<Size>,
-    /// Dots an inch of a PNG, and of a size in pixels: 300, where the size is in pixels 96
+    /// Dots per inch of a PNG, and of a size in pixels [default: 300, with a size in pixels 96]
     #[arg(long, value_name = "NUMBER", value_parser = dpi)]
     pub dpi: Option<f64>,
-    /// grey or colour
+    /// Ink: grey or colour
     #[arg(long, value_name = "INK", value_parser = ink)]
     pub ink: Option<Ink>,
-    /// No white ground
+    /// Leave out the white background
     #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     pub transparent: Option<bool>,
-    /// What is drawn: names of live, dead, changed, boundary, front, wedges, decision, letters, nodes, h, angles, ellipses,
-    /// scale; or changes of what is usual (--layers=+h,-letters)
+    /// Layers to draw: names out of live, dead, changed, boundary, front, wedges, decision, letters, nodes, h, angles,
+    /// ellipses, scale; or changes to the default (--layers=+h,-letters)
     #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
     pub layers: Option<LayerWords>,
-    /// A histogram in place of the mesh
+    /// Draw a histogram instead of the mesh
     #[arg(long, value_name = "WHAT")]
     pub plot: Option<Plot>,
-    /// Only a part: its middle and its height in units of the case
+    /// Draw only a part: its centre and its height in units of the case
     #[arg(long, value_name = "X,Y,HEIGHT", allow_hyphen_values = true)]
     pub part: Option<PartWords>,
-    /// From where a mesh in space is seen: iso, x, y, z, or so many degrees to the right of -y and so many up, and the picture
-    /// turned by so many
+    /// Direction of view on a mesh in space: iso, x, y, z, or azimuth (from -y to the right) and elevation in degrees,
+    /// and the roll of the picture
     #[arg(long, value_name = "iso|x|y|z|AZ,EL[,ROLL]", value_parser = bearing, allow_hyphen_values = true)]
     pub view: Option<Bearing>,
-    /// Lines of a mesh in space that its elements cover: off, faint or shown
+    /// Hidden lines of a mesh in space: off, faint or shown
     #[arg(long, value_name = "off|faint|shown", value_parser = hidden_lines)]
     pub hidden: Option<HiddenLines>,
-    /// Frames side by side in a strip: 4, and rows of equal length
+    /// Frames side by side in a strip [default: at most 4, in rows of equal length]
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=26))]
     pub columns: Option<u32>,
 }
 
-/// Reads options alone, as a figure carries them.
+/// Parses options alone, as embedded in a figure.
 #[derive(Parser)]
 #[command(no_binary_name = true, disable_help_flag = true)]
 struct Words {
@@ -211,7 +211,7 @@ struct Words {
 }
 
 impl FigureOptions {
-    /// The options in words, as the command line takes them.
+    /// The options as command-line arguments.
     pub fn words(&self) -> Vec<String> {
         let inks = |ink| if ink == Ink::Grey { "grey" } else { "colour" };
         let plots = |plot| if plot == Plot::Lengths { "lengths" } else { "angles" };
@@ -231,18 +231,18 @@ impl FigureOptions {
         words.into_iter().flatten().collect()
     }
 
-    /// Options from their words.
+    /// Parses options from command-line arguments.
     ///
     /// # Errors
-    /// Words that are no options of figures.
+    /// Arguments that are not options of figures.
     pub fn from_words(words: &[String]) -> Result<FigureOptions, Fault> {
         Words::try_parse_from(words).map(|read| read.options).map_err(|error| {
             let line = error.to_string().lines().next().unwrap_or_default().replace("error: ", "");
-            Fault::new(format!("How the figure was drawn is not understood: {line}"))
+            Fault::new(format!("The figure has invalid drawing options: {line}"))
         })
     }
 
-    /// These options, and where they are silent those of a figure.
+    /// These options, completed by those of a figure.
     pub fn or(&self, figure: Option<&Shown>) -> Result<FigureOptions, Fault> {
         let Some(shown) = figure else { return Ok(self.clone()) };
         let theirs = FigureOptions::from_words(&shown.drawn)?;
@@ -261,7 +261,7 @@ impl FigureOptions {
         })
     }
 
-    /// How the figure looks.
+    /// The look of the figure.
     pub fn look(&self, strip: bool) -> Look {
         let ink = self.ink.unwrap_or_default();
         let usual = Layers::usual(ink, strip);
@@ -275,12 +275,12 @@ impl FigureOptions {
         }
     }
 
-    /// Dots an inch.
+    /// Dots per inch.
     pub fn dots(&self) -> f64 {
         self.dpi.unwrap_or(if matches!(self.size, Some(Size::Pixels(..))) { SCREEN } else { PRINT })
     }
 
-    /// The sheet that it is drawn on.
+    /// The sheet it is drawn on.
     pub fn sheet<'a>(&self, strip: bool, title: &'a str, description: &'a str, run: Option<&'a str>) -> Sheet<'a> {
         let point = 72.0 / self.dots();
         let (width, height) = match self.size {
@@ -298,7 +298,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn options_read_back_from_their_words() {
+    fn options_read_back_from_their_arguments() {
         for line in [
             "",
             "--size=84x60mm --dpi=600 --ink=grey --transparent=true --layers=+h,-letters --plot=angles --columns=3",
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn layers_are_named_or_changed() {
+    fn layers_are_listed_or_changed() {
         let usual = Layers::usual(Ink::Colour, false);
         let over = |text: &str| text.parse::<LayerWords>().unwrap().over(usual);
         assert!(over("+h").has(Layer::H) && over("+h").has(Layer::Front));

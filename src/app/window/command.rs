@@ -9,6 +9,7 @@ use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
 use super::words;
 use crate::core::case::built_in;
+use crate::core::convert::event::EventKind;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::run::watch::Watched;
 use crate::render::camera::Bearing;
@@ -152,20 +153,20 @@ pub enum Command {
 }
 
 /// Kinds of events that one can go to.
-pub const KINDS: [&str; 13] = [
-    "base_selected",
-    "side_swapped",
-    "side_divided",
-    "top_swapped",
-    "node_removed",
-    "formed",
-    "rolled_back",
-    "deferred",
-    "enhanced",
-    "seamed",
-    "split",
-    "closed",
-    "last_resort",
+pub const KINDS: [EventKind; 13] = [
+    EventKind::BaseSelected,
+    EventKind::SideSwapped,
+    EventKind::SideDivided,
+    EventKind::TopSwapped,
+    EventKind::NodeRemoved,
+    EventKind::Formed,
+    EventKind::RolledBack,
+    EventKind::Deferred,
+    EventKind::Enhanced,
+    EventKind::Seamed,
+    EventKind::Split,
+    EventKind::Closed,
+    EventKind::LastResort,
 ];
 
 const NONE: Modifiers = Modifiers::NONE;
@@ -370,7 +371,7 @@ impl Command {
         ]);
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
-        all.extend(KINDS.iter().flat_map(|kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));
+        all.extend(KINDS.iter().flat_map(|&kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));
         all.extend(built_in::all().map(|case| Command::Open(Source::BuiltIn(case.0.to_owned()))));
         let mut seen: Vec<String> = Vec::new();
         all.retain(|command| {
@@ -396,8 +397,8 @@ fn go_name(goal: Goal) -> String {
         Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals forward"),
         Goal::Quads(by) => format!("{} quadrilaterals back", -by),
         Goal::ToQuads(quads) => format!("To NQ = {quads}"),
-        Goal::Kind(name, Direction::Forward) => format!("Next event: {}", kind(name)),
-        Goal::Kind(name, Direction::Back) => format!("Previous event: {}", kind(name)),
+        Goal::Kind(event, Direction::Forward) => format!("Next event: {}", kind(event)),
+        Goal::Kind(event, Direction::Back) => format!("Previous event: {}", kind(event)),
         Goal::End => "To the end".into(),
     }
 }

@@ -10,7 +10,7 @@ use super::session::{Moment, Opened, Wake};
 use super::state::{State, ViewCamera};
 
 use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Size, Wanted};
-use crate::app::work::{self, Frame};
+use crate::app::work::{self, FigureFrame};
 use crate::core::convert::walk::Stop;
 use crate::core::fault::Fault;
 use crate::core::formats::save;
@@ -21,7 +21,7 @@ use crate::core::record::run_file;
 use crate::core::run::run::Run;
 use crate::core::run::shown::{Shown, ShownState, fingerprint};
 use crate::render::camera::Bearing;
-use crate::render::look::{HiddenLines, Ink, Layer, Layers, Part};
+use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers};
 use crate::render::orthographic::View;
 use crate::render::picture::{Picture, Seen};
 
@@ -140,7 +140,11 @@ impl FigureForm {
     }
 
     /// The same as options of the command line.
-    fn options(&self, part: Option<(Part, f64)>, view: Option<(Bearing, HiddenLines)>) -> Result<FigureOptions, Fault> {
+    fn options(
+        &self,
+        part: Option<(FigurePart, f64)>,
+        view: Option<(Bearing, HiddenLines)>,
+    ) -> Result<FigureOptions, Fault> {
         let wrong = |what: String| Fault::new(format!("The size of the figure is not understood: {what}"));
         let text = self.size.trim();
         let mut size: Option<Size> = if text.is_empty() { None } else { Some(text.parse().map_err(wrong)?) };
@@ -209,7 +213,7 @@ pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writi
     let side = camera.filter(|_| on_surfaces).map(|camera| Bearing::of_turn(camera.turn));
     let part = camera.filter(|_| form.in_view && size.min_element() > 0.0).map(|camera| {
         let centre = side.map_or(camera.centre.truncate(), |side| View::from(side).place(camera.centre));
-        (Part { centre, height: size.y / camera.points_per_unit() }, size.y / size.x)
+        (FigurePart { centre, height: size.y / camera.points_per_unit() }, size.y / size.x)
     });
     let options = form.options(part, side.map(|side| (side, state.workspace().surfaces.hidden)))?;
     let wanted = if form.is_strip() { Some(form.wanted(&state.document().bookmarks)?) } else { None };
@@ -259,7 +263,8 @@ fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &Fig
         Some(_) => Some(work::statistics(&Export::of(mesh, &Names::default()), &opened.background.sizing)?),
         None => None,
     };
-    let frame = Frame { picture: Picture::of_state(&seen, &options.look(false)), shown: shown(moment), statistics };
+    let frame =
+        FigureFrame { picture: Picture::of_state(&seen, &options.look(false)), shown: shown(moment), statistics };
     Figure::of_run(run, &[frame], options, true)
 }
 

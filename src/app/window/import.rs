@@ -11,9 +11,9 @@ use preview::{Preview, PreviewNews, Wanted};
 
 use super::session::{Direction, Wake};
 use super::state::{Progress, ViewCamera};
-/// How a mesh is imported, in the words of the command line.
-pub use crate::app::command_line::MeshOptions as ImportOptions;
 use crate::app::input;
+/// How a mesh is imported, in the words of the command line.
+pub use crate::core::case::ImportOptions;
 use crate::core::case::{MeshUse, Taking};
 use crate::core::fault::Fault;
 

@@ -20,13 +20,13 @@ pub use worker::Stops;
 
 use super::import::ImportOptions;
 use crate::core::case::Case;
-use crate::core::convert::event::{Event, Why};
+use crate::core::convert::event::{Event, EventKind, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::core::run::breakpoint::Condition;
-use crate::core::run::explain::SegmentTold;
+use crate::core::run::explain::SegmentFacts;
 use crate::core::run::recorder::{Recorder, Stretch};
 use crate::core::run::run::{Edit, Run};
 use crate::core::run::sample::Sample;
@@ -92,7 +92,7 @@ pub struct Opened {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tracked {
     /// What the step did.
-    pub kind: &'static str,
+    pub kind: EventKind,
     /// How many quadrilaterals there are after it.
     pub standing: u32,
     /// Segments of the front after it.
@@ -108,7 +108,7 @@ pub struct Tracked {
 /// Why a segment was or was not chosen.
 #[derive(Clone, Debug)]
 pub struct Explained {
-    pub told: SegmentTold,
+    pub told: SegmentFacts,
     /// The step that put it off, with the reason of its last failure; none unless it is put off.
     pub put_off: Option<(u64, Option<Why>)>,
 }

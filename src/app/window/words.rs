@@ -4,7 +4,7 @@
 use super::session::words_of;
 use super::state::Progress;
 use crate::core::convert::candidates::{Candidate, Candidates, Passed};
-use crate::core::convert::event::{Event, Mending, Purpose, Why};
+use crate::core::convert::event::{Event, EventKind, Mending, Purpose, Why};
 use crate::core::front::sector::Side;
 use crate::core::mesh::ids::NodeId;
 use crate::core::progress::Stage;
@@ -53,8 +53,8 @@ pub fn side(side: Side) -> &'static str {
 }
 
 /// The name of a kind of event.
-pub fn kind(kind: &str) -> String {
-    kind.replace('_', " ")
+pub fn kind(kind: EventKind) -> String {
+    kind.name().replace('_', " ")
 }
 
 /// What a step did, in one line.

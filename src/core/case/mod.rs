@@ -9,6 +9,7 @@ mod surfaces;
 mod elements;
 mod metric;
 mod taking;
+mod import_options;
 pub mod built_in;
 
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+pub use import_options::ImportOptions;
 use parameters::Parameters;
 use table::{Source, Table};
 pub use taking::{MeshSource, MeshUse, Taking};

@@ -34,6 +34,24 @@ pub enum MeshUse {
     Shape,
 }
 
+impl MeshUse {
+    /// All uses.
+    pub const ALL: [MeshUse; 2] = [MeshUse::Triangles, MeshUse::Shape];
+
+    /// Its name in cases and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            MeshUse::Triangles => "triangles",
+            MeshUse::Shape => "shape",
+        }
+    }
+
+    /// The use of this name.
+    pub fn named(name: &str) -> Option<MeshUse> {
+        MeshUse::ALL.into_iter().find(|used| used.name() == name)
+    }
+}
+
 /// How a mesh is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taking {
@@ -93,11 +111,8 @@ impl Taking {
 pub(super) fn taking(table: &Table<'_>) -> Result<Taking, Fault> {
     let mut taking = Taking::default();
     if let Some(value) = table.get("use") {
-        taking.used = Some(match value.text()? {
-            "triangles" => MeshUse::Triangles,
-            "shape" => MeshUse::Shape,
-            _ => return Err(value.wrong("a use of a mesh", "use = \"triangles\" or use = \"shape\"")),
-        });
+        let wrong = || value.wrong("a use of a mesh", "use = \"triangles\" or use = \"shape\"");
+        taking.used = Some(MeshUse::named(value.text()?).ok_or_else(wrong)?);
     }
     let between = |key: &str, default: f64, [least, most]: [f64; 2], what: &str, unit: &str| match table.get(key) {
         None => Ok(default),

@@ -1,12 +1,12 @@
-//! When the quadrilaterals that stand were made: noted while a conversion goes on, for files and figures that show it.
+//! The step that made each quadrilateral, recorded during a conversion, for files and figures that show it.
 
 use crate::core::convert::converter::Converter;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::ids::ElementId;
 
-/// The step that made each quadrilateral: the last one after which its element was one and before which it was none, however often it
-/// was changed since (as [`History::made`](super::history::History::made) says).
+/// The step that made each quadrilateral: the last step that turned its element into a quadrilateral, regardless of
+/// later changes (as [`History::made`](super::history::History::made) defines it).
 #[derive(Clone, Debug, Default)]
 pub struct Births {
     steps: Vec<Option<u64>>,
@@ -14,14 +14,14 @@ pub struct Births {
 }
 
 impl Births {
-    /// Of the quadrilaterals with which a conversion begins: step 0.
+    /// For a mesh at the beginning of a conversion: its quadrilaterals were made at step 0.
     pub fn of(mesh: &Mesh) -> Births {
         let mut births = Births::default();
         mesh.elements().for_each(|e| births.see(mesh, e, 0));
         births
     }
 
-    /// Notes what the last step made. The converter must keep a history, if only of that step.
+    /// Records the quadrilaterals that the last step made. The converter must keep a history of at least that step.
     pub fn note(&mut self, converter: &Converter<'_>) {
         let mut touched = std::mem::take(&mut self.touched);
         converter.note_last_step(&mut touched);
@@ -30,7 +30,7 @@ impl Births {
         self.touched = touched;
     }
 
-    /// The step that made a quadrilateral; none for what is none.
+    /// The step that made a quadrilateral; `None` for other elements.
     pub fn step(&self, element: ElementId) -> Option<u64> {
         self.steps.get(element.index()).copied().flatten()
     }

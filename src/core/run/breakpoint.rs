@@ -1,4 +1,5 @@
-//! Breakpoints: conditions on what a step did and on the front after it, such as `kind == seamed && quad.min_angle < 30`.
+//! Breakpoints: conditions on what a step did and on the front after it, such as `kind == seamed && quad.min_angle <
+//! 30`.
 //!
 //! ```text
 //! condition  = both { "||" both }
@@ -7,7 +8,7 @@
 //! value      = a number (angles in degrees) | a word
 //! ```
 //!
-//! A field that a step does not have (`quad.min_angle` where no quadrilateral was formed) fulfils no comparison.
+//! A comparison with a field that a step does not have (`quad.min_angle` where no quadrilateral was formed) is false.
 
 mod fields;
 
@@ -21,16 +22,16 @@ use crate::core::convert::event::Event;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::spelling::nearest;
 
-/// What a condition is asked of.
+/// The facts about a step that conditions test.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
+pub struct StepFacts<'a> {
     /// The step.
     pub step: u64,
-    /// Quadrilaterals that stand after it.
+    /// The number of quadrilaterals after it.
     pub nq: u64,
     /// What it did.
     pub event: &'a Event,
-    /// The front after it.
+    /// The counts of the front after it.
     pub front: FrontCount,
     /// The angles of the quadrilateral that it formed.
     pub angles: Option<Angles>,
@@ -51,11 +52,11 @@ enum Tree {
     Any(Vec<Tree>),
     All(Vec<Tree>),
     Not(Box<Tree>),
-    /// Field by its index, compared with a value.
+    /// A field, by its index in [`FIELDS`], compared with a value.
     Compare(usize, Comparison, Value),
 }
 
-/// A condition that was read.
+/// A parsed condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     text: String,
@@ -63,10 +64,11 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// Reads a condition.
+    /// Parses a condition.
     ///
     /// # Errors
-    /// Where it is not one: with the position of the first character (from 1) that is wrong, and the nearest known name.
+    /// A syntax error or an unknown name, with the position of the first wrong character (from 1) and the nearest known
+    /// name.
     pub fn parse(text: &str) -> Result<Condition, Fault> {
         Condition::parsed(text).map_err(|fault| fault.of_kind(FaultKind::Syntax))
     }
@@ -76,7 +78,7 @@ impl Condition {
         let tree = reader.any()?;
         reader.skip_blanks();
         if reader.at < text.len() {
-            return Err(reader.fault("Nothing was expected here").remedy("Join conditions by && or ||"));
+            return Err(reader.fault("The condition should end here").remedy("Join conditions with && or ||"));
         }
         Ok(Condition { text: text.trim().to_owned(), tree })
     }
@@ -86,20 +88,20 @@ impl Condition {
         &self.text
     }
 
-    /// Whether it holds.
-    pub fn holds(&self, moment: &Moment<'_>) -> bool {
-        self.tree.holds(moment)
+    /// Whether it holds for a step.
+    pub fn holds(&self, facts: &StepFacts<'_>) -> bool {
+        self.tree.holds(facts)
     }
 }
 
 impl Tree {
-    fn holds(&self, moment: &Moment<'_>) -> bool {
+    fn holds(&self, facts: &StepFacts<'_>) -> bool {
         match self {
-            Tree::Any(trees) => trees.iter().any(|tree| tree.holds(moment)),
-            Tree::All(trees) => trees.iter().all(|tree| tree.holds(moment)),
-            Tree::Not(tree) => !tree.holds(moment),
+            Tree::Any(trees) => trees.iter().any(|tree| tree.holds(facts)),
+            Tree::All(trees) => trees.iter().all(|tree| tree.holds(facts)),
+            Tree::Not(tree) => !tree.holds(facts),
             Tree::Compare(field, comparison, value) => {
-                let Some(found) = (FIELDS[*field].of)(moment) else { return false };
+                let Some(found) = (FIELDS[*field].of)(facts) else { return false };
                 match (&found, value) {
                     (Value::Number(found), Value::Number(value)) => match comparison {
                         Comparison::Equal => found == value,
@@ -164,7 +166,7 @@ impl<'t> Reader<'t> {
     }
 
     fn one(&mut self) -> Result<Tree, Fault> {
-        // Signs are signs of nesting: a text of many is refused before it takes the stack.
+        // Many signs nest deeply: limit the depth before the recursion exhausts the stack.
         let mut negated = 0;
         while !self.rest_starts_with("!=") && self.take("!") {
             negated += 1;
@@ -172,7 +174,7 @@ impl<'t> Reader<'t> {
         let tree = if self.take("(") {
             let depth = self.text[..self.at].matches('(').count() - self.text[..self.at].matches(')').count();
             if depth > 100 {
-                return Err(self.fault("The parentheses are nested too deep").remedy("Write it plainer"));
+                return Err(self.fault("The parentheses are nested too deeply").remedy("Simplify the condition"));
             }
             let tree = self.any()?;
             if !self.take(")") {
@@ -199,11 +201,11 @@ impl<'t> Reader<'t> {
             return Err(self.fault(what).remedy("Write for example kind == formed"));
         }
         let Some(field) = FIELDS.iter().position(|field| field.name == name) else {
-            let fault = self.fault_at(start, format!("The field \"{name}\" is not known"));
+            let fault = self.fault_at(start, format!("The field \"{name}\" does not exist"));
             let known = FIELDS.iter().map(|field| field.name);
             return Err(match nearest(name, known.clone()) {
-                Some(near) => fault.remedy(format!("The nearest known one is \"{near}\"")),
-                None => fault.remedy(format!("Known: {}", known.collect::<Vec<_>>().join(", "))),
+                Some(near) => fault.remedy(format!("The nearest known field is \"{near}\"")),
+                None => fault.remedy(format!("Use one of: {}", known.collect::<Vec<_>>().join(", "))),
             });
         };
         let holds = FIELDS[field].holds;
@@ -227,7 +229,7 @@ impl<'t> Reader<'t> {
         };
         let is_number = matches!(holds, Holds::Number | Holds::Degrees);
         if !is_number && !matches!(comparison, Comparison::Equal | Comparison::Unequal) {
-            return Err(self.fault_at(sign, format!("{name} has no order")).remedy("Compare it by == or !="));
+            return Err(self.fault_at(sign, format!("{name} has no order")).remedy("Compare it with == or !="));
         }
         self.value(name, holds).map(|value| Tree::Compare(field, comparison, value))
     }
@@ -238,17 +240,9 @@ impl<'t> Reader<'t> {
         let quoted = self.take("\"");
         let word = self.word();
         if quoted && !self.take("\"") {
-            return Err(self.fault("A quotation mark is missing").remedy("Words need none"));
+            return Err(self.fault("A quotation mark is missing").remedy("Words need no quotation marks"));
         }
-        if matches!(holds, Holds::Number | Holds::Degrees) {
-            return word.parse::<f64>().ok().filter(|n| n.is_finite()).map(Value::Number).ok_or_else(|| {
-                let unit = if holds == Holds::Degrees { " of degrees, without a unit" } else { "" };
-                self.fault_at(start, format!("{name} is compared with a number"))
-                    .remedy(format!("Write a number{unit}"))
-            });
-        }
-        let known = holds.words();
-        // Events are also called by what is done: a seam is seamed.
+        // Shorter words for some kinds of events.
         let word = match (holds, word) {
             (Holds::Kind, "seam") => "seamed",
             (Holds::Kind, "quad" | "form") => "formed",
@@ -256,17 +250,18 @@ impl<'t> Reader<'t> {
             (Holds::Kind, "rollback") => "rolled_back",
             (_, word) => word,
         };
-        match (known.contains(&word), holds) {
-            (true, Holds::Flag) => Ok(Value::Flag(word == "true")),
-            (true, _) => Ok(Value::Word(word.to_owned())),
-            (false, _) => {
-                let fault = self.fault_at(start, format!("{name} is never \"{word}\""));
-                Err(match nearest(word, known.iter().copied()) {
-                    Some(near) => fault.remedy(format!("The nearest known word is \"{near}\"")),
-                    None => fault.remedy(format!("Known: {}", known.join(", "))),
-                })
+        holds.value(word).ok_or_else(|| {
+            if matches!(holds, Holds::Number | Holds::Degrees) {
+                let unit = if holds == Holds::Degrees { " of degrees, without a unit" } else { "" };
+                let fault = self.fault_at(start, format!("{name} is compared with a number"));
+                return fault.remedy(format!("Write a number{unit}"));
             }
-        }
+            let fault = self.fault_at(start, format!("{name} is never \"{word}\""));
+            match nearest(word, holds.words().iter().copied()) {
+                Some(near) => fault.remedy(format!("The nearest known word is \"{near}\"")),
+                None => fault.remedy(format!("Use one of: {}", holds.words().join(", "))),
+            }
+        })
     }
 
     fn word(&mut self) -> &'t str {
@@ -280,11 +275,11 @@ impl<'t> Reader<'t> {
 }
 
 impl History {
-    /// The next step after the state at hand at which one of the conditions holds, and its index. As far as it takes the run is
-    /// made known, unless the recorder is lent.
+    /// The next step after the current state at which one of the conditions holds, and its index. It runs ahead as far
+    /// as necessary, unless the recorder is lent.
     ///
     /// # Errors
-    /// None that the way there has not met.
+    /// A step of the replay failed.
     pub fn next_break(&mut self, conditions: &[Condition]) -> Result<Option<(u64, usize)>, Fault> {
         let mut from = self.step();
         loop {
@@ -304,10 +299,10 @@ impl History {
         }
     }
 
-    /// The last step before the one that led to the state at hand at which one of the conditions holds, and its index.
+    /// The last step before the one that led to the current state at which one of the conditions holds, and its index.
     ///
     /// # Errors
-    /// None that the way there has not met.
+    /// A step of the replay failed.
     pub fn previous_break(&self, conditions: &[Condition]) -> Result<Option<(u64, usize)>, Fault> {
         let mut until = self.step().saturating_sub(1);
         while until > 0 {
@@ -325,8 +320,8 @@ impl History {
 
     fn broken(&self, conditions: &[Condition], step: u64, event: &Event) -> Option<(u64, usize)> {
         let log = self.log();
-        let moment = Moment { step, nq: log.nq(step), event, front: log.front(step), angles: log.angles(step) };
-        conditions.iter().position(|condition| condition.holds(&moment)).map(|index| (step, index))
+        let facts = StepFacts { step, nq: log.nq(step), event, front: log.front(step), angles: log.angles(step) };
+        conditions.iter().position(|condition| condition.holds(&facts)).map(|index| (step, index))
     }
 }
 
@@ -343,11 +338,11 @@ mod tests {
 
     fn holds(text: &str, event: &Event, angles: Option<Angles>) -> bool {
         let front = FrontCount { segments: 40, loops: 2, odd: 0, live: 500 };
-        Condition::parse(text).unwrap().holds(&Moment { step: 812, nq: 311, event, front, angles })
+        Condition::parse(text).unwrap().holds(&StepFacts { step: 812, nq: 311, event, front, angles })
     }
 
     #[test]
-    fn conditions_bind_as_usual_and_compare_what_is_there() {
+    fn conditions_bind_as_usual_and_compare_fields_of_the_step() {
         let angles = Some(Angles { min: 0.4, max: 2.0 });
         let quad = formed(0.3);
         for text in [
@@ -375,8 +370,8 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_condition_is_told_with_its_position_and_the_nearest_name() {
-        let told = |text: &str| Condition::parse(text).unwrap_err().to_string();
+    fn a_bad_condition_is_reported_with_its_position_and_the_nearest_name() {
+        let message = |text: &str| Condition::parse(text).unwrap_err().to_string();
         insta::assert_snapshot!(
             [
                 "",
@@ -393,11 +388,11 @@ mod tests {
                 "&& nq > 5",
                 "kind == \"formed",
             ]
-            .map(|text| format!("{text:?}: {}", told(text)))
+            .map(|text| format!("{text:?}: {}", message(text)))
             .join("\n")
         );
-        assert!(told(&"(".repeat(100_000)).contains("too deep"));
-        assert!(told(&"ä == 1 && x".repeat(3)).starts_with("position 1"));
+        assert!(message(&"(".repeat(100_000)).contains("too deeply"));
+        assert!(message(&"ä == 1 && x".repeat(3)).starts_with("position 1"));
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! Copies of the mesh at hand for other threads to look at. A copy that nobody looks at any more is brought up to date by what
-//! changed since, so that a step costs as much as it changes and not as much as the mesh is large.
+//! Copies of the current mesh for other threads. A copy that is no longer in use is updated by what changed since, so
+//! that the cost of a step depends on what it changes and not on the size of the mesh.
 
 use std::sync::Arc;
 
@@ -7,14 +7,14 @@ use super::history::Changes;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::half_edge::touched::Touched;
 
-/// Copies that are kept: one that is looked at, one that is on its way there, one to be brought up to date.
+/// The number of copies: one in use, one on its way, one to update.
 const KEPT: usize = 3;
 
-/// What changed since something was looked at last.
+/// The changes since a state was last taken.
 #[derive(Clone, Debug, Default)]
 pub struct Since {
     touched: Touched,
-    /// Whether so much changed that it is not told apart any more.
+    /// Whether too much changed to list it.
     all: bool,
 }
 
@@ -24,7 +24,7 @@ impl Since {
         Since { touched: Touched::default(), all: true }
     }
 
-    /// Takes note of what changed in a mesh of so many element slots.
+    /// Records changes in a mesh with this number of element slots.
     pub fn note(&mut self, changes: &Changes, slots: usize) {
         match changes {
             Changes::Everything => self.all = true,
@@ -44,7 +44,7 @@ impl Since {
         !self.all && self.touched.is_empty()
     }
 
-    /// What changed; nothing has changed since, from now on.
+    /// Takes the changes and starts again with none.
     pub fn take(&mut self) -> Changes {
         if std::mem::take(&mut self.all) {
             return Changes::Everything;
@@ -56,7 +56,7 @@ impl Since {
     }
 }
 
-/// A mesh as it was once.
+/// A copy of the mesh with the changes since it was made.
 struct Copy {
     mesh: Arc<Mesh>,
     since: Since,
@@ -69,14 +69,14 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// Takes note of what changed of the mesh.
+    /// Records changes of the mesh.
     pub fn note(&mut self, changes: &Changes) {
         for copy in &mut self.copies {
             copy.since.note(changes, copy.mesh.element_slots());
         }
     }
 
-    /// A copy of the mesh as it is, of which everything that changed has been noted.
+    /// A copy of the mesh in its current state. All its changes must have been recorded.
     pub fn of(&mut self, mesh: &Mesh) -> Arc<Mesh> {
         if let Some(same) = self.copies.iter().find(|copy| copy.since.is_nothing()) {
             return same.mesh.clone();
@@ -92,7 +92,7 @@ impl Copies {
             copy.since.touched.clear();
             return copy.mesh.clone();
         }
-        // All are looked at: the one that was made first is left to whoever does.
+        // All are in use: leave the oldest one to its users.
         if self.copies.len() == KEPT {
             self.copies.remove(0);
         }
@@ -117,14 +117,14 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_is_the_state_at_hand_wherever_one_goes_and_whoever_still_looks() {
+    fn a_copy_equals_the_current_state_after_any_move_and_earlier_copies_stay() {
         let mut case = built_in::named("example1").unwrap().unwrap();
         case.parameters.size_scale = 2.0;
         let mut history = History::open(Run::of(case), &mut Nobody).unwrap();
         history.extend(u64::MAX);
         let end = history.end().unwrap();
         let mut copies = Copies::default();
-        let mut looked_at = Vec::new();
+        let mut in_use = Vec::new();
         let walk = (0..60).chain((0..60).rev()).chain([end, end - 1, 3, 4, 5, end / 2, end / 2 - 1, end / 2 + 40]);
         for (k, step) in walk.enumerate() {
             history.seek(step).unwrap();
@@ -136,11 +136,11 @@ mod tests {
             if let (true, Changes::Some { nodes, elements }) = (small, &changes) {
                 copy.check_around(nodes, elements).unwrap();
             }
-            looked_at.push((step, copy.clone(), bytes(&copy)));
-            looked_at.retain(|_| k % 7 != 0);
+            in_use.push((step, copy.clone(), bytes(&copy)));
+            in_use.retain(|_| k % 7 != 0);
         }
-        // What somebody looks at stays as it was.
-        assert!(looked_at.iter().all(|(_, mesh, seen)| bytes(mesh) == *seen));
+        // Copies in use do not change.
+        assert!(in_use.iter().all(|(_, mesh, seen)| bytes(mesh) == *seen));
         assert!(copies.copies.len() <= KEPT);
     }
 }

@@ -1,5 +1,5 @@
-//! Why: what a segment of the front, a node, an edge and an element are, with the numbers put into the paper's formulas, and why a
-//! segment was or was not chosen. Computed when asked for; every explanation has a text form.
+//! Explanations: a segment of the front, a node, an edge or an element with its numbers in the paper's formulas, and
+//! why a segment was or was not chosen. Each is computed on request and has a text form.
 
 mod words;
 
@@ -17,22 +17,22 @@ use crate::core::metric::measure::angle;
 
 /// A metric with its eigenpairs: sizes h = 1 / sqrt(lambda) along orthonormal directions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct MetricTold {
+pub struct MetricFacts {
     /// The tensor (eq. 3): uu, uv, vv.
     pub tensor: [f64; 3],
     /// Eigenvalues.
     pub lambda: [f64; 2],
-    /// Sizes that they ask for, in units of the case.
+    /// The sizes h, in units of the case.
     pub sizes: [f64; 2],
-    /// Directions that belong to them: the axes of the ellipse of unit length.
+    /// The corresponding unit directions: the axes of the ellipse of unit length.
     pub directions: [[f64; 2]; 2],
 }
 
-impl MetricTold {
-    /// Takes a metric apart.
-    pub fn of(metric: &Metric2) -> MetricTold {
+impl MetricFacts {
+    /// Computes the eigenpairs of a metric.
+    pub fn of(metric: &Metric2) -> MetricFacts {
         let (lambda, directions) = metric.eigen();
-        MetricTold {
+        MetricFacts {
             tensor: [metric.uu, metric.uv, metric.vv],
             lambda,
             sizes: lambda.map(|lambda| 1.0 / lambda.sqrt()),
@@ -41,7 +41,7 @@ impl MetricTold {
     }
 }
 
-/// What a frontal angle is (fig. 12).
+/// The class of a frontal angle (fig. 12).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Corner {
@@ -49,7 +49,7 @@ pub enum Corner {
     Seam,
     /// Below theta_rect: the neighbouring segment is the side edge (table 1).
     Rectangle,
-    /// Up to theta_revr: a side edge is to be found.
+    /// Up to theta_revr: a side edge must be found.
     Flat,
     /// Beyond theta_revr: a reversal.
     Reversal,
@@ -70,78 +70,78 @@ impl Corner {
     }
 }
 
-/// Why a segment would or would not be chosen by the rules if the base were selected now.
+/// Why the rules would or would not choose a segment if the base were selected now.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Verdict {
     /// It comes first.
     First,
-    /// It is put off until something near it changes.
+    /// It is deferred until something near it changes.
     PutOff,
     /// Rows nearer to the boundary come first.
     LaterLayer,
-    /// Its window is not below c Hmin (4.3.3, step ii): those that are within reach come first, then smaller H-values.
+    /// Its window value is not below c Hmin (4.3.3, step ii): segments within reach come first, then smaller H-values.
     OutOfReach {
-        /// What is held against c Hmin.
+        /// The value compared with c Hmin.
         window: f64,
         /// c Hmin.
         reach: f64,
     },
-    /// It is of class 4: only where nothing is within reach such a segment is chosen, by its H-value (step iii).
+    /// It is of class 4: such a segment is chosen, by its H-value, only where no other is within reach (step iii).
     ClassFour,
     /// A segment of a better class is within reach.
     BetterClass {
         /// That class.
         class: u8,
     },
-    /// Others of its class are smaller in what they are ordered by.
+    /// Another segment of its class has a smaller value of the ordering criterion.
     Larger,
 }
 
 /// A segment of the front, explained.
 #[derive(Clone, Debug, Serialize)]
-pub struct SegmentTold {
+pub struct SegmentFacts {
     /// Its numbers.
     pub row: Row,
     /// The metrics of A and B.
-    pub metric: [MetricTold; 2],
+    pub metric: [MetricFacts; 2],
     /// Length in the parametric plane; that in space is `row.length_physical`.
     pub length_parametric: f64,
-    /// What its frontal angles are.
+    /// The classes of its frontal angles.
     pub corners: [Corner; 2],
     /// Its loop.
     pub front_loop: Loop,
-    /// The smallest H-value of those that wait (step i).
+    /// The smallest H-value of the waiting segments (step i).
     pub h_min: f64,
-    /// How many come before it, of how many; none where it is put off.
+    /// How many waiting segments come before it, and how many there are; `None` where it is deferred.
     pub rank: Option<(usize, usize)>,
     /// Why it is, or is not, the first.
     pub verdict: Verdict,
-    /// Whether it is the base of the quadrilateral at hand.
+    /// Whether it is the base of the current quadrilateral.
     pub is_base: bool,
-    /// Between which values of c it would be chosen just so; where it is the first.
+    /// Where it comes first: the interval of c in which it stays first.
     pub margin_of_c: Option<[f64; 2]>,
-    /// Between which values of c it would be chosen; where it is not the first.
+    /// Where it does not come first: an interval of c in which it would.
     pub chosen_for_c: Option<[f64; 2]>,
-    /// Between which values of theta_rect, in degrees.
+    /// Where it comes first: the interval of theta_rect in which it stays first, in degrees.
     pub margin_of_theta_rect: Option<[f64; 2]>,
     #[serde(skip)]
     parameters: Parameters,
 }
 
-impl SegmentTold {
-    /// Explains the front segment from A to B; none where there is no such one.
-    pub fn of(converter: &Converter<'_>, a: NodeId, b: NodeId) -> Option<SegmentTold> {
-        SegmentTold::in_table(converter, &FrontTable::of(converter), a, b)
+impl SegmentFacts {
+    /// Explains the front segment from A to B; `None` where it does not exist.
+    pub fn of(converter: &Converter<'_>, a: NodeId, b: NodeId) -> Option<SegmentFacts> {
+        SegmentFacts::in_table(converter, &FrontTable::of(converter), a, b)
     }
 
-    /// The same with the table of the state's front at hand.
-    pub fn in_table(converter: &Converter<'_>, table: &FrontTable, a: NodeId, b: NodeId) -> Option<SegmentTold> {
+    /// The same, from the front table of the state.
+    pub fn in_table(converter: &Converter<'_>, table: &FrontTable, a: NodeId, b: NodeId) -> Option<SegmentFacts> {
         let (mesh, parameters) = (&converter.mesh, converter.parameters());
         let row = *table.find(a, b)?;
-        Some(SegmentTold {
+        Some(SegmentFacts {
             row,
-            metric: [a, b].map(|n| MetricTold::of(mesh.metric_ref(n))),
+            metric: [a, b].map(|n| MetricFacts::of(mesh.metric_ref(n))),
             length_parametric: mesh.uv(a).distance(mesh.uv(b)),
             corners: row.theta.map(|theta| Corner::of(theta, parameters)),
             front_loop: table.loops[row.front_loop as usize],
@@ -181,7 +181,7 @@ fn verdict(table: &FrontTable, row: &Row) -> Verdict {
 
 /// A node, explained.
 #[derive(Clone, Debug, Serialize)]
-pub struct NodeTold {
+pub struct NodeFacts {
     /// Its id.
     pub node: NodeId,
     /// Parametric coordinates.
@@ -189,8 +189,8 @@ pub struct NodeTold {
     /// Coordinates in space.
     pub xyz: [f64; 3],
     /// Its metric.
-    pub metric: MetricTold,
-    /// Whether it may not move: it lies on the boundary.
+    pub metric: MetricFacts,
+    /// Whether it is fixed, as all nodes on the boundary are.
     pub is_fixed: bool,
     /// Live triangles around it, anticlockwise.
     pub live: Vec<ElementId>,
@@ -202,20 +202,20 @@ pub struct NodeTold {
     pub sectors: Vec<(HalfEdgeId, f64)>,
 }
 
-impl NodeTold {
-    /// Explains a node; none where there is no such one.
-    pub fn of(mesh: &Mesh, node: NodeId) -> Option<NodeTold> {
+impl NodeFacts {
+    /// Explains a node; `None` where it does not exist.
+    pub fn of(mesh: &Mesh, node: NodeId) -> Option<NodeFacts> {
         if !mesh.has_node(node) {
             return None;
         }
         let uv = mesh.uv(node);
         let (live, dead) = mesh.elements_at(node).partition(|&e| mesh.is_triangle(e));
         let leaving = mesh.fan(node).filter(|&h| mesh.is_front(h));
-        Some(NodeTold {
+        Some(NodeFacts {
             node,
             uv: [uv.x, uv.y],
             xyz: [uv.x, uv.y, 0.0],
-            metric: MetricTold::of(mesh.metric_ref(node)),
+            metric: MetricFacts::of(mesh.metric_ref(node)),
             is_fixed: mesh.is_fixed(node),
             live,
             dead,
@@ -225,11 +225,11 @@ impl NodeTold {
     }
 }
 
-/// What an edge is.
+/// The kind of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EdgeKind {
-    /// Between two live triangles: it can be changed.
+    /// Between two live triangles: it can change.
     Live,
     /// On the merging front, with live triangles on one side.
     Front,
@@ -241,10 +241,10 @@ pub enum EdgeKind {
 
 /// An edge, explained.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct EdgeTold {
+pub struct EdgeFacts {
     /// Its ends.
     pub ends: [NodeId; 2],
-    /// What it is.
+    /// Its kind.
     pub kind: EdgeKind,
     /// Whether it lies on the boundary.
     pub is_boundary: bool,
@@ -254,9 +254,9 @@ pub struct EdgeTold {
     pub length_physical: f64,
 }
 
-impl EdgeTold {
-    /// Explains the edge between two nodes; none where they are not joined.
-    pub fn of(mesh: &Mesh, a: NodeId, b: NodeId) -> Option<EdgeTold> {
+impl EdgeFacts {
+    /// Explains the edge between two nodes; `None` where no edge connects them.
+    pub fn of(mesh: &Mesh, a: NodeId, b: NodeId) -> Option<EdgeFacts> {
         if !mesh.has_node(a) || !mesh.has_node(b) {
             return None;
         }
@@ -268,7 +268,7 @@ impl EdgeTold {
             [Some(false), None] | [None, _] => EdgeKind::Boundary,
             _ => EdgeKind::Front,
         };
-        Some(EdgeTold {
+        Some(EdgeFacts {
             ends: [a, b],
             kind,
             is_boundary: mesh.twin(h).is_none(),
@@ -280,10 +280,10 @@ impl EdgeTold {
 
 /// An element, explained.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ElementTold {
+pub struct ElementFacts {
     /// Its id.
     pub element: ElementId,
-    /// Whether it is a live triangle; else it is a dead quadrilateral.
+    /// True for a live triangle, false for a dead quadrilateral.
     pub is_live: bool,
     /// Its nodes, anticlockwise.
     pub nodes: Vec<NodeId>,
@@ -303,9 +303,9 @@ pub struct ElementTold {
     pub region: u32,
 }
 
-impl ElementTold {
-    /// Explains an element; none where there is no such one.
-    pub fn of(mesh: &Mesh, element: ElementId) -> Option<ElementTold> {
+impl ElementFacts {
+    /// Explains an element; `None` where it does not exist.
+    pub fn of(mesh: &Mesh, element: ElementId) -> Option<ElementFacts> {
         if !mesh.has_element(element) {
             return None;
         }
@@ -322,7 +322,7 @@ impl ElementTold {
         let p: Vec<DVec2> = nodes.iter().map(|&n| mesh.uv(n)).collect();
         let area = 0.5 * (0..count).map(|k| (p[k] - p[0]).perp_dot(p[(k + 1) % count] - p[0])).sum::<f64>();
         let root = nodes.iter().map(|&n| mesh.metric_ref(n).det().sqrt()).sum::<f64>() / count as f64;
-        Some(ElementTold {
+        Some(ElementFacts {
             element,
             is_live: mesh.is_triangle(element),
             quality: mesh.quality(element),

@@ -1,5 +1,5 @@
-//! The merging front counted along a run: its segments, its loops and their parity, and the live triangles. The segments are
-//! kept as a list, so that a count costs the length of the front and not the size of the mesh.
+//! Counts of the merging front along a run: segments, loops and their parity, live triangles. The segments are stored
+//! as a list, so that the cost of a count depends on the length of the front and not on the size of the mesh.
 
 use serde::Serialize;
 
@@ -10,30 +10,30 @@ use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
 const NONE: u32 = u32::MAX;
 
-/// The front in numbers.
+/// Counts of the front.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct FrontCount {
-    /// Segments.
+    /// Number of segments.
     pub segments: u32,
-    /// Closed chains of segments.
+    /// Number of loops (closed chains of segments).
     pub loops: u32,
-    /// Of those, how many have an odd number of segments.
+    /// Number of loops with an odd number of segments.
     pub odd: u32,
-    /// Live triangles.
+    /// Number of live triangles.
     pub live: u32,
 }
 
 /// The segments of the front, kept up to date.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrontTracker {
-    /// Segments with the node where each starts.
+    /// The segments, each with the node where it starts.
     list: Vec<(HalfEdgeId, NodeId)>,
-    /// Place of each half-edge in the list.
+    /// The index of each half-edge in the list.
     place: Vec<u32>,
-    /// Number of segments that start at a node: of its live sectors.
+    /// The number of segments that start at each node, which is that of its live sectors.
     sectors: Vec<u16>,
     is_live: Vec<bool>,
-    /// What was met by the last count.
+    /// The last count that visited each half-edge.
     epoch: Vec<u32>,
     epochs: u32,
     count: FrontCount,
@@ -44,18 +44,18 @@ impl FrontTracker {
         let mut tracker = FrontTracker::default();
         tracker.grow(mesh);
         for e in mesh.elements() {
-            tracker.look_at(mesh, e);
+            tracker.examine(mesh, e);
         }
         tracker.count_loops(mesh);
         tracker
     }
 
-    /// The front in numbers.
+    /// The counts.
     pub fn count(&self) -> FrontCount {
         self.count
     }
 
-    /// The segments, in no order that means anything.
+    /// The segments, in no particular order.
     pub fn segments(&self) -> impl Iterator<Item = HalfEdgeId> + '_ {
         self.list.iter().map(|segment| segment.0)
     }
@@ -67,16 +67,16 @@ impl FrontTracker {
         self.sectors.resize(self.sectors.len().max(mesh.node_slots()), 0);
     }
 
-    /// Looks again at what was touched since the last time, after a step that did `event`.
+    /// Examines again what was touched since the last update, after a step with this event.
     pub fn update(&mut self, mesh: &Mesh, touched: &Touched, event: &Event) {
         let pinched_before = self.is_pinched(event);
         self.grow(mesh);
         for &e in touched.elements() {
-            self.look_at(mesh, e);
+            self.examine(mesh, e);
             if mesh.has_element(e) {
                 for h in mesh.half_edges(e) {
                     if let Some(t) = mesh.twin(h) {
-                        self.look_at(mesh, t.element());
+                        self.examine(mesh, t.element());
                     }
                 }
             }
@@ -86,13 +86,13 @@ impl FrontTracker {
         }
     }
 
-    /// Whether some node of the new quadrilateral has several live sectors.
+    /// Whether a node of the new quadrilateral has several live sectors.
     fn is_pinched(&self, event: &Event) -> bool {
         let Event::Formed { nodes, .. } = event else { return true };
         nodes.iter().any(|n| self.sectors.get(n.index()).is_some_and(|&sectors| sectors > 1))
     }
 
-    fn look_at(&mut self, mesh: &Mesh, e: ElementId) {
+    fn examine(&mut self, mesh: &Mesh, e: ElementId) {
         if e.index() >= self.is_live.len() {
             return;
         }
@@ -141,8 +141,8 @@ impl FrontTracker {
     }
 }
 
-/// Whether a step of this kind can change the front; those of an attempt cannot, and what they change in the ids of half-edges
-/// is looked at later.
+/// Whether a step with this event can change the front. Steps of an attempt cannot; changes of half-edge ids by their
+/// swaps are examined later.
 pub(super) fn changes_front(event: &Event) -> bool {
     !matches!(
         event,
@@ -171,7 +171,7 @@ pub(super) fn changes_front(event: &Event) -> bool {
     )
 }
 
-/// Whether the sides of the new quadrilateral that lie on the front follow each other on it: then, without a pinched node,
+/// Whether the sides of the new quadrilateral that lie on the front form one chain of it: then, without a pinched node,
 /// no loop was opened, closed or joined.
 fn is_one_chain(mesh: &Mesh, event: &Event) -> bool {
     let Event::Formed { nodes, .. } = event else { return false };
@@ -196,7 +196,7 @@ mod tests {
     use crate::core::run::run::Run;
 
     #[test]
-    fn the_count_kept_is_that_made_afresh_after_every_change_of_the_front() {
+    fn the_updated_count_equals_a_new_count_after_every_change_of_the_front() {
         let mut most = 0;
         for (name, scale) in [("example1", 0.7), ("two-faces", 1.0), ("gear", 1.0), ("polar-1", 1.5)] {
             let mut run = Run::of(built_in::named(name).unwrap().unwrap());
@@ -212,8 +212,8 @@ mod tests {
                 if changes_front(&event) {
                     tracker.update(&converter.mesh, &touched, &event);
                     touched.clear();
-                    let afresh = FrontTracker::of(&converter.mesh);
-                    assert_eq!(tracker.count(), afresh.count(), "{name}: {event:?}");
+                    let new = FrontTracker::of(&converter.mesh);
+                    assert_eq!(tracker.count(), new.count(), "{name}: {event:?}");
                     assert_eq!(tracker.count.odd, 0, "{name}: {event:?}");
                     most = most.max(tracker.count.loops);
                 }

@@ -1,5 +1,5 @@
-//! The front as a table: every segment with what its selection depends on (4.3.3), its loop, and the order in which the segments
-//! would be chosen.
+//! The front as a table: every segment with the values that its selection depends on (4.3.3), its loop, and the order
+//! in which the segments would be chosen.
 
 use std::collections::BTreeSet;
 
@@ -32,13 +32,13 @@ pub struct Row {
     pub theta: [f64; 2],
     /// Rows from the boundary.
     pub level: u16,
-    /// On surfaces its face, by number; 0 in the plane.
+    /// The number of its face on surfaces; 0 in the plane.
     pub face: u32,
-    /// Its loop, by the order in which loops are met.
+    /// The index of its loop in [`FrontTable::loops`].
     pub front_loop: u32,
-    /// Whether it is put off until something near it changes.
+    /// Whether it is deferred until something near it changes.
     pub is_put_off: bool,
-    /// What is held against c Hmin.
+    /// The value compared with c Hmin.
     pub window: f64,
 }
 
@@ -49,25 +49,25 @@ fn degrees<S: Serializer>(radians: &[f64; 2], serializer: S) -> Result<S::Ok, S:
 /// One closed chain of the front.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Loop {
-    /// Number of its segments: it should be even (docs/algorithm.md, "The parity invariant").
+    /// Number of its segments, which should be even (docs/algorithm.md, "The parity invariant").
     pub segments: u32,
     /// Its length in the metric.
     pub length_metric: f64,
 }
 
-/// What comes first in a selection: smaller comes before larger.
+/// The sort key of the selection; the smallest comes first.
 pub(super) type Order = (u8, Key, HalfEdgeId);
 
 /// All segments of the front of a state.
 #[derive(Clone, Debug)]
 pub struct FrontTable {
-    /// The segments, by the half-edge.
+    /// The segments, sorted by half-edge.
     pub rows: Vec<Row>,
     /// The loops.
     pub loops: Vec<Loop>,
-    /// The smallest H-value among those that wait (4.3.3, step i); infinite where none waits.
+    /// The smallest H-value of the waiting segments (4.3.3, step i); infinite where none waits.
     pub h_min: f64,
-    /// The least layer among those that wait, where rows are offset first.
+    /// The smallest layer of the waiting segments, where rows are offset first.
     pub(super) layer: u32,
     pub(super) parameters: Parameters,
 }
@@ -95,7 +95,7 @@ impl FrontTable {
                 rows[at].front_loop = loops.len() as u32;
                 met.segments += 1;
                 met.length_metric += rows[at].length_metric;
-                // A loop of the front has nothing but segments of the front.
+                // A loop of the front consists of front segments only.
                 at = place[mesh.front_after(rows[at].h).index()] as usize - 1;
             }
             loops.push(met);
@@ -114,13 +114,12 @@ impl FrontTable {
         self.rows.iter().find(|row| row.a == a && row.b == b)
     }
 
-    /// The segment that a selection would choose by the rules; none where every segment is put off.
+    /// The segment that the rules would choose; `None` where every segment is deferred.
     pub fn choice(&self) -> Option<&Row> {
         self.waiting().min_by_key(|row| self.order(row))
     }
 
-    /// How many segments would be chosen before this one, were it there alone: 0 for the choice itself. None where it is put
-    /// off.
+    /// The number of waiting segments that come before this one: 0 for the choice itself. `None` where it is deferred.
     pub fn rank(&self, row: &Row) -> Option<usize> {
         if row.is_put_off {
             return None;
@@ -129,14 +128,14 @@ impl FrontTable {
         Some(self.waiting().filter(|other| self.order(other) < order).count())
     }
 
-    /// The places of the rows in the order in which a selection would take them; those that are put off come last.
+    /// The indices of the rows in the order in which they would be chosen; deferred ones come last.
     pub fn in_order(&self) -> Vec<usize> {
         let mut places: Vec<usize> = (0..self.rows.len()).collect();
         places.sort_by_cached_key(|&place| (self.rows[place].is_put_off, self.order(&self.rows[place])));
         places
     }
 
-    /// Number of segments that wait to be chosen.
+    /// The number of waiting segments.
     pub fn waiting_count(&self) -> usize {
         self.waiting().count()
     }
@@ -145,12 +144,12 @@ impl FrontTable {
         self.rows.iter().filter(|row| !row.is_put_off)
     }
 
-    /// Whether the segment is within c Hmin and of a class that counts (4.3.3, step ii).
+    /// Whether the segment is within c Hmin and of class 1, 2 or 3 (4.3.3, step ii).
     pub fn is_within_reach(&self, row: &Row) -> bool {
         row.class < 4 && row.layer(&self.parameters) == self.layer && row.window < self.parameters.c * self.h_min
     }
 
-    /// What a segment is ordered by in a selection.
+    /// The sort key of a segment.
     pub(super) fn order(&self, row: &Row) -> Order {
         let layer = f64::from(row.layer(&self.parameters));
         if self.parameters.selection != Selection::Table1 {
@@ -163,15 +162,15 @@ impl FrontTable {
         (4, Key([layer, row.h_value, row.theta_sum()]), row.h)
     }
 
-    /// Values of c from (excluded) and to (included) between which this very segment would be chosen, all else as it is; none
-    /// where it is not the choice, or where the order does not look at c.
+    /// The interval of c, from (excluded) to (included), in which this segment stays the choice, all else unchanged.
+    /// `None` where it is not the choice, or where the selection does not depend on c.
     pub fn margin_of_c(&self, row: &Row) -> Option<[f64; 2]> {
         if self.parameters.selection != Selection::Table1 || self.choice()?.h != row.h {
             return None;
         }
         let best = BestOfClass::of(self);
         let c = self.parameters.c;
-        // The choice changes only where the best of a class comes within reach: there window = c Hmin.
+        // The choice changes only where the best segment of a class comes within reach, at window = c Hmin.
         let mut bounds: Vec<f64> = best.windows().map(|window| window / self.h_min).collect();
         bounds.extend([0.0, f64::INFINITY]);
         bounds.sort_unstable_by(f64::total_cmp);
@@ -194,8 +193,8 @@ impl FrontTable {
         Some([low, high])
     }
 
-    /// Values of c from (excluded) and to (included) between which a segment that is not the choice would be chosen, all else as
-    /// it is; none where there are none, or where the order does not look at c.
+    /// The first interval of c, from (excluded) to (included), in which a segment that is not the choice would be it,
+    /// all else unchanged. `None` where there is none, or where the selection does not depend on c.
     pub fn chosen_for_c(&self, row: &Row) -> Option<[f64; 2]> {
         if self.parameters.selection != Selection::Table1 || row.is_put_off || self.choice()?.h == row.h {
             return None;
@@ -212,21 +211,22 @@ impl FrontTable {
         Some([first[0], found.last().map_or(first[1], |pair| pair[1])])
     }
 
-    /// Values of theta_rect from (excluded) and to (included), in radians, within 90 and 180 degrees, between which this very
-    /// segment would be chosen, all else as it is; none where it is not the choice, or where the order does not look at it.
+    /// The interval of theta_rect in radians, from (excluded) to (included), between 90 and 180 degrees, in which this
+    /// segment stays the choice, all else unchanged. `None` where it is not the choice, or where the selection does not
+    /// depend on it.
     pub fn margin_of_theta_rect(&self, row: &Row) -> Option<[f64; 2]> {
         let rect = self.parameters.theta_rect;
         if self.parameters.selection != Selection::Table1 || self.choice()?.h != row.h {
             return None;
         }
         let limits = [std::f64::consts::FRAC_PI_2, std::f64::consts::PI];
-        // The classes change only where theta_rect passes a frontal angle.
+        // The classes change only where theta_rect crosses a frontal angle.
         let mut turns: Vec<(f64, usize)> = Vec::new();
         for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| !row.is_put_off) {
             turns.extend(row.theta.iter().filter(|t| (limits[0]..=limits[1]).contains(*t)).map(|&t| (t, i)));
         }
         turns.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        // A frontal angle is below theta_rect or not: at theta_rect itself it is not.
+        // A frontal angle equal to theta_rect does not count as below it.
         let first_above = turns.partition_point(|turn| turn.0 < rect);
         let reach = self.parameters.c * self.h_min;
         let walk = |turns: &mut dyn Iterator<Item = (f64, usize)>, up: bool| {
@@ -234,7 +234,7 @@ impl FrontTable {
             let mut turns = turns.peekable();
             while let Some((angle, i)) = turns.next() {
                 let other = &self.rows[i];
-                // Above its angles the segment counts an end as a side; between equal turns nothing is decided.
+                // Once theta_rect exceeds its angle, an end counts as a side. Equal angles change together.
                 let below = |t: f64| if up { t <= angle } else { t < angle };
                 best.put(self, other, class_of(other.theta.map(below)));
                 let decided = turns.peek().is_none_or(|next| next.0 != angle);
@@ -283,7 +283,7 @@ impl Row {
     }
 }
 
-/// The class of table 1: whether the angles at A and at B are below theta_rect.
+/// The class of table 1, from whether the angles at A and at B are below theta_rect.
 fn class_of(below: [bool; 2]) -> u8 {
     match below {
         [true, true] => 1,
@@ -293,7 +293,7 @@ fn class_of(below: [bool; 2]) -> u8 {
     }
 }
 
-/// The segments of the first three classes in their order, those of the least layer.
+/// The waiting segments of the smallest layer in classes 1 to 3, each class in order.
 struct BestOfClass {
     classes: [BTreeSet<(Key, HalfEdgeId)>; 3],
     smallest: Option<HalfEdgeId>,
@@ -310,7 +310,7 @@ impl BestOfClass {
         best
     }
 
-    /// Puts a segment into a class, out of the one that it was in.
+    /// Moves a segment into a class.
     fn put(&mut self, table: &FrontTable, row: &Row, class: u8) {
         if row.layer(&table.parameters) != table.layer {
             return;
@@ -329,7 +329,7 @@ impl BestOfClass {
         self.classes.iter().filter_map(|waiting| waiting.first().map(|(Key([_, window, _]), _)| *window))
     }
 
-    /// The choice where what is below `reach` is within it.
+    /// The choice where segments with a window value below `reach` are within reach.
     fn choice(&self, reach: f64) -> Option<HalfEdgeId> {
         let firsts = self.classes.iter().filter_map(|waiting| waiting.first());
         let within = firsts.into_iter().find(|(Key([_, window, _]), _)| *window < reach);

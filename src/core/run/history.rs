@@ -1,8 +1,8 @@
-//! Any state of a run, bit-identical to running there afresh.
+//! Reaching any state of a run, bit-identical to a new run to that step.
 //!
-//! Near states are reached by stepping: forward by the converter, back by its journal. Far ones start from a keyframe.
-//! Everything that is kept stays within a budget: whole meshes, differences, events, and the journals of the state at hand and of
-//! the stretch before it, which is prepared while one steps back.
+//! A near state is reached by steps: forward by the converter, back by its journal. A far one starts from a keyframe.
+//! All stored data stays within a budget: whole meshes, differences, events, the journal of the current state, and that
+//! of the stretch before it, which is prepared during steps back.
 
 mod editing;
 
@@ -14,7 +14,7 @@ use super::log::Log;
 use super::recorder::{Recorder, SPACING, Stretch};
 use super::run::{EditKind, Run};
 use crate::core::convert::converter::Converter;
-use crate::core::convert::event::Event;
+use crate::core::convert::event::{Event, EventKind};
 use crate::core::fault::Fault;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::half_edge::touched::Touched;
@@ -22,60 +22,60 @@ use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::Watch;
 
-/// Bytes that a history may take unless it is told otherwise: 512 MiB.
+/// The default budget of a history, in bytes: 512 MiB.
 pub const BUDGET: usize = 512 << 20;
-/// Steps that are rather stepped than sought.
+/// Up to this distance, stepping is faster than starting from a keyframe.
 const NEAR: u64 = 2 * SPACING;
-/// After a leap so many steps, at least, can be taken back at once.
+/// At least this many steps can be undone at once after a leap.
 const BEHIND: u64 = 128;
-/// Steps by which the stretch before is prepared for every step back.
+/// Steps by which each step back advances the preparation of the stretch before.
 const PREPARED: u64 = 64;
-/// Steps between two looks at the memory that the journal takes.
-const LOOK: u64 = 64;
+/// Steps between two checks of the memory of the journal.
+const CHECK: u64 = 64;
 
-/// A state of the run with the steps that lead to it, as far back as they are kept.
+/// A state of the run with its journal: the steps that lead to it, as far back as they are stored.
 struct Cursor {
     converter: Converter<'static>,
     step: u64,
-    /// When the memory is looked at next.
-    look: u64,
+    /// The step of the next check of its memory.
+    next_check: u64,
 }
 
-/// A run and any state of it.
+/// A run with access to all its states.
 pub struct History {
     run: Arc<Run>,
     budget: usize,
     log: Log,
     keyframes: Keyframes,
-    /// `None` while it is lent.
+    /// `None` while lent.
     recorder: Option<Recorder>,
-    /// How often the edits changed.
+    /// Counts changes of the edits and restarts of the recorder.
     edition: u64,
     ended: bool,
-    /// Why the conversion cannot go on after the last known step.
+    /// Why the conversion cannot continue after the last known step.
     stuck: Option<Fault>,
     now: Cursor,
-    /// On its way from a keyframe to where the history of the state at hand begins.
+    /// A cursor on its way from a keyframe to the beginning of the journal of `now`.
     behind: Option<Cursor>,
-    /// A mesh whose memory can be used again.
+    /// A mesh whose memory can be reused.
     spare: Mesh,
-    /// What changed since somebody last took note of it.
+    /// What changed since the last [`History::take_changes`].
     changed: Touched,
     /// Whether that is everything.
     all_changed: bool,
 }
 
-/// What may look other than before.
+/// What changed between two states.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Changes {
-    /// Another state altogether, or the same elements in great number.
+    /// Everything, or too much to list.
     Everything,
-    /// These nodes and elements, each once; some may have gone, and slots at the end with them.
+    /// These nodes and elements, each listed once. Some may be deleted, together with slots at the end.
     Some {
-        /// Nodes that moved, came or went, or whose elements changed.
+        /// Nodes that moved, appeared or disappeared, or whose elements changed.
         nodes: Vec<NodeId>,
-        /// Elements whose nodes, neighbours or levels changed, that came or went. What merely has a node that moved is not
-        /// among them.
+        /// Elements that appeared or disappeared, or whose nodes, neighbours or levels changed. Elements of nodes that
+        /// merely moved are not listed.
         elements: Vec<ElementId>,
     },
 }
@@ -84,18 +84,18 @@ impl History {
     /// The history of a run, at step 0, with the usual budget.
     ///
     /// # Errors
-    /// What is wrong with the case, or with an edit.
+    /// An invalid case or edit.
     pub fn open(run: Run, watch: &mut dyn Watch) -> Result<History, Fault> {
         let background = run.background(watch)?;
         History::of(run, &background, BUDGET)
     }
 
-    /// The history of a run whose background mesh is made already, within a budget of bytes.
+    /// The history of a run whose background mesh exists, within a budget in bytes.
     ///
     /// # Errors
-    /// An edit that is no valid one.
+    /// An invalid edit.
     pub fn of(run: Run, background: &Background, budget: usize) -> Result<History, Fault> {
-        // The edits must be valid everywhere, not only where one looks.
+        // All edits must be valid, not only those of the steps that are visited.
         run.parameters_at(u64::MAX)?;
         let sizing = Arc::new(background.sizing.clone());
         let mut mesh = background.mesh.clone();
@@ -105,7 +105,7 @@ impl History {
         let run = Arc::new(run);
         let mut recorder = Recorder::resume(Arc::clone(&run), &keyframes, 0)?;
         let log = recorder.begin();
-        let mut now = Cursor { converter: raw, step: 0, look: LOOK };
+        let mut now = Cursor { converter: raw, step: 0, next_check: CHECK };
         now.converter.keep_history();
         run.enter(&mut now.converter, 0)?;
         Ok(History {
@@ -130,12 +130,12 @@ impl History {
         &self.run
     }
 
-    /// The state at hand.
+    /// The current state.
     pub fn state(&self) -> &Converter<'static> {
         &self.now.converter
     }
 
-    /// Its step.
+    /// The step of the current state.
     pub fn step(&self) -> u64 {
         self.now.step
     }
@@ -150,18 +150,19 @@ impl History {
         (self.ended || self.stuck.is_some()).then(|| self.log.known())
     }
 
-    /// Why the conversion cannot go on after the last known step, where that is so.
+    /// Why the conversion cannot continue after the last known step; `None` where it can.
     pub fn stuck(&self) -> Option<&Fault> {
         self.stuck.as_ref()
     }
 
-    /// Bytes that the history takes: everything but the state at hand, the one that runs ahead, and the one on its way.
+    /// The memory of the history in bytes, without the meshes of the current state, of the recorder and of the prepared
+    /// stretch.
     pub fn memory(&self) -> usize {
         let behind = self.behind.as_ref().map_or(0, |behind| behind.converter.history_bytes());
         self.log.bytes() + self.keyframes.bytes() + self.now.converter.history_bytes() + behind
     }
 
-    /// What changed since this was asked last.
+    /// What changed since the last call.
     pub fn take_changes(&mut self) -> Changes {
         if std::mem::replace(&mut self.all_changed, false) {
             self.changed.clear();
@@ -174,7 +175,7 @@ impl History {
 
     // ---- running ahead ----
 
-    /// Runs ahead until the step is known or the run ends; where the recorder is lent, nothing is done.
+    /// Runs ahead until the step is known or the run ends; does nothing while the recorder is lent.
     pub fn extend(&mut self, step: u64) {
         let Some(mut recorder) = self.recorder.take() else { return };
         while self.log.known() < step && self.end().is_none() {
@@ -185,14 +186,14 @@ impl History {
         self.recorder = Some(recorder);
     }
 
-    /// Lends the recorder, so that another thread can run ahead; what it finds comes back by [`History::accept`], itself by
-    /// [`History::take_back`]. `None` where it is lent already, or where the end is known.
+    /// Lends the recorder, so that another thread can run ahead. [`History::accept`] takes its results,
+    /// [`History::take_back`] the recorder itself. `None` where it is already lent, or where the end is known.
     pub fn lend(&mut self) -> Option<Recorder> {
         if self.end().is_some() { None } else { self.recorder.take() }
     }
 
-    /// Takes over what was found on the way ahead. False where it belongs to other edits or other steps: then the recorder
-    /// that found it is of no use any more.
+    /// Adds a stretch that the recorder ran. False where it belongs to other edits or other steps: then its recorder is
+    /// obsolete.
     pub fn accept(&mut self, stretch: Stretch) -> bool {
         if stretch.edition != self.edition || stretch.from != self.log.known() {
             return false;
@@ -208,10 +209,10 @@ impl History {
         true
     }
 
-    /// Takes the recorder back. One that knows other edits or other steps is let go, and a new one made.
+    /// Takes the recorder back. One of other edits or other steps is dropped and replaced.
     ///
     /// # Errors
-    /// An edit that is no valid one.
+    /// An invalid edit.
     pub fn take_back(&mut self, recorder: Recorder) -> Result<(), Fault> {
         if recorder.is_of(self.edition) && recorder.step() == self.log.known() {
             self.recorder = Some(recorder);
@@ -220,7 +221,7 @@ impl History {
         if self.recorder.is_none() { self.resume_recorder() } else { Ok(()) }
     }
 
-    /// A new recorder at the last keyframe; what is known after that is forgotten and will be found again.
+    /// Makes a new recorder at the last keyframe and drops everything known after it.
     fn resume_recorder(&mut self) -> Result<(), Fault> {
         self.edition += 1;
         let recorder = Recorder::resume(Arc::clone(&self.run), &self.keyframes, self.edition)?;
@@ -234,11 +235,11 @@ impl History {
 
     // ---- seeking ----
 
-    /// Goes to a step, or as near to it as is known: to the end of the run where that comes before, or to where a lent
-    /// recorder has come. Returns the step.
+    /// Goes to a step, or to the last known one before it: the end of the run, or the last step of a lent recorder.
+    /// Returns the step reached.
     ///
     /// # Errors
-    /// Where the conversion cannot go on before that: the state is the last one that there is.
+    /// The conversion cannot continue before that step. The current state is then the last one of the run.
     pub fn seek(&mut self, step: u64) -> Result<u64, Fault> {
         self.extend(step);
         let target = step.min(self.log.known());
@@ -258,29 +259,29 @@ impl History {
         }
     }
 
-    /// One step forward; `None` at the end, or where a lent recorder has not come further.
+    /// Goes one step forward; `None` at the end, or at the last step of a lent recorder.
     ///
     /// # Errors
-    /// Where the conversion cannot go on.
+    /// The conversion cannot continue.
     pub fn forward(&mut self) -> Result<Option<Event>, Fault> {
         let step = self.now.step;
         self.seek(step + 1)?;
         Ok(if self.now.step > step { self.event(step + 1)? } else { None })
     }
 
-    /// One step back; false at the beginning.
+    /// Goes one step back; false at the beginning.
     ///
     /// # Errors
-    /// None that the way there has not met.
+    /// A step of the replay failed.
     pub fn back(&mut self) -> Result<bool, Fault> {
         let Some(step) = self.now.step.checked_sub(1) else { return Ok(false) };
         self.seek(step).map(|_| true)
     }
 
-    /// What a step did, by replay where its event was given up; `None` where it is not known.
+    /// What a step did, by replay where its event was dropped; `None` where the step is not known.
     ///
     /// # Errors
-    /// None that the way there has not met.
+    /// A step of the replay failed.
     pub fn event(&self, step: u64) -> Result<Option<Event>, Fault> {
         if !(1..=self.log.known()).contains(&step) {
             return Ok(None);
@@ -288,11 +289,11 @@ impl History {
         Ok(self.events(step, step)?.first().copied())
     }
 
-    /// What the steps from `from` to `until` (both included) did, as far as they are known, by replay where their events were
-    /// given up.
+    /// What the steps from `from` to `until` (both included) did, as far as they are known, by replay where their
+    /// events were dropped.
     ///
     /// # Errors
-    /// None that the way there has not met.
+    /// A step of the replay failed.
     pub fn events(&self, from: u64, until: u64) -> Result<Vec<Event>, Fault> {
         let until = until.min(self.log.known());
         let kept: Option<Vec<Event>> = (from..=until).map(|step| self.log.event(step).copied()).collect();
@@ -304,25 +305,25 @@ impl History {
         Ok(events)
     }
 
-    /// Walks the states from `from` to `until` without moving the state at hand: tells step, state and the event that led
-    /// there, none for the first.
+    /// Visits the states from `from` to `until` without changing the current state: calls `visit` with step, state and
+    /// the event that led there, `None` for the first.
     ///
     /// # Errors
-    /// None that the way there has not met.
+    /// A step of the replay failed.
     pub(super) fn replay(
         &self,
         from: u64,
         until: u64,
-        tell: &mut dyn FnMut(u64, &Converter<'static>, Option<&Event>),
+        visit: &mut dyn FnMut(u64, &Converter<'static>, Option<&Event>),
     ) -> Result<(), Fault> {
         let mut cursor = self.cursor_before(from, Mesh::default())?;
         while cursor.step < from {
             cursor.advance(&self.run)?;
         }
-        tell(cursor.step, &cursor.converter, None);
+        visit(cursor.step, &cursor.converter, None);
         while cursor.step < until.min(self.log.known()) {
             let event = cursor.advance(&self.run)?;
-            tell(cursor.step, &cursor.converter, Some(&event));
+            visit(cursor.step, &cursor.converter, Some(&event));
         }
         Ok(())
     }
@@ -331,13 +332,13 @@ impl History {
         &self.keyframes
     }
 
-    /// The state of the keyframe at or before a step, its edits made.
+    /// The state of the last keyframe at or before a step, with its edits applied.
     fn cursor_before(&self, step: u64, spare: Mesh) -> Result<Cursor, Fault> {
         let index = self.keyframes.at_or_before(step);
         let step = self.keyframes.frames()[index].step;
         let mut converter = self.keyframes.state(index, spare);
         self.run.enter(&mut converter, step)?;
-        Ok(Cursor { converter, step, look: step + LOOK })
+        Ok(Cursor { converter, step, next_check: step + CHECK })
     }
 
     fn leap(&mut self, step: u64) -> Result<(), Fault> {
@@ -348,14 +349,15 @@ impl History {
         self.now = self.cursor_before(self.before(step), spare)?;
         self.now.converter.keep_history();
         self.all_changed = true;
-        // A leap has time for what a step back has not.
+        // Prepare now what a step back would have no time for.
         if self.now.step > 0 { self.prepare(0) } else { Ok(()) }
     }
 
-    /// The step from which a leap to a step starts: some steps earlier, so that they can be taken back at once. In the global
-    /// post-processing a step may be a sweep over the whole mesh, and one is enough.
+    /// The step from which a leap to a step starts: some steps earlier, so that these can be undone at once. In the
+    /// global post-processing, where a step may sweep the whole mesh, one step earlier is enough.
     fn before(&self, step: u64) -> u64 {
-        let sweeps = self.log.kind(step).is_some_and(|kind| matches!(kind, "swept" | "post_processed"));
+        let sweeps =
+            self.log.kind(step).is_some_and(|kind| matches!(kind, EventKind::Swept | EventKind::PostProcessed));
         step.saturating_sub(if sweeps { 1 } else { BEHIND })
     }
 
@@ -363,15 +365,15 @@ impl History {
         let event = self.now.advance(&self.run)?;
         debug_assert_eq!(Some(event.kind()), self.log.kind(self.now.step), "a run is a value");
         self.note_changes();
-        self.now.look_at_memory(self.budget / 8);
+        self.now.limit_memory(self.budget / 8);
         Ok(())
     }
 
     fn back_one(&mut self) -> Result<(), Fault> {
         if self.now.converter.history_len() == 0 {
             self.prepare(u64::MAX)?;
-            // It is the same state; its history goes further back.
-            let further = self.behind.take().expect("it was just prepared");
+            // The same state, with a journal that reaches further back.
+            let further = self.behind.take().expect("`prepare` sets it");
             self.spare = std::mem::replace(&mut self.now, further).converter.mesh;
         }
         self.note_changes();
@@ -388,7 +390,7 @@ impl History {
         Ok(())
     }
 
-    /// Brings the stretch before that which can be taken back nearer to it by so many steps.
+    /// Advances the prepared stretch, at most by `steps`, towards the beginning of the journal of the current state.
     fn prepare(&mut self, steps: u64) -> Result<(), Fault> {
         let begin = self.now.step - self.now.converter.history_len() as u64;
         let mut behind = match self.behind.take() {
@@ -403,7 +405,7 @@ impl History {
         for _ in 0..steps.min(begin - behind.step) {
             behind.advance(&self.run)?;
         }
-        behind.look_at_memory(self.budget / 8);
+        behind.limit_memory(self.budget / 8);
         self.behind = Some(behind);
         Ok(())
     }
@@ -420,7 +422,7 @@ impl History {
 }
 
 impl Cursor {
-    /// One step forward, and the edits of where that leads.
+    /// One step forward, with the edits of the step reached.
     fn advance(&mut self, run: &Run) -> Result<Event, Fault> {
         let event = self.converter.step()?;
         self.step += 1;
@@ -428,13 +430,13 @@ impl Cursor {
         Ok(event)
     }
 
-    /// Shortens the history to what the budget allows; the last step can always be taken back.
-    fn look_at_memory(&mut self, budget: usize) {
-        // The journal is most of it, and its size is known at once.
-        if self.step < self.look && self.converter.mesh.journal().bytes() <= budget {
+    /// Shortens the journal to fit the budget; the last step can always be undone.
+    fn limit_memory(&mut self, budget: usize) {
+        // The journal takes most of the memory, and its size is known at once.
+        if self.step < self.next_check && self.converter.mesh.journal().bytes() <= budget {
             return;
         }
-        self.look = self.step + LOOK;
+        self.next_check = self.step + CHECK;
         while self.converter.history_bytes() > budget {
             let before = self.converter.history_len();
             self.converter.shorten_history(before / 2);

@@ -1,34 +1,34 @@
-//! States of a run that are kept, in the order of their steps: a few as whole meshes, the others as what differs from the one
-//! before. From the nearest one, any state is a few steps away.
+//! Stored states of a run, sorted by step: a few as whole meshes, the others as differences from the one before. Any
+//! state is a few steps from the nearest one.
 
 use crate::core::convert::converter::Converter;
 use crate::core::mesh::half_edge::{Difference, Mesh};
 
-/// A state that is kept: raw, before the edits of its step are made.
+/// A stored state, before the edits of its step are applied.
 #[derive(Clone)]
 pub struct Keyframe {
     /// Its step.
     pub step: u64,
     /// Everything but the mesh.
     rest: Converter<'static>,
-    /// The mesh, where it is kept whole.
+    /// The mesh, where it is stored whole.
     full: Option<Mesh>,
-    /// What differs from the keyframe before; none in the first.
+    /// The difference from the keyframe before; none in the first one.
     difference: Option<Difference>,
 }
 
 impl Keyframe {
-    /// The first one.
+    /// The first keyframe.
     pub(super) fn first(rest: Converter<'static>, mesh: Mesh) -> Keyframe {
         Keyframe { step: 0, rest, full: Some(mesh), difference: None }
     }
 
-    /// One after another.
+    /// A keyframe that follows another.
     pub(super) fn after(step: u64, rest: Converter<'static>, difference: Difference, full: Option<Mesh>) -> Keyframe {
         Keyframe { step, rest, full, difference: Some(difference) }
     }
 
-    /// What was touched since the keyframe before; none at the first.
+    /// The difference from the keyframe before; none in the first one.
     pub(super) fn difference(&self) -> Option<&Difference> {
         self.difference.as_ref()
     }
@@ -43,18 +43,18 @@ impl Keyframe {
     }
 }
 
-/// Keyframes by step, the first at step 0.
+/// Keyframes sorted by step, the first at step 0.
 #[derive(Clone)]
 pub struct Keyframes {
     frames: Vec<Keyframe>,
-    /// Closer keyframes than this are made one.
+    /// Keyframes closer than this are merged.
     spacing: u64,
     bytes_of_meshes: usize,
     bytes_of_differences: usize,
 }
 
 impl Keyframes {
-    /// Keyframes with the first one.
+    /// Starts with the first keyframe.
     pub(super) fn new(first: Keyframe) -> Keyframes {
         let mut keyframes = Keyframes { frames: Vec::new(), spacing: 1, bytes_of_meshes: 0, bytes_of_differences: 0 };
         keyframes.push(first);
@@ -71,7 +71,7 @@ impl Keyframes {
         self.frames.partition_point(|frame| frame.step <= step) - 1
     }
 
-    /// The state of a keyframe, in the memory of a mesh that is not needed any more.
+    /// The state of a keyframe; it reuses the memory of a spare mesh.
     pub(super) fn state(&self, index: usize, spare: Mesh) -> Converter<'static> {
         let whole = self.frames[..=index].iter().rposition(|frame| frame.full.is_some());
         let whole = whole.expect("the first keyframe is whole");
@@ -87,7 +87,7 @@ impl Keyframes {
         self.frames[index].rest.with_mesh(mesh)
     }
 
-    /// Appends one.
+    /// Appends a keyframe.
     pub(super) fn push(&mut self, frame: Keyframe) {
         self.bytes_of_meshes += frame.bytes_of_mesh();
         self.bytes_of_differences += frame.bytes_of_difference();
@@ -98,7 +98,7 @@ impl Keyframes {
         }
     }
 
-    /// Lets a keyframe that is not whole go; the one after it takes its difference over.
+    /// Drops a keyframe that is not whole; the next one takes over its difference.
     fn merge(&mut self, index: usize) {
         if self.frames[index].full.is_some() {
             return;
@@ -114,13 +114,13 @@ impl Keyframes {
         self.bytes_of_differences += next.bytes_of_difference();
     }
 
-    /// Bytes that they take.
+    /// The memory they take, in bytes.
     pub fn bytes(&self) -> usize {
         self.bytes_of_meshes + self.bytes_of_differences
     }
 
-    /// Lets every second whole mesh go, and then every second keyframe, until meshes and differences take no more than
-    /// `budget` bytes each, as far as that is possible.
+    /// Drops every second whole mesh, and then every second keyframe, until meshes and differences take no more than
+    /// `budget` bytes each, as far as possible.
     pub(super) fn thin(&mut self, budget: usize) {
         while self.bytes_of_meshes > budget && self.frames[1..].iter().any(|frame| frame.full.is_some()) {
             let mut keep = true;
@@ -159,7 +159,7 @@ impl Keyframes {
         }
     }
 
-    /// Forgets all keyframes after a step.
+    /// Drops all keyframes after a step.
     pub(super) fn truncate(&mut self, step: u64) {
         self.frames.truncate(self.at_or_before(step) + 1);
         self.bytes_of_meshes = self.frames.iter().map(Keyframe::bytes_of_mesh).sum();

@@ -1,59 +1,59 @@
-//! What every step did, in little memory: its kind and the quadrilaterals that stand after it for all steps, the whole event
-//! for as many as the budget allows (the others are had again by replay).
+//! What every step did, in little memory: for every step its kind and the number of quadrilaterals after it, and the
+//! whole event for as many steps as the budget allows (replay recovers the others).
 
 use serde::Serialize;
 
 use super::front_count::FrontCount;
 use super::sample::Sample;
-use crate::core::convert::event::Event;
+use crate::core::convert::event::{Event, EventKind};
 
-/// Steps of a chunk of events.
+/// Steps in a chunk of events.
 const CHUNK: usize = 4096;
-/// Set beside the kind where local post-processing is done after the step.
+/// Set beside the kind where no local post-processing is under way after the step.
 const AT_REST: u8 = 0x80;
 
-/// Least and largest angle of a quadrilateral, each in the metric of its node, in radians.
+/// Smallest and largest angle of a quadrilateral, each in the metric of its node, in radians.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Angles {
-    /// The least one.
+    /// The smallest one.
     pub min: f32,
     /// The largest one.
     pub max: f32,
 }
 
-/// The steps of a run as far as they are known. Step s leads from state s - 1 to state s; the first is 1.
+/// The steps of a run as far as they are known. Step s leads from state s - 1 to state s; the first step is 1.
 #[derive(Clone, Debug, Default)]
 pub struct Log {
-    /// Index into [`Event::KINDS`], with [`AT_REST`].
+    /// The [`EventKind`] of each step as a number, with [`AT_REST`].
     kinds: Vec<u8>,
     nq: Vec<u32>,
-    /// Quadrilaterals that stood at step 0.
+    /// Number of quadrilaterals at step 0.
     given: u64,
     chunks: Vec<Option<Box<[Event]>>>,
     /// The events of the last chunk, which is not full yet.
     tail: Vec<Event>,
-    /// The front after each step that changed its numbers.
+    /// The counts of the front after each step that changed them.
     fronts: Vec<(u64, FrontCount)>,
     /// The angles of the quadrilaterals that were formed.
     quads: Vec<(u64, Angles)>,
     samples: Vec<Sample>,
-    /// Kept chunks before this one were given up first.
+    /// The events of all chunks before this one were dropped.
     given_up: usize,
 }
 
 impl Log {
-    /// The last step that is known.
+    /// The last known step.
     pub fn known(&self) -> u64 {
         self.kinds.len() as u64
     }
 
     /// The kind of what a step did, from 1 to [`known`](Log::known).
-    pub fn kind(&self, step: u64) -> Option<&'static str> {
+    pub fn kind(&self, step: u64) -> Option<EventKind> {
         let index = usize::try_from(step.checked_sub(1)?).ok()?;
-        self.kinds.get(index).map(|kind| Event::KINDS[usize::from(kind & !AT_REST)])
+        self.kinds.get(index).copied().map(kind_of)
     }
 
-    /// The number of quadrilaterals that stand after a step.
+    /// The number of quadrilaterals after a step.
     pub fn nq(&self, step: u64) -> u64 {
         let index = usize::try_from(step).unwrap_or(usize::MAX).min(self.nq.len());
         index.checked_sub(1).map_or(self.given, |index| u64::from(self.nq[index]))
@@ -67,7 +67,7 @@ impl Log {
         }
     }
 
-    /// What a step did; `None` where the step is not known, or its event was given up for memory.
+    /// What a step did; `None` where the step is not known, or its event was dropped to save memory.
     pub fn event(&self, step: u64) -> Option<&Event> {
         let index = usize::try_from(step.checked_sub(1)?).ok()?;
         match self.chunks.get(index / CHUNK) {
@@ -76,36 +76,36 @@ impl Log {
         }
     }
 
-    /// The front after a step, in numbers.
+    /// The counts of the front after a step.
     pub fn front(&self, step: u64) -> FrontCount {
         let count = self.fronts.partition_point(|point| point.0 <= step);
         count.checked_sub(1).map_or(FrontCount::default(), |index| self.fronts[index].1)
     }
 
-    /// The front after each step that changed its numbers; the first is that of step 0.
+    /// The counts of the front after each step that changed them; the first entry is step 0.
     pub fn fronts(&self) -> &[(u64, FrontCount)] {
         &self.fronts
     }
 
-    /// The angles of the quadrilateral that a step formed, as it stood right after it.
+    /// The angles of the quadrilateral that a step formed, right after that step.
     pub fn angles(&self, step: u64) -> Option<Angles> {
         let index = self.quads.binary_search_by_key(&step, |quad| quad.0).ok()?;
         Some(self.quads[index].1)
     }
 
-    /// Invariants and figures along the run, by step: about one a thousand steps.
+    /// Invariants and statistics along the run, by step: about one sample per thousand steps.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
 
-    /// The kinds of steps from `from` to `until` (both included), as indices into [`Event::KINDS`].
-    pub fn kind_indices(&self, from: u64, until: u64) -> impl Iterator<Item = usize> + '_ {
+    /// The kinds of the steps from `from` to `until` (both included).
+    pub fn kinds(&self, from: u64, until: u64) -> impl Iterator<Item = EventKind> + '_ {
         let until = usize::try_from(until).unwrap_or(usize::MAX).min(self.kinds.len());
         let from = usize::try_from(from.saturating_sub(1)).unwrap_or(usize::MAX).min(until);
-        self.kinds[from..until].iter().map(|kind| usize::from(kind & !AT_REST))
+        self.kinds[from..until].iter().copied().map(kind_of)
     }
 
-    /// A log without steps.
+    /// A log without steps, of a run that starts with this number of quadrilaterals.
     pub(super) fn beginning_with(given: u64) -> Log {
         Log { given, ..Log::default() }
     }
@@ -125,12 +125,8 @@ impl Log {
     }
 
     /// Appends what a step did.
-    ///
-    /// # Panics
-    /// Where the kind is missing in [`Event::KINDS`].
     pub(super) fn push(&mut self, event: Event, nq: u64, at_rest: bool) {
-        let kind = Event::KINDS.iter().position(|&kind| kind == event.kind()).expect("KINDS lists all kinds") as u8;
-        self.kinds.push(kind | if at_rest { AT_REST } else { 0 });
+        self.kinds.push(event.kind() as u8 | if at_rest { AT_REST } else { 0 });
         self.nq.push(u32::try_from(nq).unwrap_or(u32::MAX));
         self.push_event(event);
     }
@@ -142,7 +138,7 @@ impl Log {
         }
     }
 
-    /// Appends the steps that follow.
+    /// Appends the steps of a later log.
     pub(super) fn append(&mut self, later: Log) {
         self.kinds.extend(later.kinds);
         self.nq.extend(later.nq);
@@ -154,7 +150,7 @@ impl Log {
         }
     }
 
-    /// Forgets all steps after this one.
+    /// Drops all steps after this one.
     pub(super) fn truncate(&mut self, step: u64) {
         let count = usize::try_from(step).unwrap_or(usize::MAX).min(self.kinds.len());
         self.kinds.truncate(count);
@@ -166,8 +162,8 @@ impl Log {
         if count < CHUNK * self.chunks.len() {
             let partial = self.chunks.swap_remove(count / CHUNK);
             self.chunks.truncate(count / CHUNK);
-            // Where its events were given up, those that are left of the chunk are given up too: by an empty chunk they
-            // would be taken for others.
+            // If the events of this chunk were dropped, drop the whole chunk: an empty one would shift all later
+            // events.
             self.tail = match partial {
                 Some(chunk) => chunk[..count % CHUNK].to_vec(),
                 None => return self.truncate((count - count % CHUNK) as u64),
@@ -178,7 +174,7 @@ impl Log {
         self.given_up = self.given_up.min(self.chunks.len());
     }
 
-    /// Bytes that it takes.
+    /// The memory it takes, in bytes.
     pub fn bytes(&self) -> usize {
         let kept = self.chunks.iter().flatten().count() * CHUNK + self.tail.capacity();
         let figures = self.fronts.capacity() * size_of::<(u64, FrontCount)>()
@@ -191,7 +187,7 @@ impl Log {
             + 16 * self.chunks.capacity()
     }
 
-    /// Gives events up, the oldest first, until no more than `budget` bytes are taken, as far as that is possible.
+    /// Drops events, the oldest first, until the log takes no more than `budget` bytes, as far as possible.
     pub(super) fn give_up(&mut self, budget: usize) {
         while self.bytes() > budget && self.given_up < self.chunks.len() {
             self.chunks[self.given_up] = None;
@@ -199,29 +195,27 @@ impl Log {
         }
     }
 
-    /// The steps whose events stand in one chunk with that of `step`: from, to (the last one).
+    /// The first and the last step of the chunk that holds the event of `step`.
     pub(super) fn chunk_of(&self, step: u64) -> (u64, u64) {
         let first = step.saturating_sub(1) / CHUNK as u64 * CHUNK as u64;
         (first + 1, self.known().min(first + CHUNK as u64))
     }
 
-    /// The next step after `from` for which `holds`; kinds by their index in [`Event::KINDS`].
-    pub fn next_of(&self, from: u64, holds: impl Fn(&'static str) -> bool) -> Option<u64> {
-        let wanted = wanted(holds);
+    /// The next step after `from` whose kind is wanted.
+    pub fn next_of(&self, from: u64, wanted: impl Fn(EventKind) -> bool) -> Option<u64> {
         let first = usize::try_from(from).ok()?;
-        let found = self.kinds.get(first..)?.iter().position(|kind| wanted[usize::from(kind & !AT_REST)])?;
+        let found = self.kinds.get(first..)?.iter().position(|&kind| wanted(kind_of(kind)))?;
         Some(from + found as u64 + 1)
     }
 
-    /// The last step before or at `until` for which `holds`.
-    pub fn last_of(&self, until: u64, holds: impl Fn(&'static str) -> bool) -> Option<u64> {
-        let wanted = wanted(holds);
+    /// The last step up to `until` (included) whose kind is wanted.
+    pub fn last_of(&self, until: u64, wanted: impl Fn(EventKind) -> bool) -> Option<u64> {
         let count = usize::try_from(until).unwrap_or(usize::MAX).min(self.kinds.len());
-        let found = self.kinds[..count].iter().rposition(|kind| wanted[usize::from(kind & !AT_REST)])?;
+        let found = self.kinds[..count].iter().rposition(|&kind| wanted(kind_of(kind)))?;
         Some(found as u64 + 1)
     }
 
-    /// The first step of `steps` at whose end at least `nq` quadrilaterals stand and no local post-processing is under way.
+    /// The first step after `after` that leaves at least `nq` quadrilaterals and no local post-processing under way.
     pub fn first_with(&self, nq: u64, after: u64) -> Option<u64> {
         let first = usize::try_from(after).ok()?;
         let numbers = self.nq.get(first..)?.iter().zip(&self.kinds[first..]);
@@ -230,12 +224,8 @@ impl Log {
     }
 }
 
-fn wanted(holds: impl Fn(&'static str) -> bool) -> [bool; 128] {
-    let mut wanted = [false; 128];
-    for (i, kind) in Event::KINDS.iter().enumerate() {
-        wanted[i] = holds(kind);
-    }
-    wanted
+fn kind_of(stored: u8) -> EventKind {
+    EventKind::ALL[usize::from(stored & !AT_REST)]
 }
 
 #[cfg(test)]
@@ -258,19 +248,21 @@ mod tests {
     #[test]
     fn steps_are_found_by_kind_and_by_number_of_quadrilaterals() {
         let log = log(10_000);
-        assert_eq!(log.next_of(0, |kind| kind == "second_pass"), Some(10));
-        assert_eq!(log.next_of(10, |kind| kind == "second_pass"), Some(20));
-        assert_eq!(log.last_of(10, |kind| kind == "second_pass"), Some(10));
-        assert_eq!(log.last_of(9, |kind| kind == "second_pass"), None);
+        let is_second_pass = |kind| kind == EventKind::SecondPass;
+        assert_eq!(log.next_of(0, is_second_pass), Some(10));
+        assert_eq!(log.next_of(10, is_second_pass), Some(20));
+        assert_eq!(log.last_of(10, is_second_pass), Some(10));
+        assert_eq!(log.last_of(9, is_second_pass), None);
         assert_eq!(log.next_of(10_000, |_| true), None);
         assert_eq!((log.nq(0), log.nq(25), log.nq(99_999)), (0, 2, 1000));
         assert_eq!(log.first_with(3, 0), Some(35));
         assert_eq!(log.first_with(3, 36), Some(37));
-        assert_eq!((log.kind(0), log.kind(10), log.kind(11)), (None, Some("second_pass"), Some("deferred")));
+        let kinds = [0, 10, 11].map(|step| log.kind(step));
+        assert_eq!(kinds, [None, Some(EventKind::SecondPass), Some(EventKind::Deferred)]);
     }
 
     #[test]
-    fn events_are_those_of_their_step_after_appending_truncating_and_giving_up() {
+    fn events_belong_to_their_steps_after_appending_truncating_and_dropping() {
         let mut whole = log(9000);
         let mut later = Log::default();
         for i in 9001..=13_000 {
@@ -285,7 +277,7 @@ mod tests {
         assert_eq!((whole.event(4096), whole.event(8192), whole.event(8193)), (None, None, Some(&event(8193))));
         assert!(whole.bytes() < 16_384 * 8, "{}", whole.bytes());
         whole.truncate(5000);
-        assert_eq!(whole.known(), 4096, "what is left of a chunk without events is not kept");
+        assert_eq!(whole.known(), 4096, "the rest of a chunk without events is not kept");
         assert_eq!(whole.chunk_of(4097), (4097, 4096));
         assert_eq!(whole.chunk_of(4096), (1, 4096));
     }

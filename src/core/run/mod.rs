@@ -1,23 +1,23 @@
-//! A run as a value, any state of it, and why that state is as it is. Everything here works without a screen; the window,
-//! the command line and tests ask it.
+//! A run as a value, access to any state of it, and explanations of that state. Everything here works without a screen;
+//! the window, the command line and tests use it.
 //!
 //! | what | where |
 //! |---|---|
 //! | the run: case, parameters, edits at steps, bookmarks, camera | [`run::Run`] |
-//! | any state of it, bit-identical to running there afresh; stepping forward and back; editing | [`history::History`] |
-//! | states for other threads to look at, brought up to date by what changed | [`copies::Copies`] |
-//! | what a figure shows of it | [`shown::Shown`] |
-//! | running ahead on another thread | [`history::History::lend`], [`recorder::Recorder`], [`history::History::accept`] |
-//! | one event a step, the number of quadrilaterals, where to go next | [`log::Log`], `playback` |
-//! | invariants and figures along the run, lanes of its work | [`sample`], [`timeline`] |
-//! | when quadrilaterals were made, without a history | [`births`] |
+//! | reaching any state, bit-identical to a new run; stepping forward and back; editing | [`history::History`] |
+//! | copies of the mesh for other threads, updated by what changed | [`copies::Copies`] |
+//! | what a figure shows of a run | [`shown::Shown`] |
+//! | running ahead on another thread | [`recorder::Recorder`], which [`history::History::lend`] lends |
+//! | one event per step, the number of quadrilaterals, where to go next | [`log::Log`], `playback` |
+//! | invariants and statistics along a run, lanes of its work | [`sample`], [`timeline`] |
+//! | the step that made each quadrilateral, without a history | [`births`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`watch`] |
-//! | why this segment, what is this node | [`explain`], [`front_table`] |
+//! | why a segment is chosen, what a node is | [`explain`], [`front_table`] |
 //!
-//! The state at step k is what k steps from the beginning lead to, with the edits of step k made: an edit of step k changes
-//! what follows from k on and nothing before.
+//! The state at step k is the state after k steps, with the edits of step k applied: an edit at step k changes what
+//! follows and nothing before.
 
-#[expect(clippy::module_inception, reason = "the run is the value that the room is about")]
+#[expect(clippy::module_inception, reason = "the module is about the run")]
 pub mod run;
 pub mod shown;
 pub mod front_count;

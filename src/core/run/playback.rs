@@ -1,18 +1,19 @@
-//! Where to go next: to the next or previous quadrilateral, to so many quadrilaterals, to the next or previous event of a
-//! kind. These find the step; [`History::seek`] goes there. Forward, the run is made known as far as it takes, unless the recorder
-//! is lent.
+//! Where to go next: to the next or previous quadrilateral, to a number of quadrilaterals, to the next or previous
+//! event of a kind. These functions find the step; [`History::seek`] goes there. Looking forward, they run ahead as far
+//! as necessary, unless the recorder is lent.
 
 use super::history::History;
 use super::recorder::SPACING;
+use crate::core::convert::event::EventKind;
 
-/// What makes quadrilaterals stand, apart from clean-up.
-fn makes_quads(kind: &str) -> bool {
-    matches!(kind, "formed" | "closed" | "patched")
+/// Whether a step of this kind makes quadrilaterals; clean-up does not count.
+fn makes_quads(kind: EventKind) -> bool {
+    matches!(kind, EventKind::Formed | EventKind::Closed | EventKind::Patched)
 }
 
 impl History {
-    /// The step at which the next quadrilateral stands and its local post-processing (4.3.6) is done; where that of the last
-    /// one is under way, the step at which it is done. `None` where no more comes, or where it is not known yet.
+    /// The step that completes the next quadrilateral and its local post-processing (4.3.6), or that of the last
+    /// quadrilateral where it is under way. `None` where there is no further one, or where it is not known yet.
     pub fn next_quad(&mut self) -> Option<u64> {
         let from = self.step();
         let made = if self.log().is_at_rest(from) {
@@ -23,8 +24,8 @@ impl History {
         self.ahead(|history| history.rest_after(made))
     }
 
-    /// The last step before the state at hand at which a quadrilateral stood and its local post-processing was done, or
-    /// the beginning; `None` at the beginning.
+    /// The last step before the current state that completed a quadrilateral and its local post-processing, or the
+    /// beginning; `None` at the beginning.
     pub fn previous_quad(&self) -> Option<u64> {
         let from = self.step();
         let mut until = from.checked_sub(1)?;
@@ -37,8 +38,8 @@ impl History {
         Some(0)
     }
 
-    /// The first step at which at least so many quadrilaterals stand and no local post-processing is under way: where
-    /// `convert --at nq=N` stops. `None` where it does not come to that, or where it is not known yet.
+    /// The first step that leaves at least this number of quadrilaterals and no local post-processing under way: where
+    /// `convert --at nq=N` stops. `None` where the run never has that many, or where it is not known yet.
     pub fn step_with_quads(&mut self, nq: u64) -> Option<u64> {
         if nq <= self.log().nq(0) {
             return Some(0);
@@ -46,14 +47,14 @@ impl History {
         self.ahead(|history| history.log().first_with(nq, 0))
     }
 
-    /// The next step after the state at hand whose event is of a kind.
-    pub fn next_of_kind(&mut self, kind: &str) -> Option<u64> {
+    /// The next step after the current state whose event is of a kind.
+    pub fn next_of_kind(&mut self, kind: EventKind) -> Option<u64> {
         let from = self.step();
         self.ahead(|history| history.log().next_of(from, |other| other == kind))
     }
 
-    /// The last step before the one that led to the state at hand whose event is of a kind.
-    pub fn previous_of_kind(&self, kind: &str) -> Option<u64> {
+    /// The last step before the one that led to the current state whose event is of a kind.
+    pub fn previous_of_kind(&self, kind: EventKind) -> Option<u64> {
         self.log().last_of(self.step().checked_sub(1)?, |other| other == kind)
     }
 
@@ -62,7 +63,7 @@ impl History {
         (step..=self.log().known()).find(|&step| self.log().is_at_rest(step))
     }
 
-    /// Looks, and where nothing is found makes more of the run known and looks again.
+    /// Searches, and where nothing is found runs further ahead and searches again.
     pub(super) fn ahead<T>(&mut self, look: impl Fn(&History) -> Option<T>) -> Option<T> {
         loop {
             if let Some(found) = look(self) {

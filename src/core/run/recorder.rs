@@ -1,5 +1,5 @@
-//! Running ahead: a converter at the last known step that goes on, writes the log and sets keyframes. It may be lent to
-//! another thread, and hands over what it found in stretches.
+//! Running ahead: a converter that continues from the last known step, writes the log and stores keyframes. It can be
+//! lent to another thread and returns its results in stretches.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,10 +18,10 @@ use crate::core::mesh::half_edge::{FreeLists, Mesh};
 use crate::core::mesh::ids::ElementId;
 use crate::core::metric::measure::angle;
 
-/// A keyframe is set at the first chance after so many steps: replaying them takes about a millisecond.
+/// A keyframe is due after this many steps, whose replay takes about a millisecond.
 pub(super) const SPACING: u64 = 1024;
 
-/// It is set sooner where so many nodes, and half of all, were touched: a sweep over the whole mesh is one step.
+/// It is due earlier once this many nodes plus half of all are touched, since one step may sweep the whole mesh.
 const SWEPT: usize = 1024;
 
 /// A converter that runs ahead.
@@ -29,21 +29,23 @@ pub struct Recorder {
     run: Arc<Run>,
     converter: Converter<'static>,
     step: u64,
-    /// Which edits it knows: what it finds is of use only to a history that knows the same.
+    /// The edition of the edits it knows: its results are valid only for a history of the same edition.
     edition: u64,
-    /// What was touched since the last keyframe, and the free lists of then.
+    /// What was touched since the last keyframe.
     touched: Touched,
+    /// The free lists at the last keyframe.
     free: FreeLists,
+    /// The step of the last keyframe.
     keyframe: u64,
     /// Bytes of differences since the last whole mesh.
     since_whole: usize,
     front: FrontTracker,
-    /// What was touched since the front was looked at.
+    /// What was touched since the last update of the front.
     since_front: Touched,
     measures: Measures,
 }
 
-/// What a stretch of steps did.
+/// The log and keyframes of a stretch of steps.
 pub struct Stretch {
     pub(super) from: u64,
     pub(super) edition: u64,
@@ -54,19 +56,19 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// The last step of it.
+    /// Its last step.
     pub fn until(&self) -> u64 {
         self.from + self.log.known()
     }
 
-    /// Whether nothing comes after it: the conversion is done, or cannot go on.
+    /// Whether nothing follows it: the conversion is finished or cannot continue.
     pub fn is_last(&self) -> bool {
         self.ended || self.fault.is_some()
     }
 }
 
 impl Recorder {
-    /// A recorder that goes on from the last keyframe.
+    /// A recorder that continues from the last keyframe.
     pub(super) fn resume(run: Arc<Run>, keyframes: &Keyframes, edition: u64) -> Result<Recorder, Fault> {
         let frames = keyframes.frames();
         let last = frames.len() - 1;
@@ -91,7 +93,7 @@ impl Recorder {
         })
     }
 
-    /// A log with what is known of the state that it starts from.
+    /// A log with the front and a sample of the first state.
     pub(super) fn begin(&mut self) -> Log {
         let mut log = Log::beginning_with(self.converter.standing());
         log.push_front(self.step, self.front.count());
@@ -105,22 +107,22 @@ impl Recorder {
         self.measures.sample(mesh, self.step, self.converter.standing(), self.front.count(), length)
     }
 
-    /// The last step that it did.
+    /// Its last step.
     pub fn step(&self) -> u64 {
         self.step
     }
 
-    /// Whether it knows the edits of this edition.
+    /// Whether its edits are of this edition.
     pub(super) fn is_of(&self, edition: u64) -> bool {
         self.edition == edition
     }
 
-    /// Whether nothing is left to do.
+    /// Whether the conversion is finished.
     pub fn is_done(&self) -> bool {
         *self.converter.phase() == Phase::Done
     }
 
-    /// Goes on for so many steps, or until it is done, cannot go on, or is told to stop.
+    /// Runs at most this many steps, until the conversion is finished or cannot continue, or until `stop` is set.
     pub fn run(&mut self, steps: u64, stop: &AtomicBool) -> Stretch {
         let mut stretch = Stretch {
             from: self.step,
@@ -150,7 +152,7 @@ impl Recorder {
         self.touched.note_since(&self.converter.mesh, mark);
         self.since_front.note_since(&self.converter.mesh, mark);
         if changes_front(&event) {
-            self.look_at_front(&event);
+            self.update_front(&event);
             stretch.log.push_front(self.step, self.front.count());
         }
         if let Event::Formed { element, .. } = event {
@@ -166,8 +168,8 @@ impl Recorder {
         if can_be_kept {
             self.converter.mesh.commit();
             if is_due {
-                // Swaps have given other ids to the half-edges of the front.
-                self.look_at_front(&event);
+                // Swaps may have changed the ids of half-edges on the front.
+                self.update_front(&event);
                 self.measures.update(&self.converter.mesh, &self.touched);
                 stretch.log.push_sample(self.sample());
                 let keyframe = self.keyframe();
@@ -177,7 +179,7 @@ impl Recorder {
         self.run.make_edits(&mut self.converter, self.step)
     }
 
-    fn look_at_front(&mut self, event: &Event) {
+    fn update_front(&mut self, event: &Event) {
         self.front.update(&self.converter.mesh, &self.since_front, event);
         self.since_front.clear();
     }
@@ -185,7 +187,7 @@ impl Recorder {
     fn keyframe(&mut self) -> Keyframe {
         let difference = self.converter.mesh.difference(&self.touched, &self.free);
         self.since_whole += difference.bytes();
-        // Applying differences shall not cost much more than copying a mesh.
+        // Applying differences must not cost much more than copying a mesh.
         let is_whole = self.since_whole > self.converter.mesh.bytes() / 4;
         if is_whole {
             self.since_whole = 0;
@@ -198,7 +200,7 @@ impl Recorder {
     }
 }
 
-/// The angles of a quadrilateral.
+/// The smallest and the largest angle of a quadrilateral.
 fn angles(mesh: &Mesh, element: ElementId) -> Angles {
     let n = mesh.quad(element);
     let corner = |k: usize| {

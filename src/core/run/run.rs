@@ -1,4 +1,4 @@
-//! The run as a value: with the case everything that determines each of its states, and what a person keeps beside it.
+//! The run as a value: the case, everything else that determines its states, and what the user saves with it.
 
 use std::sync::Arc;
 
@@ -11,23 +11,23 @@ use crate::core::mesh::ids::NodeId;
 use crate::core::prepare::{Background, background};
 use crate::core::progress::Watch;
 
-/// Parameters that the background mesh is made with: they can be changed for a whole run only.
+/// Parameters of the background mesh: they can change for a whole run only.
 pub const OF_BACKGROUND: [&str; 2] = ["size_scale", "max_quads"];
 
-/// A change of the run at a step.
+/// A change to the run at a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edit {
-    /// What follows from this step on is changed.
+    /// The step from which on the change takes effect.
     pub step: u64,
-    /// What is changed.
+    /// The change.
     pub kind: EditKind,
 }
 
-/// What an edit changes.
+/// The change that an edit makes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EditKind {
-    /// A parameter is given another value, both as [`Parameters::set`] takes them.
+    /// A new value of a parameter, written as [`Parameters::set`] takes it.
     Parameter {
         /// Its key.
         key: String,
@@ -44,7 +44,7 @@ pub enum EditKind {
 }
 
 impl EditKind {
-    /// The change of a parameter, checked.
+    /// A change of a parameter, checked.
     ///
     /// # Errors
     /// An unknown key, a value of the wrong kind or out of range, a parameter of the background.
@@ -56,7 +56,7 @@ impl EditKind {
                 .of_kind(FaultKind::Parameter)
                 .remedy("Change it for the whole run"));
         }
-        // As it is written everywhere else, so that a run reads back as it was.
+        // The canonical text, so that a saved run reads back unchanged.
         let value = parameters.text_of(key).unwrap_or_else(|| value.trim().to_owned());
         Ok(EditKind::Parameter { key: key.to_owned(), value })
     }
@@ -76,57 +76,57 @@ impl EditKind {
 pub struct Bookmark {
     /// The step.
     pub step: u64,
-    /// What a person calls it.
+    /// Its name.
     pub name: String,
 }
 
-/// From where a state was looked at, in plain numbers: the core does not know what they mean on a screen.
+/// The view of a state in plain numbers: `core` does not know what they mean on a screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The point looked at, in units of the case.
+    /// The point at the centre of the view, in units of the case.
     pub target: [f64; 3],
-    /// How the view is turned: a unit quaternion (x, y, z, w).
+    /// The orientation of the view: a unit quaternion (x, y, z, w).
     pub turn: [f64; 4],
-    /// What is seen from the lower to the upper edge, in units of the case.
+    /// The height of the view, in units of the case.
     pub height: f64,
 }
 
-/// A run: case, parameters and edits at steps give every state of it, bit for bit.
+/// A run: its case, parameters and edits at steps determine each of its states, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// The case as its file says it; its text is kept with it, a mesh that it names lies in its own file.
+    /// The case as in its file, with its text. A mesh that it names stays in its own file.
     pub case: Case,
-    /// The parameters from step 0 on, in place of the case's.
+    /// The parameters from step 0 on; they replace those of the case.
     pub parameters: Parameters,
-    /// By step; of one step in the order in which they are made.
+    /// Sorted by step; edits of one step are in the order in which they are applied.
     edits: Vec<Edit>,
-    /// By step.
+    /// Sorted by step.
     pub bookmarks: Vec<Bookmark>,
-    /// From where it was looked at last.
+    /// The last view of it.
     pub camera: Option<Camera>,
-    /// What is shown of it, where it comes from a figure.
+    /// What the figure shows, where the run comes from a figure.
     pub shown: Option<Shown>,
 }
 
 impl Run {
-    /// The run of a case as it is.
+    /// The run of a case, without changes.
     pub fn of(case: Case) -> Run {
         let parameters = case.parameters.clone();
         Run { case, parameters, edits: Vec::new(), bookmarks: Vec::new(), camera: None, shown: None }
     }
 
-    /// The edits, by step.
+    /// The edits, sorted by step.
     pub fn edits(&self) -> &[Edit] {
         &self.edits
     }
 
-    /// Replaces all edits; those of one step stay in their order.
+    /// Replaces all edits; edits of one step keep their order.
     pub fn set_edits(&mut self, mut edits: Vec<Edit>) {
         edits.sort_by_key(|edit| edit.step);
         self.edits = edits;
     }
 
-    /// The edits with one more; it takes the place of one of the same step that changes the same thing.
+    /// The edits with one added; it replaces an edit of the same step that changes the same thing.
     pub fn edits_with(&self, edit: Edit) -> Vec<Edit> {
         let mut edits = self.edits.clone();
         edits.retain(|old| old.step != edit.step || !edit.kind.replaces(&old.kind));
@@ -142,17 +142,17 @@ impl Run {
         &self.edits[first..first + count]
     }
 
-    /// The first step at which two lists of edits say different things; `None` where they say the same.
+    /// The first step at which two lists of edits differ; `None` where they are equal.
     pub(super) fn first_difference(before: &[Edit], after: &[Edit]) -> Option<u64> {
         let same = before.iter().zip(after).take_while(|(a, b)| a == b).count();
         let steps = [before.get(same), after.get(same)];
         steps.into_iter().flatten().map(|edit| edit.step).min()
     }
 
-    /// The parameters in force at a step, its edits made.
+    /// The parameters in force at a step, with its edits applied.
     ///
     /// # Errors
-    /// An edit that is no valid one.
+    /// An invalid edit.
     pub fn parameters_at(&self, step: u64) -> Result<Parameters, Fault> {
         let mut parameters = self.parameters.clone();
         for edit in self.edits.iter().take_while(|edit| edit.step <= step) {
@@ -168,7 +168,7 @@ impl Run {
         Case { parameters: self.parameters.clone(), ..self.case.clone() }
     }
 
-    /// The background mesh of the run.
+    /// Makes the background mesh of the run.
     ///
     /// # Errors
     /// As [`background`].
@@ -176,10 +176,10 @@ impl Run {
         background(&self.case_in_force(), watch)
     }
 
-    /// A converter at step 0, with the edits of step 0 made.
+    /// A converter at step 0, with the edits of step 0 applied.
     ///
     /// # Errors
-    /// An edit that is no valid one.
+    /// An invalid edit.
     pub fn start(&self, background: &Background) -> Result<Converter<'static>, Fault> {
         let sizing = Arc::new(background.sizing.clone());
         let mut converter = Converter::new(background.mesh.clone(), sizing, self.parameters.clone());
@@ -187,10 +187,10 @@ impl Run {
         Ok(converter)
     }
 
-    /// Makes the edits of a step on a converter that has just come there.
+    /// Applies the edits of a step to a converter that has just reached it.
     ///
     /// # Errors
-    /// An edit that is no valid one.
+    /// An invalid edit.
     pub fn make_edits(&self, converter: &mut Converter<'_>, step: u64) -> Result<(), Fault> {
         let edits = self.edits_at(step);
         if edits.iter().any(|edit| matches!(edit.kind, EditKind::Parameter { .. })) {
@@ -204,7 +204,7 @@ impl Run {
         Ok(())
     }
 
-    /// Makes a state that was kept raw, before the edits of its step, the state of that step.
+    /// Applies parameters and edits to a keyframe, which is stored before the edits of its step.
     pub(super) fn enter(&self, converter: &mut Converter<'_>, step: u64) -> Result<(), Fault> {
         converter.set_parameters(self.parameters_at(step)?);
         self.make_edits(converter, step)
@@ -229,8 +229,8 @@ mod tests {
             let edits = run.edits_with(Edit { step, kind: EditKind::parameter(key, value).unwrap() });
             run.set_edits(edits);
         }
-        let told: Vec<_> = run.edits().iter().map(|edit| edit.step).collect();
-        assert_eq!(told, [3, 7, 7, 9]);
+        let steps: Vec<_> = run.edits().iter().map(|edit| edit.step).collect();
+        assert_eq!(steps, [3, 7, 7, 9]);
         let c = |step| run.parameters_at(step).unwrap().c;
         assert_eq!([c(0), c(6), c(7), c(8), c(9)], [2.0, 2.0, 1.8, 1.8, 2.5]);
         assert_eq!(run.edits_at(7).len(), 2);
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn two_lists_of_edits_differ_first_where_one_says_what_the_other_does_not() {
+    fn the_first_difference_of_two_lists_of_edits_is_the_first_step_where_they_differ() {
         let edit = |step, value| Edit { step, kind: EditKind::parameter("c", value).unwrap() };
         let (a, b, c) = (edit(3, "1.5"), edit(8, "1.6"), edit(8, "1.7"));
         assert_eq!(Run::first_difference(&[a.clone(), b.clone()], &[a.clone(), c.clone()]), Some(8));
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_background_is_made_with_cannot_change_at_a_step() {
+    fn parameters_of_the_background_cannot_change_at_a_step() {
         let fault = EditKind::parameter("size_scale", "0.5").unwrap_err();
         assert!(fault.what.contains("background"), "{fault}");
         assert!(EditKind::parameter("theta_rect", "135deg").is_err());

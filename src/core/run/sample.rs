@@ -1,4 +1,4 @@
-//! Samples of the invariants along a run and of what the mesh is like there. They are taken where keyframes are set, and cost what
+//! Samples of invariants and statistics along a run. They are taken at keyframes; the cost of a sample depends on what
 //! was touched since the last one.
 
 use serde::Serialize;
@@ -9,30 +9,30 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::half_edge::touched::Touched;
 use crate::core::mesh::ids::ElementId;
 
-/// The invariants and figures of a state.
+/// The invariants and statistics of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Sample {
     /// Its step.
     pub step: u64,
-    /// Quadrilaterals that stand.
+    /// The number of quadrilaterals.
     pub nq: u64,
-    /// Segments, loops, odd loops, live triangles. Every loop is even where the background's are.
+    /// The counts of the front. Every loop is even where those of the background mesh are.
     pub front: FrontCount,
     /// Length of the front in the metric.
     pub front_length: f64,
-    /// Least quality of a quadrilateral; 1 where none stands.
+    /// Smallest quality of a quadrilateral; 1 where there is none.
     pub worst_quality: f64,
-    /// Elements that are not strictly positive: there must be none.
+    /// The number of elements that are not strictly positive; it must be 0.
     pub inverted: u32,
-    /// Area in the parametric plane: it must not change but by rounding.
+    /// Area in the parametric plane; it must not change except by rounding.
     pub area: f64,
-    /// Area in the metric, by the metrics of the nodes: it changes as far as they see other places of the field.
+    /// Area in the metric, from the metrics at the nodes; it changes as nodes sample other points of the field.
     pub area_metric: f64,
-    /// Nodes less edges plus elements: it must not change.
+    /// Nodes minus edges plus elements; it must not change.
     pub euler: i64,
 }
 
-/// What is known of one element.
+/// The measures of one element.
 #[derive(Clone, Copy, Debug)]
 struct Measure {
     quality: f32,
@@ -43,7 +43,7 @@ struct Measure {
 
 const NOTHING: Measure = Measure { quality: 1.0, area: 0.0, area_metric: 0.0, inverted: false };
 
-/// Elements that are summed together.
+/// Number of elements summed together.
 const CHUNK: usize = 128;
 
 /// Measures of all elements, kept up to date.
@@ -80,7 +80,7 @@ impl Measures {
         *slot = if mesh.has_element(e) { measured(mesh, e) } else { NOTHING };
     }
 
-    /// Looks again at what was touched since the last sample.
+    /// Measures again what was touched since the last sample.
     pub fn update(&mut self, mesh: &Mesh, touched: &Touched) {
         self.grow(mesh);
         for &e in touched.elements() {
@@ -95,7 +95,7 @@ impl Measures {
         }
     }
 
-    /// The sample of the state that was looked at.
+    /// The sample of the measured state.
     pub fn sample(&mut self, mesh: &Mesh, step: u64, nq: u64, front: FrontCount, front_length: f64) -> Sample {
         let (mut total, mut inverted) = (NOTHING, 0);
         for (i, elements) in self.elements.chunks(CHUNK).enumerate() {
@@ -137,7 +137,7 @@ fn measured(mesh: &Mesh, e: ElementId) -> Measure {
     if mesh.is_triangle(e) {
         let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
         let area = 0.5 * (b - a).perp_dot(c - a);
-        // A live triangle is no part of the result: its quality does not count.
+        // Live triangles are not part of the result: their quality does not count.
         return Measure { quality: 1.0, area, area_metric: root * area, inverted: orient(a, b, c) <= 0.0 };
     }
     let [a, b, c, d] = mesh.quad(e).map(|n| mesh.uv(n));

@@ -1,4 +1,4 @@
-//! What a figure of a run shows: its states, each with the fingerprint by which it is known again, and how it was drawn.
+//! What a figure of a run shows: states with the fingerprints that identify them, and the options it was drawn with.
 
 use crate::core::convert::phase::Phase;
 use crate::core::convert::walk::Stop;
@@ -10,7 +10,7 @@ use crate::core::mesh::half_edge::Mesh;
 pub struct ShownState {
     /// Its step.
     pub step: u64,
-    /// How it was asked for; `None`: as the end.
+    /// The stop that selected it; `None`: the end.
     pub at: Option<Stop>,
     /// Its fingerprint.
     pub state: Fingerprint,
@@ -19,20 +19,20 @@ pub struct ShownState {
 /// What a figure shows of its run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shown {
-    /// Its states, side by side where there are several.
+    /// The states; several are drawn side by side.
     pub states: Vec<ShownState>,
-    /// How it was drawn, in the words of the command line.
+    /// The options it was drawn with, as command-line arguments.
     pub drawn: Vec<String>,
 }
 
 impl Shown {
-    /// The state that it opens at: the last one.
+    /// The state at which it opens: the last one.
     pub fn state(&self) -> Option<&ShownState> {
         self.states.last()
     }
 }
 
-/// The fingerprint of what is seen of a state: its mesh and where the converter stands.
+/// The fingerprint of what a figure shows of a state: its mesh and the phase of the converter.
 pub fn fingerprint(mesh: &Mesh, phase: &Phase) -> Fingerprint {
     let mut bytes = Vec::new();
     mesh.write_state(&mut bytes);

@@ -1,11 +1,11 @@
-//! What is drawn along a run: a lane for every kind of work.
+//! A run over time: one lane for each kind of work.
 
 use serde::Serialize;
 
 use super::log::Log;
-use crate::core::convert::event::Event;
+use crate::core::convert::event::EventKind;
 
-/// The kinds of work, each a lane.
+/// The kinds of work; each is a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Lane {
@@ -17,7 +17,7 @@ pub enum Lane {
     Top,
     /// Quadrilaterals formed.
     Formed,
-    /// Attempts taken back, segments put off, second passes.
+    /// Attempts rolled back, segments deferred, second passes.
     Failed,
     /// Enhancement and smoothing around a new quadrilateral (4.3.6).
     Local,
@@ -27,12 +27,12 @@ pub enum Lane {
     Splits,
     /// Small loops closed, and the last resort.
     Closing,
-    /// Clean-up and smoothing of the whole mesh (4.3.7), and what belongs to no other lane.
+    /// Clean-up and smoothing of the whole mesh (4.3.7), and the end of faces and of the run.
     Finishing,
 }
 
 impl Lane {
-    /// All lanes, from above.
+    /// All lanes, from top to bottom.
     pub const ALL: [Lane; 10] = [
         Lane::Base,
         Lane::Sides,
@@ -47,22 +47,29 @@ impl Lane {
     ];
 
     /// The lane of a kind of event.
-    pub fn of(kind: &str) -> Lane {
+    pub fn of(kind: EventKind) -> Lane {
         match kind {
-            "base_selected" | "pick_lost" => Lane::Base,
-            _ if kind.starts_with("side_") => Lane::Sides,
-            _ if kind.starts_with("top_") => Lane::Top,
-            "formed" => Lane::Formed,
-            "rolled_back" | "deferred" | "second_pass" => Lane::Failed,
-            "enhanced" | "smoothed" | "node_removed" => Lane::Local,
-            "seamed" | "transition_seamed" | "seam_refused" => Lane::Seams,
-            "split" => Lane::Splits,
-            "closed" | "matched" | "patched" | "last_resort" => Lane::Closing,
-            _ => Lane::Finishing,
+            EventKind::BaseSelected | EventKind::PickLost => Lane::Base,
+            EventKind::SideIsFront | EventKind::SideChosen | EventKind::SideSwapped | EventKind::SideDivided => {
+                Lane::Sides
+            }
+            EventKind::TopSwapped | EventKind::TopFound => Lane::Top,
+            EventKind::Formed => Lane::Formed,
+            EventKind::RolledBack | EventKind::Deferred | EventKind::SecondPass => Lane::Failed,
+            EventKind::Enhanced | EventKind::Smoothed | EventKind::NodeRemoved => Lane::Local,
+            EventKind::Seamed | EventKind::TransitionSeamed | EventKind::SeamRefused => Lane::Seams,
+            EventKind::Split => Lane::Splits,
+            EventKind::Closed | EventKind::Matched | EventKind::Patched | EventKind::LastResort => Lane::Closing,
+            EventKind::Cleaned
+            | EventKind::Swept
+            | EventKind::Unfolded
+            | EventKind::FaceConverted
+            | EventKind::PostProcessed
+            | EventKind::Finished => Lane::Finishing,
         }
     }
 
-    /// What it is called.
+    /// Its name on the screen.
     pub fn name(self) -> &'static str {
         match self {
             Lane::Base => "base",
@@ -79,19 +86,18 @@ impl Lane {
     }
 }
 
-/// How many steps of each lane fall into each of `columns` equal parts of the steps from `from` to `until` (both included):
-/// by column, then by the index of the lane in [`Lane::ALL`]. Linear in the number of steps.
+/// Counts the steps of each lane in `columns` equal parts of the steps from `from` to `until` (both included): by
+/// column, then by the index of the lane in [`Lane::ALL`]. Linear in the number of steps.
 pub fn lanes(log: &Log, from: u64, until: u64, columns: usize) -> Vec<[u32; Lane::ALL.len()]> {
     let mut counts = vec![[0; Lane::ALL.len()]; columns];
     let from = from.max(1);
     if columns == 0 || until < from {
         return counts;
     }
-    let lane_of: Vec<usize> = Event::KINDS.iter().map(|kind| Lane::of(kind) as usize).collect();
     let steps = until - from + 1;
-    for (i, kind) in log.kind_indices(from, until).enumerate() {
+    for (i, kind) in log.kinds(from, until).enumerate() {
         let column = i as u128 * columns as u128 / u128::from(steps);
-        counts[column as usize][lane_of[kind]] += 1;
+        counts[column as usize][Lane::of(kind) as usize] += 1;
     }
     counts
 }

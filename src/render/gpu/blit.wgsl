@@ -1,4 +1,4 @@
-// The finished picture of a view onto the window, pixel by pixel.
+// Copies the finished picture of a view to the window, pixel by pixel.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var nearest: sampler;

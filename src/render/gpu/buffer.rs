@@ -1,11 +1,11 @@
-//! Instances on the card, in pages: a list that grows takes another page and is never copied, and only the stretches that
-//! were changed since are sent.
+//! Instances on the card, in pages: a growing list adds pages and is never copied, and only the stretches that
+//! changed are sent.
 
 use bytemuck::Pod;
 
 use crate::render::scene::{Placed, STRETCH};
 
-/// Instances in a page: whole stretches.
+/// Instances per page: a multiple of the stretch.
 const PAGE: usize = 512 * STRETCH;
 
 /// A list of instances on the card.
@@ -13,7 +13,7 @@ pub(super) struct Patched<T> {
     label: &'static str,
     pages: Vec<wgpu::Buffer>,
     count: usize,
-    /// The generation of the list that is there.
+    /// The generation of the list on the card.
     generation: u64,
     /// Bytes sent so far.
     pub sent: u64,
@@ -25,7 +25,7 @@ impl<T: Pod + PartialEq> Patched<T> {
         Patched { label, pages: Vec::new(), count: 0, generation: 0, sent: 0, kind: std::marker::PhantomData }
     }
 
-    /// Makes the list on the card that of `list`, which is of a generation.
+    /// Updates the list on the card from `list` of a generation.
     pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, list: &Placed<T>, generation: u64) {
         let items = list.items();
         while self.pages.len() < items.len().div_ceil(PAGE) {
@@ -50,7 +50,7 @@ impl<T: Pod + PartialEq> Patched<T> {
         (self.count, self.generation) = (items.len(), generation);
     }
 
-    /// Draws all of them, six corners each.
+    /// Draws all instances, six corners each.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         for (k, page) in self.pages.iter().enumerate().take(self.count.div_ceil(PAGE)) {
             pass.set_vertex_buffer(0, page.slice(..));

@@ -1,19 +1,19 @@
-// Faces, lines and dots. Colours are written as they are (sRGB numbers, premultiplied): the target has no conversion.
+// Faces, lines and dots. Colours are premultiplied sRGB numbers: the target does no conversion.
 
 struct View {
-    // From positions relative to the anchor to clip space.
+    // The map from positions relative to the anchor to clip space.
     clip: mat4x4<f32>,
     // Size of the view in points.
     size: vec2<f32>,
-    // Pixels in a point.
+    // Pixels per point.
     pixels: f32,
-    // Points in a unit of the mesh.
+    // Points per unit of the mesh.
     scale: f32,
-    // The turn of the mesh.
+    // The rotation of the mesh.
     turn: mat3x3<f32>,
-    // How surfaces are lit (even, lit, shine), and how much is seen of lines that faces cover.
+    // The lighting of surfaces (even, lit, shine), and the opacity of hidden lines.
     light: vec4<f32>,
-    // The depth of a point, and the least by which lines are pulled towards the eye.
+    // The depth of a screen point, and the smallest shift of lines towards the eye.
     depth: vec4<f32>,
 };
 
@@ -24,12 +24,12 @@ fn premultiplied(colour: vec4<f32>, coverage: f32) -> vec4<f32> {
     return vec4<f32>(colour.rgb * alpha, alpha);
 }
 
-// A place that is never seen.
+// A position outside of clip space.
 fn nowhere() -> vec4<f32> {
     return vec4<f32>(2.0, 2.0, 2.0, 1.0);
 }
 
-// What lies on faces is pulled so many points towards the eye.
+// Items on faces are shifted towards the eye by this many points.
 fn pull(points: f32) -> f32 {
     return max(points * view.depth.x, view.depth.y);
 }
@@ -78,7 +78,7 @@ fn face_vertex(@builtin(vertex_index) k: u32, in: FaceIn) -> FaceOut {
 
 @fragment
 fn face_fragment(in: FaceOut) -> @location(0) vec4<f32> {
-    // A lamp to the left above the eye; what is turned away is lit from behind it, a little less.
+    // A lamp above and to the left of the eye; back sides are lit from behind, a little less.
     var n = normalize(in.normal);
     let away = n.z < 0.0;
     if away { n = -n; }
@@ -120,7 +120,8 @@ fn line_vertex(@builtin(vertex_index) k: u32, in: LineIn) -> LineOut {
     var direction = vec2<f32>(1.0, 0.0);
     if length > 1e-6 { direction = along / length; }
     let across = vec2<f32>(-direction.y, direction.x);
-    // A pixel more on all sides for the soft edge. Lines of the mesh end flat: round ends would show where they overlap.
+    // One more pixel on all sides for the soft edge. Lines of the mesh end flat, since round ends would show where they
+    // overlap.
     let soft = 1.0 / view.pixels;
     let half_width = 0.5 * in.width;
     let cap = select(0.0, half_width + soft, in.room < 0.0);
@@ -149,7 +150,7 @@ fn line_fragment(in: LineOut) -> @location(0) vec4<f32> {
     return stroke(in);
 }
 
-// A line behind a face.
+// The part of a line behind a face.
 @fragment
 fn hidden_fragment(in: LineOut) -> @location(0) vec4<f32> {
     return stroke(in) * view.light.w;
@@ -200,7 +201,7 @@ fn dot_vertex(@builtin(vertex_index) k: u32, in: DotIn) -> DotOut {
     let x = select(-1.0, 1.0, k == 1u || k == 2u || k == 4u);
     let y = select(-1.0, 1.0, k == 2u || k == 4u || k == 5u);
     let room = in.room * view.scale;
-    // From far off dots are smaller.
+    // Dots shrink when the view zooms out.
     let radius = in.radius * select(mix(0.6, 1.0, clamp((room - 6.0) / 8.0, 0.0, 1.0)), 1.0, in.least == 0.0);
     let reach = radius + 1.0 / view.pixels;
     let centre = view.clip * vec4<f32>(in.at, 1.0);

@@ -1,6 +1,6 @@
-//! A scene drawn by the graphics card: into a picture of its own with depth and four samples a pixel, which is then laid
-//! into the window. A view whose scene and camera stay as they were is not drawn again. Where the "card" is the processor, one
-//! sample is enough: lines and dots have soft edges of their own, and faces end under lines.
+//! Draws a scene with the graphics card: into a texture with depth and four samples per pixel, which is then copied to
+//! the window. A view whose scene and camera did not change is not drawn again. On a software renderer one sample is
+//! enough: lines and dots have their own soft edges, and faces end under lines.
 
 mod buffer;
 mod pipelines;
@@ -18,59 +18,59 @@ use super::scene::{Dot, Face, Form, Line, Scene};
 
 pub use self::target::read_back;
 
-/// Samples a pixel on an adapter: four; one where the processor does the card's work.
+/// Samples per pixel on an adapter: four, or one on a software renderer.
 pub fn samples(adapter: &wgpu::AdapterInfo) -> u32 {
     if adapter.device_type == wgpu::DeviceType::Cpu { 1 } else { 4 }
 }
 
-/// How a view is to be drawn.
+/// How to draw a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Where it looks.
+    /// Its camera.
     pub camera: Camera,
     /// Its size in points.
     pub size: DVec2,
-    /// Pixels in a point.
+    /// Pixels per point.
     pub pixels: f32,
-    /// Colour where nothing is.
+    /// Background colour.
     pub ground: Rgba,
     /// How surfaces are lit.
     pub light: Light,
-    /// How much is seen of lines that faces cover: 0 to 1.
+    /// The opacity of hidden lines, 0 to 1.
     pub hidden: f32,
 }
 
-/// How surfaces are lit by a lamp beside the eye: a colour times `even` and `lit` by the angle to the lamp, and `shine` by the
-/// angle alone, which dark colours need.
+/// The lighting of surfaces by a lamp beside the eye: the colour times `even`, plus the colour times `lit` and plain
+/// `shine` (which dark colours need), both scaled by the angle to the lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// In the shadow.
+    /// The factor in the shadow.
     pub even: f32,
-    /// More towards the lamp.
+    /// The factor added towards the lamp.
     pub lit: f32,
-    /// What is added towards the lamp.
+    /// The light added towards the lamp.
     pub shine: f32,
 }
 
 impl Light {
-    /// Colours as they are: the plane.
+    /// Unlit colours, for the plane.
     pub const NONE: Light = Light { even: 1.0, lit: 0.0, shine: 0.0 };
 
-    /// For surfaces, by whether the theme is dark.
+    /// For surfaces, in the dark or light theme.
     pub fn on_surfaces(dark: bool) -> Light {
         if dark { Light { even: 0.62, lit: 0.7, shine: 0.09 } } else { Light { even: 0.72, lit: 0.3, shine: 0.0 } }
     }
 }
 
 impl View {
-    /// Its size in pixels, at least one and at most what the card can hold.
+    /// Its size in pixels, at least one and at most the limit of the card.
     pub fn size_in_pixels(&self, most: u32) -> [u32; 2] {
         let pixels = |points: f64| ((points * f64::from(self.pixels)).round() as u32).clamp(1, most);
         [pixels(self.size.x), pixels(self.size.y)]
     }
 }
 
-/// What shaders know of a view.
+/// The uniforms of a view.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 struct Uniform {
@@ -79,16 +79,16 @@ struct Uniform {
     pixels: f32,
     scale: f32,
     turn: [[f32; 4]; 3],
-    /// Even, lit and shine; how much is seen of covered lines.
+    /// Even, lit and shine; the opacity of hidden lines.
     light: [f32; 4],
-    /// The depth of a point, and the least by which lines are pulled towards the eye.
+    /// The depth of a screen point, and the smallest shift of lines towards the eye.
     depth: [f32; 4],
 }
 
-/// Lines lie on faces: they are pulled towards the eye by at least so much of the depth.
+/// Lines lie on faces: they are shifted towards the eye by at least this much depth.
 const LEAST_PULL: f32 = 1e-6;
 
-/// Draws a scene in the plane, one in space and one of what was given into any number of views.
+/// Draws a scene in the plane, one in space and one of an imported surface into any number of views.
 pub struct Painter {
     pipelines: Pipelines,
     lists: [Lists; 3],
@@ -122,7 +122,7 @@ impl Lists {
         }
     }
 
-    /// Sends what has changed.
+    /// Sends the changes to the card.
     fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) {
         let generation = scene.generation;
         if self.generation.replace(generation) == Some(generation) {
@@ -148,7 +148,7 @@ impl Lists {
 }
 
 impl Painter {
-    /// A painter whose pictures are laid into targets of the format `window`, with so many samples a pixel (1 or 4).
+    /// A painter for targets of the format `window`, with this many samples per pixel (1 or 4).
     pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Painter {
         Painter {
             pipelines: Pipelines::new(device, window, samples),
@@ -158,7 +158,7 @@ impl Painter {
         }
     }
 
-    /// Sends what has changed of the scene, and draws view number `index` where its picture is not up to date.
+    /// Sends the changes of the scene, and draws view number `index` if its picture is not up to date.
     pub fn draw(
         &mut self,
         device: &wgpu::Device,
@@ -216,7 +216,7 @@ impl Painter {
         }
     }
 
-    /// Lays the picture of a view into the window's own pass, which must be set to the view's place.
+    /// Draws the picture of a view in the pass of the window, whose viewport must be that of the view.
     pub fn lay(&self, index: usize, pass: &mut wgpu::RenderPass<'_>) {
         let Some(Some(target)) = self.targets.get(index) else { return };
         pass.set_pipeline(&self.pipelines.blit);

@@ -1,13 +1,13 @@
-//! Shaders and how they are fed.
+//! Shaders and pipelines.
 
 use super::super::scene::{Dot, Face, Line};
 use wgpu::VertexFormat::{Float32, Float32x2, Float32x3, Snorm16x2, Unorm8x4};
 
-/// Shaders for the mesh and for laying pictures into the window.
+/// Shaders for the mesh and for drawing pictures in the window.
 pub(super) const MESH: &str = include_str!("mesh.wgsl");
 pub(super) const BLIT: &str = include_str!("blit.wgsl");
 
-/// Colours are numbers in sRGB and stay that: blending looks as in the figures' vectors.
+/// Colours stay in sRGB without conversion, so that blending looks as in vector figures.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -18,11 +18,11 @@ pub(super) const LINE: [wgpu::VertexFormat; 6] = [Float32x3, Float32x3, Unorm8x4
 pub(super) const DOT: [wgpu::VertexFormat; 7] = [Float32x3, Float32, Unorm8x4, Unorm8x4, Float32, Float32, Float32];
 
 pub(super) struct Pipelines {
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub samples: u32,
     pub faces: wgpu::RenderPipeline,
     pub lines: wgpu::RenderPipeline,
-    /// The parts of lines that faces cover.
+    /// The hidden parts of lines.
     pub hidden: wgpu::RenderPipeline,
     pub dots: wgpu::RenderPipeline,
     pub blit: wgpu::RenderPipeline,
@@ -105,7 +105,7 @@ fn attributes(formats: &[wgpu::VertexFormat]) -> Vec<wgpu::VertexAttribute> {
     formats.iter().enumerate().map(attribute).collect()
 }
 
-/// What a pipeline does with depths, and the shader that colours its pixels.
+/// The depth test of a pipeline, and the shader that colours its pixels.
 struct Pass {
     writes_depth: bool,
     compare: wgpu::CompareFunction,

@@ -1,23 +1,23 @@
-//! What a view is drawn into, and how its pixels come back.
+//! Render targets of views, and reading their pixels back.
 
 use super::Uniform;
 use super::pipelines::{COLOUR, DEPTH, Pipelines};
 use crate::core::fault::Fault;
 use crate::render::palette::Rgba;
 
-/// The textures of one view and what its shaders are bound to.
+/// The textures and bind groups of one view.
 pub(super) struct Target {
     pub size: [u32; 2],
     pub uniform: wgpu::Buffer,
     pub view_group: wgpu::BindGroup,
     pub blit_group: wgpu::BindGroup,
-    /// The finished picture, one sample a pixel.
+    /// The finished picture, one sample per pixel.
     pub picture: wgpu::Texture,
     finished: wgpu::TextureView,
-    /// Where a pixel has several samples.
+    /// The multisampled picture, where there are several samples per pixel.
     samples: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
-    /// What the picture shows.
+    /// The state that the picture shows.
     pub drawn: Option<(usize, u64, Uniform, Rgba)>,
 }
 
@@ -73,7 +73,7 @@ impl Target {
         }
     }
 
-    /// Begins drawing on an empty ground.
+    /// Begins drawing on a cleared target.
     pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, ground: wgpu::Color) -> wgpu::RenderPass<'e> {
         let (view, resolve_target, store) = match &self.samples {
             Some(samples) => (samples, Some(&self.finished), wgpu::StoreOp::Discard),
@@ -102,7 +102,7 @@ impl Target {
 /// The pixels of a picture, row by row from the top, four bytes each.
 ///
 /// # Errors
-/// Where the card is lost on the way.
+/// The device was lost.
 pub fn read_back(device: &wgpu::Device, queue: &wgpu::Queue, picture: &wgpu::Texture) -> Result<Vec<u8>, Fault> {
     let lost = |what: String| Fault::new(format!("The picture cannot be read back: {what}"));
     let (width, height) = (picture.width(), picture.height());
@@ -124,11 +124,11 @@ pub fn read_back(device: &wgpu::Device, queue: &wgpu::Queue, picture: &wgpu::Tex
         wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
     queue.submit([encoder.finish()]);
-    let (told, hear) = std::sync::mpsc::channel();
-    // Nobody listens any more only where this function has returned.
-    buffer.slice(..).map_async(wgpu::MapMode::Read, move |mapped| drop(told.send(mapped)));
+    let (sender, receiver) = std::sync::mpsc::channel();
+    // Sending fails only if this function has already returned.
+    buffer.slice(..).map_async(wgpu::MapMode::Read, move |mapped| drop(sender.send(mapped)));
     device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(error.to_string()))?;
-    let mapped = hear.recv().map_err(|error| lost(error.to_string()))?;
+    let mapped = receiver.recv().map_err(|error| lost(error.to_string()))?;
     mapped.map_err(|error| lost(error.to_string()))?;
     let bytes = buffer.slice(..).get_mapped_range().map_err(|error| lost(error.to_string()))?;
     let rows = bytes.chunks(padded as usize).flat_map(|bytes| &bytes[..row as usize]);

@@ -1,4 +1,4 @@
-//! The same in space, front to back: of all that is drawn under the pointer the nearest to the eye, and nothing that it hides.
+//! Picking in space: of everything under the pointer, the item nearest to the eye, and nothing that is hidden.
 
 use glam::{DVec2, DVec3};
 
@@ -8,7 +8,7 @@ use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::render::camera::Camera;
 use crate::render::scene::{Outlined, Scene};
 
-/// Points by which something may lie behind a face that is drawn over it and still be seen.
+/// Tolerance in points: an item this far behind a face still counts as visible.
 const SLACK: f64 = 1.5;
 /// Points of a cell of a cover, and how far a place may lie behind what its cell shows.
 const CELL: f64 = 5.0;
@@ -19,11 +19,11 @@ const DEPTH: f64 = 8.0;
 pub struct Hit {
     /// The element.
     pub element: ElementId,
-    /// The place on it.
+    /// The position on it.
     pub place: DVec3,
 }
 
-/// What is drawn of elements, as triangles on the screen: x, y, and how near they are to the eye.
+/// The drawn elements as triangles on the screen: x, y, and nearness to the eye.
 fn triangles<'a>(
     scene: &'a Scene,
     camera: &'a Camera,
@@ -39,7 +39,7 @@ fn triangles<'a>(
     })
 }
 
-/// How near to the eye a triangle is at a place of the screen; none where it does not cover that.
+/// The nearness of a triangle to the eye at a screen position; `None` where it does not cover that position.
 fn nearness([a, b, c]: &[DVec3; 3], at: DVec2) -> Option<f64> {
     let [p, q, r] = [a, b, c].map(|v| v.truncate());
     let area = (q - p).perp_dot(r - p);
@@ -51,7 +51,7 @@ fn nearness([a, b, c]: &[DVec3; 3], at: DVec2) -> Option<f64> {
     (u >= 0.0 && v >= 0.0 && w >= 0.0).then_some(u * a.z + v * b.z + w * c.z)
 }
 
-/// The triangles near a place of the screen.
+/// The triangles near a screen position.
 fn around(scene: &Scene, camera: &Camera, size: DVec2, at: DVec2) -> Vec<(ElementId, [DVec3; 3])> {
     let reach = NEAR.iter().fold(0.0, |m: f64, n| m.max(*n)) + 1.0;
     let near = |corners: &[DVec3; 3]| {
@@ -67,20 +67,20 @@ fn nearest_of(near: &[(ElementId, [DVec3; 3])], at: DVec2) -> Option<(ElementId,
     covering.min_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)))
 }
 
-/// The element that is seen at a place of the screen.
+/// The element visible at a screen position.
 pub fn hit(scene: &Scene, camera: &Camera, size: DVec2, at: DVec2) -> Option<Hit> {
     let (element, z) = nearest_of(&around(scene, camera, size, at), at)?;
     Some(Hit { element, place: camera.place(at.extend(z), size) })
 }
 
-/// What lies under a place of the screen. `scene` is that of the mesh in space.
+/// What is at a screen position. `scene` is that of the mesh in space.
 pub fn pick_in_space(scene: &Scene, mesh: &Mesh, camera: &Camera, size: DVec2, at: DVec2) -> Option<Outlined> {
     let near = around(scene, camera, size, at);
     let inside = nearest_of(&near, at).map(|hit| hit.0).filter(|e| mesh.has_element(*e));
     let here: Vec<ElementId> = match inside {
         Some(e) => vec![e],
         None => {
-            // Beside the mesh an outline can still be met.
+            // Beside the mesh, an outline can still be hit.
             let mut here: Vec<ElementId> = near.iter().map(|t| t.0).filter(|e| mesh.has_element(*e)).collect();
             here.dedup();
             here
@@ -93,7 +93,7 @@ pub fn pick_in_space(scene: &Scene, mesh: &Mesh, camera: &Camera, size: DVec2, a
     let seen = |n: NodeId| scene.spot(n).map_or(DVec3::INFINITY, |spot| camera.seen(spot.at, size));
     let is_seen = |[a, b]: [NodeId; 2], share: f64| {
         let p = seen(a).lerp(seen(b), share);
-        // An edge may run under elements at it that are drawn curved.
+        // An edge may run below its own elements where these are drawn curved.
         let own = |e: ElementId| mesh.has_element(e) && mesh.corners(e).any(|n| n == a || n == b);
         let over = |(e, corners): &(ElementId, [DVec3; 3])| {
             nearness(corners, p.truncate()).is_some_and(|z| z > p.z + SLACK) && !own(*e)
@@ -103,7 +103,7 @@ pub fn pick_in_space(scene: &Scene, mesh: &Mesh, camera: &Camera, size: DVec2, a
     nearest(mesh, &sides, at, &|n| seen(n).truncate(), &is_seen).or(inside.map(Outlined::Element))
 }
 
-/// How near to the eye what is drawn comes, by cells of the screen: tells which labels are hidden.
+/// A coarse depth buffer by cells of the screen: it decides which labels are hidden.
 #[derive(Clone, Debug, Default)]
 pub struct Cover {
     columns: usize,
@@ -112,14 +112,14 @@ pub struct Cover {
 }
 
 impl Cover {
-    /// That of a scene in a view of `size` points.
+    /// The cover of a scene in a view of `size` points.
     pub fn of(scene: &Scene, camera: &Camera, size: DVec2) -> Cover {
         let count = |points: f64| ((points / CELL).ceil().clamp(1.0, 4096.0)) as usize;
         let (columns, rows) = (count(size.x), count(size.y));
         let mut nearest = vec![f32::NEG_INFINITY; columns * rows];
         for (_, corners) in triangles(scene, camera, size) {
             let [a, b, c] = corners.map(|p| p.truncate() / CELL - 0.5);
-            // The middles of cells between the least and the greatest coordinates.
+            // The centres of cells within the bounding box.
             let (low, high) = (a.min(b).min(c).ceil().max(DVec2::ZERO), a.max(b).max(c).floor());
             let until = high.min(DVec2::new(columns as f64, rows as f64) - 1.0);
             if !(low.cmple(until).all() && low.is_finite()) {
@@ -138,7 +138,7 @@ impl Cover {
         Cover { columns, rows, nearest }
     }
 
-    /// Whether a place (of `Camera::seen`) lies behind what is drawn.
+    /// Whether a position (from `Camera::seen`) lies behind the drawn elements.
     pub fn hides(&self, seen: DVec3) -> bool {
         let (x, y) = (seen.x / CELL, seen.y / CELL);
         let inside = x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64;
@@ -205,7 +205,7 @@ mod tests {
         let camera = Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Bearing::X.turn(), SIZE, 20.0);
         let cover = Cover::of(&scene, &camera, SIZE);
         let nodes = mesh.nodes().map(|n| camera.seen(mesh.xyz(n), SIZE));
-        // Near the outline both halves are in one cell.
+        // Near the outline both halves fall into one cell.
         let (near, far): (Vec<_>, Vec<_>) = nodes.filter(|p| p.z.abs() > 60.0).partition(|p| p.z > 0.0);
         assert!(near.len() > 20 && far.len() > 20);
         assert!(near.iter().all(|p| !cover.hides(*p)));

@@ -1,5 +1,5 @@
-//! How a mesh is laid out in a scene: in its parametric plane, or in space with flat or curved elements. A curved element is cut in
-//! the parametric plane, and each piece is lifted onto the surface.
+//! The form of a mesh in a scene: in its parametric plane, or in space with flat or curved elements. A curved element
+//! is divided in the parametric plane, and each piece is lifted onto the surface.
 
 use glam::{DVec2, DVec3};
 
@@ -7,7 +7,7 @@ use super::{Face, Line, Scene, relative};
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, NodeId};
 
-/// Where a mesh is drawn.
+/// The form in which a mesh is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Form {
     /// In the parametric plane.
@@ -17,17 +17,17 @@ pub enum Form {
     Flat,
     /// In space; elements follow the surface.
     Curved,
-    /// In space: triangles as they were given, which are no mesh yet.
+    /// In space: imported triangles, which are not a mesh yet.
     Given,
 }
 
 impl Form {
-    /// Whether it is in space.
+    /// Whether it is drawn in space.
     pub fn is_in_space(self) -> bool {
         self != Form::Plane
     }
 
-    /// Pieces of an edge in a mesh of so many elements: large meshes have small elements, which look the same flat.
+    /// Pieces of an edge in a mesh with this many elements: the small elements of large meshes look the same flat.
     pub(super) fn pieces(self, elements: usize) -> usize {
         match (self, elements) {
             (Form::Plane | Form::Flat | Form::Given, _) => 1,
@@ -38,10 +38,10 @@ impl Form {
     }
 }
 
-/// Where a node stands, and the unit normal of the surface there.
+/// The position of a node, and the unit normal of the surface there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
-    /// Its place.
+    /// Its position.
     pub at: DVec3,
     /// The normal.
     pub normal: DVec3,
@@ -54,7 +54,7 @@ impl Default for Spot {
 }
 
 impl Spot {
-    /// That of a node.
+    /// The spot of a node.
     pub(super) fn of(mesh: &Mesh, node: NodeId, form: Form) -> Spot {
         match form {
             Form::Plane => Spot { at: mesh.uv(node).extend(0.0), normal: DVec3::Z },
@@ -62,7 +62,7 @@ impl Spot {
         }
     }
 
-    /// The surface over a place of the plane.
+    /// The spot of the surface over a point of the plane.
     fn over(mesh: &Mesh, p: DVec2) -> Spot {
         let Some(embedding) = mesh.embedding() else { return Spot { at: p.extend(0.0), normal: DVec3::Z } };
         let at = embedding.atlas.at(p);
@@ -70,7 +70,7 @@ impl Spot {
     }
 }
 
-/// A unit vector as a place of an unfolded octahedron, in 32767ths.
+/// A unit vector as a point of an unfolded octahedron, in 32767ths.
 pub(super) fn folded(n: DVec3) -> [i16; 2] {
     let n = n / (n.x.abs() + n.y.abs() + n.z.abs()).max(f64::MIN_POSITIVE);
     let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
@@ -79,22 +79,22 @@ pub(super) fn folded(n: DVec3) -> [i16; 2] {
 }
 
 impl Scene {
-    /// How the mesh is laid out.
+    /// The form in which the mesh is drawn.
     pub fn form(&self) -> Form {
         self.form
     }
 
-    /// Changes with the faces, and not with what lies over the mesh.
+    /// It increases with changes of faces, but not of overlays.
     pub fn shape(&self) -> u64 {
         self.faces.newest()
     }
 
-    /// Faces for an element.
+    /// Faces per element.
     pub fn faces_per_element(&self) -> usize {
         self.pieces * self.pieces
     }
 
-    /// Where a node stands that the scene has drawn.
+    /// The position of a node that the scene has drawn.
     pub fn spot(&self, node: NodeId) -> Option<&Spot> {
         self.spots.get(node.index())
     }
@@ -119,7 +119,8 @@ impl Scene {
         }
         let [a, b, c, d] = nodes.map(|n| mesh.uv(n));
         let part = |i: usize| i as f64 / n as f64;
-        // Sides that other faces share run where theirs do: by so much the surface is moved there, and less away from them.
+        // Shared sides run where those of the other faces do: move the surface by that much there, and less away from
+        // them.
         let moved: Vec<Option<Vec<DVec3>>> = (0..4)
             .map(|k| {
                 let ends = [nodes[k], nodes[(k + 1) % 4]];
@@ -154,8 +155,8 @@ impl Scene {
         cells.map(|(i, j)| face([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])).collect()
     }
 
-    /// Where an edge of the boundary of its face runs that other faces have too: in the middle of where they would draw it. Each
-    /// would draw it straight in its own plane, and between them would be gaps.
+    /// The curve of an edge that several faces share: the mean of the curves that they would draw. Drawn straight in
+    /// the plane of each face, the edge would leave gaps.
     fn joint(&self, mesh: &Mesh, [a, b]: [NodeId; 2]) -> Option<Vec<DVec3>> {
         let n = self.pieces;
         let copies = |node: NodeId| mesh.point(node).and_then(|point| self.copies.get(point.index()));
@@ -173,7 +174,7 @@ impl Scene {
         (chains.len() > 1).then(|| (0..=n).map(at).collect())
     }
 
-    /// Lines from one node to the other along the surface, as `line` has them but for their ends.
+    /// Lines from one node to the other along the surface; all but the ends is taken from `line`.
     pub(super) fn chain(&self, mesh: &Mesh, [a, b]: [NodeId; 2], line: Line) -> impl Iterator<Item = Line> + use<> {
         let n = self.pieces;
         let (p, q) = (mesh.uv(a), mesh.uv(b));
@@ -188,7 +189,7 @@ impl Scene {
         (0..n).map(move |k| Line { ends: [places[k], places[k + 1]], ..line })
     }
 
-    /// Takes note of where a node stands.
+    /// Records the position of a node.
     pub(super) fn set_spot(&mut self, mesh: &Mesh, node: NodeId) {
         self.spots[node.index()] = Spot::of(mesh, node, self.form);
         if self.pieces > 1
@@ -201,13 +202,13 @@ impl Scene {
             if let Err(place) = copies.binary_search(&node) {
                 copies.insert(place, node);
             }
-            // What stood there before the mesh went another way.
+            // Nodes may have been deleted or moved by steps back.
             copies.retain(|n| mesh.has_node(*n) && mesh.point(*n) == Some(point));
         }
     }
 }
 
-/// Whether an element on one side alone has an edge between these nodes.
+/// Whether the edge between these nodes has an element on one side only.
 fn is_outer(mesh: &Mesh, a: NodeId, b: NodeId) -> bool {
     let found = |a: NodeId, b: NodeId| mesh.fan(a).find(|h| mesh.target(*h) == b);
     found(a, b).or_else(|| found(b, a)).is_some_and(|h| mesh.twin(h).is_none())
@@ -225,7 +226,7 @@ mod tests {
             let r = (1.0 - z * z).sqrt();
             let n = DVec3::new(r * cos, r * sin, z);
             let [x, y] = folded(n).map(|x| f64::from(x) / 32767.0);
-            // As the shader has it.
+            // As the shader unpacks it.
             let z = 1.0 - x.abs() - y.abs();
             let t = (-z).max(0.0);
             let m = DVec3::new(x - t * x.signum(), y - t * y.signum(), z).normalize();

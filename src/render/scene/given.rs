@@ -1,5 +1,5 @@
-//! A surface as it was given, before it is a mesh: its triangles in the colours of their charts, features and seams as lines, and what
-//! it is refused for.
+//! An imported surface before it becomes a mesh: its triangles in the colours of their charts, features and seams as
+//! lines, and the elements that cause a refusal.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,30 +13,30 @@ use crate::core::discrete::features::Feature;
 use crate::core::progress::Cancel;
 use crate::render::palette::{Palette, Rgba};
 
-/// What is drawn of it, and how.
+/// The surface, and how to draw it.
 #[derive(Clone, Copy)]
 pub struct Given<'a> {
     /// Its triangles.
     pub mesh: &'a Triangles,
     /// Their edges.
     pub edges: &'a Edges,
-    /// The kind of feature that each edge is.
+    /// The kind of feature of each edge.
     pub features: &'a [Option<Feature>],
     /// Its charts, once they are known.
     pub division: Option<&'a Division>,
-    /// Elements that stand out, for it is refused for them, by their corners: points, edges, triangles and polygons.
+    /// Highlighted elements, the cause of a refusal, by their corners: points, edges, triangles and polygons.
     pub marks: &'a [Vec<DVec3>],
-    /// In which colours.
+    /// The colours.
     pub palette: &'a Palette,
 }
 
-/// How strongly marked triangles have the colour of errors.
+/// The share of the error colour in highlighted triangles.
 const MARKED: f32 = 0.55;
 
-/// Triangles and edges that are drawn between two looks at whether to go on.
+/// Triangles and edges between two checks for cancellation.
 const AT_A_TIME: usize = 1 << 14;
 
-/// Colour and width in points of a feature: width tells the kinds apart, and where the surface is in disorder the colour of errors too.
+/// Colour and width in points of a feature: the width distinguishes the kinds; defects also have the colour of errors.
 pub fn feature_line(palette: &Palette, kind: Feature) -> (Rgba, f32) {
     match kind {
         Feature::Fold => (palette.boundary, 1.75),
@@ -47,12 +47,12 @@ pub fn feature_line(palette: &Palette, kind: Feature) -> (Rgba, f32) {
     }
 }
 
-/// The same of an edge at which a surface is cut for the plane alone.
+/// The same of an edge at which a surface is cut only to flatten it.
 pub fn seam_line(palette: &Palette) -> (Rgba, f32) {
     (palette.weak, 1.25)
 }
 
-/// Which triangles are marked, or are a part of what is; none where nothing is.
+/// The triangles that are highlighted or part of a highlighted shape; `None` where there are none.
 fn marked(mesh: &Triangles, marks: &[Vec<DVec3>]) -> Vec<bool> {
     let key = |p: DVec3| p.to_array().map(f64::to_bits);
     let corners: Vec<BTreeSet<[u64; 3]>> =
@@ -73,8 +73,8 @@ fn marked(mesh: &Triangles, marks: &[Vec<DVec3>]) -> Vec<bool> {
 }
 
 impl Scene {
-    /// The scene of a surface that was given; `None` where nobody wants it any more. `generation` is greater than that of any other
-    /// such scene that the card has seen.
+    /// The scene of an imported surface; `None` where cancelled. `generation` must exceed that of all such scenes sent
+    /// to the card before.
     pub fn of_given(given: &Given<'_>, generation: u64, cancel: &Cancel) -> Option<Scene> {
         let Given { mesh, edges, features, division, marks, palette } = *given;
         let go_on = |k: usize| !k.is_multiple_of(AT_A_TIME) || !cancel.is_asked();
@@ -126,7 +126,7 @@ impl Scene {
                 plain.push(line(at.ends, (palette.live_edge, 0.75), room as f32));
             }
         }
-        // What is in disorder lies over the rest.
+        // Defects are drawn over the rest.
         standing_out.sort_by_key(|(kind, _)| std::cmp::Reverse(*kind == Feature::Fold));
         let standing_out: Vec<Line> = standing_out.into_iter().map(|(_, line)| line).collect();
         let (mut outlines, mut dots) = (Vec::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! Faces, edges, boundary and nodes of a mesh, all of them or those that a step changed.
+//! Faces, edges, boundary and nodes of a mesh: all of them, or those that a step changed.
 
 use std::sync::Arc;
 
@@ -13,32 +13,32 @@ use crate::render::palette::Palette;
 /// Widths of mesh edges in points: live, dead.
 const EDGES: [f32; 2] = [0.75, 0.95];
 
-/// How much of what changed is seen: by the last step, by the one before, by the one before that.
+/// The opacity of the highlight of changes by the last step, by the one before, and by the one before that.
 pub(super) const FADES: [f32; 3] = [1.0, 0.4, 0.15];
 
 /// A dot that is not drawn.
 const NO_DOT: Dot =
     Dot { at: [0.0; 3], radius: 0.0, fill: 0, ring: 0, ring_width: 0.0, room: 0.0, least: f32::INFINITY };
 
-/// What is drawn of a mesh, and how.
+/// A mesh, and how to draw it.
 #[derive(Clone, Copy)]
 pub struct Drawn<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
-    /// What the last steps changed, the newest first.
+    /// The elements that the last steps changed, the newest first.
     pub changed: &'a [Arc<[ElementId]>],
-    /// What elements are coloured by.
+    /// The colouring of elements.
     pub shading: &'a Shading,
-    /// What is drawn.
+    /// The layers drawn.
     pub layers: Layers,
-    /// In which colours.
+    /// The colours.
     pub palette: &'a Palette,
-    /// Where it is drawn; a scene that is patched stays where it is.
+    /// The form in which it is drawn; patching a scene keeps its form.
     pub form: Form,
 }
 
 impl Scene {
-    /// Makes faces, edges, boundary and nodes those of a mesh, relative to `anchor`.
+    /// Rebuilds faces, edges, boundary and nodes from a mesh, relative to `anchor`.
     pub fn set_mesh(&mut self, drawn: &Drawn<'_>, anchor: DVec3) {
         self.anchor = anchor;
         self.generation += 1;
@@ -65,7 +65,7 @@ impl Scene {
         self.set_standing_out(drawn);
     }
 
-    /// Makes them those of a mesh of which another state is drawn: `nodes` and `elements` differ from that one.
+    /// Updates them from the state drawn before to another state of the mesh, which differs in `nodes` and `elements`.
     pub fn patch_mesh(&mut self, drawn: &Drawn<'_>, nodes: &[NodeId], elements: &[ElementId]) {
         let mesh = drawn.mesh;
         self.generation += 1;
@@ -78,7 +78,7 @@ impl Scene {
         around.extend(elements.iter().copied().filter(|e| e.index() < mesh.element_slots()));
         around.sort_unstable();
         around.dedup();
-        // Places that are left are there for the edges that come.
+        // Free the slots of removed edges first, so that new edges can use them.
         around.iter().for_each(|e| self.leave_places(mesh, *e));
         around.iter().for_each(|e| self.set_element(drawn, *e));
         let here = around.iter().filter(|e| mesh.has_element(**e));
@@ -101,7 +101,7 @@ impl Scene {
         self.boundary_places.resize(4 * mesh.element_slots(), &mut self.boundary, generation);
     }
 
-    /// Takes away the edges of an element slot that have their places by other half-edges, or are none any more.
+    /// Removes the edges of an element slot that belong to other half-edges now or no longer exist.
     fn leave_places(&mut self, mesh: &Mesh, e: ElementId) {
         for h in (0..4).map(|corner| e.half_edge(corner)) {
             let twin = side(mesh, h).map(|h| mesh.twin(h));
@@ -114,12 +114,12 @@ impl Scene {
         }
     }
 
-    /// The face of an element slot, or nothing where it is a tombstone, and the edges around it.
+    /// Updates the face of an element slot (nothing for a tombstone) and the edges around it.
     fn set_element(&mut self, drawn: &Drawn<'_>, e: ElementId) {
         let mesh = drawn.mesh;
         self.set_faces(drawn, e, 0.0);
         for h in mesh.half_edges(e) {
-            // Of the two half-edges of an edge the one with the smaller id has its place.
+            // An edge belongs to that of its two half-edges with the smaller id.
             let twin = mesh.twin(h);
             let first = twin.map_or(h, |t| t.min(h));
             let edge = self.edge(drawn, first);
@@ -139,7 +139,7 @@ impl Scene {
         }
     }
 
-    /// The faces of an element, with so much of the colour of what has just changed; none where it is not drawn.
+    /// The faces of an element, blended with the highlight of changes by `change`; none where it is not drawn.
     fn faces_of(&self, drawn: &Drawn<'_>, e: ElementId, change: f32) -> Vec<Face> {
         let Drawn { mesh, shading, layers, palette, .. } = *drawn;
         if !mesh.has_element(e) {
@@ -156,7 +156,7 @@ impl Scene {
         self.element_faces(mesh, e, ink(colour))
     }
 
-    /// Faces that stand out as just changed get their colour, those that did before lose it.
+    /// Highlights the faces just changed, and removes the previous highlight.
     fn set_standing_out(&mut self, drawn: &Drawn<'_>) {
         let mesh = drawn.mesh;
         for e in std::mem::take(&mut self.standing_out) {
@@ -227,7 +227,8 @@ impl Scene {
         self.dots.set(node.index(), dot, self.generation);
     }
 
-    /// The height over the side `h` of its element, which has these ends: of a quadrilateral the mean of its two other corners.
+    /// The height over the side `h` of its element, which has these ends: of a quadrilateral the mean of its two other
+    /// corners.
     fn room_over(&self, mesh: &Mesh, h: HalfEdgeId, ends: [NodeId; 2]) -> f64 {
         let [a, b] = ends.map(|n| self.at(n));
         let along = (b - a).normalize_or_zero();
@@ -237,38 +238,20 @@ impl Scene {
     }
 }
 
-/// The half-edge in a slot, where it is a side of its element.
+/// The half-edge in a slot, if it is a side of its element.
 fn side(mesh: &Mesh, h: HalfEdgeId) -> Option<HalfEdgeId> {
     ((h.corner() as usize) < mesh.sides(h.element())).then_some(h)
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
-
     use super::*;
     use crate::core::case::built_in;
-    use crate::core::kernel::tensor::Metric2;
-    use crate::core::mesh::ids::PointId;
-    use crate::core::mesh::triangle_set::TriangleSet;
     use crate::core::progress::Nobody;
     use crate::core::run::history::{Changes, History};
     use crate::core::run::run::Run;
+    use crate::render::fixtures::two_squares;
     use crate::render::palette::DARK;
-
-    fn strip() -> Mesh {
-        let uv: Vec<_> = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0)]
-            .map(|(x, y)| DVec2::new(x, y))
-            .to_vec();
-        let set = TriangleSet {
-            point: (0..6).map(PointId).collect(),
-            triangles: vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]],
-            region: vec![0; 4],
-            uv,
-            ..TriangleSet::default()
-        };
-        Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6])
-    }
 
     fn draw(mesh: &Mesh, scene: &mut Scene, layers: Layers) {
         let drawn =
@@ -278,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_swap_changes_the_places_of_its_own_edge_alone() {
-        let mut mesh = strip();
+        let mut mesh = two_squares();
         let mut scene = Scene::default();
         draw(&mesh, &mut scene, Layers::default());
         let before = scene.edges.items().to_vec();
@@ -298,7 +281,7 @@ mod tests {
 
     #[test]
     fn a_layer_that_is_off_is_not_drawn() {
-        let mesh = strip();
+        let mesh = two_squares();
         let mut scene = Scene::default();
         let layers = Layers { live: false, nodes: false, ..Layers::default() };
         draw(&mesh, &mut scene, layers);
@@ -306,7 +289,7 @@ mod tests {
         assert!(scene.dots.items().iter().all(|d| d.least.is_infinite()));
     }
 
-    /// What is seen, in no order: faces, edges, boundary, dots.
+    /// Everything drawn, in no order: faces, edges, boundary, dots.
     fn seen(scene: &Scene) -> [Vec<String>; 4] {
         let lines = |lines: &[Line]| {
             let mut seen: Vec<_> = lines.iter().filter(|l| l.colour != 0).map(|l| format!("{l:?}")).collect();

@@ -1,4 +1,4 @@
-//! What lies over the mesh: what the last operations changed, front, decision, selection.
+//! Overlays of the mesh: changes by the last operations, front, decision, selection.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ const BASE: f32 = 5.0;
 const SIDE: f32 = 3.2;
 const TOP: f32 = 2.6;
 
-/// The quadrilateral in the making: its base AB and, as far as they are known, its tops C (at A) and D (at B).
+/// The current quadrilateral: its base AB and, as far as they are known, its top nodes C (at A) and D (at B).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decision {
     /// A and B.
@@ -27,7 +27,7 @@ pub struct Decision {
 }
 
 impl Decision {
-    /// What is decided in a phase.
+    /// The decision in a phase.
     pub fn of(phase: &Phase) -> Decision {
         let tops = match phase {
             Phase::PrepareSide { left, .. } => [*left, None],
@@ -45,7 +45,7 @@ impl Decision {
     }
 }
 
-/// Something that is picked or hovered.
+/// An item that is selected or under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Outlined {
     /// A node.
@@ -56,7 +56,7 @@ pub enum Outlined {
     Element(ElementId),
 }
 
-/// What is laid over a mesh.
+/// The overlays of a mesh.
 pub struct Overlay<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
@@ -64,15 +64,15 @@ pub struct Overlay<'a> {
     pub front: &'a [Segment],
     /// Elements that the last operations changed, the newest first.
     pub changed: &'a [Arc<[ElementId]>],
-    /// The quadrilateral in the making.
+    /// The current quadrilateral.
     pub decision: Decision,
-    /// Edges that were tried and refused.
+    /// Candidate edges that were rejected.
     pub refused: &'a [[NodeId; 2]],
-    /// What is picked.
+    /// The selection.
     pub picked: Option<Outlined>,
-    /// What the pointer is over.
+    /// What is under the pointer.
     pub hovered: Option<Outlined>,
-    /// What a plot or a list has lit up.
+    /// Items that a plot or a list highlights.
     pub lit: &'a [Outlined],
     /// The mesh at step 0, where that layer is on.
     pub background: Option<&'a Mesh>,
@@ -84,7 +84,7 @@ pub fn front(mesh: &Mesh, parameters: &Parameters) -> Vec<Segment> {
 }
 
 impl Scene {
-    /// Makes what lies over the mesh that of `overlay`.
+    /// Rebuilds the overlays from `overlay`.
     pub fn set_overlay(&mut self, overlay: &Overlay<'_>, layers: Layers, palette: &Palette) {
         self.generation += 1;
         let (mut over, mut dots) = (Vec::new(), Vec::new());
@@ -101,7 +101,7 @@ impl Scene {
         self.over_dots.replace(&dots, self.generation);
     }
 
-    /// A line between nodes, along the surface where elements are curved; none where they are not there.
+    /// A line between nodes, along the surface where elements are curved; `None` where a node does not exist.
     fn line(&self, mesh: &Mesh, ends: [NodeId; 2], colour: Rgba, width: f32, dash: [f32; 2]) -> Vec<Line> {
         if !ends.iter().all(|n| mesh.has_node(*n) && n.index() < self.spots.len()) {
             return Vec::new();
@@ -117,7 +117,7 @@ impl Scene {
     fn add_background(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, palette: &Palette) {
         let Some(background) = overlay.background else { return };
         for h in background.edges() {
-            // Its nodes are not those of the scene.
+            // Its nodes differ from those of the scene.
             let place = |n: NodeId| relative(Spot::of(background, n, self.form).at, self.anchor);
             let ends = background.ends(h).map(place);
             let colour = ink(palette.hint.faded(0.5));
@@ -183,7 +183,7 @@ impl Scene {
         }
     }
 
-    /// The same double line around whatever is picked.
+    /// A double outline around the selection.
     fn add_picked(&self, over: &mut Vec<Line>, dots: &mut Vec<Dot>, overlay: &Overlay<'_>, palette: &Palette) {
         let mesh = overlay.mesh;
         match overlay.picked {
@@ -258,25 +258,10 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::kernel::tensor::Metric2;
-    use crate::core::mesh::ids::PointId;
-    use crate::core::mesh::triangle_set::TriangleSet;
+    use crate::render::fixtures::square;
     use crate::render::palette::DARK;
     use crate::render::scene::{Drawn, Form, Shading};
-    use glam::{DVec2, DVec3};
-
-    fn square() -> Mesh {
-        let uv = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y)).to_vec();
-        let point = (0..4).map(PointId).collect();
-        let set = TriangleSet {
-            uv,
-            point,
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-            region: vec![0; 2],
-            ..TriangleSet::default()
-        };
-        Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 4])
-    }
+    use glam::DVec3;
 
     fn drawn(mesh: &Mesh) -> Scene {
         let mut scene = Scene::default();

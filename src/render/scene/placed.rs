@@ -1,14 +1,14 @@
-//! Lists in which everything keeps its place, and which remember when each stretch of them was changed last: whoever has seen
-//! them before looks at what is newer.
+//! Lists in which every item keeps its slot, and which record the last change of each stretch, so that a reader can
+//! pick what is newer than what it has.
 
 use super::Line;
 
-/// Places that are remembered together.
+/// Number of slots in a stretch.
 pub const STRETCH: usize = 64;
 
 const NOWHERE: u32 = u32::MAX;
 
-/// A list whose stretches know the generation of their last change.
+/// A list whose stretches record the generation of their last change.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Placed<T> {
     items: Vec<T>,
@@ -16,17 +16,17 @@ pub struct Placed<T> {
 }
 
 impl<T: Copy + PartialEq> Placed<T> {
-    /// All of them.
+    /// All items.
     pub fn items(&self) -> &[T] {
         &self.items
     }
 
-    /// The generation of the last change to what is there.
+    /// The generation of the last change.
     pub fn newest(&self) -> u64 {
         self.changed.iter().copied().max().unwrap_or_default()
     }
 
-    /// The stretches that were changed after a generation, as starts and ends; neighbours go together.
+    /// The stretches changed after a generation, as starts and ends; neighbours are joined.
     pub fn newer_than(&self, generation: u64) -> Vec<[usize; 2]> {
         let mut found: Vec<[usize; 2]> = Vec::new();
         for (k, _) in self.changed.iter().enumerate().filter(|(_, changed)| **changed > generation) {
@@ -39,7 +39,7 @@ impl<T: Copy + PartialEq> Placed<T> {
         found
     }
 
-    /// Puts something into a place.
+    /// Puts an item into a slot.
     pub fn set(&mut self, place: usize, item: T, generation: u64) {
         if self.items[place] != item {
             self.items[place] = item;
@@ -47,7 +47,7 @@ impl<T: Copy + PartialEq> Placed<T> {
         }
     }
 
-    /// Makes the list so long, with `empty` in new places.
+    /// Resizes the list, with `empty` in new slots.
     pub fn resize(&mut self, length: usize, empty: T, generation: u64) {
         let first = self.items.len() / STRETCH;
         if length > self.items.len() {
@@ -60,7 +60,7 @@ impl<T: Copy + PartialEq> Placed<T> {
         }
     }
 
-    /// Puts other things in place of all; those that are the same stay as they are.
+    /// Replaces all items; equal ones do not count as changed.
     pub fn replace(&mut self, items: &[T], generation: u64) {
         self.items.truncate(items.len());
         self.changed.truncate(items.len().div_ceil(STRETCH));
@@ -78,24 +78,24 @@ impl<T: Copy + PartialEq> Placed<T> {
     }
 }
 
-/// Which place of a list the edge of a half-edge has.
+/// The slot in a list of the edge of each half-edge.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Places {
-    /// By half-edge slot; `NOWHERE` where it has none.
+    /// By half-edge; `NOWHERE` where it has none.
     place: Vec<u32>,
-    /// Places that nobody uses.
+    /// Free slots.
     free: Vec<u32>,
-    /// Lines in a place, less one: an edge that is drawn curved is a chain of them.
+    /// Lines per slot, minus one: an edge that is drawn curved is a chain of lines.
     more: usize,
 }
 
 impl Places {
-    /// Places for chains of so many lines.
+    /// Slots for chains of this many lines.
     pub fn of_chains(lines: usize) -> Places {
         Places { more: lines.saturating_sub(1), ..Places::default() }
     }
 
-    /// Makes room for so many half-edge slots; edges of slots that go leave their places.
+    /// Resizes to this many half-edges; edges of removed half-edges free their slots.
     pub fn resize(&mut self, slots: usize, list: &mut Placed<Line>, generation: u64) {
         for slot in slots..self.place.len() {
             self.put(slot, &[], list, generation);

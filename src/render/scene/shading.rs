@@ -1,4 +1,4 @@
-//! What elements are coloured by, and the values.
+//! The quantities that elements can be coloured by, and their values.
 
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId};
@@ -6,13 +6,13 @@ use crate::core::metric::measure::triangle_area;
 use crate::render::colour_map::ColourMap;
 use crate::render::palette::Rgba;
 
-/// What elements are coloured by.
+/// The quantity that elements are coloured by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColourBy {
     /// Live and dead.
     #[default]
     State,
-    /// The mean smallest target size at the nodes (eq. 6), by its logarithm.
+    /// The mean of the smallest target sizes at the nodes (eq. 6), on a logarithmic scale.
     HValue,
     /// The smallest angle, in degrees of the plane.
     Angle,
@@ -27,7 +27,7 @@ pub enum ColourBy {
 }
 
 impl ColourBy {
-    /// All of them, in the order of menus.
+    /// All quantities, in the order of menus.
     pub const ALL: [ColourBy; 7] = [
         ColourBy::State,
         ColourBy::HValue,
@@ -51,7 +51,7 @@ impl ColourBy {
         }
     }
 
-    /// Its colour map; none where the state is shown.
+    /// Its colour map; `None` where the state is shown.
     pub fn map(self) -> Option<ColourMap> {
         match self {
             ColourBy::State => None,
@@ -62,16 +62,16 @@ impl ColourBy {
     }
 }
 
-/// The values that elements are coloured by, and their range.
+/// The values that elements are coloured by, with their range.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shading {
-    /// What is shown.
+    /// The quantity.
     pub by: ColourBy,
-    /// A value for each element slot; not a number where there is none.
+    /// A value for each element slot; NaN where there is none.
     pub values: Vec<f64>,
-    /// The least and greatest value.
+    /// The smallest and the largest value.
     pub range: [f64; 2],
-    /// Whether colours go by the logarithm.
+    /// Whether the colour scale is logarithmic.
     pub logarithmic: bool,
 }
 
@@ -107,7 +107,7 @@ impl Shading {
         Shading { by, values, range, logarithmic }
     }
 
-    /// The place of a value between the ends of the range, 0 to 1.
+    /// The relative position of a value in the range, 0 to 1.
     pub fn share(&self, value: f64) -> f32 {
         let scale = |v: f64| if self.logarithmic { libm::log(v) } else { v };
         let [low, high] = self.range.map(scale);
@@ -120,7 +120,7 @@ impl Shading {
     }
 }
 
-/// The least and the greatest inner angle of an element in the plane, radians.
+/// The smallest and the largest inner angle of an element in the plane, in radians.
 pub fn angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
     let angle = |h: HalfEdgeId| {
         let p = mesh.uv(mesh.origin(h));
@@ -142,30 +142,12 @@ pub fn metric_area(mesh: &Mesh, e: ElementId) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
-
     use super::*;
-    use crate::core::kernel::tensor::Metric2;
-    use crate::core::mesh::ids::PointId;
-    use crate::core::mesh::triangle_set::TriangleSet;
-
-    fn strip() -> Mesh {
-        let uv: Vec<_> = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0)]
-            .map(|(x, y)| DVec2::new(x, y))
-            .to_vec();
-        let set = TriangleSet {
-            point: (0..6).map(PointId).collect(),
-            triangles: vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]],
-            region: vec![0; 4],
-            uv,
-            ..TriangleSet::default()
-        };
-        Mesh::from_triangles(&set, vec![Metric2::isotropic(1.0); 6])
-    }
+    use crate::render::fixtures::two_squares;
 
     #[test]
     fn unit_squares_have_unit_metric_area_together_and_their_smallest_angle_is_half_a_right_one() {
-        let mesh = strip();
+        let mesh = two_squares();
         let area: f64 = mesh.elements().map(|e| metric_area(&mesh, e)).sum();
         assert!((area - 2.0).abs() < 1e-12);
         let shading = Shading::of(&mesh, ColourBy::Angle, &[]);

@@ -1,4 +1,4 @@
-//! Histograms as figures: edge lengths in the metric (fig. 23), least and greatest angles of the elements (fig. 24).
+//! Histograms as figures: edge lengths in the metric (fig. 23), smallest and largest angles of the elements (fig. 24).
 
 use glam::DVec2;
 
@@ -8,28 +8,28 @@ use crate::core::record::statistics::{ANGLE_CLASSES, LENGTH_CLASSES, Statistics}
 use crate::render::number::{fixed, grouped};
 use crate::render::palette::{LETTER, bars};
 
-/// Ground around the axes, in points: for the numbers of the counts, and for those below.
+/// Margins around the axes in points, for the numbers of the vertical and of the horizontal axis.
 const LEFT: f64 = 27.0;
 const BELOW: f64 = 22.0;
 const ABOVE: f64 = 12.0;
 const RIGHT: f64 = 6.0;
-/// Height over width, where the page has no height.
+/// Ratio of height to width where the page has no height.
 const SHAPE: f64 = 0.62;
-/// Bars with fewer than so many have their count above them.
+/// Bars with smaller counts have the count above them.
 const FEW: u64 = 12;
 
 /// A histogram of one series or two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
-    /// What is measured, below its axis, and what is counted.
+    /// The titles of the horizontal and of the vertical axis.
     axes: [String; 2],
-    /// What else is to be said, above.
+    /// A note above the plot.
     note: String,
-    /// Where the first class begins and the last one ends.
+    /// The beginning of the first class and the end of the last one.
     range: [f64; 2],
-    /// Between two numbers on the axis, and their decimals.
+    /// The distance between two numbers on the axis, and their decimals.
     tick: (f64, usize),
-    /// Counts of each class, with a name where there are several.
+    /// Counts by class for each series, with a name where there are several.
     series: Vec<(&'static str, Vec<u64>)>,
 }
 
@@ -37,7 +37,7 @@ impl Histogram {
     /// Edge lengths in the metric (fig. 23); the classes are 0.1 wide.
     pub fn of_lengths(statistics: &Statistics) -> Histogram {
         let lengths = &statistics.lengths;
-        // To the next half beyond the last edge; the last class takes in all that are longer.
+        // To the next half beyond the longest edge; the last class contains all longer edges.
         let last = lengths.edges.iter().rposition(|count| *count > 0).map_or(0, |k| k + 1);
         let classes = last.next_multiple_of(5).clamp(20, LENGTH_CLASSES);
         Histogram {
@@ -55,7 +55,7 @@ impl Histogram {
         }
     }
 
-    /// Least and greatest angles of the elements in the metric (fig. 24); the classes are 10 degrees wide.
+    /// Smallest and largest angles of the elements in the metric (fig. 24); the classes are 10 degrees wide.
     pub fn of_angles(statistics: &Statistics) -> Histogram {
         let angles = &statistics.metric_angles;
         Histogram {
@@ -101,7 +101,7 @@ impl Histogram {
                 let share = |part: f64| self.range[0] + class * (k as f64 + 0.08 + 0.84 * (i as f64 + part) / count);
                 let (low, high) = (plot.at(share(0.0), 0.0), plot.at(share(1.0), counts[k] as f64));
                 let [fill, stroke] = styles[i.min(1)];
-                // The outline lies within the bar.
+                // The outline lies inside the bar.
                 let inset = DVec2::new(0.2, 0.0);
                 let area = [DVec2::new(low.x, high.y) + inset, DVec2::new(high.x, low.y) - inset];
                 page.bar(area, &format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"0.4\""));
@@ -158,11 +158,11 @@ impl Histogram {
     }
 }
 
-/// Where the numbers of a plot lie.
+/// The map from values of a plot to the page.
 struct Plot {
-    /// On the page, the corner at the least measure and no count.
+    /// The corner on the page at the smallest value and count 0.
     low: DVec2,
-    /// The corner opposite.
+    /// The opposite corner.
     high: DVec2,
     range: [f64; 2],
     top: f64,
@@ -175,7 +175,7 @@ impl Plot {
     }
 }
 
-/// A round step in which an axis up to `most` has three to six numbers.
+/// A round step with which an axis up to `most` has three to six numbers.
 fn step(most: u64) -> u64 {
     let mut power = 1;
     loop {

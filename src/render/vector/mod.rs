@@ -1,4 +1,4 @@
-//! Pictures as vectors, and as pixels drawn from those.
+//! Pictures as vectors, and as pixels rendered from them.
 
 pub mod svg;
 pub mod histogram;

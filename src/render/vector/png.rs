@@ -1,4 +1,4 @@
-//! Pixels drawn from the same vectors: an SVG of ours as PNG, with the same bytes on every machine.
+//! PNG: an SVG of ours rendered to pixels, with the same bytes on every machine.
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
@@ -7,25 +7,25 @@ use super::svg::page::{FAMILY, FONT};
 use crate::core::fault::Fault;
 use crate::core::record::figure::KEYWORD;
 
-/// What a picture may have of pixels on one side, and over all.
+/// The largest number of pixels on one side, and in total.
 const MOST: u32 = 20_000;
 const MOST_PIXELS: u64 = 200_000_000;
 
-/// What a PNG carries beside its pixels.
+/// The texts embedded in a PNG.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Carried<'a> {
-    /// What it shows, in words.
+    /// The description of what it shows.
     pub description: &'a str,
-    /// The text of its run.
+    /// The text of the embedded run.
     pub run: Option<&'a str>,
 }
 
-/// Draws an SVG at so many dots an inch, transparent where the vectors have no ground. No font of the system is used.
+/// Renders an SVG at this many dots per inch, transparent where it has no background. It uses no system fonts.
 ///
 /// # Errors
-/// A size that no picture can have.
+/// A size that is not possible.
 pub fn write(svg: &str, dpi: f64, carried: Carried<'_>) -> Result<Vec<u8>, Fault> {
-    let refuse = |error: String| Fault::new(format!("The picture cannot be drawn: {error}"));
+    let refuse = |error: String| Fault::new(format!("The picture cannot be rendered: {error}"));
     let mut options = Options { font_family: FAMILY.to_owned(), dpi: 72.0, ..Options::default() };
     options.fontdb_mut().load_font_data(FONT.to_vec());
     let tree = Tree::from_str(svg, &options).map_err(|error| refuse(error.to_string()))?;
@@ -33,7 +33,7 @@ pub fn write(svg: &str, dpi: f64, carried: Carried<'_>) -> Result<Vec<u8>, Fault
     let (width, height) = (pixels(tree.size().width()), pixels(tree.size().height()));
     if width > MOST || height > MOST || u64::from(width) * u64::from(height) > MOST_PIXELS {
         let fault = refuse(format!("{width} x {height} pixels are too many"));
-        return Err(fault.remedy("Ask for a smaller size or fewer dots an inch"));
+        return Err(fault.remedy("Choose a smaller size or fewer dots per inch"));
     }
     let mut pixmap = Pixmap::new(width, height).ok_or_else(|| refuse("it has no size".to_owned()))?;
     let to_pixels = Transform::from_scale(width as f32 / tree.size().width(), height as f32 / tree.size().height());

@@ -1,4 +1,4 @@
-//! SVG: real vectors, widths in points, text in a font that the file brings along, the same bytes for the same picture.
+//! SVG: vector paths, widths in points, text in an embedded font, the same bytes for the same picture.
 
 mod frame;
 mod marks;
@@ -6,67 +6,67 @@ pub(super) mod page;
 
 use glam::DVec2;
 
-use self::frame::Frame;
+use self::frame::SvgFrame;
 use self::marks::Marks;
 use self::page::{Page, Path};
-use crate::render::look::{Layer, Look, Part};
+use crate::render::look::{FigurePart, Layer, Look};
 use crate::render::palette::{CROWDED, HATCH, THIN, figure};
 use crate::render::picture::{Line, Picture, Role};
 
-/// Points in a millimetre.
+/// Points per millimetre.
 pub const MILLIMETRE: f64 = 72.0 / 25.4;
 
 /// The width of a figure in one column of a page, in points.
 pub const COLUMN: f64 = 84.0 * MILLIMETRE;
 
-/// The width of a figure over the whole page, in points.
+/// The width of a figure across the page, in points.
 pub const PAGE: f64 = 174.0 * MILLIMETRE;
 
-/// Between the frames of a strip, in points.
+/// The gap between the frames of a strip, in points.
 const GAP: f64 = 3.0 * MILLIMETRE;
 
 /// Size of captions and letters in points.
 pub(super) const LABEL: f64 = 7.0;
-/// Size of notes in points: the least that can be read in print.
+/// Size of notes in points: the smallest that is legible in print.
 pub(super) const NOTE: f64 = 6.0;
 
-/// Frames side by side, where nothing else is asked for.
+/// Default number of frames side by side.
 const COLUMNS: usize = 4;
-/// A frame that is narrower than this has no room for caption and scale bar in one row.
+/// A narrower frame has no room for caption and scale bar in one row.
 const NARROW: f64 = 95.0;
 
-/// The file that a picture goes into.
+/// The page of a picture.
 #[derive(Clone, Copy)]
 pub struct Sheet<'a> {
     /// One line on what it shows.
     pub title: &'a str,
-    /// More on what it shows.
+    /// A longer description.
     pub description: &'a str,
-    /// The text of the run that it carries.
+    /// The text of the embedded run.
     pub run: Option<&'a str>,
     /// Width in points.
     pub width: f64,
-    /// Height in points; without it as high as equal scales along both axes demand.
+    /// Height in points; by default it follows from equal scales along both axes.
     pub height: Option<f64>,
-    /// How it looks.
+    /// Its look.
     pub look: Look,
-    /// Frames of a strip side by side.
+    /// Number of frames of a strip side by side.
     pub columns: Option<usize>,
 }
 
 impl<'a> Sheet<'a> {
-    /// A sheet in the width of a column, with nothing on it.
+    /// A sheet as wide as a column.
     pub fn column(title: &'a str, description: &'a str, look: Look) -> Sheet<'a> {
         Sheet { title, description, run: None, width: COLUMN, height: None, look, columns: None }
     }
 }
 
-/// One picture as an SVG file.
+/// Writes one picture as an SVG file.
 pub fn write(picture: &Picture, sheet: &Sheet<'_>) -> String {
     let look = &sheet.look;
-    // A scale bar has a row of its own below the picture.
+    // The scale bar has its own row below the picture.
     let below = if look.layers.has(Layer::Scale) { 1.7 * LABEL } else { 0.0 };
-    let frame = Frame::fit(bounds(picture, sheet), sheet.width, sheet.height.map(|h| h - below), look);
+    let frame = SvgFrame::fit(bounds(picture, sheet), sheet.width, sheet.height.map(|h| h - below), look);
     let mut page = Page::new(sheet, frame.size.y + below, uses_text(std::slice::from_ref(picture), look, false));
     draw(&mut page, picture, &frame, look, 0);
     if below > 0.0 {
@@ -75,7 +75,7 @@ pub fn write(picture: &Picture, sheet: &Sheet<'_>) -> String {
     page.finish()
 }
 
-/// Pictures of one thing side by side in equal frames of the same scale, with a letter and the title of each below it, and one
+/// Writes pictures side by side in equal frames of the same scale, each with a letter and its title below, and one
 /// scale bar for all.
 pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> String {
     let look = &sheet.look;
@@ -92,7 +92,7 @@ pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> String {
         Some(part) => Some(part_bounds(part, each, inner)),
         None => pictures.iter().filter_map(Picture::bounds).reduce(union),
     };
-    let first = Frame::fit(all, each, inner, look);
+    let first = SvgFrame::fit(all, each, inner, look);
     let row = first.size.y + caption;
     let height = row * rows as f64 + GAP * (rows - 1) as f64 + own_row;
     let mut page = Page::new(sheet, height, uses_text(pictures, look, true));
@@ -123,21 +123,21 @@ fn bounds(picture: &Picture, sheet: &Sheet<'_>) -> Option<[DVec2; 2]> {
     }
 }
 
-/// A part in the shape of its page; three to four where the page has none.
-fn part_bounds(part: Part, width: f64, height: Option<f64>) -> [DVec2; 2] {
+/// The bounds of a part with the aspect ratio of its page, 3 : 4 where the page has no height.
+fn part_bounds(part: FigurePart, width: f64, height: Option<f64>) -> [DVec2; 2] {
     let shape = width / height.unwrap_or(0.75 * width).max(1.0);
     let half = 0.5 * part.height * DVec2::new(shape, 1.0);
     [part.centre - half, part.centre + half]
 }
 
-/// Whether anything will be written as text.
+/// Whether the drawing contains text.
 fn uses_text(pictures: &[Picture], look: &Look, captions: bool) -> bool {
     let has = |layer| look.layers.has(layer);
     captions || has(Layer::Scale) || pictures.iter().any(|p| p.marks.iter().any(marks::is_text))
 }
 
-/// A picture in its frame, clipped to it where it is a part.
-fn draw(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, number: usize) {
+/// Draws a picture in its frame, clipped where it is a part.
+fn draw(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, number: usize) {
     let clip = look.part.is_some();
     if clip {
         page.clip(number, frame.left_top, frame.size);
@@ -153,7 +153,7 @@ fn draw(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, number: 
     }
 }
 
-fn areas(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: Role) {
+fn areas(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, role: Role) {
     let Some(fill) = figure(role, look.ink).fill else { return };
     let mut path = Path::default();
     for area in picture.areas.iter().filter(|a| a.role == role && frame.sees(&a.corners)) {
@@ -166,8 +166,8 @@ fn areas(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: R
     page.path(&path, &format!("fill=\"{fill}\""));
 }
 
-/// The lines of a role, those that are covered or those that are not.
-fn lines(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: Role, hidden: bool) {
+/// Draws the hidden or the visible lines of a role.
+fn lines(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, role: Role, hidden: bool) {
     let style = figure(role, look.ink);
     let Some(stroke) = style.stroke else { return };
     let (cap, dash) = match style.dash {
@@ -177,7 +177,7 @@ fn lines(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: R
     let opacity = if hidden { format!(" stroke-opacity=\"{}\"", look.hidden.share()) } else { String::new() };
     for (crowded, width) in [(true, THIN.min(style.width)), (false, style.width)] {
         let mut path = Path::default();
-        // The boundary keeps its width: it is what a reader orients by.
+        // The boundary keeps its width, for orientation.
         let thin = |room: f64| role != Role::Boundary && room * frame.scale < CROWDED;
         let here = |l: &&Line| l.role == role && l.hidden == hidden && thin(l.room) == crowded;
         for line in picture.lines.iter().filter(here).filter(|l| frame.sees(&l.ends)) {
@@ -188,8 +188,8 @@ fn lines(page: &mut Page, picture: &Picture, frame: &Frame, look: &Look, role: R
     }
 }
 
-/// A bar of a round length that ends at `right`, with the length before it.
-fn scale_bar(page: &mut Page, frame: &Frame, right: DVec2, look: &Look) {
+/// Draws a scale bar of a round length that ends at `right`, with the length to its left.
+fn scale_bar(page: &mut Page, frame: &SvgFrame, right: DVec2, look: &Look) {
     let wanted = 0.3 * frame.size.x / frame.scale;
     if !(wanted.is_finite() && wanted > 0.0) {
         return;
@@ -208,7 +208,7 @@ fn scale_bar(page: &mut Page, frame: &Frame, right: DVec2, look: &Look) {
     page.text(left - DVec2::new(2.5, 0.0), NOTE, "end", &length_in_words(length));
 }
 
-/// A round length as it is written: 0.2, 50, 2e-7.
+/// A round length as text: 0.2, 50, 2e-7.
 fn length_in_words(length: f64) -> String {
     let text = crate::core::kernel::decimal::Shortest(libm::round(length * 1e12) / 1e12).to_string();
     if length < 1e-9 { format!("{length:e}") } else { text }

@@ -221,11 +221,11 @@ fn rounded(value: f64) -> f64 {
 
 fn used(ui: &mut Ui, options: &mut ImportOptions, import: &Import, palette: &Palette) {
     let now = import.used();
-    let words = [(MeshUse::Shape, "shape", REMESH), (MeshUse::Triangles, "triangles", TRIANGLES)];
-    for (k, (use_, word, text)) in words.into_iter().enumerate() {
+    let words = [(MeshUse::Shape, REMESH), (MeshUse::Triangles, TRIANGLES)];
+    for (k, (use_, text)) in words.into_iter().enumerate() {
         row(ui, if k == 0 { "use" } else { "" }, "What the mesh is used for (--use)", palette, |ui| {
             if ui.radio(now == use_, text).clicked() && now != use_ {
-                options.used = (use_ != import.use_by_default()).then(|| word.to_owned());
+                options.used = (use_ != import.use_by_default()).then_some(use_);
             }
         });
     }

@@ -16,7 +16,7 @@ use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::explain::MetricTold;
+use crate::core::run::explain::MetricFacts;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Decision, Outlined};
 
@@ -144,7 +144,7 @@ fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut V
     table_head(ui, &widths, &["", axes[0], axes[1], "h\u{2081}", "h\u{2082}", "axis °"], palette);
     for (k, (name, node)) in nodes.iter().enumerate() {
         let p = moment.mesh.uv(*node);
-        let told = MetricTold::of(moment.mesh.metric_ref(*node));
+        let told = MetricFacts::of(moment.mesh.metric_ref(*node));
         let texts = [
             format!("{name} {}", node.0).trim().to_owned(),
             words::size(p.x),

@@ -1,5 +1,6 @@
 //! Goals of a walk through the run, and the steps that they stand for.
 
+use crate::core::convert::event::EventKind;
 use crate::core::run::log::Log;
 
 /// A direction along the steps of a run, or along the changes of the user.
@@ -28,7 +29,7 @@ pub enum Goal {
     /// To where there are so many quadrilaterals.
     ToQuads(u64),
     /// To the next event of a kind, or the one before.
-    Kind(&'static str, Direction),
+    Kind(EventKind, Direction),
     /// To the end.
     End,
 }
@@ -103,11 +104,11 @@ mod tests {
     fn events_of_a_kind_are_met_forward_and_backward() {
         let history = history();
         let (log, end) = (history.log(), history.end());
-        let first = Goal::Kind("formed", Direction::Forward).resolve(log, 0, end).unwrap();
-        let second = Goal::Kind("formed", Direction::Forward).resolve(log, first, end).unwrap();
-        assert!(log.kind(first) == Some("formed") && log.kind(second) == Some("formed"));
-        assert_eq!(Goal::Kind("formed", Direction::Back).resolve(log, second, end), Some(first));
-        assert_eq!(Goal::Kind("formed", Direction::Back).resolve(log, first, end), Some(0));
+        let first = Goal::Kind(EventKind::Formed, Direction::Forward).resolve(log, 0, end).unwrap();
+        let second = Goal::Kind(EventKind::Formed, Direction::Forward).resolve(log, first, end).unwrap();
+        assert!(log.kind(first) == Some(EventKind::Formed) && log.kind(second) == Some(EventKind::Formed));
+        assert_eq!(Goal::Kind(EventKind::Formed, Direction::Back).resolve(log, second, end), Some(first));
+        assert_eq!(Goal::Kind(EventKind::Formed, Direction::Back).resolve(log, first, end), Some(0));
     }
 
     #[test]

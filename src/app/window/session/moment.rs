@@ -10,7 +10,7 @@ use crate::core::convert::phase::Phase;
 use crate::core::front::segment::Segment;
 use crate::core::mesh::half_edge::Mesh;
 use crate::core::mesh::ids::ElementId;
-use crate::core::run::explain::SegmentTold;
+use crate::core::run::explain::SegmentFacts;
 use crate::core::run::front_table::{Loop, Row};
 use crate::core::run::history::Changes;
 
@@ -49,7 +49,7 @@ pub struct Moment {
     /// The candidates for a side edge of the last step.
     pub candidates: Option<Candidates>,
     /// Why the base is the base.
-    pub base: Option<SegmentTold>,
+    pub base: Option<SegmentFacts>,
     /// Whether the invariants hold.
     pub verdict: Verdict,
     /// The time from the request to the report.

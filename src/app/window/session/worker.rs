@@ -15,7 +15,7 @@ use crate::core::fault::Fault;
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::run::breakpoint::{self, Condition};
 use crate::core::run::copies::{Copies, Since};
-use crate::core::run::explain::SegmentTold;
+use crate::core::run::explain::SegmentFacts;
 use crate::core::run::history::{BUDGET, History};
 use crate::core::run::recorder::{Recorder, Stretch};
 use crate::core::run::run::{Edit, Run};
@@ -143,7 +143,7 @@ impl Worker {
                 Ask::Go(goal, since) => self.go(Aim::Goal(goal), since),
                 Ask::Break(stops, direction) => self.go(Aim::Break(stops, direction), Instant::now()),
                 Ask::Touch(watched) => {
-                    let found = self.history.last_touch(watched, false);
+                    let found = self.history.last_touch(watched);
                     self.go_back(found, "Nothing has touched it before this step.");
                 }
                 Ask::Made(element) => {
@@ -199,7 +199,7 @@ impl Worker {
             match watched {
                 Watched::Element(element) => {
                     if let Some(step) = history.made(element)? {
-                        made = Some((step, history.eaten(step)?));
+                        made = Some((step, history.merged(step)?));
                     }
                 }
                 Watched::Edge(a, b) => killed = history.killed(a, b)?,
@@ -214,7 +214,7 @@ impl Worker {
     }
 
     fn explain(&self, a: NodeId, b: NodeId) {
-        let Some(told) = SegmentTold::of(self.history.state(), a, b) else { return };
+        let Some(told) = SegmentFacts::of(self.history.state(), a, b) else { return };
         let put_off = if told.row.is_put_off { self.put_off(a, b) } else { None };
         self.voice.say(SessionNews::Explained(self.history.step(), Arc::new(Explained { told, put_off })));
     }
@@ -237,8 +237,13 @@ impl Worker {
         let mut hits = vec![0; self.conditions.len()];
         for step in (1..=log.known()).filter(|_| !self.conditions.is_empty()) {
             let Some(event) = log.event(step) else { continue };
-            let moment =
-                breakpoint::Moment { step, nq: log.nq(step), event, front: log.front(step), angles: log.angles(step) };
+            let moment = breakpoint::StepFacts {
+                step,
+                nq: log.nq(step),
+                event,
+                front: log.front(step),
+                angles: log.angles(step),
+            };
             for (hit, condition) in hits.iter_mut().zip(&self.conditions) {
                 *hit += usize::from(condition.holds(&moment));
             }
@@ -355,7 +360,7 @@ impl Worker {
         for &watched in &stops.watched {
             found.extend(match direction {
                 Direction::Forward => self.history.next_touch(watched)?,
-                Direction::Back => self.history.last_touch(watched, false)?,
+                Direction::Back => self.history.last_touch(watched)?,
             });
         }
         Ok(match direction {

@@ -1,67 +1,73 @@
-//! The fields that conditions can name, each with what it means.
+//! The fields that conditions can name, with their meanings.
 
-use super::Moment;
-use crate::core::convert::event::{Event, Why};
+use super::StepFacts;
+use crate::core::convert::event::{Event, EventKind, WhyKind};
+use crate::core::front::sector::Side;
 
-/// What a field holds.
+/// The type of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
     /// A number.
     Number,
     /// An angle in degrees.
     Degrees,
-    /// Yes or no: the field alone is a condition.
+    /// Yes or no: the field by itself is a condition.
     Flag,
     /// The kind of an event.
     Kind,
-    /// Why an attempt was taken back.
+    /// Why an attempt was rolled back.
     Why,
-    /// left or right.
+    /// Left or right.
     Side,
 }
 
 impl Holds {
-    /// The words that can be compared with; none for numbers and flags.
+    /// The words that a field of this type can be compared with; none for numbers.
     pub fn words(self) -> &'static [&'static str] {
         match self {
-            Holds::Kind => Event::KINDS,
-            Holds::Why => &[
-                "no_side",
-                "no_division",
-                "top_blocked",
-                "top_through_node",
-                "top_too_long",
-                "too_long",
-                "not_disc",
-                "not_convex",
-                "poor",
-                "odd_loop",
-                "no_metric",
-            ],
+            Holds::Kind => EventKind::NAMES,
+            Holds::Why => WhyKind::NAMES,
             Holds::Side => &["left", "right"],
             Holds::Flag => &["true", "false"],
             Holds::Number | Holds::Degrees => &[],
         }
     }
+
+    /// Reads a value of this type.
+    pub(super) fn value(self, word: &str) -> Option<Value> {
+        match self {
+            Holds::Number | Holds::Degrees => word.parse().ok().filter(|n: &f64| n.is_finite()).map(Value::Number),
+            Holds::Flag => word.parse().ok().map(Value::Flag),
+            Holds::Kind => word.parse().ok().map(Value::Kind),
+            Holds::Why => word.parse().ok().map(Value::Why),
+            Holds::Side => Side::BOTH
+                .into_iter()
+                .zip(self.words())
+                .find(|(_, name)| **name == word)
+                .map(|(side, _)| Value::Side(side)),
+        }
+    }
 }
 
-/// What a field has, or is compared with.
-#[derive(Clone, Debug, PartialEq)]
+/// The value of a field, or the one it is compared with.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Value {
     Number(f64),
     Flag(bool),
-    Word(String),
+    Kind(EventKind),
+    Why(WhyKind),
+    Side(Side),
 }
 
 /// A field that conditions can name.
 pub struct Field {
     /// Its name.
     pub name: &'static str,
-    /// What it holds.
+    /// Its type.
     pub holds: Holds,
-    /// What it means, for whoever writes a condition.
+    /// Its meaning, for people who write conditions.
     pub doc: &'static str,
-    pub(super) of: fn(&Moment<'_>) -> Option<Value>,
+    pub(super) of: fn(&StepFacts<'_>) -> Option<Value>,
 }
 
 fn number(n: impl Into<f64>) -> Option<Value> {
@@ -72,212 +78,96 @@ fn degrees(radians: f64) -> Option<Value> {
     number(radians.to_degrees())
 }
 
-/// A field of one kind of event.
+/// The value of a field that one kind of event has.
 macro_rules! of_event {
     ($pattern:pat => $value:expr) => {
-        |moment| match *moment.event {
+        |facts| match *facts.event {
             $pattern => $value,
             _ => None,
         }
     };
 }
 
-/// All fields, in the order in which they are offered.
-pub const FIELDS: &[Field] = &[
-    Field {
-        name: "kind",
-        holds: Holds::Kind,
-        doc: "what the step did",
-        of: |m| Some(Value::Word(m.event.kind().into())),
-    },
-    Field { name: "step", holds: Holds::Number, doc: "number of the step", of: |m| number(m.step as f64) },
-    Field { name: "nq", holds: Holds::Number, doc: "quadrilaterals that stand", of: |m| number(m.nq as f64) },
-    Field {
-        name: "quad.quality",
-        holds: Holds::Number,
-        doc: "quality of the quadrilateral that was formed, 0 to 1",
-        of: of_event!(Event::Formed { quality, .. } => number(quality)),
-    },
-    Field {
-        name: "quad.min_angle",
-        holds: Holds::Degrees,
-        doc: "least angle of the quadrilateral that was formed, in the metric",
-        of: |m| m.angles.and_then(|angles| degrees(angles.min.into())),
-    },
-    Field {
-        name: "quad.max_angle",
-        holds: Holds::Degrees,
-        doc: "largest angle of the quadrilateral that was formed, in the metric",
-        of: |m| m.angles.and_then(|angles| degrees(angles.max.into())),
-    },
-    Field {
-        name: "quad.level",
-        holds: Holds::Number,
-        doc: "row of the quadrilateral that was formed, counted from the boundary",
-        of: of_event!(Event::Formed { level, .. } => number(level)),
-    },
-    Field {
-        name: "quad.eaten",
-        holds: Holds::Number,
-        doc: "triangles that the quadrilateral ate",
-        of: of_event!(Event::Formed { eaten, .. } => number(eaten)),
-    },
-    Field {
-        name: "quad.attempt",
-        holds: Holds::Number,
-        doc: "which attempt formed the quadrilateral, from 0",
-        of: of_event!(Event::Formed { attempt, .. } => number(attempt)),
-    },
-    Field {
-        name: "quad.element",
-        holds: Holds::Number,
-        doc: "id of the quadrilateral that was formed",
-        of: of_event!(Event::Formed { element, .. } => number(element.0)),
-    },
-    Field {
-        name: "front.segments",
-        holds: Holds::Number,
-        doc: "segments of the front",
-        of: |m| number(m.front.segments),
-    },
-    Field {
-        name: "front.loops",
-        holds: Holds::Number,
-        doc: "closed chains of the front",
-        of: |m| number(m.front.loops),
-    },
-    Field {
-        name: "front.odd",
-        holds: Holds::Number,
-        doc: "loops with an odd number of segments",
-        of: |m| number(m.front.odd),
-    },
-    Field { name: "front.live", holds: Holds::Number, doc: "live triangles", of: |m| number(m.front.live) },
-    Field {
-        name: "base.class",
-        holds: Holds::Number,
-        doc: "class of table 1 of the chosen base segment, 1 to 4",
-        of: of_event!(Event::BaseSelected { class, .. } => number(class)),
-    },
-    Field {
-        name: "base.h_value",
-        holds: Holds::Number,
-        doc: "H-value (eq. 6) of the chosen base segment",
-        of: of_event!(Event::BaseSelected { h_value, .. } => number(h_value)),
-    },
-    Field {
-        name: "base.length",
-        holds: Holds::Number,
-        doc: "length of the chosen base segment in the metric",
-        of: of_event!(Event::BaseSelected { length_metric, .. } => number(length_metric)),
-    },
-    Field {
-        name: "base.level",
-        holds: Holds::Number,
-        doc: "rows between the chosen base segment and the boundary",
-        of: of_event!(Event::BaseSelected { level, .. } => number(level)),
-    },
-    Field {
-        name: "base.theta_a",
-        holds: Holds::Degrees,
-        doc: "frontal angle at the left node of the chosen base segment",
-        of: of_event!(Event::BaseSelected { theta, .. } => degrees(theta[0])),
-    },
-    Field {
-        name: "base.theta_b",
-        holds: Holds::Degrees,
-        doc: "frontal angle at the right node of the chosen base segment",
-        of: of_event!(Event::BaseSelected { theta, .. } => degrees(theta[1])),
-    },
-    Field {
-        name: "base.within_reach",
-        holds: Holds::Flag,
-        doc: "the chosen base segment is within c Hmin",
-        of: of_event!(Event::BaseSelected { within_reach, .. } => Some(Value::Flag(within_reach))),
-    },
-    Field {
-        name: "base.picked",
-        holds: Holds::Flag,
-        doc: "a person picked the base segment",
-        of: of_event!(Event::BaseSelected { picked, .. } => Some(Value::Flag(picked))),
-    },
-    Field { name: "side", holds: Holds::Side, doc: "which side edge the step is about", of: side },
-    Field {
-        name: "side.deviation",
-        holds: Holds::Degrees,
-        doc: "how far the side edge is from the direction that was aimed at",
-        of: |m| match *m.event {
-            Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => degrees(edge.deviation),
-            _ => None,
-        },
-    },
-    Field {
-        name: "recovery.failed",
-        holds: Holds::Flag,
-        doc: "the top edge could not be recovered",
-        of: |m| Some(Value::Flag(matches!(rolled_back(m), Some("top_blocked" | "top_through_node" | "top_too_long")))),
-    },
-    Field {
-        name: "recovery.swaps",
-        holds: Holds::Number,
-        doc: "swaps that the recovery of the top edge took",
-        of: of_event!(Event::TopFound { swaps, .. } => number(swaps)),
-    },
-    Field {
-        name: "rollback.why",
-        holds: Holds::Why,
-        doc: "why the attempt was taken back",
-        of: |m| rolled_back(m).map(|why| Value::Word(why.into())),
-    },
-    Field {
-        name: "seam.angle",
-        holds: Holds::Degrees,
-        doc: "frontal angle that was seamed",
-        of: |m| match *m.event {
-            Event::Seamed { angle, .. } | Event::TransitionSeamed { angle, .. } => degrees(angle),
-            _ => None,
-        },
-    },
-    Field {
-        name: "split.ratio",
-        holds: Holds::Number,
-        doc: "width over height of the slender triangle at which the front was split",
-        of: of_event!(Event::Split { ratio, .. } => number(ratio)),
-    },
-    Field {
-        name: "fallback",
-        holds: Holds::Flag,
-        doc: "the front was left: a second pass, or the last resort at work",
-        of: |m| {
-            let left = matches!(m.event, Event::SecondPass | Event::Matched { .. } | Event::Patched { .. });
-            Some(Value::Flag(left))
-        },
-    },
-];
+/// Makes the table of fields: for each its name, its type, its meaning and its value.
+macro_rules! fields {
+    ($($name:literal: $holds:ident, $doc:literal => $of:expr;)*) => {
+        /// All fields, in the order of the list that users see.
+        pub const FIELDS: &[Field] = &[$(Field { name: $name, holds: Holds::$holds, doc: $doc, of: $of },)*];
+    };
+}
 
-fn side(moment: &Moment<'_>) -> Option<Value> {
-    let side = match *moment.event {
+fields! {
+    "kind": Kind, "kind of the event" => |m| Some(Value::Kind(m.event.kind()));
+    "step": Number, "step number" => |m| number(m.step as f64);
+    "nq": Number, "number of quadrilaterals" => |m| number(m.nq as f64);
+    "quad.quality": Number, "quality of the new quadrilateral, 0 to 1" =>
+        of_event!(Event::Formed { quality, .. } => number(quality));
+    "quad.min_angle": Degrees, "smallest angle of the new quadrilateral, in the metric" =>
+        |m| m.angles.and_then(|angles| degrees(angles.min.into()));
+    "quad.max_angle": Degrees, "largest angle of the new quadrilateral, in the metric" =>
+        |m| m.angles.and_then(|angles| degrees(angles.max.into()));
+    "quad.level": Number, "row of the new quadrilateral, counted from the boundary" =>
+        of_event!(Event::Formed { level, .. } => number(level));
+    "quad.eaten": Number, "number of triangles merged into the new quadrilateral" =>
+        of_event!(Event::Formed { eaten, .. } => number(eaten));
+    "quad.attempt": Number, "attempt that formed the quadrilateral, from 0" =>
+        of_event!(Event::Formed { attempt, .. } => number(attempt));
+    "quad.element": Number, "id of the new quadrilateral" =>
+        of_event!(Event::Formed { element, .. } => number(element.0));
+    "front.segments": Number, "number of segments of the front" => |m| number(m.front.segments);
+    "front.loops": Number, "number of loops of the front" => |m| number(m.front.loops);
+    "front.odd": Number, "number of loops with an odd number of segments" => |m| number(m.front.odd);
+    "front.live": Number, "number of live triangles" => |m| number(m.front.live);
+    "base.class": Number, "class of the base segment in table 1, 1 to 4" =>
+        of_event!(Event::BaseSelected { class, .. } => number(class));
+    "base.h_value": Number, "H-value (eq. 6) of the base segment" =>
+        of_event!(Event::BaseSelected { h_value, .. } => number(h_value));
+    "base.length": Number, "length of the base segment in the metric" =>
+        of_event!(Event::BaseSelected { length_metric, .. } => number(length_metric));
+    "base.level": Number, "rows between the base segment and the boundary" =>
+        of_event!(Event::BaseSelected { level, .. } => number(level));
+    "base.theta_a": Degrees, "frontal angle at the left node of the base segment" =>
+        of_event!(Event::BaseSelected { theta, .. } => degrees(theta[0]));
+    "base.theta_b": Degrees, "frontal angle at the right node of the base segment" =>
+        of_event!(Event::BaseSelected { theta, .. } => degrees(theta[1]));
+    "base.within_reach": Flag, "the base segment is within c Hmin" =>
+        of_event!(Event::BaseSelected { within_reach, .. } => Some(Value::Flag(within_reach)));
+    "base.picked": Flag, "the user picked the base segment" =>
+        of_event!(Event::BaseSelected { picked, .. } => Some(Value::Flag(picked)));
+    "side": Side, "side edge that the step is about" => side;
+    "side.deviation": Degrees, "deviation of the side edge from the direction aimed at" =>
+        of_event!(Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => degrees(edge.deviation));
+    "recovery.failed": Flag, "the top edge could not be recovered" => recovery_failed;
+    "recovery.swaps": Number, "number of swaps that recovered the top edge" =>
+        of_event!(Event::TopFound { swaps, .. } => number(swaps));
+    "rollback.why": Why, "why the attempt was rolled back" => |m| rolled_back(m).map(Value::Why);
+    "seam.angle": Degrees, "frontal angle that the seam closed" =>
+        of_event!(Event::Seamed { angle, .. } | Event::TransitionSeamed { angle, .. } => degrees(angle));
+    "split.ratio": Number, "width divided by height of the slender triangle at which the front was split" =>
+        of_event!(Event::Split { ratio, .. } => number(ratio));
+    "fallback": Flag, "a second pass or the last resort is at work" => fallback;
+}
+
+fn side(facts: &StepFacts<'_>) -> Option<Value> {
+    let side = match *facts.event {
         Event::SideIsFront { side, .. } | Event::SideDivided { side, .. } => side,
         Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => edge.side,
         _ => return None,
     };
-    Some(Value::Word(Holds::Side.words()[side.index()].into()))
+    Some(Value::Side(side))
 }
 
-/// The word for why an attempt was taken back.
-fn rolled_back(moment: &Moment<'_>) -> Option<&'static str> {
-    let Event::RolledBack { why, .. } = moment.event else { return None };
-    Some(match why {
-        Why::NoSide(_) => "no_side",
-        Why::NoDivision(_) => "no_division",
-        Why::TopBlocked(_) => "top_blocked",
-        Why::TopThroughNode(_) => "top_through_node",
-        Why::TopTooLong => "top_too_long",
-        Why::TooLong(_) => "too_long",
-        Why::NotDisc => "not_disc",
-        Why::NotConvex => "not_convex",
-        Why::Poor(_) => "poor",
-        Why::OddLoop(_) => "odd_loop",
-        Why::NoMetric => "no_metric",
-    })
+fn rolled_back(facts: &StepFacts<'_>) -> Option<WhyKind> {
+    let Event::RolledBack { why, .. } = facts.event else { return None };
+    Some(why.kind())
+}
+
+fn recovery_failed(facts: &StepFacts<'_>) -> Option<Value> {
+    let why = rolled_back(facts);
+    Some(Value::Flag(matches!(why, Some(WhyKind::TopBlocked | WhyKind::TopThroughNode | WhyKind::TopTooLong))))
+}
+
+fn fallback(facts: &StepFacts<'_>) -> Option<Value> {
+    let kind = facts.event.kind();
+    Some(Value::Flag(matches!(kind, EventKind::SecondPass | EventKind::Matched | EventKind::Patched)))
 }

@@ -1,22 +1,22 @@
-//! Explanations as text: every state can be read.
+//! Explanations as text.
 
 use std::fmt;
 
-use super::{Corner, EdgeKind, EdgeTold, ElementTold, MetricTold, NodeTold, SegmentTold, Verdict};
+use super::{Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, Verdict};
 use crate::core::case::parameters::{Parameters, Selection, SelectionWindow};
 use crate::core::mesh::ids::ElementId;
 use crate::core::run::front_table::Row;
 
 impl Corner {
     fn words(self, parameters: &Parameters) -> String {
-        let told = |name: &str, angle: f64| format!("{name} = {}", degrees(angle));
+        let limit = |name: &str, angle: f64| format!("{name} = {}", degrees(angle));
         match self {
-            Corner::Seam => format!("at most {}: a seam", told("theta_seam", parameters.theta_seam)),
+            Corner::Seam => format!("at most {}: a seam", limit("theta_seam", parameters.theta_seam)),
             Corner::Rectangle => {
-                format!("below {}: the neighbouring segment is the side", told("theta_rect", parameters.theta_rect))
+                format!("below {}: the neighbouring segment is the side", limit("theta_rect", parameters.theta_rect))
             }
-            Corner::Flat => format!("not below {}: a side is to be found", told("theta_rect", parameters.theta_rect)),
-            Corner::Reversal => format!("beyond {}: a reversal", told("theta_revr", parameters.theta_revr)),
+            Corner::Flat => format!("not below {}: a side must be found", limit("theta_rect", parameters.theta_rect)),
+            Corner::Reversal => format!("beyond {}: a reversal", limit("theta_revr", parameters.theta_revr)),
         }
     }
 }
@@ -25,7 +25,7 @@ fn degrees(radians: f64) -> String {
     format!("{:.1} deg", radians.to_degrees())
 }
 
-/// A number in five digits.
+/// A number with five significant digits.
 fn five(x: f64) -> String {
     if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
         let digits = 4 - libm::floor(libm::log10(x.abs().max(1e-3))) as i32;
@@ -35,10 +35,10 @@ fn five(x: f64) -> String {
     }
 }
 
-impl fmt::Display for MetricTold {
+impl fmt::Display for MetricFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [first, second] = [0, 1].map(|k| {
-            // A direction is as good as its opposite: none has a negative zero.
+            // A direction and its opposite are equivalent: avoid negative zeros.
             let [x, y] = self.directions[k].map(|x| if x.abs() < 5e-4 { 0.0 } else { x });
             format!("h = {} along ({x:.3}, {y:.3}), lambda = {}", five(self.sizes[k]), five(self.lambda[k]))
         });
@@ -46,7 +46,7 @@ impl fmt::Display for MetricTold {
     }
 }
 
-impl fmt::Display for SegmentTold {
+impl fmt::Display for SegmentFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Row { a, b, class, h_value, length_metric, length_physical, theta, level, .. } = self.row;
         writeln!(f, "Segment {} - {}", a.0, b.0)?;
@@ -83,18 +83,18 @@ impl fmt::Display for SegmentTold {
         }
         writeln!(f, "  {}", self.reason())?;
         if let Some([low, high]) = self.margin_of_c {
-            let high = if high.is_finite() { format!("to {}", five(high)) } else { "on".to_owned() };
-            writeln!(f, "  the same choice for c from {} {high}", five(low))?;
+            let high = if high.is_finite() { format!("to {}", five(high)) } else { "upwards".to_owned() };
+            writeln!(f, "  it stays the choice for c from {} {high}", five(low))?;
         }
         if let Some([low, high]) = self.margin_of_theta_rect {
-            writeln!(f, "  the same choice for theta_rect from {low:.1} to {high:.1} deg")?;
+            writeln!(f, "  it stays the choice for theta_rect from {low:.1} to {high:.1} deg")?;
         }
         Ok(())
     }
 }
 
-impl SegmentTold {
-    /// Why it is, or is not, the first, in a sentence.
+impl SegmentFacts {
+    /// Why it does or does not come first, as a sentence.
     pub fn reason(&self) -> String {
         let what = match (self.parameters.selection, self.parameters.selection_window) {
             (Selection::Shortest, _) | (_, SelectionWindow::PhysicalLength) => "length",
@@ -105,19 +105,19 @@ impl SegmentTold {
         };
         let reason = match self.verdict {
             Verdict::First if self.parameters.selection != Selection::Table1 => {
-                format!("chosen: the smallest {what} of all")
+                format!("chosen: the smallest {what} of all segments")
             }
             Verdict::First if self.row.class < 4 && self.row.window < self.parameters.c * self.h_min => {
                 format!("chosen: the smallest {what} of the best class within c Hmin (4.3.3, ii)")
             }
-            Verdict::First => "chosen: the smallest H-value, since nothing is within c Hmin (4.3.3, iii)".to_owned(),
-            Verdict::PutOff => "put off: every attempt failed, until something near it changes".to_owned(),
+            Verdict::First => "chosen: the smallest H-value, since no segment is within c Hmin (4.3.3, iii)".to_owned(),
+            Verdict::PutOff => "deferred until something near it changes: every attempt failed".to_owned(),
             Verdict::LaterLayer => "not chosen: rows nearer to the boundary are offset first".to_owned(),
             Verdict::OutOfReach { window, reach } => {
                 format!("not chosen: {what} {} is not below c Hmin = {} (4.3.3, ii)", five(window), five(reach))
             }
             Verdict::ClassFour => {
-                "not chosen: no end is below theta_rect, and others are within reach (table 1)".to_owned()
+                "not chosen: neither angle is below theta_rect, and others are within reach (table 1)".to_owned()
             }
             Verdict::BetterClass { class } => {
                 format!("not chosen: a segment of priority {class} is within reach (table 1)")
@@ -130,11 +130,11 @@ impl SegmentTold {
             }
             Verdict::Larger => format!("not chosen: another of its priority has a smaller {what}"),
         };
-        if self.is_base { format!("{reason}; it is the base of the quadrilateral at hand") } else { reason }
+        if self.is_base { format!("{reason}; it is the base of the current quadrilateral") } else { reason }
     }
 }
 
-impl fmt::Display for NodeTold {
+impl fmt::Display for NodeFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [u, v] = self.uv;
         let fixed = if self.is_fixed { ", on the boundary" } else { "" };
@@ -149,7 +149,7 @@ impl fmt::Display for NodeTold {
     }
 }
 
-impl fmt::Display for EdgeTold {
+impl fmt::Display for EdgeFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = match self.kind {
             EdgeKind::Live => "live",
@@ -164,7 +164,7 @@ impl fmt::Display for EdgeTold {
     }
 }
 
-impl fmt::Display for ElementTold {
+impl fmt::Display for ElementFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = if self.is_live { "live triangle" } else { "dead quadrilateral" };
         let nodes = self.nodes.iter().map(|n| n.0.to_string()).collect::<Vec<_>>().join(", ");

@@ -8,11 +8,11 @@ use crate::core::fault::Fault;
 use crate::core::run::run::{Bookmark, Camera, Edit, EditKind, OF_BACKGROUND, Run};
 
 impl History {
-    /// Makes an edit at the step at hand, in place of one that changes the same thing there. What follows from it on is
-    /// changed; what comes before stays.
+    /// Makes an edit at the current step; it replaces an edit of the same thing there. It changes what follows and
+    /// nothing before.
     ///
     /// # Errors
-    /// A segment that is not on the front. Nothing is changed then.
+    /// A segment that is not on the front. Then nothing changes.
     pub fn edit(&mut self, kind: EditKind) -> Result<(), Fault> {
         if let EditKind::Base { a, b } = kind {
             self.now.converter.check_base(a, b)?;
@@ -20,11 +20,11 @@ impl History {
         self.set_edits(self.run.edits_with(Edit { step: self.now.step, kind }))
     }
 
-    /// Replaces all edits of the run. The state at hand stays at its step, as it is with these edits, or at the end where the
-    /// run is shorter now.
+    /// Replaces all edits of the run. The current state becomes that of the same step with the new edits, or the last
+    /// one where the run is now shorter.
     ///
     /// # Errors
-    /// An edit that is no valid one: nothing is changed then.
+    /// An invalid edit. Then nothing changes.
     pub fn set_edits(&mut self, edits: Vec<Edit>) -> Result<(), Fault> {
         let mut run = Run::clone(&self.run);
         run.set_edits(edits);
@@ -36,12 +36,12 @@ impl History {
     /// Replaces the parameters from step 0 on.
     ///
     /// # Errors
-    /// A change of what the background mesh is made with: that needs another history. Nothing is changed then.
+    /// A change of a parameter of the background mesh, which needs a new history. Then nothing changes.
     pub fn set_parameters(&mut self, parameters: Parameters) -> Result<(), Fault> {
         for key in OF_BACKGROUND {
             if parameters.text_of(key) != self.run.parameters.text_of(key) {
                 return Err(
-                    Fault::new(format!("{key} belongs to the background mesh")).remedy("Open the run anew with it")
+                    Fault::new(format!("{key} belongs to the background mesh")).remedy("Open the run again with it")
                 );
             }
         }
@@ -56,7 +56,7 @@ impl History {
         change(&mut run.bookmarks, &mut run.camera);
     }
 
-    /// The run becomes another from a step on.
+    /// Replaces the run by one that differs from step `first` on.
     fn change(&mut self, run: Run, first: u64) -> Result<(), Fault> {
         let step = self.now.step;
         self.run = Arc::new(run);
@@ -70,7 +70,7 @@ impl History {
         self.extend(first);
         self.leap(first)?;
         let reached = self.seek(step);
-        // The run may end before, or be stuck there: then the state is its last one.
+        // The run may be stuck before that step: then the state is its last one.
         if self.stuck.is_some() { Ok(()) } else { reached.map(drop) }
     }
 }

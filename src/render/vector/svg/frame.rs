@@ -1,32 +1,32 @@
-//! Where coordinates of the mesh come to lie on the page.
+//! The map from coordinates of the mesh to the page.
 
 use glam::DVec2;
 
 use crate::render::look::{Layer, Look};
 
-/// Ground left free around the mesh, in points: half of the widest line, and a little.
+/// Margin around the mesh in points: half of the widest line, and a little more.
 const MARGIN: f64 = 1.0;
-/// The same where labels stand beside the boundary.
+/// The margin with labels beside the boundary.
 const MARGIN_FOR_LABELS: f64 = 9.0;
 
 /// A frame on the page, x to the right and y down, with the map of the mesh into it.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
-    /// The corner at the top left of the mesh, in its coordinates.
+pub struct SvgFrame {
+    /// The top left corner of the mesh, in its coordinates.
     corner: DVec2,
-    /// Where that lies on the page.
+    /// That corner on the page.
     origin: DVec2,
-    /// Points for one unit of the mesh.
+    /// Points per unit of the mesh.
     pub scale: f64,
-    /// The frame's corner at the top left.
+    /// The top left corner of the frame.
     pub left_top: DVec2,
     /// Its size.
     pub size: DVec2,
 }
 
-impl Frame {
-    /// A frame at the top left of the page in which a box of the plane lies as large as it can, in the middle.
-    pub fn fit(bounds: Option<[DVec2; 2]>, width: f64, height: Option<f64>, look: &Look) -> Frame {
+impl SvgFrame {
+    /// A frame at the top left of the page, with a box of the plane centred in it and scaled to fit.
+    pub fn fit(bounds: Option<[DVec2; 2]>, width: f64, height: Option<f64>, look: &Look) -> SvgFrame {
         let [low, high] = bounds.unwrap_or([DVec2::ZERO, DVec2::ONE]);
         let size = high - low;
         let margin = match look.part {
@@ -34,7 +34,7 @@ impl Frame {
             None if [Layer::H, Layer::Angles].iter().any(|layer| look.layers.has(*layer)) => MARGIN_FOR_LABELS,
             None => MARGIN,
         };
-        // A tall picture is not magnified beyond measure, and one without any size still has a scale.
+        // Limit the magnification of a tall picture, and give one without size a scale.
         let span = size.x.max(size.y * 0.1);
         let mut scale = (width - 2.0 * margin) / if span > 0.0 { span } else { 1.0 };
         let height = height.unwrap_or(size.y * scale + 2.0 * margin).max(1.0);
@@ -43,7 +43,7 @@ impl Frame {
             scale = inner / size.y;
         }
         let page = DVec2::new(width, height);
-        Frame {
+        SvgFrame {
             corner: DVec2::new(low.x, high.y),
             origin: 0.5 * (page - size * scale),
             scale,
@@ -53,28 +53,28 @@ impl Frame {
     }
 
     /// The same frame elsewhere on the page.
-    pub fn moved(&self, left_top: DVec2) -> Frame {
-        Frame { origin: self.origin + left_top, left_top, ..*self }
+    pub fn moved(&self, left_top: DVec2) -> SvgFrame {
+        SvgFrame { origin: self.origin + left_top, left_top, ..*self }
     }
 
-    /// Where a point of the mesh lies.
+    /// The page position of a point of the mesh.
     pub fn place(&self, p: DVec2) -> DVec2 {
         self.origin + self.turned(p - self.corner)
     }
 
-    /// A direction of the mesh on the page.
+    /// The page direction of a direction in the mesh.
     pub fn turned(&self, d: DVec2) -> DVec2 {
         DVec2::new(d.x, -d.y) * self.scale
     }
 
-    /// Whether any of what has these corners may lie in the frame.
+    /// Whether a shape with these corners may overlap the frame.
     pub fn sees(&self, corners: &[DVec2]) -> bool {
         let placed = corners.iter().map(|p| self.place(*p));
         let [low, high] = placed.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)]);
         (high + 2.0).cmpge(self.left_top).all() && (low - 2.0).cmple(self.left_top + self.size).all()
     }
 
-    /// Whether a box on the page lies within the frame.
+    /// Whether a box on the page lies inside the frame.
     pub fn holds(&self, [low, high]: [DVec2; 2]) -> bool {
         low.cmpge(self.left_top).all() && high.cmple(self.left_top + self.size).all()
     }

@@ -1,8 +1,8 @@
-//! Marks of constant size: each finds its room on the page, or is left out.
+//! Marks of constant size: each is placed where it fits on the page, or left out.
 
 use glam::DVec2;
 
-use super::frame::Frame;
+use super::frame::SvgFrame;
 use super::page::{Page, Path, width};
 use super::{LABEL, NOTE as NOTE_SIZE};
 use crate::render::look::{Layer, Look};
@@ -12,12 +12,12 @@ use crate::render::picture::Mark;
 /// Radius of nodes and wedges.
 const NODE: f64 = 0.7;
 const WEDGE: f64 = 2.2;
-/// Radius of arcs, and the legs that one needs.
+/// Radius of arcs, and the length of legs that an arc needs.
 const ARC: f64 = 6.0;
 const LEGS: f64 = 12.0;
-/// A corner with a smaller angle is narrow.
+/// Corners with a smaller angle count as narrow.
 const NARROW: f64 = std::f64::consts::FRAC_PI_3;
-/// An ellipse is drawn where its minor half axis is so long.
+/// An ellipse is drawn where its minor semi-axis is at least this long.
 const MINOR: f64 = 0.8;
 
 /// Whether a mark is written as text.
@@ -25,23 +25,23 @@ pub fn is_text(mark: &Mark) -> bool {
     matches!(mark, Mark::Letter { .. } | Mark::Arc { .. } | Mark::Beside { .. })
 }
 
-/// Marks on their way to the page.
+/// Marks being placed on the page.
 pub struct Marks<'a> {
     page: &'a mut Page,
-    frame: &'a Frame,
-    /// What may not lie under a plate, and boxes that are taken.
+    frame: &'a SvgFrame,
+    /// What no plate may cover, and boxes already occupied.
     taken: Vec<[DVec2; 2]>,
     has: [bool; 2],
 }
 
 impl<'a> Marks<'a> {
-    /// Nothing yet.
-    pub fn new(page: &'a mut Page, frame: &'a Frame, look: &Look) -> Marks<'a> {
+    /// Starts without marks.
+    pub fn new(page: &'a mut Page, frame: &'a SvgFrame, look: &Look) -> Marks<'a> {
         let has = [Layer::Nodes, Layer::Ellipses].map(|layer| look.layers.has(layer));
         Marks { page, frame, taken: Vec::new(), has }
     }
 
-    /// Draws marks: those of many kinds as one path each, then what is written.
+    /// Draws marks: one path for each kind, then the text.
     pub fn draw(&mut self, marks: &[Mark]) {
         let [nodes, ellipses] = self.has;
         if ellipses {
@@ -104,7 +104,7 @@ impl<'a> Marks<'a> {
         self.page.path(&path, &format!("fill=\"{LETTER}\""));
     }
 
-    /// A letter beside its point: away from what it stands at, or turned from there until there is room.
+    /// Places a letter beside its point: opposite the point it avoids, or rotated from there until there is room.
     fn letter(&mut self, at: DVec2, from: DVec2, letter: char) {
         let p = self.frame.place(at);
         if !self.frame.sees(&[at]) {
@@ -134,7 +134,7 @@ impl<'a> Marks<'a> {
         let d = (*middle - p).try_normalize().unwrap_or(DVec2::NEG_Y);
         let half = DVec2::new(0.5 * width(text, NOTE_SIZE) + 0.3, 0.36 * NOTE_SIZE + 0.2);
         let reach = (half.x * d.x.abs()) + (half.y * d.y.abs());
-        // In a narrow corner the value stands where it has room between the legs.
+        // In a narrow corner, place the value where it has room between the legs.
         let across = (half.x * d.y.abs()) + (half.y * d.x.abs());
         // Anticlockwise in the mesh is clockwise on the page.
         let turn = libm::atan2(-legs[0].perp_dot(legs[1]), legs[0].dot(legs[1]));
@@ -148,12 +148,12 @@ impl<'a> Marks<'a> {
         }
     }
 
-    /// A text beside a line that is longer than the text is high, on its right side (beyond the front) or on its left.
+    /// Places a text beside a line longer than the text is high, on its right side (beyond the front) or on its left.
     fn beside(&mut self, ends: [DVec2; 2], text: &str) {
         let [p, q] = ends.map(|end| self.frame.place(end));
         let half = DVec2::new(0.5 * width(text, NOTE_SIZE) + 0.4, 0.36 * NOTE_SIZE + 0.2);
         let along = (q - p).try_normalize().unwrap_or(DVec2::X);
-        // What the text needs along the line.
+        // The extent of the text along the line.
         let needed = 2.0 * (half.x * along.x.abs()).max(half.y * along.y.abs()).min(half.x);
         if !self.frame.sees(&ends) || (q - p).length() < needed {
             return;
@@ -167,7 +167,7 @@ impl<'a> Marks<'a> {
         }
     }
 
-    /// Puts a text on a plate, unless it would cover another or leave the frame.
+    /// Draws a text on a plate, unless it would cover another or leave the frame.
     fn put(&mut self, middle: DVec2, half: DVec2, text: &str, size: f64) -> bool {
         let ground = [middle - half, middle + half];
         let covers = |[low, high]: &[DVec2; 2]| low.cmplt(ground[1]).all() && high.cmpgt(ground[0]).all();
@@ -181,8 +181,8 @@ impl<'a> Marks<'a> {
     }
 }
 
-/// Points of the arc of `radius` from the first leg to the second, anticlockwise in the mesh, which is clockwise in coordinates
-/// of the page.
+/// Points of the arc of `radius` from the first leg to the second, anticlockwise in the mesh, which is clockwise on the
+/// page.
 fn arc(centre: DVec2, legs: [DVec2; 2], radius: f64) -> impl Iterator<Item = DVec2> {
     let angle = |d: DVec2| libm::atan2(d.y, d.x);
     let from = angle(legs[0]);

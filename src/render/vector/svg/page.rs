@@ -1,4 +1,4 @@
-//! The text of an SVG: its head with what it carries, paths and letters.
+//! The text of an SVG file: header with embedded data, paths and text.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::Sheet;
 use crate::core::record::figure;
 
-/// The font of figures: those characters of IBM Plex Sans that they need.
+/// The font of figures: the characters of IBM Plex Sans that they need.
 pub(in crate::render::vector) const FONT: &[u8] =
     include_bytes!("../../../../assets/fonts/QuadfrontFigure-Regular.ttf");
 /// Its name.
@@ -20,7 +20,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// A page of a sheet's width; the font comes with it where there is text.
+    /// A page as wide as the sheet; it embeds the font where there is text.
     pub fn new(sheet: &Sheet<'_>, height: f64, has_text: bool) -> Page {
         let (w, h) = (Short(sheet.width), Short(sheet.height.unwrap_or(height)));
         let mut svg = format!(
@@ -46,7 +46,7 @@ impl Page {
         Page { svg, hatched: false }
     }
 
-    /// Lets everything until [`Page::unclip`] be seen within a box only.
+    /// Clips everything until [`Page::unclip`] to a box.
     pub fn clip(&mut self, number: usize, at: DVec2, size: DVec2) {
         let _ = writeln!(
             self.svg,
@@ -59,7 +59,7 @@ impl Page {
         );
     }
 
-    /// Ends what is clipped.
+    /// Ends the clipping.
     pub fn unclip(&mut self) {
         self.svg.push_str("</g>\n");
     }
@@ -74,14 +74,14 @@ impl Page {
         }
     }
 
-    /// A path, where there is anything on it.
+    /// Writes a path unless it is empty.
     pub fn path(&mut self, path: &Path, attributes: &str) {
         if !path.is_empty() {
             let _ = writeln!(self.svg, "<path {attributes} d=\"{}\"/>", path.data.trim_end());
         }
     }
 
-    /// A text that starts, has its middle or ends at a point of its base line.
+    /// Writes a text anchored with its start, middle or end at a point of its baseline.
     pub fn text(&mut self, at: DVec2, size: f64, anchor: &str, text: &str) {
         let _ = writeln!(
             self.svg,
@@ -93,7 +93,7 @@ impl Page {
         );
     }
 
-    /// A text that stands upwards, its middle at a point of its base line.
+    /// Writes a vertical text with its middle at a point of its baseline.
     pub fn upright_text(&mut self, at: DVec2, size: f64, text: &str) {
         let (x, y) = (Short(at.x), Short(at.y));
         let _ = writeln!(
@@ -104,7 +104,7 @@ impl Page {
         );
     }
 
-    /// A white plate under a text, its corners a little round.
+    /// Writes a white plate with rounded corners, to go under a text.
     pub fn plate(&mut self, [low, high]: [DVec2; 2]) {
         self.bar([low, high], "fill=\"#FFFFFF\" fill-opacity=\"0.9\" rx=\"0.8\"");
     }
@@ -129,14 +129,14 @@ impl Page {
     }
 }
 
-/// Many polygons or lines as one path element: no seams between neighbours, and a short file.
+/// Many polygons or lines as one path element, which avoids seams between neighbours and keeps the file short.
 #[derive(Default)]
 pub struct Path {
     data: String,
 }
 
 impl Path {
-    /// A polygon or line through points of the page.
+    /// Adds a polygon or line through points of the page.
     pub fn walk(&mut self, points: impl Iterator<Item = DVec2>, closed: bool) {
         for (k, p) in points.enumerate() {
             let letter = if k == 0 { 'M' } else { 'L' };
@@ -146,7 +146,7 @@ impl Path {
         self.data.push_str(if closed { "Z\n" } else { "\n" });
     }
 
-    /// Whether nothing is on it.
+    /// Whether it is empty.
     pub fn is_empty(&self) -> bool {
         self.data.is_empty()
     }
@@ -167,7 +167,7 @@ pub fn width(text: &str, size: f64) -> f64 {
     size * text.chars().map(of).sum::<f64>()
 }
 
-/// A length in points to a thousandth: finer than any printer, and the same on every machine.
+/// A length in points rounded to a thousandth: finer than any printer, and the same on every machine.
 pub struct Short(pub f64);
 
 impl std::fmt::Display for Short {
@@ -184,7 +184,7 @@ fn escaped(text: &str) -> String {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
-            // XML has no other control characters, and not these two.
+            // XML allows no other control characters, and not these two.
             c if c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{FFFE}' | '\u{FFFF}') => out.push(' '),
             c => out.push(c),
         }
@@ -192,7 +192,7 @@ fn escaped(text: &str) -> String {
     out
 }
 
-/// Bytes as text (RFC 4648).
+/// Bytes in Base64 (RFC 4648).
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);

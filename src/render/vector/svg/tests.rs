@@ -109,7 +109,7 @@ fn a_part_is_clipped_and_what_is_not_in_it_is_not_written() {
     mesh.points.extend([DVec3::new(9.0, 9.0, 0.0), DVec3::new(10.0, 9.0, 0.0), DVec3::new(9.0, 10.0, 0.0)]);
     mesh.triangles.push([3, 4, 5]);
     let mut look = look();
-    look.part = Some(Part { centre: DVec2::new(0.5, 0.5), height: 1.0 });
+    look.part = Some(FigurePart { centre: DVec2::new(0.5, 0.5), height: 1.0 });
     let svg = write(&Picture::of_mesh(&mesh), &Sheet { look, ..sheet(100.0, Some(100.0)) });
     assert!(svg.contains("clip-path=\"url(#part0)\"") && svg.contains("M0 100L100 100L0 0Z"), "{svg}");
     let fill = svg.split("<path").skip(1).find(|path| path.contains("fill=\"#FFFFFF\"")).unwrap();

@@ -8,7 +8,7 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::words;
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::explain::{EdgeKind, EdgeTold};
+use crate::core::run::explain::{EdgeFacts, EdgeKind};
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
@@ -23,7 +23,7 @@ pub fn show(
     title(ui, format!("Edge {}", words::edge(between)), palette);
     let [a, b] = between;
     let mesh = &moment.mesh;
-    let Some(told) = EdgeTold::of(mesh, a, b) else { return gone(ui, "The edge", palette) };
+    let Some(told) = EdgeFacts::of(mesh, a, b) else { return gone(ui, "The edge", palette) };
     let kind = match told.kind {
         EdgeKind::Live => "live: between live triangles, it can be changed",
         EdgeKind::Front => "front: live triangles on one side",

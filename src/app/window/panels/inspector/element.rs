@@ -8,12 +8,12 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::words;
 use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::explain::ElementTold;
+use crate::core::run::explain::ElementFacts;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
 pub fn show(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(told) = ElementTold::of(&moment.mesh, e) else {
+    let Some(told) = ElementFacts::of(&moment.mesh, e) else {
         title(ui, format!("Element {}", e.0), palette);
         return gone(ui, "The element", palette);
     };

@@ -8,14 +8,14 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::words;
 use crate::core::mesh::ids::NodeId;
-use crate::core::run::explain::NodeTold;
+use crate::core::run::explain::NodeFacts;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
 pub fn show(ui: &mut Ui, state: &State, moment: &Moment, node: NodeId, commands: &mut Vec<Command>, palette: &Palette) {
     title(ui, format!("Node {}", node.0), palette);
     let mesh = &moment.mesh;
-    let Some(told) = NodeTold::of(mesh, node) else { return gone(ui, "The node", palette) };
+    let Some(told) = NodeFacts::of(mesh, node) else { return gone(ui, "The node", palette) };
     let place = if told.is_fixed { "on the boundary: fixed" } else { "free: may be moved" };
     ui.label(note(format!("{place}  ·  {} edges", told.valence), palette));
     actions(ui, state, Outlined::Node(node), commands);

@@ -9,7 +9,7 @@ use crate::app::window::session::{Explained, Moment};
 use crate::app::window::state::{Lookup, State};
 use crate::app::window::words;
 use crate::core::case::parameters::{Selection, SelectionWindow};
-use crate::core::run::explain::{SegmentTold, Verdict};
+use crate::core::run::explain::{SegmentFacts, Verdict};
 use crate::core::run::front_table::Row;
 use crate::render::palette::Palette;
 
@@ -73,7 +73,7 @@ fn reach(moment: &Moment, h_min: f64) -> String {
     format!("c·H_{{min}} = {} \u{d7} {} = {}", words::fixed(c, 2), words::size(h_min), words::size(c * h_min))
 }
 
-fn why(moment: &Moment, told: &SegmentTold) -> Vec<String> {
+fn why(moment: &Moment, told: &SegmentFacts) -> Vec<String> {
     let row = &told.row;
     if moment.parameters.selection != Selection::Table1 || told.verdict != Verdict::First {
         return vec![capital(&told.reason())];
@@ -112,7 +112,7 @@ fn why(moment: &Moment, told: &SegmentTold) -> Vec<String> {
     sentences
 }
 
-fn why_not(moment: &Moment, told: &SegmentTold, place: usize) -> Vec<String> {
+fn why_not(moment: &Moment, told: &SegmentFacts, place: usize) -> Vec<String> {
     let row = &told.row;
     let mut text = match told.rank {
         Some(_) => format!("Rank {}. ", place + 1),
@@ -149,7 +149,7 @@ fn why_not(moment: &Moment, told: &SegmentTold, place: usize) -> Vec<String> {
     sentences
 }
 
-fn same_choice(told: &SegmentTold) -> String {
+fn same_choice(told: &SegmentFacts) -> String {
     let mut bounds = Vec::new();
     if let Some([low, high]) = told.margin_of_c {
         bounds.push(match high.is_finite() {

@@ -3,18 +3,29 @@
 use crate::app::window::session::Tracked;
 use crate::app::window::state::State;
 use crate::app::window::words;
+use crate::core::convert::event::EventKind;
 use crate::core::run::sample::Sample;
 
 /// The rows: each with the kinds that share it.
-const ROWS: [(&str, &[&str]); 5] = [
-    ("quad formed", &["formed"]),
-    ("swap", &["side_swapped", "top_swapped", "enhanced"]),
-    ("divide, delete", &["side_divided", "node_removed"]),
+const ROWS: [(&str, &[EventKind]); 5] = [
+    ("quad formed", &[EventKind::Formed]),
+    ("swap", &[EventKind::SideSwapped, EventKind::TopSwapped, EventKind::Enhanced]),
+    ("divide, delete", &[EventKind::SideDivided, EventKind::NodeRemoved]),
     (
         "seam, close, finish",
-        &["seamed", "transition_seamed", "split", "closed", "matched", "patched", "last_resort", "cleaned", "swept"],
+        &[
+            EventKind::Seamed,
+            EventKind::TransitionSeamed,
+            EventKind::Split,
+            EventKind::Closed,
+            EventKind::Matched,
+            EventKind::Patched,
+            EventKind::LastResort,
+            EventKind::Cleaned,
+            EventKind::Swept,
+        ],
     ),
-    ("rolled back", &["rolled_back", "deferred", "second_pass", "seam_refused"]),
+    ("rolled back", &[EventKind::RolledBack, EventKind::Deferred, EventKind::SecondPass, EventKind::SeamRefused]),
 ];
 /// The row of failures.
 const FAILURES: usize = 4;
@@ -175,16 +186,15 @@ impl Columns {
                 is_open,
             };
             if is_open {
-                self.lanes.extend(kinds.iter().map(|kind| lane(words::kind(kind))));
+                self.lanes.extend(kinds.iter().map(|&kind| lane(words::kind(kind))));
             } else {
                 self.lanes.push(lane((*name).to_owned()));
             }
         }
-        // Kinds are static words: comparing addresses is enough for most steps.
-        let lane_of = |kind: &str| {
+        let lane_of = |kind: EventKind| {
             let mut first = 0;
             for (k, (_, kinds)) in ROWS.iter().enumerate() {
-                let at = kinds.iter().position(|known| *known == kind);
+                let at = kinds.iter().position(|&known| known == kind);
                 let is_open = open_row == Some(k);
                 if let Some(at) = at {
                     return Some(first + if is_open { at } else { 0 });
@@ -193,15 +203,9 @@ impl Columns {
             }
             None
         };
-        let mut known: Vec<(&'static str, Option<usize>)> = Vec::new();
+        let lanes: Vec<Option<usize>> = EventKind::ALL.iter().map(|&kind| lane_of(kind)).collect();
         for (k, tracked) in state.run().track.iter().enumerate() {
-            let found = known.iter().find(|known| std::ptr::eq(known.0, tracked.kind)).map(|known| known.1);
-            let lane = found.unwrap_or_else(|| {
-                let lane = lane_of(tracked.kind);
-                known.push((tracked.kind, lane));
-                lane
-            });
-            let Some(lane) = lane else { continue };
+            let Some(lane) = lanes[tracked.kind as usize] else { continue };
             self.lanes[lane].total += 1;
             if seen.contains(&k)
                 && let Some(bin) = self.lanes[lane].bins.get_mut(place(k + 1).round().max(0.0) as usize)

@@ -10,7 +10,7 @@ use super::{RECENT, Worker};
 use crate::core::convert::candidates::Candidates;
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::ElementId;
-use crate::core::run::explain::SegmentTold;
+use crate::core::run::explain::SegmentFacts;
 use crate::core::run::front_table::{FrontTable, Row};
 use crate::core::run::history::Changes;
 
@@ -65,7 +65,7 @@ impl Worker {
         let state = self.history.state();
         let table = FrontTable::of(state);
         let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
-        let base = state.phase().base().and_then(|base| SegmentTold::in_table(state, &table, base.a, base.b));
+        let base = state.phase().base().and_then(|base| SegmentFacts::in_table(state, &table, base.a, base.b));
         let changes = self.since.take();
         self.unchecked |= std::mem::take(&mut self.was_broken) || changes == Changes::Everything;
         let found = match &changes {

@@ -1,0 +1,64 @@
+//! Reasons that events carry.
+
+use serde::Serialize;
+
+use crate::core::front::sector::Side;
+use crate::core::mesh::ids::NodeId;
+
+/// Why an attempt to form a quadrilateral was rolled back.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", content = "value", rename_all = "snake_case")]
+pub enum Why {
+    /// No edge can serve as this side.
+    NoSide(Side),
+    /// The side edge cannot be divided at the required point.
+    NoDivision(Side),
+    /// A dead edge lies across the top edge.
+    TopBlocked([NodeId; 2]),
+    /// A node lies on the top edge.
+    TopThroughNode(NodeId),
+    /// The recovery of the top edge reached its limit of swaps.
+    TopTooLong,
+    /// A new side or the top is longer than the gate allows, in the metric.
+    TooLong(f64),
+    /// The four sides do not enclose a disc of live triangles.
+    NotDisc,
+    /// The quadrilateral is not strictly convex.
+    NotConvex,
+    /// Its quality is below the gate.
+    Poor(f64),
+    /// A loop would become odd; its number of segments.
+    OddLoop(usize),
+    /// The metric field has no value at a new node.
+    NoMetric,
+}
+
+/// Why two nodes of the front were not merged.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", content = "value", rename_all = "snake_case")]
+pub enum Unmerged {
+    /// Both nodes are fixed.
+    BothFixed,
+    /// The longer segment is too long and cannot be divided: it is on a boundary, or the front is already beyond it.
+    Unlike,
+    /// A node would be left with two edges.
+    Doublet,
+    /// The edge between the two nodes cannot be recovered.
+    NotRecovered,
+    /// Something lies between the two segments.
+    NotEmpty,
+    /// An element would not be positive, or separate parts would be glued together.
+    NotPositive,
+    /// An element would have this quality, too far below the quality before.
+    Poor(f64),
+}
+
+/// Why a node was removed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Purpose {
+    /// It blocked a swap in the recovery of the top edge (4.3.4, top edge iii).
+    Recovery,
+    /// Local structural enhancement (4.3.6, i).
+    Enhancement,
+}
