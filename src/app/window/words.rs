@@ -86,8 +86,8 @@ pub fn event(event: &Event) -> String {
             format!("node {} removed to clear the way for the top", node.0)
         }
         Event::NodeRemoved { node, purpose: Purpose::Enhancement } => format!("node {} of low valence removed", node.0),
-        Event::Formed { element, quality, eaten, .. } => {
-            format!("quadrilateral {} formed: quality {}, {eaten} triangles merged", element.0, fixed(quality, 2))
+        Event::Formed { element, quality, merged, .. } => {
+            format!("quadrilateral {} formed: quality {}, {merged} triangles merged", element.0, fixed(quality, 2))
         }
         Event::RolledBack { attempt, why: reason } => {
             format!("attempt {} rolled back: {}", u32::from(attempt) + 1, why(reason))

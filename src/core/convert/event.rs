@@ -185,7 +185,7 @@ pub enum Event {
         /// Its quality (docs/algorithm.md, "Quality").
         quality: f64,
         /// Number of triangles merged into it.
-        eaten: u8,
+        merged: u8,
         /// Its level.
         level: u16,
         /// Which attempt it was, from 0.

@@ -333,7 +333,7 @@ mod tests {
     use crate::core::mesh::ids::{ElementId, NodeId};
 
     fn formed(quality: f64) -> Event {
-        Event::Formed { element: ElementId(7), nodes: [NodeId(1); 4], quality, eaten: 4, level: 3, attempt: 0 }
+        Event::Formed { element: ElementId(7), nodes: [NodeId(1); 4], quality, merged: 4, level: 3, attempt: 0 }
     }
 
     fn holds(text: &str, event: &Event, angles: Option<Angles>) -> bool {
@@ -353,7 +353,7 @@ mod tests {
             "kind == seam && front.loops > 9 || step == 812",
             "!(kind == seam) && !fallback",
             "(kind == seam || kind == formed) && (nq >= 311)",
-            "quad.element == 7 && quad.eaten == 4 && quad.level != 2",
+            "quad.element == 7 && quad.merged == 4 && quad.level != 2",
         ] {
             assert!(holds(text, &quad, angles), "{text}");
         }

@@ -50,8 +50,8 @@ pub(super) fn form(front: &mut Front<'_>, base: Base, attempt: Attempt, [c, d]: 
     if (0..2).any(|k| were_live[k] && was_on_front[k]) {
         parity::check(front.mesh, &nodes)?;
     }
-    let eaten = triangles.len() as u8;
-    let event = Event::Formed { element, nodes, quality, eaten, level: base.level, attempt: attempt.number };
+    let merged = triangles.len() as u8;
+    let event = Event::Formed { element, nodes, quality, merged, level: base.level, attempt: attempt.number };
     Ok((local::begin(front, element, attempt.mark), Some(event)))
 }
 

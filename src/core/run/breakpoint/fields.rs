@@ -108,8 +108,8 @@ fields! {
         |m| m.angles.and_then(|angles| degrees(angles.max.into()));
     "quad.level": Number, "row of the new quadrilateral, counted from the boundary" =>
         of_event!(Event::Formed { level, .. } => number(level));
-    "quad.eaten": Number, "number of triangles merged into the new quadrilateral" =>
-        of_event!(Event::Formed { eaten, .. } => number(eaten));
+    "quad.merged": Number, "number of triangles merged into the new quadrilateral" =>
+        of_event!(Event::Formed { merged, .. } => number(merged));
     "quad.attempt": Number, "attempt that formed the quadrilateral, from 0" =>
         of_event!(Event::Formed { attempt, .. } => number(attempt));
     "quad.element": Number, "id of the new quadrilateral" =>

@@ -20,9 +20,9 @@ pub fn show(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Comma
         Lookup::Unasked => return commands.push(Command::TellPast(watched)),
     };
     heading(ui, "Past steps", "up to this step", palette);
-    if let Some((step, eaten)) = &past.made {
+    if let Some((step, merged)) = &past.made {
         step_link(ui, *step, "made", commands, palette);
-        elements(ui, "made of the triangles", eaten, commands, palette);
+        elements(ui, "made of the triangles", merged, commands, palette);
     }
     if let Some(step) = past.killed {
         step_link(ui, step, "no longer live on both sides", commands, palette);
