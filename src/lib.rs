@@ -75,7 +75,7 @@
 //!
 //! | Room | What it is |
 //! |---|---|
-//! | [`core`](crate::core) | the converter and what it stands on: geometry, metric, meshes, formats, runs, reports |
+//! | [`core`] | the converter and what it stands on: geometry, metric, meshes, formats, runs, reports |
 //! | [`render`] | pictures of states, in the plane and in space, and SVG |
 //! | `app` | the command line and the window (features `cli` and `window`); not for other programs |
 //!

@@ -6,18 +6,18 @@
 
 pub mod edges;
 pub mod stitch;
-pub mod lines;
+pub(crate) mod lines;
 pub(in crate::core) mod defects;
 pub mod repair;
 pub mod features;
 pub mod planar_map;
 pub mod chart;
-pub mod sparse;
-pub mod tutte;
+pub(crate) mod sparse;
+pub(crate) mod tutte;
 pub mod as_rigid_as_possible;
-pub mod texture;
+pub(crate) mod texture;
 pub mod surface;
-pub mod curvature;
+pub(crate) mod curvature;
 pub mod own_triangles;
 pub mod census;
 #[cfg(test)]

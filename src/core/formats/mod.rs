@@ -1,14 +1,14 @@
 //! Mesh files: one module for each format, read and written as a whole. Files are replaced atomically.
 
 pub mod save;
-pub mod scan;
-pub mod numbering;
-pub mod msh;
+pub(crate) mod scan;
+pub(crate) mod numbering;
+pub(crate) mod msh;
 pub mod medit;
-pub mod vtu;
-pub mod obj;
-pub mod stl;
-pub mod ply;
-pub mod gltf;
-pub mod inp;
+pub(crate) mod vtu;
+pub(crate) mod obj;
+pub(crate) mod stl;
+pub(crate) mod ply;
+pub(crate) mod gltf;
+pub(crate) mod inp;
 pub mod format;

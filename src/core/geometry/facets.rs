@@ -21,7 +21,7 @@ impl Facets {
     /// Triangles that are positively oriented in the plane; `uv` and `xyz` are the nodes there and in space.
     ///
     /// # Errors
-    /// What [`PlaneTriangles::new`] refuses.
+    /// What `PlaneTriangles::new` refuses.
     pub fn new(uv: &[DVec2], xyz: Vec<DVec3>, triangles: &[[u32; 3]]) -> Result<Facets, Fault> {
         let j = triangles.iter().map(|t| {
             let [a, b, c] = t.map(|k| uv[k as usize]);

@@ -4,10 +4,10 @@
 pub mod predicates;
 pub mod tensor;
 pub mod spectrum;
-pub mod box_tree;
-pub mod plane_triangles;
-pub mod disjoint_sets;
-pub mod parity;
+pub(crate) mod box_tree;
+pub(crate) mod plane_triangles;
+pub(crate) mod disjoint_sets;
+pub(crate) mod parity;
 pub mod fingerprint;
-pub mod decimal;
-pub mod spelling;
+pub(crate) mod decimal;
+pub(crate) mod spelling;

@@ -174,11 +174,6 @@ impl Program {
         Ok(graph.emit(&values))
     }
 
-    /// The number of outputs.
-    pub fn outputs(&self) -> usize {
-        self.outputs.len()
-    }
-
     /// The value of an output that does not depend on variables.
     pub fn constant(&self, output: usize) -> Option<f64> {
         let slot = *self.outputs.get(output)? as usize;

@@ -2,10 +2,10 @@
 
 pub mod measure;
 pub mod place;
-pub mod formula;
+pub(crate) mod formula;
 mod boundary_layer;
 pub(in crate::core) mod curvature;
 mod table;
 pub mod field;
 pub mod survey;
-pub mod gradation;
+pub(crate) mod gradation;

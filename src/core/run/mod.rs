@@ -24,7 +24,7 @@ pub mod front_count;
 pub mod sample;
 pub mod log;
 pub mod timeline;
-pub mod keyframes;
+pub(crate) mod keyframes;
 pub mod recorder;
 pub mod history;
 pub mod copies;
