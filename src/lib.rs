@@ -97,7 +97,7 @@ pub use crate::core::case::parameters::Parameters;
 pub use crate::core::case::{Case, DomainSource, MeshSource, MeshUse, Taking, built_in};
 pub use crate::core::convert::conversion::{Converted, convert};
 pub use crate::core::convert::converter::{Converter, Counts};
-pub use crate::core::convert::event::Event;
+pub use crate::core::convert::event::{Event, EventKind};
 pub use crate::core::convert::phase::Phase;
 pub use crate::core::fault::{Fault, FaultKind};
 pub use crate::core::formats::format::{

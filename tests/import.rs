@@ -14,6 +14,7 @@ use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use pictures::{difference, picture};
+use quadfront::MeshUse;
 use quadfront::app::window::{App, Command, Gesture, Source};
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -128,7 +129,7 @@ fn triangles_are_converted_as_they_are_and_the_panel_comes_back_as_it_was_left()
     harness.state_mut().apply(Command::Import);
     shown(&mut harness);
     let import = harness.state().state.run().import.as_ref().unwrap();
-    assert_eq!(import.options.used.as_deref(), Some("triangles"));
+    assert_eq!(import.options.used, Some(MeshUse::Triangles));
     // Leaving the panel leaves the run as it is.
     harness.key_press(Key::Escape);
     harness.run_steps(2);

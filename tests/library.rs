@@ -6,9 +6,9 @@ use std::path::Path;
 
 use quadfront::glam::DVec2;
 use quadfront::{
-    Cancel, Case, Converter, DomainSource, Export, Fault, FaultKind, FieldSpec, Format, MeshFile, MeshUse, Metric2,
-    Metric3, Nobody, Parameters, Run, Stage, Taking, Watch, WriteOptions, background, built_in, convert, read_mesh,
-    read_mesh_bytes, write_mesh, write_mesh_to, write_run,
+    Cancel, Case, Converter, DomainSource, EventKind, Export, Fault, FaultKind, FieldSpec, Format, MeshFile, MeshUse,
+    Metric2, Metric3, Nobody, Parameters, Run, Stage, Taking, Watch, WriteOptions, background, built_in, convert,
+    read_mesh, read_mesh_bytes, write_mesh, write_mesh_to, write_run,
 };
 
 /// The points of a square of 8 by 8 cells, at (0, 0) to (1, 1).
@@ -198,5 +198,5 @@ fn a_state_is_reached_step_by_step() {
     let start = background(&case, &mut Nobody).unwrap();
     let mut converter = Converter::new(start.mesh, &start.sizing, case.parameters.clone());
     let first = converter.step().unwrap();
-    assert_eq!((first.kind(), converter.counts.steps), ("base_selected", 1));
+    assert_eq!((first.kind(), converter.counts.steps), (EventKind::BaseSelected, 1));
 }
