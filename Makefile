@@ -16,6 +16,7 @@ run:
 	cargo build --locked --release
 	@tools/run
 
+# One build serves the tests, the examples and the end-to-end test; the library alone is compiled once more for its bytes.
 test:
 	@tools/setup build run test
 	@mkdir -p out
@@ -23,16 +24,16 @@ test:
 	@for example in convert_case convert_stl step_events figure; do \
 		cargo run --locked --quiet --features uitest --example $$example > out/$$example.txt || exit 1; \
 	done
-	tools/end-to-end
-	cargo test --locked --no-default-features --lib
+	tools/end-to-end target/debug/quadfront
+	cargo test --locked --no-default-features --test same_bytes
 
 check:
 	@tools/setup build check
 	cargo fmt --check
-	cargo clippy --locked --all-targets -- -D warnings
+	cargo clippy --locked --features uitest --all-targets -- -D warnings
 	cargo clippy --locked --no-default-features --features cli --all-targets -- -D warnings
 	cargo clippy --locked --no-default-features --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --features uitest
 
 bench:
 	@tools/setup build
