@@ -253,6 +253,6 @@ mod tests {
             assert!(begin.elapsed().as_secs() < 20);
             std::thread::sleep(std::time::Duration::from_millis(2));
         };
-        assert!(fault.to_string().starts_with("no such.stl: There is no such file"), "{fault}");
+        assert!(fault.to_string().starts_with("no such.stl: No such file"), "{fault}");
     }
 }
