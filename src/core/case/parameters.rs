@@ -17,8 +17,7 @@ pub enum Selection {
     Level,
 }
 
-/// What is compared with `c` times the smallest H-value (docs/algorithm.md, "The selection window", "the worst
-/// ambiguity").
+/// What is compared with `c` times the smallest H-value (docs/algorithm.md, "The selection window").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelectionWindow {
     /// Metric length times H: about H for unit edges, larger for long ones.
@@ -34,7 +33,7 @@ pub enum SelectionWindow {
 pub struct Parameters {
     /// Factor for all target sizes.
     pub size_scale: f64,
-    /// The selection factor c of section 4.3.1: 1.5 to 2.0 in the paper, which used 2.0.
+    /// The selection factor c of section 4.3.3: 1.5 to 2.0 in the paper, which used 2.0.
     pub c: f64,
     /// Below this frontal angle the neighbouring front segment is the side edge (table 1).
     pub theta_rect: f64,
