@@ -303,7 +303,7 @@ fn a_mesh_with_an_odd_border_is_converted_once_a_side_of_it_may_be_divided() {
         });
         shown(&mut harness);
         // The remedy is in the words of the panel.
-        harness.get_by_label_contains(&format!("or allow that (below: {SWITCH})."));
+        harness.get_by_label_contains(&format!("(below: {SWITCH})."));
         picture(&mut harness, &format!("odd-{name}"));
         harness.get_by_label(SWITCH).click();
         shown(&mut harness);
@@ -365,7 +365,7 @@ fn a_mesh_that_is_refused_is_shown_with_its_elements_marked_and_looked_at_from_n
     open(&mut harness, &path);
     harness.get_by_label("Refused");
     harness.get_by_label("Triangles 861 and 3201 overlap.");
-    harness.get_by_label("Take out what is too much: in the plane a place belongs to one triangle.");
+    harness.get_by_label("Remove the overlap: triangles in the plane must not overlap.");
     harness.get_by_label("Mesh of 3201 triangles, as imported, 2 elements marked");
     let near = picture(&mut harness, "refused");
     assert!(share_of(&near, BROKEN) > 0.0005, "{}", share_of(&near, BROKEN));

@@ -409,7 +409,7 @@ fn quadrilaterals_and_polygons() {
         Obj::of(&points, &[&[2, 4, 1], &[4, 5, 1], &[0, 1, 2, 3]])
     };
     let crosses = || Refused(&["at (0, 0, 0)", "Element 3 crosses itself", "in order around it"]);
-    let already = Refused(&["quadrilaterals already: all of its 4", "--use shape"]);
+    let already = Refused(&["already quadrilateral: all of its 4", "--use shape"]);
     hold(vec![
         ("quadrilaterals alone", quads(FLAT_PLATE), already, Mended(&[CUTS])),
         ("the same in space", quads(BENT), Mended(&[CUTS]), Mended(&[CUTS])),
