@@ -25,7 +25,7 @@
 //! }
 //! ```
 //!
-//! Convert a triangle mesh in memory, its shape meshed anew with sizes given at its points:
+//! Convert a triangle mesh in memory: its shape is remeshed with sizes given at its points.
 //!
 //! ```
 //! use quadfront::{Case, Export, Fault, MeshFile, MeshUse, Nobody, Taking, convert};
@@ -60,8 +60,9 @@
 //!
 //! # Units and conventions
 //!
-//! Coordinates have any unit of length, and sizes have the same. A metric tensor is in 1 / length squared: an edge `d` is
-//! of unit length where `d . M d = 1` (eqs. 2 and 3). Angles are radians in the library and degrees in files. Elements run
+//! Coordinates may be in any unit of length; sizes are in the same unit. A metric tensor is in 1 / length squared: an edge `d` is
+//! of unit length where `d . M d = 1` (eqs. 2 and 3). Angles are in radians, except in statistics, reports
+//! and explanations, which use degrees as files do. Elements run
 //! anticlockwise, in space as seen from outside. Indices in a [`MeshFile`] count from 0.
 //!
 //! # Errors
@@ -69,9 +70,22 @@
 //! Bad input is an `Err` with a [`Fault`], which says what is wrong, where, and what to do about it. Match on
 //! [`Fault::kind`] to tell faults apart. Nothing panics on bad input.
 //!
-//! # Rooms
+//! ```
+//! use quadfront::{Fault, FaultKind};
 //!
-//! Everything at the root comes from one of these:
+//! fn hint(fault: &Fault) -> Option<&'static str> {
+//!     match fault.kind() {
+//!         FaultKind::Mesh => Some("repair the mesh"),
+//!         FaultKind::Limit => Some("ask for larger elements"),
+//!         // More kinds may be added.
+//!         _ => None,
+//!     }
+//! }
+//! ```
+//!
+//! # Modules
+//!
+//! The crate has three parts; the names at the root are re-exported from `core`:
 //!
 //! | Room | What it is |
 //! |---|---|
