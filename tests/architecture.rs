@@ -401,3 +401,28 @@ fn a_panel_that_changes_the_state_is_seen() {
         assert!(changes_of_the_state("panels/a", text).is_empty(), "{text}");
     }
 }
+
+/// What is too long in a source: the file itself (tests aside), or a comment. Lines of code are rustfmt's.
+fn too_long(path: &str, text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let lines = text.lines().count();
+    if path.starts_with("src/") && lines > 500 {
+        found.push(format!("{path} has {lines} lines: divide it, 500 are the limit"));
+    }
+    let is_long = |line: &str| line.trim_start().starts_with("//") && line.chars().count() > 120;
+    let long = text.lines().zip(1..).filter(|(line, _)| is_long(line));
+    found.extend(long.map(|(_, number)| format!("{path}:{number}: comments end by column 120")));
+    found
+}
+
+#[test]
+fn files_have_at_most_500_lines_and_comments_end_by_column_120() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    ["src", "tests", "benches", "examples"].iter().for_each(|folder| sources(&root.join(folder), &mut files));
+    let name = |file: &Path| file.strip_prefix(root).unwrap().display().to_string().replace('\\', "/");
+    let found: Vec<String> =
+        files.iter().flat_map(|file| too_long(&name(file), &fs::read_to_string(file).unwrap())).collect();
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+    assert_eq!(too_long("src/a.rs", &format!("{}{}", "//\n".repeat(500), "/".repeat(121))).len(), 2);
+}
