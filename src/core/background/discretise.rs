@@ -1,5 +1,5 @@
 //! Division of curves at equal metric arclength, with even loops (docs/algorithm.md, "Curves divided at equal metric
-//! length", "Even loops" and step 1 of 3).
+//! length", "Even loops").
 
 use glam::{DVec2, DVec3};
 

@@ -33,7 +33,7 @@ fn active(state: &State, moment: &Moment) -> Option<usize> {
 
 /// Frames the active face and dims the others, if there are several.
 pub(super) fn show(ui: &Ui, frame: &ViewFrame, state: &State, moment: &Moment, palette: &Palette) {
-    let is_alone = moment.mesh.embedding().is_none_or(|ground| ground.atlas.charts().len() < 2);
+    let is_alone = moment.mesh.embedding().is_none_or(|embedding| embedding.atlas.charts().len() < 2);
     let Some(active) = active(state, moment).filter(|_| !is_alone) else { return };
     let painter = ui.painter_at(frame.rect);
     for (k, bounds) in bounds(&moment.mesh).into_iter().enumerate() {
