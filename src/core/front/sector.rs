@@ -140,15 +140,11 @@ impl Mesh {
     /// The frontal angle at one end of a front segment, in (0, 2 pi], in the metric of the node (fig. 9).
     #[inline]
     pub fn frontal_angle(&self, h: HalfEdgeId, side: Side) -> f64 {
-        let (at, base_end, other_end) = match side {
+        let (at, from, to) = match side {
             Side::Left => (self.origin(h), self.target(h), self.origin(self.front_before(h))),
-            Side::Right => (self.target(h), self.origin(h), self.target(self.front_after(h))),
+            Side::Right => (self.target(h), self.target(self.front_after(h)), self.origin(h)),
         };
         let p = self.uv(at);
-        let (from, to) = match side {
-            Side::Left => (base_end, other_end),
-            Side::Right => (other_end, base_end),
-        };
         let theta = angle(self.metric_ref(at), self.uv(from) - p, self.uv(to) - p);
         // Equal directions: the tip of a crack, where the sector is a full turn. (Positive triangles cannot form a
         // sector of zero angle, and only needles form a thinner one than this.)

@@ -161,12 +161,10 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
         let short = c.fine.windows(2).find(|w| w[0].1.distance(w[1].1) <= tolerance && c.curve.straight());
         if (high - low).max_element() <= tolerance || short.is_some() {
             let p = short.map_or(c.first(), |w| w[0].1);
-            return Err(placed(
-                Fault::new(format!("The curve \"{}\" has (nearly) zero length", c.name))
-                    .at(format!("at {}", point_text(p)))
-                    .remedy("Remove the curve, or the superfluous point"),
-                &c.place,
-            ));
+            let fault = Fault::new(format!("The curve \"{}\" has (nearly) zero length", c.name))
+                .at(format!("at {}", point_text(p)))
+                .remedy("Remove the curve, or the superfluous point");
+            return Err(placed(fault, &c.place));
         }
     }
     Ok(vertices)

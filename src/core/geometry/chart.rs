@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::curve::divided;
 use super::surface::{EDGES, Edge, NurbsSurface, SurfacePoint};
 use crate::core::kernel::tensor::Metric2;
 use polar_map::PolarMap;
@@ -115,17 +116,6 @@ impl Chart {
         matches!(self.map, Map::Sheet { .. })
     }
 
-    /// The periods of the surface as vectors in the chart.
-    pub fn periods(&self) -> Vec<DVec2> {
-        match &self.map {
-            Map::Polar(_) => Vec::new(),
-            Map::Sheet { scale, .. } => {
-                let axes = [DVec2::new(scale.x, 0.0), DVec2::new(0.0, scale.y)];
-                (0..2).filter_map(|axis| self.surface.period(axis).map(|period| axes[axis] * period)).collect()
-            }
-        }
-    }
-
     /// The coordinates in the chart of the parameters u and v.
     pub fn of_uv(&self, uv: DVec2) -> DVec2 {
         match &self.map {
@@ -212,13 +202,7 @@ impl Chart {
         let mut starts: Vec<(f64, DVec2)> = Vec::new();
         let line = |axis: usize| {
             let breaks = self.surface.breaks(axis);
-            let parts = (24 / (breaks.len() - 1)).max(4);
-            let mut at: Vec<f64> = Vec::new();
-            for w in breaks.windows(2) {
-                at.extend((0..parts).map(|i| w[0] + (w[1] - w[0]) * i as f64 / parts as f64));
-            }
-            at.push(breaks[breaks.len() - 1]);
-            at
+            divided(&breaks, (24 / (breaks.len() - 1)).max(4))
         };
         let inside = |uv: DVec2| DVec2::new(uv.x.clamp(u0, u1), uv.y.clamp(v0, v1));
         for u in line(0) {

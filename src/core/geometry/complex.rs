@@ -15,7 +15,6 @@ use super::assembly::{join_ends, join_equal_ends, loop_name, no_face, placed, se
 use super::atlas::Atlas;
 use super::chart::{Chart, singular_edges};
 use super::course::Course;
-use super::curve::extent;
 use super::domain::{Borders, Domain, Extent, Spatial};
 use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 use super::face_surface::FaceSurface;
@@ -26,6 +25,7 @@ use super::spec::{ComplexSpec, FaceSpec, SurfaceFaceSpec};
 use super::surface::{Edge, NurbsSurface};
 use super::whole_surface::{FacePart, whole};
 use crate::core::fault::Fault;
+use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::decimal::point_text;
 
 /// Ends of curves in space closer than this fraction of the total size are one vertex.
@@ -107,10 +107,7 @@ fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Faul
 
 /// Merges ends of curves in space into vertices; ends given by coordinates come first, and their coordinates are kept.
 fn join_in_space(curves: &mut [NamedCurve]) -> Vec<DVec3> {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for p in curves.iter().flat_map(|c| c.curve.polyline()) {
-        (low, high) = (low.min(p), high.max(p));
-    }
+    let (low, high) = extent(curves.iter().flat_map(|c| c.curve.polyline()));
     let tolerance = SAME_VERTEX * (high - low).max_element();
     let mut ends: Vec<(bool, usize, usize, DVec3)> = Vec::new();
     for (i, c) in curves.iter().enumerate() {

@@ -187,7 +187,7 @@ fn meet(a: Arc, b: Arc, shared: &[DVec2], limits: Limits) -> Option<Meeting> {
             }
             continue;
         }
-        let p = nearest_end(&a, &b);
+        let (_, p) = nearest_end(&a, &b);
         if !near(p) && touch.is_none_or(|(least, _)| distance < least) {
             touch = Some((distance, p));
         }
@@ -212,17 +212,15 @@ fn chord_distance(a: &Arc, b: &Arc) -> f64 {
     if crossing(a, b).is_some() {
         return 0.0;
     }
-    let to_b = |p| distance_to_segment(p, b.from.1, b.to.1);
-    let to_a = |p| distance_to_segment(p, a.from.1, a.to.1);
-    to_b(a.from.1).min(to_b(a.to.1)).min(to_a(b.from.1)).min(to_a(b.to.1))
+    nearest_end(a, b).0
 }
 
-/// The end of one chord that is closest to the other chord.
-fn nearest_end(a: &Arc, b: &Arc) -> DVec2 {
+/// The end of one chord that is closest to the other chord, and its distance.
+fn nearest_end(a: &Arc, b: &Arc) -> (f64, DVec2) {
     let from_b = |p: DVec2| (distance_to_segment(p, b.from.1, b.to.1), p);
     let from_a = |p: DVec2| (distance_to_segment(p, a.from.1, a.to.1), p);
     let all = [from_b(a.from.1), from_b(a.to.1), from_a(b.from.1), from_a(b.to.1)];
-    all.into_iter().min_by(|x, y| x.0.total_cmp(&y.0)).map_or(a.from.1, |(_, p)| p)
+    all.into_iter().fold(all[0], |least, end| if end.0 < least.0 { end } else { least })
 }
 
 fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits, face: Option<&str>) -> Fault {

@@ -6,6 +6,7 @@ use glam::DVec2;
 use super::nurbs::{NurbsCurve, Vector};
 use super::spec::CurveShape;
 use crate::core::fault::Fault;
+use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::decimal::{number, point_text};
 
 /// Larger coordinates are refused, so that no square of one overflows.
@@ -19,22 +20,12 @@ pub struct Curve {
     corners: Vec<f64>,
 }
 
+/// A closed polyline repeats its first point at the end.
 #[derive(Clone, Debug, PartialEq)]
 enum Path {
-    Segment {
-        from: DVec2,
-        to: DVec2,
-    },
-    Arc {
-        centre: DVec2,
-        radius: f64,
-        from_angle: f64,
-        turn: f64,
-    },
-    /// A closed polyline repeats its first point at the end.
-    Polyline {
-        points: Vec<DVec2>,
-    },
+    Segment { from: DVec2, to: DVec2 },
+    Arc { centre: DVec2, radius: f64, from_angle: f64, turn: f64 },
+    Polyline { points: Vec<DVec2> },
     Nurbs(NurbsCurve),
 }
 
@@ -102,45 +93,28 @@ impl Curve {
         Ok(curve)
     }
 
-    /// The point at `t` in [0, 1].
-    pub fn point(&self, t: f64) -> DVec2 {
-        match &self.path {
-            // Both forms are exact at their ends.
-            Path::Segment { from, to } => lerp(*from, *to, t),
-            Path::Arc { centre, radius, from_angle, turn } => {
-                let (sin, cos) = libm::sincos(from_angle + if self.closed && t == 1.0 { 0.0 } else { t * turn });
-                *centre + *radius * DVec2::new(cos, sin)
-            }
-            Path::Polyline { points } => {
-                let (i, s) = piece(points.len() - 1, t);
-                lerp(points[i], points[i + 1], s)
-            }
-            Path::Nurbs(nurbs) => nurbs.at_unit(t).0,
-        }
-    }
-
-    /// The derivative by `t`; at a corner, the derivative after it.
-    pub fn derivative(&self, t: f64) -> DVec2 {
-        match &self.path {
-            Path::Segment { from, to } => *to - *from,
-            Path::Arc { radius, from_angle, turn, .. } => {
-                let (sin, cos) = libm::sincos(from_angle + t * turn);
-                radius * turn * DVec2::new(-sin, cos)
-            }
-            Path::Polyline { points } => {
-                let (i, _) = piece(points.len() - 1, t);
-                (points.len() - 1) as f64 * (points[i + 1] - points[i])
-            }
-            Path::Nurbs(nurbs) => nurbs.at_unit(t).1,
-        }
-    }
-
-    /// Point and derivative by `t` at once.
+    /// Point and derivative by `t`, in [0, 1]; at a corner, the derivative after it.
     pub fn at(&self, t: f64) -> (DVec2, DVec2) {
         match &self.path {
+            // Both forms are exact at their ends.
+            Path::Segment { from, to } => (lerp(*from, *to, t), *to - *from),
+            Path::Arc { centre, radius, from_angle, turn } => {
+                let (sin, cos) = libm::sincos(from_angle + if self.closed && t == 1.0 { 0.0 } else { t * turn });
+                let (slope_sin, slope_cos) = libm::sincos(from_angle + t * turn);
+                (*centre + *radius * DVec2::new(cos, sin), radius * turn * DVec2::new(-slope_sin, slope_cos))
+            }
+            Path::Polyline { points } => {
+                let n = points.len() - 1;
+                let (i, s) = piece(n, t);
+                (lerp(points[i], points[i + 1], s), n as f64 * (points[i + 1] - points[i]))
+            }
             Path::Nurbs(nurbs) => nurbs.at_unit(t),
-            _ => (self.point(t), self.derivative(t)),
         }
+    }
+
+    /// The point at `t` in [0, 1].
+    pub fn point(&self, t: f64) -> DVec2 {
+        self.at(t).0
     }
 
     /// The start point.
@@ -226,10 +200,7 @@ impl Curve {
     fn find_corners(&self) -> Vec<f64> {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => Vec::new(),
-            Path::Polyline { points } => {
-                let n = points.len() - 1;
-                (1..n).map(|i| i as f64 / n as f64).collect()
-            }
+            Path::Polyline { points } => inner_parameters(points),
             Path::Nurbs(nurbs) => nurbs.sharp_knots(|before, after| {
                 before.perp_dot(after).abs() > 1e-6 * before.length() * after.length() || before.dot(after) < 0.0
             }),
@@ -249,15 +220,19 @@ pub(super) fn chords(
 ) -> Vec<(f64, DVec2)> {
     let tolerance = tolerance.max(1e-9 * (high - low).max_element());
     let mut points = vec![(0.0, point(0.0))];
-    for w in breaks.windows(2) {
-        let parts = if degree == 1 { 1 } else { 2 * degree.min(16) };
-        for i in 1..=parts {
-            let t = if i == parts { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / parts as f64 };
-            let before = points[points.len() - 1];
-            refine(point, before, (t, point(t)), tolerance, if degree == 1 { 0 } else { 11 }, &mut points);
-        }
+    let (parts, depth) = if degree == 1 { (1, 0) } else { (2 * degree.min(16), 11) };
+    for &t in &divided(breaks, parts)[1..] {
+        let before = points[points.len() - 1];
+        refine(point, before, (t, point(t)), tolerance, depth, &mut points);
     }
     points
+}
+
+/// Parameters from the first to the last break, with `parts` equal parts between two breaks.
+pub(super) fn divided(breaks: &[f64], parts: usize) -> Vec<f64> {
+    let between = |w: &[f64], i: usize| w[0] + (w[1] - w[0]) * i as f64 / parts as f64;
+    let inner = breaks.windows(2).flat_map(|w| (0..parts).map(move |i| between(w, i)));
+    inner.chain(breaks.last().copied()).collect()
 }
 
 /// Appends the points after `a` up to and including `b`, bisecting while the curve is farther than `tolerance` from the
@@ -308,9 +283,10 @@ pub(super) fn piece(n: usize, t: f64) -> (usize, f64) {
     (i, x - i as f64)
 }
 
-/// Lower and upper corner of the bounding box of points.
-pub(super) fn extent(points: impl Iterator<Item = DVec2>) -> (DVec2, DVec2) {
-    points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+/// The parameters of the inner points of a polyline.
+pub(super) fn inner_parameters<P>(points: &[P]) -> Vec<f64> {
+    let n = points.len() - 1;
+    (1..n).map(|i| i as f64 / n as f64).collect()
 }
 
 /// Refuses points that are not finite or have coordinates beyond [`LARGEST`].
@@ -376,7 +352,7 @@ mod tests {
         let circle = arc(DVec2::new(3.0, 4.0), 0.5, 1.0, 1.0 + TAU).unwrap();
         assert!(circle.closed());
         assert_eq!(circle.start(), circle.end());
-        let (low, high) = Course::Plane(circle.clone()).bounds();
+        let (low, high) = Course::of_curve(circle.clone()).bounds();
         assert!((low - DVec2::new(2.5, 3.5)).length() < 1e-5 && (high - DVec2::new(3.5, 4.5)).length() < 1e-5);
         assert!(!arc(DVec2::ZERO, 1.0, 0.0, PI).unwrap().closed());
     }
@@ -450,7 +426,7 @@ mod tests {
         for curve in &curves {
             for t in [0.1, 0.4, 0.9] {
                 let slope = (curve.point(t + 1e-6) - curve.point(t - 1e-6)) / 2e-6;
-                assert!((slope - curve.derivative(t)).length() < 1e-6);
+                assert!((slope - curve.at(t).1).length() < 1e-6);
             }
         }
     }

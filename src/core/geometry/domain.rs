@@ -129,10 +129,8 @@ impl Domain {
             for (i, steps) in chain.iter_mut().enumerate() {
                 let area = loops::doubled_area(&loops::polygon(&curves, steps));
                 if borders == Borders::Unchecked && area.abs() <= tolerance * tolerance {
-                    return Err(placed(
-                        Fault::new(format!("The {} encloses no area", loop_name(&spec.name, i))),
-                        &spec.place,
-                    ));
+                    let what = format!("The {} encloses no area", loop_name(&spec.name, i));
+                    return Err(placed(Fault::new(what), &spec.place));
                 }
                 if (area > 0.0) != (i == 0) {
                     steps.reverse();
@@ -142,14 +140,12 @@ impl Domain {
                     let curve = &mut curves[step.curve.index()];
                     let side = &mut curve.sides[usize::from(!step.forward)];
                     if let Some(other) = side.replace(f as u32) {
-                        return Err(placed(
-                            Fault::new(format!(
-                                "The faces \"{}\" and \"{}\" lie on the same side of the curve \"{}\"",
-                                names[other as usize], spec.name, curve.name
-                            ))
-                            .remedy("Faces may share curves, but must not overlap"),
-                            &spec.place,
-                        ));
+                        let what = format!(
+                            "The faces \"{}\" and \"{}\" lie on the same side of the curve \"{}\"",
+                            names[other as usize], spec.name, curve.name
+                        );
+                        let fault = Fault::new(what).remedy("Faces may share curves, but must not overlap");
+                        return Err(placed(fault, &spec.place));
                     }
                 }
             }

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 
 use super::chart::ChartPoint;
 use crate::core::fault::Fault;
+use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::plane_triangles::PlaneTriangles;
 
 /// A piecewise linear surface: triangles in the plane and in space.
@@ -31,8 +32,7 @@ impl Facets {
             [(e * h.y - f * g.y) / det, (f * g.x - e * h.x) / det]
         });
         let j = j.collect();
-        let (low, high) =
-            xyz.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+        let (low, high) = extent(xyz.iter().copied());
         Ok(Facets { plane: PlaneTriangles::new(uv, triangles)?, size: (high - low).max_element(), xyz, j })
     }
 

@@ -58,10 +58,13 @@ pub fn square() -> Specs {
     (sides_of_square(), vec![face("plate", SQUARE, &[], "", "")])
 }
 
+/// The unit square with more curves and another list of outer curves, holes, cracks.
+pub fn with(more: Vec<CurveSpec>, outer: &str, holes: &[&str], cracks: &str) -> Specs {
+    ([sides_of_square(), more].concat(), vec![face("plate", outer, holes, cracks, "")])
+}
+
 pub fn square_with_hole() -> Specs {
-    let mut curves = sides_of_square();
-    curves.push(circle("hole", (0.5, 0.5), 0.2));
-    (curves, vec![face("plate", SQUARE, &["hole"], "", "")])
+    with(vec![circle("hole", (0.5, 0.5), 0.2)], SQUARE, &["hole"], "")
 }
 
 /// A disc of three arcs with different directions.
@@ -90,9 +93,7 @@ pub fn two_faces() -> Specs {
 }
 
 pub fn square_with_crack() -> Specs {
-    let mut curves = sides_of_square();
-    curves.push(segment("crack", (0.3, 0.5), (0.7, 0.6)));
-    (curves, vec![face("plate", SQUARE, &[], "crack", "")])
+    with(vec![segment("crack", (0.3, 0.5), (0.7, 0.6))], SQUARE, &[], "crack")
 }
 
 /// A square whose west side is divided where a crack begins.

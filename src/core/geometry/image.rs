@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::chart::Chart;
-use super::curve::{Curve, lerp};
+use super::curve::{Curve, divided, lerp};
 use super::face_surface::FaceSurface;
 use super::facets::Facets;
 use super::space_curve::SpaceCurve;
@@ -180,10 +180,5 @@ impl Image {
 /// The parameters of the table; they include all breaks and corners.
 fn parameters(curve: &SpaceCurve) -> Vec<f64> {
     let breaks = curve.breaks();
-    let parts = (4 * TABLE / (breaks.len() - 1)).clamp(4, TABLE);
-    let mut at = vec![0.0];
-    for w in breaks.windows(2) {
-        at.extend((1..=parts).map(|i| if i == parts { w[1] } else { w[0] + (w[1] - w[0]) * i as f64 / parts as f64 }));
-    }
-    at
+    divided(&breaks, (4 * TABLE / (breaks.len() - 1)).clamp(4, TABLE))
 }

@@ -196,21 +196,10 @@ pub trait Vector:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
-    /// Whether all components are finite.
-    fn is_finite(self) -> bool;
 }
 
-impl Vector for DVec2 {
-    fn is_finite(self) -> bool {
-        DVec2::is_finite(self)
-    }
-}
-
-impl Vector for DVec3 {
-    fn is_finite(self) -> bool {
-        DVec3::is_finite(self)
-    }
-}
+impl Vector for DVec2 {}
+impl Vector for DVec3 {}
 
 /// Control points times their weights, and the weights. Only ratios of weights matter, so the largest is scaled to 1
 /// and no product overflows.
@@ -222,7 +211,8 @@ pub fn weighted<P: Vector>(points: &[P], weights: &[f64]) -> Result<Vec<(P, f64)
         return Err(Fault::new(format!("A NURBS with {} control points has {} weights", points.len(), weights.len()))
             .remedy("Give one weight for each point, or none"));
     }
-    if let Some(i) = points.iter().position(|p| !p.is_finite()) {
+    // A component that is not finite times zero is NaN.
+    if let Some(i) = points.iter().position(|&p| p * 0.0 != P::default()) {
         return Err(Fault::new(format!("Control point {} is not finite", i + 1)));
     }
     if let Some(i) = weights.iter().position(|w| !(w.is_finite() && *w > 0.0)) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::curve::{Curve, LARGEST, check_coordinates, corners_of_polyline, lerp, piece};
+use super::curve::{Curve, LARGEST, check_coordinates, corners_of_polyline, inner_parameters, lerp, piece};
 use super::frame::{AxisFrame, sin_cos};
 use super::nurbs::NurbsCurve;
 use super::primitive::arc;
@@ -20,30 +20,15 @@ pub struct SpaceCurve {
     closed: bool,
 }
 
+/// `Sides` are edges of triangles; its `corners` are the indices of corners among the points.
 #[derive(Clone, Debug, PartialEq)]
 enum Path {
-    Segment {
-        from: DVec3,
-        to: DVec3,
-    },
-    Arc {
-        frame: AxisFrame,
-        radius: f64,
-        angles: [f64; 2],
-    },
-    Polyline {
-        points: Vec<DVec3>,
-    },
-    /// Edges of triangles; `corners` are the indices of its corners among the points.
-    Sides {
-        points: Vec<DVec3>,
-        corners: Vec<u32>,
-    },
+    Segment { from: DVec3, to: DVec3 },
+    Arc { frame: AxisFrame, radius: f64, angles: [f64; 2] },
+    Polyline { points: Vec<DVec3> },
+    Sides { points: Vec<DVec3>, corners: Vec<u32> },
     Nurbs(Box<NurbsCurve<DVec3>>),
-    On {
-        surface: Arc<NurbsSurface>,
-        trim: Box<Curve>,
-    },
+    On { surface: Arc<NurbsSurface>, trim: Box<Curve> },
 }
 
 impl SpaceCurve {
@@ -185,10 +170,7 @@ impl SpaceCurve {
     pub fn corners(&self) -> Vec<f64> {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => Vec::new(),
-            Path::Polyline { points } => {
-                let n = points.len() - 1;
-                (1..n).map(|i| i as f64 / n as f64).collect()
-            }
+            Path::Polyline { points } => inner_parameters(points),
             Path::Sides { points, corners } => {
                 corners.iter().map(|&i| f64::from(i) / (points.len() - 1) as f64).collect()
             }
@@ -204,11 +186,7 @@ impl SpaceCurve {
         let mut breaks = vec![0.0];
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => {}
-            Path::Polyline { .. } => breaks.extend(self.corners()),
-            Path::Sides { points, .. } => {
-                let n = points.len() - 1;
-                breaks.extend((1..n).map(|i| i as f64 / n as f64));
-            }
+            Path::Polyline { points } | Path::Sides { points, .. } => breaks.extend(inner_parameters(points)),
             Path::Nurbs(nurbs) => breaks.extend(nurbs.basis().unit_knots()),
             Path::On { trim, .. } => return trim.breaks(),
         }

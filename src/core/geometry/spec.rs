@@ -47,11 +47,11 @@ pub enum CurveShape {
 
 /// A named curve of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CurveSpec {
+pub struct CurveSpec<Shape = CurveShape> {
     /// Its name, unique in the case.
     pub name: String,
     /// Its shape.
-    pub shape: CurveShape,
+    pub shape: Shape,
     /// The number of segments, if the case fixes it (for all pieces of a polyline together).
     pub segments: Option<u32>,
     /// Its place in the case, for messages ("plate.toml, line 14").
@@ -209,17 +209,7 @@ pub struct SurfaceSpec {
 }
 
 /// A curve of a case with surfaces.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpaceCurveSpec {
-    /// Its name.
-    pub name: String,
-    /// Its shape.
-    pub shape: SpaceShape,
-    /// The number of segments, if the case fixes it.
-    pub segments: Option<u32>,
-    /// Its place in the case, for messages.
-    pub place: String,
-}
+pub type SpaceCurveSpec = CurveSpec<SpaceShape>;
 
 /// A face of a case with surfaces; without an outer loop it is its whole surface, except the holes.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,8 +11,9 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use super::curve::check_coordinates;
-use super::nurbs::{Basis, BasisValues, weighted};
+use super::nurbs::{Basis, weighted};
 use crate::core::fault::Fault;
+use crate::core::kernel::box_tree::extent;
 
 /// Control points closer than this fraction of the surface's size coincide.
 const SAME: f64 = 1e-12;
@@ -203,28 +204,24 @@ impl NurbsSurface {
         ];
         check_coordinates(points)?;
         let weighted: Vec<DVec4> = weighted(points, weights)?.into_iter().map(|(p, w)| p.extend(w)).collect();
-        let low = points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
-        let high = points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
+        let (low, high) = extent(points.iter().copied());
         let size = (high - low).max_element();
         if size <= 0.0 {
             return Err(Fault::new("The surface has zero size: all its control points are equal"));
         }
         let polynomial = weighted.iter().all(|p| p.w == 1.0);
+        let domain = bases.each_ref().map(|basis| basis.domain().into());
         let mut surface = NurbsSurface {
             bases,
             weighted,
             columns,
             polynomial,
             size,
-            domain: [[0.0; 2]; 2],
+            domain,
             closed: [false; 2],
             degenerate: [false; 4],
             series: None,
         };
-        surface.domain = [0, 1].map(|axis| {
-            let (first, last) = surface.bases[axis].domain();
-            [first, last]
-        });
         surface.closed = [0, 1].map(|axis| surface.edges_agree(axis));
         surface.degenerate = EDGES.map(|edge| surface.is_point(edge));
         if surface.degenerate[0] && surface.degenerate[2] && surface.edges_agree(1)
@@ -369,7 +366,11 @@ impl NurbsSurface {
                     *sum += point * n[i];
                 }
             }
-            add_column(&mut sums, &column, &n_v, j, order);
+            for k in 0..=order {
+                for l in 0..=order - k {
+                    sums[k][l] += column[k] * n_v[l][j];
+                }
+            }
         }
         sums
     }
@@ -396,15 +397,6 @@ impl NurbsSurface {
             ];
         }
         SurfacePoint { p, d: [d_u, d_v], dd }
-    }
-}
-
-#[inline]
-fn add_column(sums: &mut [[DVec4; 3]; 3], column: &[DVec4; 3], n_v: &[BasisValues], j: usize, order: usize) {
-    for k in 0..=order {
-        for l in 0..=order - k {
-            sums[k][l] += column[k] * n_v[l][j];
-        }
     }
 }
 

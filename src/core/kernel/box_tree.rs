@@ -192,6 +192,12 @@ fn branch<P: Spot>(nodes: &mut Vec<[Branch<P>; 2]>, boxes: &[(P, P)], order: &mu
     Branch { low, high, at: here as u32, count: 0 }
 }
 
+/// Lowest and highest corner of the bounding box of points.
+pub(in crate::core) fn extent<P: Spot>(points: impl IntoIterator<Item = P>) -> (P, P) {
+    let [nowhere, everywhere] = P::NOWHERE;
+    points.into_iter().fold((nowhere, everywhere), |(low, high), p| (low.least(p), high.greatest(p)))
+}
+
 /// The parameter in [0, 1] of the point nearest to `p` on the segment from `a` (0) to `b` (1).
 #[inline]
 pub(in crate::core) fn share_along<P: Spot>(p: P, a: P, b: P) -> f64 {

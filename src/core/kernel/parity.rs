@@ -57,27 +57,10 @@ pub fn toggles(rows: &[Vec<u32>], odd: &[bool], cost: &[Option<f64>]) -> Result<
 
 /// The symmetric difference of two ascending lists.
 fn symmetric_difference(a: &[u32], b: &[u32]) -> Vec<u32> {
-    let mut out = Vec::with_capacity(a.len() + b.len());
-    let (mut i, mut j) = (0, 0);
-    while i < a.len() && j < b.len() {
-        match a[i].cmp(&b[j]) {
-            std::cmp::Ordering::Less => {
-                out.push(a[i]);
-                i += 1;
-            }
-            std::cmp::Ordering::Greater => {
-                out.push(b[j]);
-                j += 1;
-            }
-            std::cmp::Ordering::Equal => {
-                i += 1;
-                j += 1;
-            }
-        }
-    }
-    out.extend_from_slice(&a[i..]);
-    out.extend_from_slice(&b[j..]);
-    out
+    let mut both = [a, b].concat();
+    // The stable sort merges two ascending runs in linear time.
+    both.sort();
+    both.chunk_by(|x, y| x == y).filter(|equal| equal.len() == 1).map(|single| single[0]).collect()
 }
 
 #[cfg(test)]

@@ -97,6 +97,13 @@ impl<const N: usize> LogMetric<N> {
     pub fn plus(&self, weight: f64, other: &Self) -> Self {
         LogMetric(std::array::from_fn(|i| self.0[i] + weight * other.0[i]))
     }
+
+    /// The logarithm `sum of w_i ln M_i` of the log-Euclidean mean (docs/algorithm.md, "Metric at new places"); the
+    /// weights should add to one.
+    #[inline]
+    pub fn log_euclidean<'a>(terms: impl IntoIterator<Item = (f64, &'a Self)>) -> Self {
+        terms.into_iter().fold(Self::ZERO, |sum, (weight, logarithm)| sum.plus(weight, logarithm))
+    }
 }
 
 impl LogMetric2 {
@@ -164,16 +171,6 @@ impl Metric2 {
         LogMetric([m.uu, m.uv, m.vv])
     }
 
-    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (docs/algorithm.md, "Metric at new places"); the weights should
-    /// add to one.
-    ///
-    /// # Panics
-    /// In debug builds, when the lengths differ.
-    pub fn log_euclidean(weights: &[f64], tensors: &[Metric2]) -> Metric2 {
-        debug_assert_eq!(weights.len(), tensors.len());
-        weights.iter().zip(tensors).fold(LogMetric2::ZERO, |sum, (&w, m)| sum.plus(w, &m.ln())).exp()
-    }
-
     /// The intersection of two metrics (docs/algorithm.md, "Fields and their intersection"): the largest unit ball, by
     /// simultaneous reduction, that lies in both.
     ///
@@ -239,16 +236,6 @@ impl Metric3 {
     pub fn ln(&self) -> LogMetric3 {
         let (values, g) = self.eigen();
         LogMetric(Metric3::from_eigen(values.map(libm::log), g).entries())
-    }
-
-    /// The log-Euclidean mean `exp(sum of w_i ln M_i)` (docs/algorithm.md, "Metric at new places"); the weights should
-    /// add to one.
-    ///
-    /// # Panics
-    /// In debug builds, when the lengths differ.
-    pub fn log_euclidean(weights: &[f64], tensors: &[Metric3]) -> Metric3 {
-        debug_assert_eq!(weights.len(), tensors.len());
-        weights.iter().zip(tensors).fold(LogMetric3::ZERO, |sum, (&w, m)| sum.plus(w, &m.ln())).exp()
     }
 
     /// The intersection of two metrics; see [`Metric2::intersect`].
@@ -391,10 +378,12 @@ mod tests {
 
     #[test]
     fn log_euclidean_mean_of_sizes_is_geometric() {
-        let mean = Metric2::log_euclidean(&[0.5, 0.5], &[Metric2::isotropic(0.1), Metric2::isotropic(0.4)]);
+        let logarithms = [0.1, 0.4].map(|h| Metric2::isotropic(h).ln());
+        let mean = LogMetric::log_euclidean([0.5, 0.5].into_iter().zip(&logarithms)).exp();
         assert!((mean.min_size() - 0.2).abs() < 1e-15);
         let m = Metric3::from_sizes([0.1, 1.0, 2.0], [DVec3::ONE, DVec3::X, DVec3::Y]).unwrap();
-        assert!(close3(&Metric3::log_euclidean(&[0.2, 0.3, 0.5], &[m, m, m]), &m, 1e-13));
+        let same = [m.ln(); 3];
+        assert!(close3(&LogMetric::log_euclidean([0.2, 0.3, 0.5].into_iter().zip(&same)).exp(), &m, 1e-13));
         assert_eq!(LogMetric2::ZERO.exp(), Metric2::isotropic(1.0));
         assert_eq!(LogMetric3::ZERO.exp(), Metric3::isotropic(1.0));
     }

@@ -272,11 +272,7 @@ impl Metric3 {
     #[inline]
     #[must_use]
     pub fn scaled(&self, size_factor: f64) -> Metric3 {
-        self.times_number(1.0 / (size_factor * size_factor))
-    }
-
-    #[inline]
-    fn times_number(&self, s: f64) -> Metric3 {
+        let s = 1.0 / (size_factor * size_factor);
         Metric3 { xx: s * self.xx, xy: s * self.xy, xz: s * self.xz, yy: s * self.yy, yz: s * self.yz, zz: s * self.zz }
     }
 

@@ -5,6 +5,15 @@ use super::half_edge::Mesh;
 use super::ids::{ElementId, NodeId};
 use crate::core::kernel::predicates::{convex, positive};
 
+/// Returns a message as an error unless an invariant holds.
+macro_rules! ensure {
+    ($holds:expr, $($message:tt)+) => {
+        if !$holds {
+            return Err(format!($($message)+));
+        }
+    };
+}
+
 impl Mesh {
     /// Checks the whole mesh: twins, walks, anchors, free lists, repeated nodes, exact positivity, metrics.
     ///
@@ -20,13 +29,12 @@ impl Mesh {
             self.check_node(node, Some(sides_at[node.index()]))?;
         }
         let (nodes, elements) = (self.nodes().count(), self.elements().count());
-        if nodes != self.node_count() || elements != self.element_count() {
-            return Err(format!(
-                "{nodes} nodes and {elements} elements are in use, but the free lists leave {} and {}",
-                self.node_count(),
-                self.element_count()
-            ));
-        }
+        ensure!(
+            nodes == self.node_count() && elements == self.element_count(),
+            "{nodes} nodes and {elements} elements are in use, but the free lists leave {} and {}",
+            self.node_count(),
+            self.element_count()
+        );
         Ok(())
     }
 
@@ -68,26 +76,19 @@ impl Mesh {
     pub fn check_element(&self, e: ElementId) -> Result<(), String> {
         let nodes: Vec<NodeId> = self.corners(e).collect();
         for (k, &n) in nodes.iter().enumerate() {
-            if !self.has_node(n) {
-                return Err(format!("{e:?} uses {n:?}, a tombstone"));
-            }
-            if nodes[..k].contains(&n) {
-                return Err(format!("{e:?} uses {n:?} twice"));
-            }
+            ensure!(self.has_node(n), "{e:?} uses {n:?}, a tombstone");
+            ensure!(!nodes[..k].contains(&n), "{e:?} uses {n:?} twice");
         }
         for h in self.half_edges(e) {
             let Some(t) = self.twin(h) else {
-                if !(self.is_fixed(self.origin(h)) && self.is_fixed(self.target(h))) {
-                    return Err(format!("{h:?} of {e:?} has no twin, but its ends are not fixed"));
-                }
+                let ends_fixed = self.is_fixed(self.origin(h)) && self.is_fixed(self.target(h));
+                ensure!(ends_fixed, "{h:?} of {e:?} has no twin, but its ends are not fixed");
                 continue;
             };
-            if self.twin(t) != Some(h) || !self.has_element(t.element()) || t.element() == e {
-                return Err(format!("{h:?} and {t:?} are not each other's twins"));
-            }
-            if self.origin(t) != self.target(h) || self.target(t) != self.origin(h) {
-                return Err(format!("{h:?} and {t:?} are twins with other ends"));
-            }
+            let are_twins = self.twin(t) == Some(h) && self.has_element(t.element()) && t.element() != e;
+            ensure!(are_twins, "{h:?} and {t:?} are not each other's twins");
+            let same_ends = self.origin(t) == self.target(h) && self.target(t) == self.origin(h);
+            ensure!(same_ends, "{h:?} and {t:?} are twins with other ends");
         }
         let p: Vec<_> = nodes.iter().map(|&n| self.uv(n)).collect();
         let good = match p[..] {
@@ -95,9 +96,7 @@ impl Mesh {
             [a, b, c, d] => convex(a, b, c, d),
             _ => false,
         };
-        if !good {
-            return Err(format!("{e:?} is not strictly positive and convex: {nodes:?} at {p:?}"));
-        }
+        ensure!(good, "{e:?} is not strictly positive and convex: {nodes:?} at {p:?}");
         Ok(())
     }
 
@@ -106,24 +105,19 @@ impl Mesh {
         let most = sides_at.unwrap_or(self.element_slots() as u32);
         let mut seen = 0;
         for h in self.fan(node) {
-            if self.origin(h) != node {
-                return Err(format!("the fan of {node:?} meets {h:?}, which starts elsewhere"));
-            }
+            ensure!(self.origin(h) == node, "the fan of {node:?} meets {h:?}, which starts elsewhere");
             seen += 1;
             if seen > most {
                 break;
             }
         }
-        if seen > most || sides_at.is_some_and(|sides_at| seen != sides_at) {
-            return Err(format!("the fan of {node:?} sees {seen} of {most} elements"));
-        }
+        let sees_all = seen <= most && sides_at.is_none_or(|sides_at| seen == sides_at);
+        ensure!(sees_all, "the fan of {node:?} sees {seen} of {most} elements");
         let start = self.fan(node).next().and_then(|h| self.twin(h));
-        if self.is_fixed(node) != start.is_none() {
-            return Err(format!("{node:?} is fixed exactly where it lies on a boundary: {}", self.is_fixed(node)));
-        }
-        if !self.metric(node).is_spd() || !self.uv(node).is_finite() {
-            return Err(format!("{node:?} at {} has metric {:?}", self.uv(node), self.metric(node)));
-        }
+        let fixed = self.is_fixed(node);
+        ensure!(fixed == start.is_none(), "{node:?} is fixed exactly where it lies on a boundary: {fixed}");
+        let (uv, metric) = (self.uv(node), self.metric(node));
+        ensure!(metric.is_spd() && uv.is_finite(), "{node:?} at {uv} has metric {metric:?}");
         Ok(())
     }
 }

@@ -134,13 +134,7 @@ impl Mesh {
             region: set.region.clone(),
             level: vec![0; elements],
             deferred: vec![false; 4 * elements],
-            first_level: Vec::new(),
-            free_nodes: Vec::new(),
-            free_elements: Vec::new(),
-            closed: [0; 2],
-            journal: Journal::default(),
-            refusals: None,
-            embedding: None,
+            ..Mesh::default()
         };
         let mut by_side: Vec<(u64, u32)> = Vec::with_capacity(3 * elements);
         for (element, nodes) in set.triangles.iter().enumerate() {
@@ -380,21 +374,14 @@ impl Mesh {
     #[inline]
     pub fn triangle(&self, e: ElementId) -> [NodeId; 3] {
         debug_assert!(self.is_triangle(e));
-        let first = 4 * e.index();
-        [NodeId(self.origin[first]), NodeId(self.origin[first + 1]), NodeId(self.origin[first + 2])]
+        std::array::from_fn(|corner| NodeId(self.origin[4 * e.index() + corner]))
     }
 
     /// The nodes of a quadrilateral.
     #[inline]
     pub fn quad(&self, e: ElementId) -> [NodeId; 4] {
         debug_assert!(self.is_quad(e));
-        let first = 4 * e.index();
-        [
-            NodeId(self.origin[first]),
-            NodeId(self.origin[first + 1]),
-            NodeId(self.origin[first + 2]),
-            NodeId(self.origin[first + 3]),
-        ]
+        std::array::from_fn(|corner| NodeId(self.origin[4 * e.index() + corner]))
     }
 
     /// The half-edge from one node to another, if there is one.

@@ -21,13 +21,16 @@ impl Mesh {
     /// # Errors
     /// The reason of the refusal.
     pub fn can_swap(&self, h_ab: HalfEdgeId) -> Result<(), Refusal> {
-        let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
-        if !self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()) {
-            return Err(Refusal::NotTriangles);
-        }
-        let nodes = [h_ab, h_ba, self.previous(h_ab), self.previous(h_ba)].map(|h| self.origin(h));
+        let nodes = self.around_edge(h_ab)?;
         let [a, b, c, d] = nodes.map(|n| self.uv(n));
         if firm(a, d, c) && firm(d, b, c) { self.permit(Operation::Swap, &nodes) } else { Err(Refusal::NotPositive) }
+    }
+
+    /// The ends of an edge between two triangles and the nodes opposite to it, left and right: a, b, c, d.
+    fn around_edge(&self, h_ab: HalfEdgeId) -> Result<[NodeId; 4], Refusal> {
+        let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
+        Refusal::NotTriangles.when(!self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()))?;
+        Ok([h_ab, h_ba, self.previous(h_ab), self.previous(h_ba)].map(|h| self.origin(h)))
     }
 
     /// Replaces the common edge of two triangles by the edge between the opposite nodes.
@@ -51,12 +54,8 @@ impl Mesh {
         let (a, b, c, d) = (self.origin(h_ab), self.origin(h_ba), self.origin(h_ca), self.origin(h_db));
         let (t_bc, t_ca, t_ad, t_db) = (self.twin(h_bc), self.twin(h_ca), self.twin(h_ad), self.twin(h_db));
         // Build: T = (a, d, c), U = (b, c, d).
-        for (corner, node) in (0..).zip([a, d, c]) {
-            self.set_origin(t.half_edge(corner), node);
-        }
-        for (corner, node) in (0..).zip([b, c, d]) {
-            self.set_origin(u.half_edge(corner), node);
-        }
+        self.set_corners(t, [a, d, c]);
+        self.set_corners(u, [b, c, d]);
         // Hook up.
         let h_dc = t.half_edge(1);
         self.hook(t.half_edge(0), t_ad);
@@ -64,10 +63,7 @@ impl Mesh {
         self.hook(t.half_edge(2), t_ca);
         self.hook(u.half_edge(0), t_bc);
         self.hook(u.half_edge(2), t_db);
-        self.reanchor(t.half_edge(0));
-        self.reanchor(u.half_edge(0));
-        self.reanchor(h_dc);
-        self.reanchor(u.half_edge(1));
+        [t.half_edge(0), u.half_edge(0), h_dc, u.half_edge(1)].into_iter().for_each(|h| self.reanchor(h));
         h_dc
     }
 
@@ -81,17 +77,11 @@ impl Mesh {
         let [a, b] = self.ends(h_ab);
         let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
         let (t, u) = (h_ab.element(), h_ba.element());
-        if self.is_fixed(a) || (self.is_fixed(b) && at != self.uv(b)) {
-            return Err(Refusal::FixedNode);
-        }
-        if !self.is_triangle(t) || !self.is_triangle(u) {
-            return Err(Refusal::NotTriangles);
-        }
+        Refusal::FixedNode.when(self.is_fixed(a) || (self.is_fixed(b) && at != self.uv(b)))?;
+        Refusal::NotTriangles.when(!self.is_triangle(t) || !self.is_triangle(u))?;
         let (c, d) = (self.apex(h_ab), self.apex(h_ba));
         let around_b: SmallVec<[NodeId; 12]> = self.neighbours(b).collect();
-        if self.neighbours(a).any(|n| n != c && n != d && around_b.contains(&n)) {
-            return Err(Refusal::Link);
-        }
+        Refusal::Link.when(self.neighbours(a).any(|n| n != c && n != d && around_b.contains(&n)))?;
         let b_moves = at != self.uv(b);
         for (node, moves) in [(a, true), (b, b_moves)] {
             for h in self.fan(node) {
@@ -99,12 +89,8 @@ impl Mesh {
                 if e == t || e == u {
                     continue;
                 }
-                if node == a && self.corners(e).any(|n| n == b) {
-                    return Err(Refusal::Link);
-                }
-                if moves && !self.stays_positive(e, node, at) {
-                    return Err(Refusal::NotPositive);
-                }
+                Refusal::Link.when(node == a && self.corners(e).any(|n| n == b))?;
+                Refusal::NotPositive.when(moves && !self.stays_positive(e, node, at))?;
             }
         }
         self.permit(Operation::Collapse, &[a, b])
@@ -160,11 +146,7 @@ impl Mesh {
     /// # Errors
     /// The reason of the refusal.
     pub fn can_divide(&self, h_ab: HalfEdgeId, uv: DVec2) -> Result<(), Refusal> {
-        let h_ba = self.twin(h_ab).ok_or(Refusal::OnBoundary)?;
-        if !self.is_triangle(h_ab.element()) || !self.is_triangle(h_ba.element()) {
-            return Err(Refusal::NotTriangles);
-        }
-        let nodes = [h_ab, h_ba, self.previous(h_ab), self.previous(h_ba)].map(|h| self.origin(h));
+        let nodes = self.around_edge(h_ab)?;
         let [a, b, c, d] = nodes.map(|n| self.uv(n));
         let positive = firm(a, uv, c) && firm(uv, b, c) && firm(b, uv, d) && firm(uv, a, d);
         if positive { self.permit(Operation::Divide, &nodes) } else { Err(Refusal::NotPositive) }
@@ -199,9 +181,7 @@ impl Mesh {
         let t_new = self.new_element(3, self.region(t));
         let u_new = self.new_element(3, self.region(u));
         for (e, nodes) in [(t, [a, m, c]), (t_new, [m, b, c]), (u, [m, a, d]), (u_new, [b, m, d])] {
-            for (corner, node) in (0..).zip(nodes) {
-                self.set_origin(e.half_edge(corner), node);
-            }
+            self.set_corners(e, nodes);
         }
         // Hook up.
         self.hook(t.half_edge(0), Some(u.half_edge(0)));
@@ -212,11 +192,9 @@ impl Mesh {
         self.hook(u.half_edge(1), t_ad);
         self.hook(u.half_edge(2), Some(u_new.half_edge(1)));
         self.hook(u_new.half_edge(2), t_db);
-        self.reanchor(u.half_edge(0));
-        self.reanchor(t.half_edge(0));
-        self.reanchor(u_new.half_edge(0));
-        self.reanchor(t.half_edge(2));
-        self.reanchor(u.half_edge(2));
+        for h in [u.half_edge(0), t.half_edge(0), u_new.half_edge(0), t.half_edge(2), u.half_edge(2)] {
+            self.reanchor(h);
+        }
         Ok(m)
     }
 
@@ -229,27 +207,18 @@ impl Mesh {
     /// Refused unless the node is free, has exactly three or four triangles around it, and the new triangles are
     /// positive.
     pub fn can_delete_node(&self, node: NodeId) -> Result<SmallVec<[NewElement; 2]>, Refusal> {
-        if self.is_fixed(node) {
-            return Err(Refusal::FixedNode);
-        }
+        Refusal::FixedNode.when(self.is_fixed(node))?;
         let spokes: SmallVec<[HalfEdgeId; 8]> = self.fan(node).take(5).collect();
-        if !(3..=4).contains(&spokes.len()) {
-            return Err(Refusal::Valence);
-        }
-        if spokes.iter().any(|h| !self.is_triangle(h.element())) {
-            return Err(Refusal::NotTriangles);
-        }
+        Refusal::Valence.when(!(3..=4).contains(&spokes.len()))?;
+        Refusal::NotTriangles.when(spokes.iter().any(|h| !self.is_triangle(h.element())))?;
         self.permit(Operation::DeleteNode, &[node])?;
         let region = self.region(spokes[0].element());
         let ring: SmallVec<[NodeId; 4]> = spokes.iter().map(|&h| self.target(h)).collect();
         let is_firm = |n: [NodeId; 3]| firm(self.uv(n[0]), self.uv(n[1]), self.uv(n[2]));
         if let [a, b, c] = ring[..] {
             let whole = [a, b, c];
-            return if is_firm(whole) {
-                Ok(SmallVec::from_iter([NewElement::triangle(whole, region)]))
-            } else {
-                Err(Refusal::NotPositive)
-            };
+            Refusal::NotPositive.when(!is_firm(whole))?;
+            return Ok(SmallVec::from_iter([NewElement::triangle(whole, region)]));
         }
         let length2 = |i: usize, k: usize| self.metric(node).norm2(self.uv(ring[k]) - self.uv(ring[i]));
         let first = if length2(0, 2) <= length2(1, 3) { 0 } else { 1 };
@@ -367,14 +336,9 @@ impl Mesh {
     /// # Errors
     /// The reason of the refusal.
     pub fn can_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
-        if self.is_fixed(node) {
-            return Err(Refusal::FixedNode);
-        }
-        if self.elements_at(node).all(|e| self.stays_positive(e, node, uv)) {
-            self.permit_move(node, uv)
-        } else {
-            Err(Refusal::NotPositive)
-        }
+        Refusal::FixedNode.when(self.is_fixed(node))?;
+        Refusal::NotPositive.when(!self.elements_at(node).all(|e| self.stays_positive(e, node, uv)))?;
+        self.permit_move(node, uv)
     }
 
     /// Moves a free node; [`can_move`](Mesh::can_move) must hold. `metric` is that at `uv`.

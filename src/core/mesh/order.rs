@@ -2,13 +2,14 @@
 
 use glam::DVec2;
 
+use crate::core::kernel::box_tree::extent;
+
 /// The order of the Hilbert curve: its square has 2^BITS cells along each side.
 const BITS: u32 = 26;
 
 /// The ids sorted along a Hilbert curve through the bounding box of the points; ids in the same cell are sorted.
 pub fn hilbert_order(places: &[(u32, DVec2)]) -> Vec<u32> {
-    let low = places.iter().fold(DVec2::INFINITY, |low, (_, p)| low.min(*p));
-    let high = places.iter().fold(DVec2::NEG_INFINITY, |high, (_, p)| high.max(*p));
+    let (low, high) = extent(places.iter().map(|place| place.1));
     let extent = (high - low).max_element();
     let scale = if extent > 0.0 { f64::from((1_u32 << BITS) - 1) / extent } else { 0.0 };
     let keyed = places.iter().map(|&(id, p)| {

@@ -9,8 +9,7 @@ use smallvec::SmallVec;
 
 use super::half_edge::{Mesh, NewElement};
 use super::ids::{ElementId, HalfEdgeId, NodeId};
-use super::refusals::Operation;
-use super::refusals::Refusal;
+use super::refusals::{Operation, Refusal};
 use crate::core::kernel::tensor::Metric2;
 
 impl Mesh {
@@ -34,25 +33,16 @@ impl Mesh {
     /// Refused if a is fixed, if a and c have other connections, or if b or d would keep too few edges.
     pub fn collapse_diamond(&mut self, h_ab: HalfEdgeId) -> Result<(), Refusal> {
         let q = h_ab.element();
-        if !self.is_quad(q) {
-            return Err(Refusal::NotTriangles);
-        }
+        Refusal::NotTriangles.when(!self.is_quad(q))?;
         let (h_bc, h_da) = (self.next(h_ab), self.previous(h_ab));
         let (a, b, c, d) = (self.origin(h_ab), self.origin(h_bc), self.target(h_bc), self.origin(h_da));
-        if self.is_fixed(a) {
-            return Err(Refusal::FixedNode);
-        }
-        if !self.can_lose_an_edge(b) || !self.can_lose_an_edge(d) {
-            return Err(Refusal::Valence);
-        }
+        Refusal::FixedNode.when(self.is_fixed(a))?;
+        Refusal::Valence.when(!self.can_lose_an_edge(b) || !self.can_lose_an_edge(d))?;
         let around_c: SmallVec<[NodeId; 8]> = self.neighbours(c).collect();
-        if around_c.contains(&a) || self.neighbours(a).any(|n| n != b && n != d && around_c.contains(&n)) {
-            return Err(Refusal::Link);
-        }
+        Refusal::Link
+            .when(around_c.contains(&a) || self.neighbours(a).any(|n| n != b && n != d && around_c.contains(&n)))?;
         let old: SmallVec<[ElementId; 8]> = self.elements_at(a).collect();
-        if old.iter().any(|&e| e != q && self.corners(e).any(|n| n == c)) {
-            return Err(Refusal::Link);
-        }
+        Refusal::Link.when(old.iter().any(|&e| e != q && self.corners(e).any(|n| n == c)))?;
         self.permit(Operation::CollapseDiamond, &[a, b, c, d])?;
         let new: SmallVec<[NewElement; 8]> =
             old.iter().filter(|&&e| e != q).map(|&e| self.with_node_replaced(e, a, c)).collect();
@@ -75,17 +65,10 @@ impl Mesh {
     /// Refused on a boundary and if an element is not a quadrilateral.
     pub fn hexagon(&self, h: HalfEdgeId) -> Result<[NodeId; 6], Refusal> {
         let t = self.twin(h).ok_or(Refusal::OnBoundary)?;
-        if !self.is_quad(h.element()) || !self.is_quad(t.element()) {
-            return Err(Refusal::NotTriangles);
-        }
+        Refusal::NotTriangles.when(!self.is_quad(h.element()) || !self.is_quad(t.element()))?;
         // The element left of the edge n3 -> n0 has the nodes n1 and n2.
-        let n0 = self.origin(t);
-        let n1 = self.target(self.next(h));
-        let n2 = self.apex(h);
-        let n3 = self.origin(h);
-        let n4 = self.target(self.next(t));
-        let n5 = self.apex(t);
-        Ok([n0, n1, n2, n3, n4, n5])
+        let [left, right] = [h, t].map(|h| [self.target(self.next(h)), self.apex(h)]);
+        Ok([self.origin(t), left[0], left[1], self.origin(h), right[0], right[1]])
     }
 
     /// Rotates the edge between two quadrilaterals by one or two nodes of their hexagon; see
@@ -96,15 +79,9 @@ impl Mesh {
     /// end of the old edge would keep too few edges.
     pub fn rotate_edge(&mut self, h: HalfEdgeId, by: usize) -> Result<(), Refusal> {
         let n = self.hexagon(h)?;
-        if (1..6).any(|k| n[..k].contains(&n[k])) {
-            return Err(Refusal::Link);
-        }
-        if !self.can_lose_an_edge(n[0]) || !self.can_lose_an_edge(n[3]) {
-            return Err(Refusal::Valence);
-        }
-        if self.are_joined(n[by], n[by + 3]) {
-            return Err(Refusal::Joined);
-        }
+        Refusal::Link.when((1..6).any(|k| n[..k].contains(&n[k])))?;
+        Refusal::Valence.when(!self.can_lose_an_edge(n[0]) || !self.can_lose_an_edge(n[3]))?;
+        Refusal::Joined.when(self.are_joined(n[by], n[by + 3]))?;
         self.permit(Operation::RotateEdge, &[n[by], n[by + 3]])?;
         let t = self.twin(h).ok_or(Refusal::OnBoundary)?;
         let region = self.region(h.element());
@@ -139,9 +116,7 @@ impl Mesh {
     ) -> Result<NodeId, Refusal> {
         let v = self.origin(h_vp);
         debug_assert_eq!(v, self.origin(h_vq));
-        if self.twin(h_vp).is_none() || self.twin(h_vq).is_none() {
-            return Err(Refusal::OnBoundary);
-        }
+        Refusal::OnBoundary.when(self.twin(h_vp).is_none() || self.twin(h_vq).is_none())?;
         let (p, q) = (self.target(h_vp), self.target(h_vq));
         let mut handed: SmallVec<[ElementId; 8]> = SmallVec::new();
         let mut h = h_vp;
@@ -151,9 +126,7 @@ impl Mesh {
         }
         let kept = self.fan(v).count() - handed.len();
         // An inner node of n elements has n edges, and the new quadrilateral adds one.
-        if p == q || handed.len() < 2 || (!self.is_fixed(v) && kept < 2) {
-            return Err(Refusal::Valence);
-        }
+        Refusal::Valence.when(p == q || handed.len() < 2 || (!self.is_fixed(v) && kept < 2))?;
         self.permit(Operation::OpenVertex, &[v, p, q])?;
         let region = self.region(h_vp.element());
         let w = self.add_node(uv, metric);
@@ -177,19 +150,13 @@ impl Mesh {
     /// # Errors
     /// Refused if the node is fixed or not a doublet of two quadrilaterals.
     pub fn remove_doublet(&mut self, v: NodeId) -> Result<ElementId, Refusal> {
-        if self.is_fixed(v) {
-            return Err(Refusal::FixedNode);
-        }
+        Refusal::FixedNode.when(self.is_fixed(v))?;
         let spokes: SmallVec<[HalfEdgeId; 3]> = self.fan(v).take(3).collect();
         let [h_va, h_vc] = spokes[..] else { return Err(Refusal::Valence) };
-        if !self.is_quad(h_va.element()) || !self.is_quad(h_vc.element()) {
-            return Err(Refusal::NotTriangles);
-        }
+        Refusal::NotTriangles.when(!self.is_quad(h_va.element()) || !self.is_quad(h_vc.element()))?;
         let (a, c) = (self.target(h_va), self.target(h_vc));
         let (x, y) = (self.target(self.next(h_va)), self.target(self.next(h_vc)));
-        if x == y {
-            return Err(Refusal::Link);
-        }
+        Refusal::Link.when(x == y)?;
         self.permit(Operation::RemoveDoublet, &[v])?;
         let new = NewElement::quad([a, x, c, y], self.region(h_va.element()));
         let made = self.replace(&[h_va.element(), h_vc.element()], &[new]);

@@ -29,6 +29,14 @@ pub enum Refusal {
     Injected,
 }
 
+impl Refusal {
+    /// Refuses for this reason when the condition holds.
+    #[inline]
+    pub(super) fn when(self, condition: bool) -> Result<(), Refusal> {
+        if condition { Err(self) } else { Ok(()) }
+    }
+}
+
 /// The operations that can be refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Operation {

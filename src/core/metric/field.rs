@@ -3,6 +3,7 @@
 
 mod by_formula;
 
+use std::ops::Deref;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -49,14 +50,7 @@ pub trait MetricSource {
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>>;
 }
 
-impl<T: MetricSource + ?Sized> MetricSource for &T {
-    #[inline]
-    fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
-        (**self).metric(uv)
-    }
-}
-
-impl<T: MetricSource + ?Sized> MetricSource for Arc<T> {
+impl<P: Deref<Target: MetricSource>> MetricSource for P {
     #[inline]
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
         (**self).metric(uv)

@@ -81,27 +81,16 @@ const CONSTANTS: [(&str, f64); 2] = [("e", std::f64::consts::E), ("pi", std::f64
 impl Op {
     #[inline]
     fn apply(self, a: f64, b: f64) -> f64 {
+        // Unlike f64::min and max, this propagates NaN, so that it is refused and not hidden.
+        let a_if = |a_wins: bool| if a.is_nan() || a_wins { a } else { b };
         match self {
             Op::Add => a + b,
             Op::Sub => a - b,
             Op::Mul => a * b,
             Op::Div => a / b,
             Op::Pow => libm::pow(a, b),
-            // Unlike f64::min and max these propagate NaN, so that it is refused and not hidden.
-            Op::Min => {
-                if a.is_nan() || a < b {
-                    a
-                } else {
-                    b
-                }
-            }
-            Op::Max => {
-                if a.is_nan() || a > b {
-                    a
-                } else {
-                    b
-                }
-            }
+            Op::Min => a_if(a < b),
+            Op::Max => a_if(a > b),
             Op::Atan2 => libm::atan2(a, b),
             Op::Hypot => libm::hypot(a, b),
             Op::Neg => -a,
@@ -117,15 +106,8 @@ impl Op {
             Op::Acos => libm::acos(a),
             Op::Atan => libm::atan(a),
             Op::Floor => a.floor(),
-            Op::Sign => {
-                if a > 0.0 {
-                    1.0
-                } else if a < 0.0 {
-                    -1.0
-                } else {
-                    a
-                }
-            }
+            Op::Sign if a == 0.0 => a,
+            Op::Sign => a.signum(),
         }
     }
 }
@@ -167,10 +149,8 @@ impl Program {
             let value = Parser::parse(name, text, &mut graph, &names, &later)?;
             names.push((name, value));
         }
-        let mut values = Vec::with_capacity(outputs.len());
-        for (name, text) in outputs {
-            values.push(Parser::parse(name, text, &mut graph, &names, &[])?);
-        }
+        let value = |(name, text): &(&str, &str)| Parser::parse(name, text, &mut graph, &names, &[]);
+        let values = outputs.iter().map(value).collect::<Result<Vec<u32>, Fault>>()?;
         Ok(graph.emit(&values))
     }
 

@@ -40,11 +40,8 @@ impl Table {
     #[inline]
     pub fn metric(&self, p: DVec2) -> Option<Metric3> {
         let found = self.triangles.find(p)?;
-        let mut sum = LogMetric3::ZERO;
-        for (weight, node) in found.weights.into_iter().zip(found.nodes) {
-            sum = sum.plus(weight, &self.logarithms[node as usize]);
-        }
-        Some(sum.exp())
+        let logarithms = found.nodes.map(|node| &self.logarithms[node as usize]);
+        Some(LogMetric3::log_euclidean(found.weights.into_iter().zip(logarithms)).exp())
     }
 }
 

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::ChartPoint;
+use crate::core::geometry::curve::divided;
 use crate::core::geometry::surface::{Edge, NurbsSurface};
 
 /// A whole turn within this many radians of 360 true degrees is a disc.
@@ -116,12 +117,8 @@ pub struct AngleTable {
 impl AngleTable {
     /// The table of a given derivative of the angle by the parameter.
     fn new(breaks: &[f64], rate: &dyn Fn(f64) -> f64) -> AngleTable {
-        let mut values = Vec::new();
-        for w in breaks.windows(2) {
-            values.extend((0..PIECES).map(|i| w[0] + (w[1] - w[0]) * i as f64 / PIECES as f64));
-        }
+        let values = divided(breaks, PIECES);
         let last = breaks[breaks.len() - 1];
-        values.push(last);
         let range = last - breaks[0];
         // Five Gauss points per piece; small rates are raised, so that the angle increases everywhere.
         const GAUSS: [(f64, f64); 3] = [

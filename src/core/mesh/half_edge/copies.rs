@@ -31,6 +31,7 @@ impl Mesh {
     /// The mesh of some nodes and elements, in this order; `new_node` and `new_element` map old ids to new ones.
     pub(super) fn extract(&self, nodes: &[u32], elements: &[u32], new_node: &[u32], new_element: &[u32]) -> Mesh {
         let half_edge = |h: u32| if h == NONE { NONE } else { new_element[(h >> 2) as usize] << 2 | (h & 3) };
+        let level = |&n: &u32| self.first_level(NodeId(n));
         let slots = 4 * elements.len();
         let (mut origin, mut twin) = (Vec::with_capacity(slots), Vec::with_capacity(slots));
         let mut deferred = Vec::with_capacity(slots);
@@ -55,18 +56,11 @@ impl Mesh {
             region: elements.iter().map(|&e| self.region[e as usize]).collect(),
             level: elements.iter().map(|&e| self.level[e as usize]).collect(),
             deferred,
-            first_level: self.first_level_in(nodes),
+            first_level: if self.first_level.is_empty() { Vec::new() } else { nodes.iter().map(level).collect() },
             refusals: self.refusals,
             embedding: self.embedding.clone(),
             ..Mesh::default()
         }
-    }
-
-    fn first_level_in(&self, nodes: &[u32]) -> Vec<u16> {
-        if self.first_level.is_empty() {
-            return Vec::new();
-        }
-        nodes.iter().map(|&n| self.first_level(NodeId(n))).collect()
     }
 
     /// A copy for display, without the journal, which may be many times as large.

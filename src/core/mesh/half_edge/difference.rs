@@ -147,43 +147,18 @@ impl Mesh {
     /// Copies the state of another mesh, with an empty journal. It reuses allocated memory, which saves most of the
     /// cost of a copy.
     pub(in crate::core) fn become_same(&mut self, other: &Mesh) {
-        // Name every field, so that none can be forgotten.
-        let Mesh {
-            uv,
-            metric,
-            anchor,
-            point,
-            origin,
-            twin,
-            sides,
-            region,
-            level,
-            deferred,
-            first_level,
-            free_nodes,
-            free_elements,
-            closed,
-            journal: _,
-            refusals,
-            embedding,
-        } = other;
-        self.embedding.clone_from(embedding);
-        self.uv.clone_from(uv);
-        self.metric.clone_from(metric);
-        self.anchor.clone_from(anchor);
-        self.point.clone_from(point);
-        self.origin.clone_from(origin);
-        self.twin.clone_from(twin);
-        self.sides.clone_from(sides);
-        self.region.clone_from(region);
-        self.level.clone_from(level);
-        self.deferred.clone_from(deferred);
-        self.first_level.clone_from(first_level);
-        self.free_nodes.clone_from(free_nodes);
-        self.free_elements.clone_from(free_elements);
-        self.closed = *closed;
+        // It names every field, so that none can be forgotten.
+        macro_rules! copy {
+            ($($field:ident)+) => {
+                let Mesh { $($field,)+ journal: _ } = other;
+                $(self.$field.clone_from($field);)+
+            };
+        }
+        copy! {
+            uv metric anchor point origin twin sides region level deferred first_level
+            free_nodes free_elements closed refusals embedding
+        }
         self.journal = Journal::default();
-        self.refusals.clone_from(refusals);
     }
 
     /// Copies the state of another mesh, of which this is an older or newer state: `touched` are the slots that differ.

@@ -15,6 +15,13 @@ impl Mesh {
         self.journal.note(Entry::Origin(h, old));
     }
 
+    /// Sets the nodes of a triangle.
+    pub(in crate::core::mesh) fn set_corners(&mut self, e: ElementId, nodes: [NodeId; 3]) {
+        for (corner, node) in (0..).zip(nodes) {
+            self.set_origin(e.half_edge(corner), node);
+        }
+    }
+
     #[inline]
     fn set_twin(&mut self, h: HalfEdgeId, twin: Option<HalfEdgeId>) {
         let old = std::mem::replace(&mut self.twin[h.index()], twin.map_or(NONE, |t| t.0));

@@ -38,12 +38,12 @@ impl Mesh {
         }
     }
 
-    /// Sets the contents of a slot when a state is copied; the journal does not record it.
+    /// Sets the contents of a slot; the journal does not record it.
     pub(super) fn put_node(&mut self, n: usize, (uv, metric, anchor, point): Node) {
         (self.uv[n], self.metric[n], self.anchor[n], self.point[n]) = (uv, metric, anchor, point);
     }
 
-    /// Sets the contents of a slot when a state is copied; the journal does not record it.
+    /// Sets the contents of a slot; the journal does not record it.
     pub(super) fn put_element(&mut self, e: usize, element: &Element) {
         let slots = 4 * e..4 * e + 4;
         self.origin[slots.clone()].copy_from_slice(&element.origin);
@@ -52,7 +52,7 @@ impl Mesh {
         (self.sides[e], self.region[e], self.level[e]) = (element.sides, element.region, element.level);
     }
 
-    /// Resizes all arrays, except the first levels, to these numbers of slots when a state is copied.
+    /// Resizes all arrays, except the first levels, to these numbers of slots; the journal does not record it.
     pub(super) fn resize(&mut self, nodes: usize, elements: usize) {
         self.uv.resize(nodes, DVec2::ZERO);
         self.metric.resize(nodes, Metric2::isotropic(1.0));

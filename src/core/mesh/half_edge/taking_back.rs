@@ -117,21 +117,13 @@ impl Mesh {
             Entry::NodeAppended => {
                 let last = self.uv.len() - 1;
                 let node = self.node_slot(NodeId(last as u32));
-                self.uv.truncate(last);
-                self.metric.truncate(last);
-                self.anchor.truncate(last);
-                self.point.truncate(last);
+                self.resize(last, self.sides.len());
                 return Undone::NodeAppended(node);
             }
             Entry::ElementAppended => {
                 let last = self.sides.len() - 1;
                 let element = self.element_slot(ElementId(last as u32));
-                self.origin.truncate(4 * last);
-                self.twin.truncate(4 * last);
-                self.deferred.truncate(4 * last);
-                self.sides.truncate(last);
-                self.region.truncate(last);
-                self.level.truncate(last);
+                self.resize(self.uv.len(), last);
                 return Undone::ElementAppended(element);
             }
             Entry::NodeTaken(n) => {
@@ -153,21 +145,17 @@ impl Mesh {
         })
     }
 
-    pub(super) fn append_node(&mut self, (uv, metric, anchor, point): Node) {
-        self.uv.push(uv);
-        self.metric.push(metric);
-        self.anchor.push(anchor);
-        self.point.push(point);
+    pub(super) fn append_node(&mut self, node: Node) {
+        let last = self.uv.len();
+        self.resize(last + 1, self.sides.len());
+        self.put_node(last, node);
         self.journal.note(Entry::NodeAppended);
     }
 
     pub(super) fn append_element(&mut self, element: &Element) {
-        self.origin.extend(element.origin);
-        self.twin.extend(element.twin);
-        self.deferred.extend(element.deferred);
-        self.sides.push(element.sides);
-        self.region.push(element.region);
-        self.level.push(element.level);
+        let last = self.sides.len();
+        self.resize(self.uv.len(), last + 1);
+        self.put_element(last, element);
         self.journal.note(Entry::ElementAppended);
     }
 }

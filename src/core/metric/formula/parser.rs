@@ -55,31 +55,23 @@ impl<'a> Parser<'a> {
     }
 
     fn sum(&mut self) -> Result<u32, Fault> {
-        let mut value = self.product()?;
-        loop {
-            let op = match self.peek() {
-                Some('+') => Op::Add,
-                Some('-') => Op::Sub,
-                _ => return Ok(value),
-            };
-            self.at += 1;
-            let right = self.product()?;
-            value = self.graph.result(op, value, right);
-        }
+        self.left_associative([('+', Op::Add), ('-', Op::Sub)], |parser| {
+            parser.left_associative([('*', Op::Mul), ('/', Op::Div)], Parser::signed)
+        })
     }
 
-    fn product(&mut self) -> Result<u32, Fault> {
-        let mut value = self.signed()?;
-        loop {
-            let op = match self.peek() {
-                Some('*') => Op::Mul,
-                Some('/') => Op::Div,
-                _ => return Ok(value),
-            };
-            self.at += 1;
-            let right = self.signed()?;
+    /// Operands joined by left-associative operators.
+    fn left_associative(
+        &mut self,
+        operators: [(char, Op); 2],
+        operand: impl Fn(&mut Self) -> Result<u32, Fault>,
+    ) -> Result<u32, Fault> {
+        let mut value = operand(self)?;
+        while let Some((_, op)) = operators.into_iter().find(|operator| self.take(operator.0)) {
+            let right = operand(self)?;
             value = self.graph.result(op, value, right);
         }
+        Ok(value)
     }
 
     /// Signs bind more loosely than powers: `-x^2` is `-(x^2)`. All recursion passes here, so depth is counted here.
