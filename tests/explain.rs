@@ -132,6 +132,18 @@ fn every_segment_has_its_reason_in_words() {
 }
 
 #[test]
+fn an_order_of_selection_is_named_whatever_the_window() {
+    let settings = [("selection", "smallest_angle"), ("selection_window", "physical_length")];
+    let mut seen = 0;
+    selections("figure-14", &settings, |_, state, [a, b]| {
+        let text = SegmentFacts::of(state, a, b).unwrap().to_string();
+        assert!(text.contains("the smallest angle sum of all segments"), "{text}");
+        seen += 1;
+    });
+    assert!(seen > 0);
+}
+
+#[test]
 fn the_explanations_put_the_numbers_into_the_formulas() {
     let mut texts = Vec::new();
     // A case whose mesh is given: no text changes with the conversion.

@@ -506,6 +506,29 @@ fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_wha
 }
 
 #[test]
+fn a_plane_view_that_is_moved_is_saved_with_the_run() {
+    let Some(mut harness) = window_on("example1") else { return };
+    let is_kept = |harness: &Window| {
+        let state = &harness.state().state;
+        assert_eq!(state.current_run().unwrap().camera.is_some(), !state.view().plane.is_fitted);
+        !state.view().plane.is_fitted
+    };
+    assert!(!is_kept(&harness));
+    let at = harness.query_all_by_label_contains("Mesh at step").map(|node| node.rect()).next().unwrap().center();
+    harness.drag_at(at);
+    harness.run_steps(1);
+    for k in 1..=4 {
+        harness.hover_at(at + Vec2::new(20.0 * k as f32, 8.0 * k as f32));
+        harness.run_steps(1);
+    }
+    harness.drop_at(at + Vec2::new(80.0, 32.0));
+    harness.run_steps(3);
+    assert!(is_kept(&harness));
+    press(&mut harness, Modifiers::NONE, Key::F);
+    assert!(!is_kept(&harness), "the whole mesh is shown again");
+}
+
+#[test]
 fn hidden_lines_go_round_and_show_more() {
     let Some(mut harness) = window_on("sphere") else { return };
     let mut pictures = vec![picture(&mut harness, "hidden")];

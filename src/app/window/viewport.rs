@@ -149,8 +149,10 @@ impl Views {
     ) {
         let response = self.canvas(ui, rect, "plane", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        let (mut camera, is_fitted) = aim(state, moment, size, look);
+        let (mut camera, mut is_fitted) = aim(state, moment, size, look);
+        let aimed = camera;
         steer(ui, &response, &mut camera, rect);
+        is_fitted &= camera == aimed;
         moved(state.view().plane, ViewKind::Plane, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
         let frame = ViewFrame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());

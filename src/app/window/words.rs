@@ -162,7 +162,7 @@ pub fn why(why: Why) -> String {
         Why::NoDivision(s) => format!("the {} side cannot be divided at the required point", side(s)),
         Why::TopBlocked(ends) => format!("dead edge {} lies across the top", edge(ends)),
         Why::TopThroughNode(node) => format!("node {} lies on the top edge", node.0),
-        Why::TopTooLong => "the swaps for the top do not terminate".to_owned(),
+        Why::TopTooLong => "the top edge needs too many swaps".to_owned(),
         Why::TooLong(length) => format!("a new side or the top is too long: {}", fixed(length, 2)),
         Why::NotDisc => "the four sides do not enclose a disc of live triangles".to_owned(),
         Why::NotConvex => "it would not be strictly convex".to_owned(),

@@ -8,6 +8,7 @@ use crate::app::window::icons;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::core::case::parameters::Parameters;
+use crate::core::run::run::EditKind;
 use crate::render::palette::Palette;
 
 /// A number: key, name, range, decimals, unit, the paper's value, and its effect.
@@ -83,24 +84,25 @@ const NUMBERS: [Number; 7] = [
         decimals: 1,
         unit: "°",
         paper: "225; classifies only",
-        tip: "Above this a corner is a reversal (fig. 12). It only classifies and does not change the mesh.",
+        tip: "Angles above this count as reversals (fig. 12). For display only: the mesh does not change.",
     },
 ];
 
-const SWITCHES: [(&str, &str, &str); 6] = [
+const SWITCHES: [(&str, &str, &str); 7] = [
     ("bisector", "aim sides at the bisector", "Off: always at the right angle, as the paper says."),
     ("placement", "place new top nodes", "Off: the paper's eq. 9 on front nodes."),
     ("smoothing", "smooth around each quad", "Eqs. 9 and 10, section 4.3.6."),
     ("enhancement", "enhance around each quad", "Local swaps and node deletion, section 4.3.6."),
     ("seaming", "seam small corners", "Section 4.3.6, fig. 18."),
+    ("splitting", "split at slender triangles", "Section 4.3.6, fig. 19."),
     ("post_processing", "clean up at the end", "Clean-up and smoothing of the whole mesh, section 4.3.7."),
 ];
 
 const SELECTION: [(&str, &str); 4] = [
-    ("table1", "smallest H, table 1"),
+    ("table1", "table 1 (paper)"),
     ("shortest", "shortest segment"),
     ("smallest_angle", "smallest frontal angle"),
-    ("level", "rows, as Q-Morph"),
+    ("level", "by rows, as in Q-Morph"),
 ];
 
 /// What the panel keeps for itself.
@@ -133,7 +135,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut ParametersState, commands: &
 /// The button in the panel's bar.
 pub fn reset(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let command = Command::ResetParameters;
-    let changed = !state.document().edits.is_empty();
+    let changed = state.document().edits.iter().any(|edit| matches!(edit.kind, EditKind::Parameter { .. }));
     if icon_button(ui, icons::RESET, theme::ICON, &command, changed).clicked() {
         commands.push(command);
     }

@@ -97,11 +97,11 @@ impl SegmentFacts {
     /// Why it does or does not come first, as a sentence.
     pub fn reason(&self) -> String {
         let what = match (self.parameters.selection, self.parameters.selection_window) {
-            (Selection::Shortest, _) | (_, SelectionWindow::PhysicalLength) => "length",
             (Selection::SmallestAngle, _) => "angle sum",
             (Selection::Level, _) => "state, level and length",
-            (_, SelectionWindow::HValue) => "H-value",
-            (_, SelectionWindow::MetricLengthTimesH) => "metric length times H",
+            (Selection::Shortest, _) | (Selection::Table1, SelectionWindow::PhysicalLength) => "length",
+            (Selection::Table1, SelectionWindow::HValue) => "H-value",
+            (Selection::Table1, SelectionWindow::MetricLengthTimesH) => "metric length times H",
         };
         let reason = match self.verdict {
             Verdict::First if self.parameters.selection != Selection::Table1 => {

@@ -31,7 +31,8 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
     heading(ui, if told.is_base { "Why this segment" } else { "Why not this segment" }, "table 1, 4.3.3", palette);
     if let Some((step, why)) = put_off {
         let why = why.map_or(String::new(), |why| format!(" ({})", words::why(why)));
-        let text = format!("Put off at step {}{why}; free again when something near it changes.", words::grouped(step));
+        let text =
+            format!("Deferred at step {}{why}; available again when something near it changes.", words::grouped(step));
         sentence(ui, &text, palette.text, palette);
         return;
     }
@@ -96,7 +97,7 @@ fn why(moment: &Moment, told: &SegmentFacts) -> Vec<String> {
         sentences.push(text);
     } else {
         sentences.push(format!(
-            "Nothing of the classes 1 to 3 is below {}: so the smallest H of all comes, {}.",
+            "No segment of classes 1 to 3 is below {}, so the one with the smallest H, {}, is chosen.",
             reach(moment, told.h_min),
             words::size(row.h_value)
         ));
@@ -132,10 +133,10 @@ fn why_not(moment: &Moment, told: &SegmentFacts, place: usize) -> Vec<String> {
             format!("Out of reach: {} is not below {}.", window(moment, row), reach(moment, told.h_min))
         }
         Verdict::ClassFour => format!("{but}{}", {
-            let what = "class 4 comes only where nothing of the classes 1 to 3 is within reach.";
+            let what = "class 4 is considered only when no segment of classes 1 to 3 is within reach.";
             if has_least { what.to_owned() } else { capital_of(what) }
         }),
-        Verdict::First => "It comes first in the next selection.".to_owned(),
+        Verdict::First => "It will be selected next.".to_owned(),
         _ => capital(&told.reason()),
     };
     let mut sentences = vec![text];
