@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
 use crate::core::geometry::spec::{CurveShape, CurveSpec, FaceSpec};
-use crate::core::kernel::spelling::nearest;
 
 /// Reads the curves; `geometry` checks them.
 pub(super) fn curves(document: &Table<'_>) -> Result<Vec<CurveSpec>, Fault> {
@@ -55,17 +54,10 @@ pub(super) fn known_curves(value: &Value<'_>, curves: &[&str]) -> Result<Vec<Str
             .fault(format!("{} is empty", value.key()))
             .remedy("Name at least one curve, or leave it out"));
     }
-    for name in names.iter().filter(|name| !name.contains(": ")) {
-        if !curves.contains(&name.as_str()) {
-            let nearest = nearest(name, curves.iter().copied());
-            let fault = value.fault(format!("There is no curve \"{}\"", name.escape_debug()));
-            return Err(match nearest {
-                Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
-                None => fault.remedy("Add it as [[curve]]"),
-            });
-        }
+    match names.iter().find(|name| !name.contains(": ") && !curves.contains(&name.as_str())) {
+        Some(name) => Err(value.unknown("curve", name, curves.iter().copied())),
+        None => Ok(names),
     }
-    Ok(names)
 }
 
 pub(super) fn name(table: &Table<'_>) -> Result<String, Fault> {

@@ -1,6 +1,9 @@
 //! The parameters of a conversion: thresholds of the paper and limits. Radians here, degrees in files, on the
 //! command line and in [`Parameters::text_of`].
 
+use std::fmt::Display;
+use std::str::FromStr;
+
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::spelling::nearest;
 
@@ -127,32 +130,6 @@ impl SelectionWindow {
 }
 
 impl Parameters {
-    /// The keys in files and for `--set`, in the documented order.
-    pub const KEYS: [&'static str; 22] = [
-        "size_scale",
-        "c",
-        "theta_rect",
-        "theta_seam",
-        "theta_revr",
-        "side_split",
-        "side_deviation",
-        "eps1",
-        "eps2",
-        "layers",
-        "layered_loops",
-        "faces",
-        "selection",
-        "selection_window",
-        "bisector",
-        "placement",
-        "smoothing",
-        "enhancement",
-        "seaming",
-        "splitting",
-        "post_processing",
-        "max_quads",
-    ];
-
     /// The paper's own reading of everything (docs/algorithm.md, "Departures from the paper"): its words where ours
     /// differ, the values that it used where it gives a range. Front segments are chosen by physical length, side edges
     /// stand at right angles, nodes are moved by eq. (9) and not placed.
@@ -190,65 +167,58 @@ impl Parameters {
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Fault> {
         self.take(key, value).map_err(|fault| fault.of_kind(FaultKind::Parameter))
     }
+}
 
-    fn take(&mut self, key: &str, value: &str) -> Result<(), Fault> {
-        let value = value.trim();
-        match key {
-            "size_scale" => self.size_scale = number(key, value, 1e-9, 1e9)?,
-            "c" => self.c = number(key, value, 0.5, 10.0)?,
-            "theta_rect" => self.theta_rect = angle(key, value, 90.0, 180.0, 135.0)?,
-            "theta_seam" => self.theta_seam = angle(key, value, 0.0, 90.0, 30.0)?,
-            "theta_revr" => self.theta_revr = angle(key, value, 180.0, 360.0, 225.0)?,
-            "side_split" => self.side_split = number(key, value, 1.0, 10.0)?,
-            "side_deviation" => self.side_deviation = angle(key, value, 0.0, 90.0, 30.0)?,
-            "eps1" => self.eps1 = number(key, value, 0.0, 1.0)?,
-            "eps2" => self.eps2 = number(key, value, 1.0, 1000.0)?,
-            "layers" => self.layers = count(key, value, 0, 1000)? as u32,
-            "layered_loops" => self.layered_loops = names(value, ','),
-            "faces" => self.faces = names(value, ';'),
-            "selection" => self.selection = word(key, value, &Selection::WORDS)?,
-            "selection_window" => self.selection_window = word(key, value, &SelectionWindow::WORDS)?,
-            "bisector" => self.bisector = flag(key, value)?,
-            "placement" => self.placement = flag(key, value)?,
-            "smoothing" => self.smoothing = flag(key, value)?,
-            "enhancement" => self.enhancement = flag(key, value)?,
-            "seaming" => self.seaming = flag(key, value)?,
-            "splitting" => self.splitting = flag(key, value)?,
-            "post_processing" => self.post_processing = flag(key, value)?,
-            "max_quads" => self.max_quads = count(key, value, 1, 200_000_000)?,
-            _ => return Err(unknown_key(key, &Self::KEYS)),
+/// Reads and writes each parameter by a row `key = reader(limits), |value| text`.
+macro_rules! parameters {
+    ($($key:ident = $read:ident($($limit:expr),*), |$value:ident| $text:expr;)*) => {
+        impl Parameters {
+            /// The keys in files and for `--set`, in the documented order.
+            pub const KEYS: [&'static str; 22] = [$(stringify!($key)),*];
+
+            fn take(&mut self, key: &str, value: &str) -> Result<(), Fault> {
+                let value = value.trim();
+                match key {
+                    $(stringify!($key) => self.$key = $read(key, value, $($limit),*)?,)*
+                    _ => return Err(unknown_key(key, &Self::KEYS)),
+                }
+                Ok(())
+            }
+
+            /// The value of a parameter as text for [`Parameters::set`]; `None` for an unknown key.
+            pub fn text_of(&self, key: &str) -> Option<String> {
+                match key {
+                    $(stringify!($key) => { let $value = &self.$key; Some($text) })*
+                    _ => None,
+                }
+            }
         }
-        Ok(())
-    }
+    };
+}
 
-    /// The value of a parameter as text for [`Parameters::set`]; `None` for an unknown key.
-    pub fn text_of(&self, key: &str) -> Option<String> {
-        Some(match key {
-            "size_scale" => self.size_scale.to_string(),
-            "c" => self.c.to_string(),
-            "theta_rect" => degrees(self.theta_rect),
-            "theta_seam" => degrees(self.theta_seam),
-            "theta_revr" => degrees(self.theta_revr),
-            "side_split" => self.side_split.to_string(),
-            "side_deviation" => degrees(self.side_deviation),
-            "eps1" => self.eps1.to_string(),
-            "eps2" => self.eps2.to_string(),
-            "layers" => self.layers.to_string(),
-            "layered_loops" => self.layered_loops.join(", "),
-            "faces" => self.faces.join("; "),
-            "selection" => word_of(self.selection, &Selection::WORDS),
-            "selection_window" => word_of(self.selection_window, &SelectionWindow::WORDS),
-            "bisector" => self.bisector.to_string(),
-            "placement" => self.placement.to_string(),
-            "smoothing" => self.smoothing.to_string(),
-            "enhancement" => self.enhancement.to_string(),
-            "seaming" => self.seaming.to_string(),
-            "splitting" => self.splitting.to_string(),
-            "post_processing" => self.post_processing.to_string(),
-            "max_quads" => self.max_quads.to_string(),
-            _ => return None,
-        })
-    }
+parameters! {
+    size_scale = number(1e-9, 1e9), |value| value.to_string();
+    c = number(0.5, 10.0), |value| value.to_string();
+    theta_rect = angle(90.0, 180.0, 135.0), |value| degrees(*value);
+    theta_seam = angle(0.0, 90.0, 30.0), |value| degrees(*value);
+    theta_revr = angle(180.0, 360.0, 225.0), |value| degrees(*value);
+    side_split = number(1.0, 10.0), |value| value.to_string();
+    side_deviation = angle(0.0, 90.0, 30.0), |value| degrees(*value);
+    eps1 = number(0.0, 1.0), |value| value.to_string();
+    eps2 = number(1.0, 1000.0), |value| value.to_string();
+    layers = count(0, 1000), |value| value.to_string();
+    layered_loops = names(','), |value| value.join(", ");
+    faces = names(';'), |value| value.join("; ");
+    selection = word(&Selection::WORDS), |value| word_of(*value, &Selection::WORDS);
+    selection_window = word(&SelectionWindow::WORDS), |value| word_of(*value, &SelectionWindow::WORDS);
+    bisector = flag(), |value| value.to_string();
+    placement = flag(), |value| value.to_string();
+    smoothing = flag(), |value| value.to_string();
+    enhancement = flag(), |value| value.to_string();
+    seaming = flag(), |value| value.to_string();
+    splitting = flag(), |value| value.to_string();
+    post_processing = flag(), |value| value.to_string();
+    max_quads = count(1, 200_000_000), |value| value.to_string();
 }
 
 /// The fault of an unknown key: names the nearest known one, or all if none is near.
@@ -295,8 +265,8 @@ fn angle(key: &str, value: &str, least: f64, most: f64, usual: f64) -> Result<f6
     Ok(number.to_radians())
 }
 
-fn count(key: &str, value: &str, least: u64, most: u64) -> Result<u64, Fault> {
-    let number = value.parse::<u64>().ok().filter(|n| (least..=most).contains(n));
+fn count<T: FromStr + PartialOrd + Display + Copy>(key: &str, value: &str, least: T, most: T) -> Result<T, Fault> {
+    let number = value.parse::<T>().ok().filter(|n| (least..=most).contains(n));
     number.ok_or_else(|| {
         Fault::new(format!("{key} = {} is not a whole number from {least} to {most}", quoted(value)))
             .remedy(format!("Write for example {key} = {least}"))
@@ -318,8 +288,8 @@ fn word<T: Copy>(key: &str, value: &str, words: &[(&str, T)]) -> Result<T, Fault
 }
 
 /// Splits a list of names; the separator is not a comma where names may contain one.
-fn names(value: &str, separator: char) -> Vec<String> {
-    value.split(separator).map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
+fn names(_: &str, value: &str, separator: char) -> Result<Vec<String>, Fault> {
+    Ok(value.split(separator).map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect())
 }
 
 fn word_of<T: PartialEq>(value: T, words: &[(&'static str, T)]) -> String {

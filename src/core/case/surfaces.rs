@@ -9,7 +9,6 @@ use crate::core::geometry::frame::AxisFrame;
 use crate::core::geometry::spec::SpaceShape;
 use crate::core::geometry::spec::SurfaceShape;
 use crate::core::geometry::spec::{ComplexSpec, SpaceCurveSpec, SurfaceFaceSpec, SurfaceSpec};
-use crate::core::kernel::spelling::nearest;
 
 /// Reads surfaces, curves and faces; `geometry` checks them.
 pub(super) fn complex(document: &Table<'_>) -> Result<ComplexSpec, Fault> {
@@ -40,14 +39,12 @@ pub(super) fn complex(document: &Table<'_>) -> Result<ComplexSpec, Fault> {
 
 fn known_surface(value: &Value<'_>, surfaces: &[SurfaceSpec]) -> Result<String, Fault> {
     let name = value.text()?;
+    let names = surfaces.iter().map(|s| s.name.as_str());
     if surfaces.iter().any(|s| s.name == name) {
-        return Ok(name.to_owned());
+        Ok(name.to_owned())
+    } else {
+        Err(value.unknown("surface", name, names))
     }
-    let fault = value.fault(format!("There is no surface \"{}\"", name.escape_debug()));
-    Err(match nearest(name, surfaces.iter().map(|s| s.name.as_str())) {
-        Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
-        None => fault.remedy("Add it as [[surface]]"),
-    })
 }
 
 /// A point or direction in space; two numbers mean z = 0.

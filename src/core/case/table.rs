@@ -7,6 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::core::case::parameters::unknown_key;
 use crate::core::fault::Fault;
+use crate::core::kernel::spelling::nearest;
 
 /// The text that tables and values point into, with the name that messages give it.
 pub(in crate::core) struct Source<'a> {
@@ -142,6 +143,15 @@ impl<'a> Value<'a> {
     pub fn wrong(&self, what: &str, example: &str) -> Fault {
         self.fault(format!("{} = {} is not {what}", self.key, self.written()))
             .remedy(format!("Write for example {example}"))
+    }
+
+    /// The fault of a name that is not among the `known` ones of its kind.
+    pub fn unknown<'n>(&self, kind: &str, name: &str, known: impl Iterator<Item = &'n str>) -> Fault {
+        let fault = self.fault(format!("There is no {kind} \"{}\"", name.escape_debug()));
+        match nearest(name, known) {
+            Some(near) => fault.remedy(format!("The nearest name is \"{near}\"")),
+            None => fault.remedy(format!("Add it as [[{kind}]]")),
+        }
     }
 
     /// A finite number.

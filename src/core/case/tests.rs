@@ -71,27 +71,22 @@ fn a_case_is_read_with_the_lines_of_its_parts() {
     assert_eq!(far, 0.1);
 }
 
-#[test]
-fn an_angle_with_a_unit_is_refused() {
-    let fault = parse(&PLATE.replace("theta_rect = 120", "theta_rect = \"135deg\"")).unwrap_err();
-    let line =
-        "plate.toml, line 7: theta_rect = \"135deg\" is not a number. Write degrees without a unit: theta_rect = 135.";
-    assert_eq!(fault.to_string(), line);
-}
-
-#[test]
-fn a_number_in_quotes_is_refused() {
-    let fault = parse(&PLATE.replace("size_scale = 0.5", "size_scale = \"0.5\"")).unwrap_err();
-    assert_eq!(
-        fault.to_string(),
-        "plate.toml, line 6: size_scale = \"0.5\" is not a number. Write it without quotes: size_scale = 0.5."
-    );
-}
-
 /// The fault of the plate with one part replaced.
 fn refusal(from: &str, to: &str) -> String {
     assert!(PLATE.contains(from), "{from}");
     parse(&PLATE.replacen(from, to, 1)).expect_err(to).to_string()
+}
+
+#[test]
+fn angles_with_a_unit_and_numbers_in_quotes_are_refused() {
+    assert_eq!(
+        refusal("theta_rect = 120", "theta_rect = \"135deg\""),
+        "plate.toml, line 7: theta_rect = \"135deg\" is not a number. Write degrees without a unit: theta_rect = 135."
+    );
+    assert_eq!(
+        refusal("size_scale = 0.5", "size_scale = \"0.5\""),
+        "plate.toml, line 6: size_scale = \"0.5\" is not a number. Write it without quotes: size_scale = 0.5."
+    );
 }
 
 #[test]
@@ -215,15 +210,17 @@ fn damaged_cases_are_read_or_refused_and_never_panic() {
     assert!(refused > 500, "{refused}");
 }
 
+/// A case with a background over the unit square.
+fn with_background(elements: &str) -> String {
+    format!(
+        "version = 1\n[background]\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\n{elements}\n\
+         [[metric]]\nkind = \"uniform\"\nh = 1\n"
+    )
+}
+
 #[test]
 fn a_case_may_contain_a_small_background() {
-    let text = |elements: &str| {
-        format!(
-            "version = 1\n[background]\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\n{elements}\n\
-             [[metric]]\nkind = \"uniform\"\nh = 1\n"
-        )
-    };
-    let parse = |elements| Case::parse(&text(elements), "a", "a.toml", Path::new(""));
+    let parse = |elements| Case::parse(&with_background(elements), "a", "a.toml", Path::new(""));
     let case = parse("triangles = []\nquads = [[0, 1, 2, 3]]").unwrap();
     let DomainSource::Elements { points, triangles, quads } = case.domain else { panic!() };
     assert_eq!((points.len(), triangles.len(), quads), (4, 0, vec![[0, 1, 2, 3]]));
@@ -236,7 +233,7 @@ fn a_case_may_contain_a_small_background() {
         let fault = parse(elements).unwrap_err().to_string();
         assert!(fault.contains(said), "{fault}");
     }
-    let both = text("triangles = []").replace("version = 1", "version = 1\nmesh = \"a.msh\"");
+    let both = with_background("triangles = []").replace("version = 1", "version = 1\nmesh = \"a.msh\"");
     let fault = Case::parse(&both, "a", "a.toml", Path::new("")).unwrap_err().to_string();
     assert!(fault.contains("The case has a background and a mesh. Remove either background or mesh"), "{fault}");
 }
@@ -249,11 +246,7 @@ fn an_invalid_background_in_a_case_is_refused() {
         ("triangles = [[0, 1, 2], [0, 3, 2]]", "The background needs a repair: 1 clockwise triangle"),
         ("triangles = [[0, 1, 2], [0, 1, 3]]", "overlap"),
     ] {
-        let text = format!(
-            "version = 1\n[background]\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\n{elements}\n\
-             [[metric]]\nkind = \"uniform\"\nh = 1\n"
-        );
-        let case = Case::parse(&text, "a", "a.toml", Path::new("")).unwrap();
+        let case = Case::parse(&with_background(elements), "a", "a.toml", Path::new("")).unwrap();
         let fault = crate::core::prepare::background(&case, &mut crate::core::progress::Nobody).unwrap_err();
         assert!(fault.to_string().contains(said), "{fault}");
     }

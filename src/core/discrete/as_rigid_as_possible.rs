@@ -176,22 +176,13 @@ fn unrolled(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::discrete::fixtures::{plate, tube};
-    use crate::core::progress::Nobody;
-
-    /// The first chart of a fixture.
-    fn disc(mesh: &crate::core::discrete::edges::Triangles) -> crate::core::discrete::chart::Chart {
-        let edges = Edges::of(&mesh.triangles);
-        let features = crate::core::discrete::features::features(mesh, &edges, 0.7);
-        crate::core::discrete::chart::charts(mesh, &edges, &features, Default::default(), &mut Nobody)
-            .unwrap()
-            .remove(0)
-    }
+    use crate::core::discrete::fixtures::{charted, plate, tube};
+    use crate::core::discrete::planar_map::StretchBound;
 
     #[test]
     fn a_developable_surface_keeps_its_lengths() {
         let mesh = tube(48, 40, 10.0);
-        let chart = disc(&mesh);
+        let chart = charted(&mesh, 0.7, StretchBound::default()).remove(0);
         for t in &chart.local {
             for k in 0..3 {
                 let (a, b) = (t[k] as usize, t[(k + 1) % 3] as usize);
@@ -203,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_bumpy_plate_has_little_stretch() {
-        let chart = disc(&plate(20, 0.1));
+        let chart = charted(&plate(20, 0.1), 0.7, StretchBound::default()).remove(0);
         assert!(chart.stretch.shape < 2.0 && chart.stretch.area < 2.0, "{:?}", chart.stretch);
     }
 

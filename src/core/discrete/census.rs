@@ -113,9 +113,10 @@ mod tests {
     use super::*;
     use crate::core::discrete::chart::charts;
     use crate::core::discrete::features::{ANGLE, features};
-    use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
+    use crate::core::discrete::fixtures::{beside, cube, plate, sphere, three_half_planes, torus, tube};
     use crate::core::discrete::planar_map::StretchBound;
     use crate::core::progress::Nobody;
+    use glam::DVec3;
 
     fn divided(mesh: &Triangles) -> (Census, Vec<Option<Feature>>, Division) {
         let edges = Edges::of(&mesh.triangles);
@@ -145,13 +146,7 @@ mod tests {
         let (_, features, _) = divided(&three_half_planes());
         assert_eq!(count_of(&features, Feature::Branching), 1);
         // Two balls apart, and a ring that is cut more than once.
-        let mut two = sphere(5);
-        let n = two.points.len() as u32;
-        let more = two.clone();
-        two.points.extend(more.points.iter().map(|p| *p * 3.0));
-        two.triangles.extend(more.triangles.iter().map(|t| t.map(|k| k + n)));
-        two.region.extend(more.region);
-        assert_eq!(divided(&two).0.components, 2);
+        assert_eq!(divided(&beside(sphere(5), &sphere(5), 3.0 * DVec3::X)).0.components, 2);
         assert!(!divided(&torus(30, 20)).2.seams.is_empty());
     }
 

@@ -4,7 +4,32 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::edges::Triangles;
+use super::chart::{Chart, charts};
+use super::edges::{Edges, Triangles};
+use super::features::features;
+use super::planar_map::StretchBound;
+use crate::core::progress::Nobody;
+
+/// The charts of a surface whose features are folds beyond `angle`.
+pub fn charted(mesh: &Triangles, angle: f64, bound: StretchBound) -> Vec<Chart> {
+    let edges = Edges::of(&mesh.triangles);
+    charts(mesh, &edges, &features(mesh, &edges, angle), bound, &mut Nobody).unwrap()
+}
+
+/// The number of edges with one side.
+pub fn border_edges(mesh: &Triangles) -> usize {
+    let edges = Edges::of(&mesh.triangles);
+    (0..edges.len()).filter(|&e| edges.get(e).sides.len() == 1).count()
+}
+
+/// Both meshes in one, the other moved, without shared points.
+pub fn beside(mut one: Triangles, other: &Triangles, by: DVec3) -> Triangles {
+    let n = one.points.len() as u32;
+    one.points.extend(other.points.iter().map(|p| *p + by));
+    one.triangles.extend(other.triangles.iter().map(|t| t.map(|k| k + n)));
+    one.region.extend(&other.region);
+    one
+}
 
 fn whole(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Triangles {
     let region = vec![0; triangles.len()];

@@ -170,12 +170,11 @@ fn divide_odd(mesh: &Triangles, charts: &[Chart], split_odd: bool) -> Result<Vec
     }
     let edges = Edges::of(&mesh.triangles);
     let divided = |rows: &Borders| rows.divided(mesh, &edges, split_odd);
-    divided(&Borders::of_loops(charts, &edges)).or_else(|_| divided(&Borders::of_charts(charts, &edges))).map_err(
-        |blamed| {
-            let charts: Vec<&Chart> = blamed.iter().map(|&k| &charts[k as usize]).collect();
-            odd_fault(mesh, &edges, &charts, split_odd)
-        },
-    )
+    let borders = |by_loop: bool| Borders::of(charts, &edges, by_loop);
+    divided(&borders(true)).or_else(|_| divided(&borders(false))).map_err(|blamed| {
+        let charts: Vec<&Chart> = blamed.iter().map(|&k| &charts[k as usize]).collect();
+        odd_fault(mesh, &edges, &charts, split_odd)
+    })
 }
 
 /// The fault for triangles, with their corners, that have no area in the plane.
@@ -231,35 +230,20 @@ struct Borders {
 }
 
 impl Borders {
-    /// One border for each loop.
-    fn of_loops(charts: &[Chart], edges: &Edges) -> Borders {
+    /// One border for each loop, or for all loops of a chart.
+    fn of(charts: &[Chart], edges: &Edges, by_loop: bool) -> Borders {
         let mut borders = Borders { odd: Vec::new(), along: Vec::new() };
         for chart in charts {
-            for sides in sides(chart) {
-                borders.take(chart, &sides, edges);
+            let on = |side: &[u32; 2]| edges.between(side.map(|node| chart.points[node as usize]));
+            let loops: Vec<Vec<[u32; 2]>> = sides(chart).collect();
+            for sides in if by_loop { loops } else { vec![loops.concat()] } {
+                let number = borders.odd.len() as u32;
+                borders.along.extend(sides.iter().filter_map(on).map(|edge| (edge, number)));
                 borders.odd.push(sides.len() % 2 == 1);
             }
         }
         borders.along.sort_unstable();
         borders
-    }
-
-    /// One border for all loops of a chart.
-    fn of_charts(charts: &[Chart], edges: &Edges) -> Borders {
-        let mut borders = Borders { odd: Vec::new(), along: Vec::new() };
-        for chart in charts {
-            let sides: Vec<[u32; 2]> = sides(chart).flatten().collect();
-            borders.take(chart, &sides, edges);
-            borders.odd.push(sides.len() % 2 == 1);
-        }
-        borders.along.sort_unstable();
-        borders
-    }
-
-    fn take(&mut self, chart: &Chart, sides: &[[u32; 2]], edges: &Edges) {
-        let number = self.odd.len() as u32;
-        let on = |side: &[u32; 2]| edges.between(side.map(|node| chart.points[node as usize]));
-        self.along.extend(sides.iter().filter_map(on).map(|edge| (edge, number)));
     }
 
     /// The edges to divide, by their end points: of all edges with the same borders, the longest is the candidate.

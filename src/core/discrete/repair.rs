@@ -335,7 +335,7 @@ impl Triangles {
 mod tests {
     use super::*;
     use crate::core::discrete::features::{Feature, features};
-    use crate::core::discrete::fixtures::{plate, sphere, torus};
+    use crate::core::discrete::fixtures::{border_edges, plate, sphere, torus};
     use crate::core::progress::Nobody;
 
     fn file(mesh: &Triangles) -> MeshFile {
@@ -372,9 +372,7 @@ mod tests {
         given.triangles.push([a, middle, c]);
         given.triangles.push([a, a, c]);
         let found = repair(&given, &mut Nobody).unwrap();
-        let edges = Edges::of(&found.mesh.triangles);
-        let borders = (0..edges.len()).filter(|&e| edges.get(e).sides.len() == 1).count();
-        assert_eq!((found.mesh.triangles.len(), borders), (10, 8));
+        assert_eq!((found.mesh.triangles.len(), border_edges(&found.mesh)), (10, 8));
         assert!(found.repairs[0].contains("degenerate"), "{:?}", found.repairs);
     }
 

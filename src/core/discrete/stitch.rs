@@ -191,27 +191,12 @@ impl Triangles {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::discrete::fixtures::{cube, plate};
-
-    fn borders(mesh: &Triangles) -> usize {
-        let edges = Edges::of(&mesh.triangles);
-        (0..edges.len()).filter(|&e| edges.get(e).sides.len() == 1).count()
-    }
-
-    /// Both meshes in one, without shared points.
-    fn beside(mut one: Triangles, other: &Triangles, by: DVec3) -> Triangles {
-        let n = one.points.len() as u32;
-        one.points.extend(other.points.iter().map(|p| *p + by));
-        one.triangles.extend(other.triangles.iter().map(|t| t.map(|k| k + n)));
-        one.region.extend(&other.region);
-        one
-    }
+    use crate::core::discrete::fixtures::{beside, border_edges, cube, plate};
 
     #[test]
     fn coincident_points_are_merged() {
-        let plate_size = 1.0;
-        let mut mesh = beside(plate(4, 0.0), &plate(4, 0.0), DVec3::X * plate_size);
-        assert_eq!((borders(&mesh), mesh.weld(&Cancel::default()), borders(&mesh)), (32, 5, 24));
+        let mut mesh = beside(plate(4, 0.0), &plate(4, 0.0), DVec3::X);
+        assert_eq!((border_edges(&mesh), mesh.weld(&Cancel::default()), border_edges(&mesh)), (32, 5, 24));
         assert_eq!(mesh.weld(&Cancel::default()), 0);
     }
 
@@ -220,7 +205,7 @@ mod tests {
         // One border has four sides along the two of the other.
         let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
         assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false, &Cancel::default())), (3, 2));
-        assert_eq!(borders(&mesh), 16 + 8 - 4 - 2);
+        assert_eq!(border_edges(&mesh), 16 + 8 - 4 - 2);
         let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.area_vector(t).length()).sum();
         assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(false, &Cancel::default()) == 0);
     }

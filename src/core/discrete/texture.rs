@@ -93,15 +93,12 @@ impl CutSurface<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::discrete::chart::charts;
     use crate::core::discrete::edges::Triangles;
-    use crate::core::discrete::features::{ANGLE, features};
-    use crate::core::discrete::fixtures::{plate, tube};
-    use crate::core::progress::Nobody;
+    use crate::core::discrete::features::ANGLE;
+    use crate::core::discrete::fixtures::{charted, plate, tube};
 
     fn found(mesh: &Triangles) -> Vec<Chart> {
-        let edges = Edges::of(&mesh.triangles);
-        charts(mesh, &edges, &features(mesh, &edges, ANGLE), StretchBound::default(), &mut Nobody).unwrap()
+        charted(mesh, ANGLE, StretchBound::default())
     }
 
     /// Sets the texture by a function of position and the triangle's centroid.

@@ -151,10 +151,7 @@ impl Report {
     pub fn summary(&self) -> String {
         let mesh = &self.mesh;
         let mut text = format!("{}: {}\n", self.case.name, self.case.title);
-        let mut row = |head: &str, value: String| {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "  {head:<16} {value}");
-        };
+        let mut row = |head: &str, value: String| row(&mut text, head, &value);
         row(
             "mesh",
             format!(
@@ -198,13 +195,24 @@ impl Report {
                 100.0 * self.last_resort.share
             ),
         );
-        for repair in &self.repairs {
-            row("repaired", repair.clone());
-        }
-        if !self.timing.is_empty() {
-            row("time", times(&self.timing));
-        }
+        rows_of_work(&mut text, &self.repairs, &self.timing);
         text
+    }
+}
+
+/// Writes one row of a summary.
+fn row(text: &mut String, head: &str, value: &str) {
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "  {head:<16} {value}");
+}
+
+/// Writes the last rows of a summary: repairs and times.
+fn rows_of_work(text: &mut String, repairs: &[String], timing: &[(Stage, f64)]) {
+    for repair in repairs {
+        row(text, "repaired", repair);
+    }
+    if !timing.is_empty() {
+        row(text, "time", &times(timing));
     }
 }
 
@@ -237,23 +245,12 @@ impl Formatter for ListsOnOneLine {
 /// The summary of a background mesh: counts, edge lengths and quality.
 pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], timing: &[(Stage, f64)]) -> String {
     let quality = mesh.quality.map_or_else(|| "\u{2013}".to_owned(), range);
-    let mut text = format!(
-        "{}: {}\n  {:<16} {}, {}\n  {:<16} {}\n  {:<16} {quality}\n",
-        case.name,
-        case.title,
-        "background",
-        counted(mesh.triangles, "triangle"),
-        counted(mesh.nodes, "node"),
-        "edge length",
-        lengths(mesh),
-        "quality, metric",
-    );
-    for repair in repairs {
-        let _ = writeln!(text, "  {:<16} {repair}", "repaired");
-    }
-    if !timing.is_empty() {
-        let _ = writeln!(text, "  {:<16} {}", "time", times(timing));
-    }
+    let mut text = format!("{}: {}\n", case.name, case.title);
+    let nodes = counted(mesh.nodes, "node");
+    row(&mut text, "background", &format!("{}, {nodes}", counted(mesh.triangles, "triangle")));
+    row(&mut text, "edge length", &lengths(mesh));
+    row(&mut text, "quality, metric", &quality);
+    rows_of_work(&mut text, repairs, timing);
     text
 }
 

@@ -29,6 +29,14 @@ fn odd_fan() -> MeshFile {
     file
 }
 
+/// A triangle in the middle of three others.
+fn one_within_three() -> MeshFile {
+    mesh(
+        &[(0.0, 0.0), (2.0, 0.0), (1.0, 2.0), (1.0, 0.0), (1.5, 1.0), (0.5, 1.0)],
+        &[[3, 4, 5], [0, 3, 5], [3, 1, 4], [5, 4, 2]],
+    )
+}
+
 fn refusal(file: &MeshFile) -> String {
     import(file, false).unwrap_err().to_string()
 }
@@ -76,35 +84,51 @@ fn quadrilaterals_and_polygons_among_triangles_are_cut_and_reported() {
 }
 
 #[test]
-fn a_mesh_of_quadrilaterals_alone_is_refused() {
-    let mut file = star();
-    file.quads = vec![[0, 1, 2, 3]; 12];
-    file.triangles.clear();
-    assert!(refusal(&file).contains("already quadrilateral: all of its 12"));
-    file.quads.clear();
-    file.skipped = vec![("tetrahedron".to_owned(), 3)];
-    assert!(refusal(&file).contains("no triangles, only 3 tetrahedron"));
+fn what_cannot_be_repaired_is_refused() {
+    let cases: [(fn(&mut MeshFile), &str); 7] = [
+        (
+            |file| (file.quads, file.triangles) = (vec![[0, 1, 2, 3]; 12], vec![]),
+            "already quadrilateral: all of its 12",
+        ),
+        (
+            |file| (file.skipped, file.triangles) = (vec![("tetrahedron".to_owned(), 3)], vec![]),
+            "no triangles, only 3 tetrahedron",
+        ),
+        (|file| file.points[2].x = f64::NAN, "Point 3 is at (NaN, 1, 0)"),
+        (|file| file.triangles[2][1] = 9, "Triangle 3 refers to point 10 of 5"),
+        (|file| file.triangles[2][1] = u32::MAX, "4294967296"),
+        (
+            |file| {
+                file.points.extend([(0.2, 0.3), (3.0, 0.3), (3.0, 0.4)].map(|(x, y)| DVec3::new(x, y, 0.0)));
+                file.triangles.push([5, 6, 7]);
+            },
+            "Triangles 1, 2, 4 and 5 overlap",
+        ),
+        (
+            |file| {
+                file.points.push(DVec3::new(0.6, 0.2, 0.0));
+                file.triangles.push([4, 0, 5]);
+            },
+            "Triangles 1, 4 and 5 share one edge",
+        ),
+    ];
+    for (change, said) in cases {
+        let mut file = star();
+        change(&mut file);
+        let says = refusal(&file);
+        assert!(says.contains(said), "{says}");
+    }
+    let folded = mesh(&[(0.0, 0.0), (1.0, 0.0), (0.5, 1.0), (0.5, 2.0)], &[[0, 1, 2], [0, 1, 3]]);
+    assert!(refusal(&folded).contains("Triangles 1 and 2 overlap"));
 }
 
 #[test]
-fn curved_meshes_are_refused_with_their_range_of_z() {
+fn a_plane_may_have_any_height() {
     let mut file = star();
     file.points.iter_mut().for_each(|p| p.z = 3.0);
     assert!(import(&file, false).is_ok());
     file.points[4].z = 3.25;
     assert!(refusal(&file).contains("z ranges from 3 to 3.25"));
-}
-
-#[test]
-fn bad_numbers_are_refused() {
-    let mut file = star();
-    file.points[2].x = f64::NAN;
-    assert!(refusal(&file).contains("Point 3 is at (NaN, 1, 0)"));
-    let mut file = star();
-    file.triangles[2][1] = 9;
-    assert!(refusal(&file).contains("Triangle 3 refers to point 10 of 5"));
-    file.triangles[2][1] = u32::MAX;
-    assert!(refusal(&file).contains("4294967296"));
 }
 
 #[test]
@@ -161,26 +185,6 @@ fn hanging_nodes_are_connected_unless_there_is_a_gap() {
     let fault = import(&file, true).unwrap_err();
     assert!(fault.to_string().contains("Point 6 hangs on a side of another triangle"), "{fault}");
     assert_eq!(fault.shapes, [[DVec3::new(0.5, 1.0, 0.0)]]);
-}
-
-#[test]
-fn overlapping_triangles_are_refused() {
-    let mut file = star();
-    file.points.extend([(0.2, 0.3), (3.0, 0.3), (3.0, 0.4)].map(|(x, y)| DVec3::new(x, y, 0.0)));
-    file.triangles.extend([[5, 6, 7]]);
-    let says = refusal(&file);
-    assert!(says.contains("Triangles 1, 2, 4 and 5 overlap"), "{says}");
-}
-
-#[test]
-fn edges_of_three_triangles_and_overlaps_are_refused() {
-    let mut file = star();
-    file.points.push(DVec3::new(0.6, 0.2, 0.0));
-    file.triangles.push([4, 0, 5]);
-    let says = refusal(&file);
-    assert!(says.contains("Triangles 1, 4 and 5 share one edge"), "{says}");
-    let file = mesh(&[(0.0, 0.0), (1.0, 0.0), (0.5, 1.0), (0.5, 2.0)], &[[0, 1, 2], [0, 1, 3]]);
-    assert!(refusal(&file).contains("Triangles 1 and 2 overlap"));
 }
 
 #[test]
@@ -257,11 +261,8 @@ fn an_odd_part_is_divided_at_its_longest_boundary_segment_if_allowed() {
 
 #[test]
 fn an_odd_part_within_others_is_refused_nevertheless() {
-    // One triangle in the middle of three others of another region.
-    let mut file = mesh(
-        &[(0.0, 0.0), (2.0, 0.0), (1.0, 2.0), (1.0, 0.0), (1.5, 1.0), (0.5, 1.0)],
-        &[[3, 4, 5], [0, 3, 5], [3, 1, 4], [5, 4, 2]],
-    );
+    // The one is of another region.
+    let mut file = one_within_three();
     file.triangle_tags = vec![1, 2, 2, 2];
     let says = import(&file, true).unwrap_err().to_string();
     assert!(says.contains("region 1 with 1 triangle;"), "{says}");
@@ -302,11 +303,8 @@ fn lines_in_groups_are_kept_inside_regions_and_at_the_border() {
 
 #[test]
 fn odd_parts_on_both_sides_of_a_line_are_made_even_by_dividing_it() {
-    // A ring of a line around one triangle: three triangles outside, one within.
-    let mut file = mesh(
-        &[(0.0, 0.0), (2.0, 0.0), (1.0, 2.0), (1.0, 0.0), (1.5, 1.0), (0.5, 1.0)],
-        &[[3, 4, 5], [0, 3, 5], [3, 1, 4], [5, 4, 2]],
-    );
+    // A ring of a line around the one.
+    let mut file = one_within_three();
     file.lines = vec![[3, 4], [4, 5], [5, 3]];
     file.line_tags = vec![1; 3];
     // The three outside are separate parts, since they meet only in points: each shares a side with the one inside.

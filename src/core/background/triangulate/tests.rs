@@ -41,37 +41,23 @@ fn all_domains_are_triangulated_with_even_loops_and_their_area() {
 }
 
 #[test]
-fn a_square_with_a_hole_has_two_loops() {
-    let (set, points, loops) = meshed(square_with_hole(), 0.1);
-    assert_eq!(loops, [40, 12]);
-    assert_eq!((set.uv.len(), points), (52, 52));
+fn shared_curves_and_cracks_have_nodes_on_both_sides() {
+    for (name, specs, expected, nodes_and_points) in [
+        ("a hole", square_with_hole(), &[40, 12][..], (52, 52)),
+        ("faces that share a curve have points in common", two_faces(), &[40, 40], (80, 80 - 11)),
+        ("a crack opens between its tips", square_with_crack(), &[40, 8], (40 + 2 * 4, 40 + 8)),
+        ("a crack on the border opens at its mouth", square_with_edge_crack(), &[52], (52, 52)),
+        ("three cracks that meet make one loop", square_with_t_of_cracks(), &[40, 18], (58, 58)),
+    ] {
+        let (set, points, loops) = meshed(specs, 0.1);
+        assert_eq!((&loops[..], (set.uv.len(), points)), (expected, nodes_and_points), "{name}");
+    }
     // One triangle for each segment, and two more for each hole, less two.
-    assert_eq!(set.triangles.len(), 52);
-}
-
-#[test]
-fn faces_that_share_a_curve_have_nodes_of_their_own_and_points_in_common() {
-    let (set, points, loops) = meshed(two_faces(), 0.1);
-    assert_eq!(loops, [40, 40]);
-    assert_eq!((set.uv.len(), points), (80, 80 - 11));
-    assert_eq!(set.region.iter().filter(|&&r| r == 0).count(), 38);
-    assert_eq!(set.region.iter().filter(|&&r| r == 1).count(), 38);
+    assert_eq!(meshed(square_with_hole(), 0.1).0.triangles.len(), 52);
+    let regions = meshed(two_faces(), 0.1).0.region;
+    assert_eq!([0, 1].map(|face| regions.iter().filter(|&&r| r == face).count()), [38, 38]);
     let (set, points, _) = meshed(square_with_inlay(), 0.1);
     assert_eq!((set.uv.len(), points), (40 + 2 * 12, 40 + 12));
-}
-
-#[test]
-fn a_crack_inside_opens_between_its_tips() {
-    let (set, points, loops) = meshed(square_with_crack(), 0.1);
-    assert_eq!(loops, [40, 8]);
-    assert_eq!((set.uv.len(), points), (40 + 2 * 4, 40 + 8));
-}
-
-#[test]
-fn a_crack_on_the_border_opens_at_its_mouth() {
-    let (set, points, loops) = meshed(square_with_edge_crack(), 0.1);
-    assert_eq!(loops, [52]);
-    assert_eq!((set.uv.len(), points), (52, 52));
 }
 
 #[test]
@@ -81,13 +67,6 @@ fn a_repeated_line_joins_hole_and_outer_loop_into_one() {
     assert_eq!((loops.len(), n % 2), (1, 0));
     // The four nodes of the bridge are doubled, their points are not.
     assert_eq!((set.uv.len(), points), (n, n - 4));
-}
-
-#[test]
-fn three_cracks_that_meet_make_one_loop() {
-    let (set, points, loops) = meshed(square_with_t_of_cracks(), 0.1);
-    assert_eq!(loops, [40, 18]);
-    assert_eq!((set.uv.len(), points), (58, 58));
 }
 
 #[test]

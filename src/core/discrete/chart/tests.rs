@@ -1,13 +1,11 @@
 use super::*;
-use crate::core::discrete::features::{ANGLE, features};
-use crate::core::discrete::fixtures::{cube, plate, sphere, three_half_planes, torus, tube};
+use crate::core::discrete::features::ANGLE;
+use crate::core::discrete::fixtures::{charted, cube, plate, sphere, three_half_planes, torus, tube};
 use crate::core::kernel::predicates::orient;
-use crate::core::progress::Nobody;
 
 /// The charts, checked to be valid.
 fn valid(mesh: &Triangles, angle: f64, bound: StretchBound) -> Vec<Chart> {
-    let edges = Edges::of(&mesh.triangles);
-    let found = charts(mesh, &edges, &features(mesh, &edges, angle), bound, &mut Nobody).unwrap();
+    let found = charted(mesh, angle, bound);
     let mut owner = vec![u32::MAX; mesh.triangles.len()];
     for (number, chart) in found.iter().enumerate() {
         for (&t, local) in chart.triangles.iter().zip(&chart.local) {
@@ -93,8 +91,7 @@ fn triangles_without_area_and_single_ones_have_charts_too() {
     let mut mesh = cube(2);
     let p = mesh.points[3];
     mesh.points[4] = p;
-    let edges = Edges::of(&mesh.triangles);
-    let found = charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), StretchBound::default(), &mut Nobody).unwrap();
+    let found = charted(&mesh, ANGLE, StretchBound::default());
     assert_eq!(found.iter().map(|c| c.triangles.len()).sum::<usize>(), mesh.triangles.len());
     let single = Triangles {
         points: mesh.points[..3].to_vec(),
@@ -108,10 +105,6 @@ fn triangles_without_area_and_single_ones_have_charts_too() {
 #[test]
 fn charts_are_deterministic() {
     let mesh = sphere(12);
-    let edges = Edges::of(&mesh.triangles);
-    let once = charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), StretchBound::default(), &mut Nobody).unwrap();
-    assert_eq!(
-        once,
-        charts(&mesh, &edges, &features(&mesh, &edges, ANGLE), StretchBound::default(), &mut Nobody).unwrap()
-    );
+    let charts = || charted(&mesh, ANGLE, StretchBound::default());
+    assert_eq!(charts(), charts());
 }

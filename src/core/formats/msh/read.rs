@@ -79,6 +79,10 @@ pub(super) struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    fn fault(&self, what: impl Into<String>) -> Fault {
+        self.input.scanner.fault(what)
+    }
+
     fn section(&mut self, section: &[u8]) -> Result<(), Fault> {
         if section == b"MeshFormat" {
             self.format()?;
@@ -89,8 +93,6 @@ impl Reader<'_> {
                 return self.skip(section);
             }
             return Err(self
-                .input
-                .scanner
                 .fault(format!("The section \"${}\" precedes $MeshFormat", shown(section)))
                 .remedy("Save it as MSH 2.2 or 4.1"));
         };
@@ -100,8 +102,7 @@ impl Reader<'_> {
             (b"Nodes", _) => self.nodes(version)?,
             (b"Elements", _) => self.elements(version)?,
             (b"ParametricNodes", _) => {
-                let fault =
-                    self.input.scanner.fault("Nodes with parametric coordinates are not supported in this version");
+                let fault = self.fault("Nodes with parametric coordinates are not supported in this version");
                 return Err(fault.remedy("Save it without them (in Gmsh: Mesh.SaveParametric = 0), or as MSH 4.1"));
             }
             (b"NodeData" | b"ElementData", _) if self.has_elements => return self.data(section),
@@ -222,11 +223,7 @@ impl Reader<'_> {
     fn nodes(&mut self, version: Version) -> Result<(), Fault> {
         let start = self.input.scanner.mark();
         if self.nodes.is_some() {
-            return Err(self
-                .input
-                .scanner
-                .fault("There are two sections $Nodes")
-                .remedy("Save it unpartitioned, as one mesh"));
+            return Err(self.fault("There are two sections $Nodes").remedy("Save it unpartitioned, as one mesh"));
         }
         let mut numbers = Vec::new();
         match version {
@@ -271,7 +268,7 @@ impl Reader<'_> {
         let count = self.input.size("a number of nodes")?;
         let count = self.input.fits(count, 8, 32, "a number of nodes")?;
         if numbers.len() + count > total {
-            return Err(self.input.scanner.fault(format!("The section contains more than the declared {total} nodes")));
+            return Err(self.fault(format!("The section contains more than the declared {total} nodes")));
         }
         for _ in 0..count {
             numbers.push(self.input.size("the tag of a node")?);
@@ -296,7 +293,7 @@ impl Reader<'_> {
     fn elements(&mut self, version: Version) -> Result<(), Fault> {
         if self.has_elements || self.nodes.is_none() {
             let what = if self.has_elements { "There are two sections $Elements" } else { "$Elements precedes $Nodes" };
-            return Err(self.input.scanner.fault(what).remedy("Save it unpartitioned, as one mesh"));
+            return Err(self.fault(what).remedy("Save it unpartitioned, as one mesh"));
         }
         let start = self.input.scanner.mark();
         let mut found = 0u64;
@@ -382,7 +379,7 @@ impl Reader<'_> {
 
     fn element(&mut self, kind: i64, number: u64, group: u32) -> Result<(), Fault> {
         let Some(shape) = shape(kind) else {
-            return Err(self.input.scanner.fault(format!("Unknown element type {kind}")));
+            return Err(self.fault(format!("Unknown element type {kind}")));
         };
         match shape {
             Shape::Point => {
@@ -408,8 +405,6 @@ impl Reader<'_> {
             }
             Shape::HigherOrder => {
                 return Err(self
-                    .input
-                    .scanner
                     .fault(format!("Elements of higher order (type {kind}) are not supported"))
                     .remedy("Save the mesh with elements of order 1 (in Gmsh: Mesh.ElementOrder = 1)"));
             }
@@ -439,7 +434,7 @@ impl Reader<'_> {
         };
         match self.nodes.as_ref().and_then(|nodes| nodes.index(tag)) {
             Some(index) => Ok(index),
-            None => Err(self.input.scanner.fault(format!("An element refers to node {tag}, which does not exist"))),
+            None => Err(self.fault(format!("An element refers to node {tag}, which does not exist"))),
         }
     }
 }

@@ -44,17 +44,15 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Resu
         data_header(out, "ElementData", &data.name, 1, mesh.lines.len() + data.values.len())?;
         // Readers that use the order of the elements instead of their tags (meshio) need a value for each line too, in
         // the order of the elements. Gmsh ignores NaN.
-        let mut value = |kind: usize, i: usize| match kind {
-            0 => writeln!(out, "{} NaN", i + 1),
-            1 => writeln!(out, "{} {}", mesh.lines.len() + i + 1, Shortest(data.values[i])),
-            _ => {
-                let i = mesh.triangles.len() + i;
-                writeln!(out, "{} {}", mesh.lines.len() + i + 1, Shortest(data.values[i]))
-            }
+        let kinds = ElementType::all(mesh);
+        let mut value = |kind: usize, i: usize| {
+            let element = kinds[kind].before + i;
+            let value = element.checked_sub(mesh.lines.len()).map_or(f64::NAN, |i| data.values[i]);
+            writeln!(out, "{} {}", element + 1, Shortest(value))
         };
         match &entities {
             None => {
-                for (kind, elements) in ElementType::all(mesh).iter().enumerate() {
+                for (kind, elements) in kinds.iter().enumerate() {
                     (0..elements.count).try_for_each(|i| value(kind, i))?;
                 }
             }
