@@ -1,6 +1,6 @@
-//! Loading of a million triangles from each format: seconds (median of three) and the most memory while it is done, beside what is
-//! asked for: 3 s, and twice the file besides the mesh. And how soon loading, mending and cutting into charts end when they are told
-//! to, at the worst of some moments: 0.1 s is asked for.
+//! Loading of a million triangles from each format: seconds (median of three) and the most memory while it is done,
+//! beside what is asked for: 3 s, and twice the file besides the mesh. And how soon loading, mending and cutting into
+//! charts end when they are told to, at the worst of some moments: 0.1 s is asked for.
 #![allow(clippy::unwrap_used)]
 
 mod meter;
@@ -68,8 +68,8 @@ fn main() {
     });
 }
 
-/// How long work takes (where it is not done: so long it is looked at), and how long it goes on when it is told to end, at the
-/// worst of some moments.
+/// How long work takes (where it is not done: so long it is looked at), and how long it goes on when it is told to end,
+/// at the worst of some moments.
 fn told(name: &str, looked_at: Option<f64>, work: &dyn Fn(&mut dyn Watch) -> Result<(), Fault>) {
     let seconds = looked_at.unwrap_or_else(|| meter::median_of(1, || work(&mut Nobody).unwrap()).1);
     let ends = |k: u32| {

@@ -1,9 +1,9 @@
 //! Anisotropic quadrilateral meshes by the merging front of Lee & Lee (2002).
 //!
-//! quadfront turns triangles into quadrilaterals whose sizes and directions follow a metric. It starts from curves in the
-//! plane, from faces on curved surfaces, or from a triangle mesh in the plane or in space, and every valid input becomes a
-//! valid mesh: quadrilaterals only, conforming, each strictly convex in the parametric plane. A conversion can be run
-//! whole or one operation at a time, and any of its states can be drawn.
+//! quadfront turns triangles into quadrilaterals whose sizes and directions follow a metric. It starts from curves in
+//! the plane, from faces on curved surfaces, or from a triangle mesh in the plane or in space, and every valid input
+//! becomes a valid mesh: quadrilaterals only, conforming, each strictly convex in the parametric plane. A conversion
+//! can be run whole or one operation at a time, and any of its states can be drawn.
 //!
 //! The same case and parameters give the same bytes on every machine.
 //!
@@ -60,10 +60,10 @@
 //!
 //! # Units and conventions
 //!
-//! Coordinates may be in any unit of length; sizes are in the same unit. A metric tensor is in 1 / length squared: an edge `d` is
-//! of unit length where `d . M d = 1` (eqs. 2 and 3). Angles are in radians, except in statistics, reports
-//! and explanations, which use degrees as files do. Elements run
-//! anticlockwise, in space as seen from outside. Indices in a [`MeshFile`] count from 0.
+//! Coordinates may be in any unit of length; sizes are in the same unit. A metric tensor is in 1 / length squared: an
+//! edge `d` is of unit length where `d . M d = 1` (eqs. 2 and 3). Angles are in radians, except in statistics, reports
+//! and explanations, which use degrees as files do. Elements run anticlockwise, in space as seen from outside. Indices
+//! in a [`MeshFile`] count from 0.
 //!
 //! # Errors
 //!

@@ -1,5 +1,5 @@
-//! The arrows of ARCHITECTURE.md, read from the sources: app -> render -> core and never back, what core may not know, the floors
-//! of core's rooms, and no circle between files that stand side by side.
+//! The arrows of ARCHITECTURE.md, read from the sources: app -> render -> core and never back, what core may not know,
+//! the floors of core's rooms, and no circle between files that stand side by side.
 
 #![allow(clippy::unwrap_used)]
 
@@ -264,8 +264,8 @@ fn upward(arrows: &Arrows) -> Vec<String> {
     found
 }
 
-/// Circles between modules side by side in one folder, each with what stands below it. A parent and its own modules may know each
-/// other.
+/// Circles between modules side by side in one folder, each with what stands below it. A parent and its own modules may
+/// know each other.
 fn circles(arrows: &Arrows) -> Vec<String> {
     let mut beside: BTreeMap<String, Arrows> = BTreeMap::new();
     for (from, targets) in arrows {

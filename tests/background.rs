@@ -30,8 +30,8 @@ fn built_in_cases_have_unit_edges_and_no_bad_triangles() {
     }
 }
 
-/// The unit square with sizes h1(X) and 0.03 along its sides X and Y, laid out in the plane as
-/// p = stretch\[0\] X g1 + stretch\[1\] Y g2 with g1 at `degrees`; the metric goes along, so that in it nothing changes.
+/// The unit square with sizes h1(X) and 0.03 along its sides X and Y, laid out in the plane as p = stretch\[0\] X g1 +
+/// stretch\[1\] Y g2 with g1 at `degrees`; the metric goes along, so that in it nothing changes.
 fn laid_out(h1: &str, degrees: f64, stretch: [f64; 2]) -> Case {
     let (s, c) = libm::sincos(degrees.to_radians());
     let [a, b] = stretch;
@@ -70,8 +70,8 @@ fn a_constant_metric_gives_triangles_that_are_equilateral_in_it() {
     }
 }
 
-/// Sizes for some 6,000 triangles. Meshes of the same metric that start from other triangles scatter: with 1,500 triangles
-/// by 3.5 % in their number, with 24,000 by 1.3 % (15 directions).
+/// Sizes for some 6,000 triangles. Meshes of the same metric that start from other triangles scatter: with 1,500
+/// triangles by 3.5 % in their number, with 24,000 by 1.3 % (15 directions).
 const GRADED: &str = "0.005 + 0.025*X";
 
 /// Counts and distributions that agree within that scatter.

@@ -1,5 +1,5 @@
-//! Promise: what a step did and why can be read from its event, and every operation of the paper's sections 4.2 to 4.3.7 is
-//! done somewhere on the built-in cases.
+//! Promise: what a step did and why can be read from its event, and every operation of the paper's sections 4.2 to
+//! 4.3.7 is done somewhere on the built-in cases.
 #![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeMap;

@@ -1,5 +1,5 @@
-//! Promise: what is told about a choice is true: the table of the front says what will be chosen, and a margin says how far a
-//! parameter may go without another choice.
+//! Promise: what is told about a choice is true: the table of the front says what will be chosen, and a margin says how
+//! far a parameter may go without another choice.
 #![allow(clippy::unwrap_used)]
 
 use quadfront::core::case::built_in;

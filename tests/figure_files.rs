@@ -1,5 +1,5 @@
-//! Promise: a figure carries its run. What it shows is had from it again, to the same bytes; sizes are what was asked for; and a
-//! figure that somebody has tampered with is told and never a crash.
+//! Promise: a figure carries its run. What it shows is had from it again, to the same bytes; sizes are what was asked
+//! for; and a figure that somebody has tampered with is told and never a crash.
 #![allow(clippy::unwrap_used)]
 
 #[path = "common/environment.rs"]

@@ -1,5 +1,5 @@
-//! Promise: the figures of the paper that show one operation each (5-8, 12-14, 16-19) are small cases, and come out as the paper draws
-//! them. Nodes have the numbers of the case files.
+//! Promise: the figures of the paper that show one operation each (5-8, 12-14, 16-19) are small cases, and come out as
+//! the paper draws them. Nodes have the numbers of the case files.
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec2;
@@ -172,7 +172,8 @@ fn figure_17_a_node_moves_to_the_mean_of_centroids_weighted_by_areas() {
         step_until(&mut converter, |e| matches!(e, Event::Formed { .. }));
         let mesh = &converter.mesh;
         let p = mesh.uv(NodeId(4));
-        // Eqs. (9), (10a) and (10b) as they are printed; the metric is the identity, so that lengths and angles are the plane's.
+        // Eqs. (9), (10a) and (10b) as they are printed; the metric is the identity, so that lengths and angles are the
+        // plane's.
         let triangle = |a: DVec2, b: DVec2| {
             let (a, b) = (a - p, b - p);
             0.5 * a.length() * b.length() * libm::sin(a.angle_to(b))

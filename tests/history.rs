@@ -1,5 +1,5 @@
-//! Promise: a run is a value. Whatever walk of stepping, seeking and editing leads to a step, its state has the bytes that
-//! running there afresh gives; and what a history takes stays within its budget.
+//! Promise: a run is a value. Whatever walk of stepping, seeking and editing leads to a step, its state has the bytes
+//! that running there afresh gives; and what a history takes stays within its budget.
 #![allow(clippy::unwrap_used)]
 
 #[path = "common/environment.rs"]

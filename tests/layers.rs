@@ -1,4 +1,5 @@
-//! Promise: boundary offsetting (paper 4.3.3) makes its rows before anything else, on all loops or on those that are named.
+//! Promise: boundary offsetting (paper 4.3.3) makes its rows before anything else, on all loops or on those that are
+//! named.
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec2;

@@ -1,5 +1,5 @@
-//! Promise: other programs can use the library. A mesh in memory converts to the same bytes as the same mesh in a file, faults
-//! are told apart by their kinds, and a pool of threads that the caller has taken up is no obstacle.
+//! Promise: other programs can use the library. A mesh in memory converts to the same bytes as the same mesh in a file,
+//! faults are told apart by their kinds, and a pool of threads that the caller has taken up is no obstacle.
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;

@@ -1,6 +1,7 @@
-//! Loaders under mutated files of every format: bytes changed, files cut off, headers that lie. None panics, hangs, or takes more
-//! memory than a few times the file. Two seconds of it in `make test`, an hour in `make soak` (`QUADFRONT_SOAK_SECONDS`);
-//! `QUADFRONT_SOAK_FILES` names a folder with further files to mutate, `QUADFRONT_SEED` where the numbers begin.
+//! Loaders under mutated files of every format: bytes changed, files cut off, headers that lie. None panics, hangs, or
+//! takes more memory than a few times the file. Two seconds of it in `make test`, an hour in `make soak`
+//! (`QUADFRONT_SOAK_SECONDS`); `QUADFRONT_SOAK_FILES` names a folder with further files to mutate, `QUADFRONT_SEED`
+//! where the numbers begin.
 //!
 //! Its own program, since it counts all memory that is asked for.
 #![allow(clippy::unwrap_used)]
@@ -28,8 +29,8 @@ static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Memory while a file is read, over its size.
 const MOST: usize = 16;
-/// What any file may take, however small: messages, and the first rooms of lists. The parser of PLY makes room for up to 65 536
-/// numbers of a list before it reads them.
+/// What any file may take, however small: messages, and the first rooms of lists. The parser of PLY makes room for up
+/// to 65 536 numbers of a list before it reads them.
 fn little(format: Format) -> usize {
     if format == Format::Ply { (64 << 10) + (65_536 * 8) } else { 64 << 10 }
 }

@@ -1,4 +1,5 @@
-//! Two ways to use a mesh: its triangles as they are, or its shape meshed anew; in the plane and in space, by words of a case.
+//! Two ways to use a mesh: its triangles as they are, or its shape meshed anew; in the plane and in space, by words of
+//! a case.
 #![allow(clippy::unwrap_used)]
 
 #[path = "common/grid.rs"]
@@ -164,7 +165,8 @@ fn what_is_written_of_a_surface_reads_back_the_same() {
     }
 }
 
-/// A vase: `n` by `n` squares around and along, as OBJ with the texture of its unrolled side, torn at the angle `seam` (in squares).
+/// A vase: `n` by `n` squares around and along, as OBJ with the texture of its unrolled side, torn at the angle `seam`
+/// (in squares).
 fn vase(n: u32, seam: u32, texture: bool) -> Vec<u8> {
     let mut text = String::new();
     for k in 0..n * (n + 1) {

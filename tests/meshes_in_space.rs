@@ -63,7 +63,8 @@ fn converted(name: &str, file: &MeshFile, allow: Allow) -> MeshFile {
     mesh
 }
 
-/// How far the points of two meshes lie from each other's elements, both ways, by the diagonal of the box of the second.
+/// How far the points of two meshes lie from each other's elements, both ways, by the diagonal of the box of the
+/// second.
 fn farthest(mesh: &MeshFile, file: &MeshFile) -> f64 {
     let used: Vec<DVec3> = file.triangles.as_flattened().iter().map(|&k| file.points[k as usize]).collect();
     let (low, high) =

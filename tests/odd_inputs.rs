@@ -1,5 +1,6 @@
-//! Promise: whatever is odd in a mesh, the program either mends it for certain and says so, or refuses it with the elements called as the
-//! file counts them, and writes nothing. One row of a table for each oddity, for both uses of a mesh.
+//! Promise: whatever is odd in a mesh, the program either mends it for certain and says so, or refuses it with the
+//! elements called as the file counts them, and writes nothing. One row of a table for each oddity, for both uses of a
+//! mesh.
 #![allow(clippy::unwrap_used)]
 
 use std::fmt::Write as _;
@@ -140,7 +141,8 @@ impl Obj {
         self
     }
 
-    /// Triangle 1 with a point of its own in the middle of its long side, and a triangle that closes the gap, `high` where it is open.
+    /// Triangle 1 with a point of its own in the middle of its long side, and a triangle that closes the gap, `high`
+    /// where it is open.
     fn gap_closed(mut self, high: f64) -> Obj {
         let [a, b, c] = [0, 1, 2].map(|k| self.faces[0][k]);
         let middle = [0, 1, 2].map(|k| 0.5 * (self.points[a][k] + self.points[c][k]));

@@ -1,5 +1,5 @@
-//! Promise: a run file is all that is needed to have a run again: the command line reads it as it reads a case, and a program
-//! that is killed while it saves leaves a whole one.
+//! Promise: a run file is all that is needed to have a run again: the command line reads it as it reads a case, and a
+//! program that is killed while it saves leaves a whole one.
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;

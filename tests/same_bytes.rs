@@ -1,7 +1,8 @@
 //! Promise: the same case and parameters give the same bytes. A table of fingerprints of every built-in case, at three
 //! steps, at the end and as the mesh file that is written, with its own parameters and with `--paper`.
 //!
-//! A change that alters results on purpose writes the table anew: `QUADFRONT_SAME_BYTES=write cargo test --test same_bytes`.
+//! A change that alters results on purpose writes the table anew: `QUADFRONT_SAME_BYTES=write cargo test --test
+//! same_bytes`.
 #![allow(clippy::unwrap_used)]
 
 use std::fmt::Write as _;

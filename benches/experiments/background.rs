@@ -1,5 +1,5 @@
-//! The backgrounds of a case: its own, and others that differ from it by a little, so that what hangs on the case can be told
-//! from what hangs on one mesh of it.
+//! The backgrounds of a case: its own, and others that differ from it by a little, so that what hangs on the case can
+//! be told from what hangs on one mesh of it.
 
 #[path = "../../tests/guarantee/random.rs"]
 #[allow(dead_code, reason = "the tests need more of it")]
@@ -35,8 +35,8 @@ impl Subject {
     }
 }
 
-/// The backgrounds of a subject: its own with every inner node moved by up to `most` of a unit metric length, each by the
-/// next seed.
+/// The backgrounds of a subject: its own with every inner node moved by up to `most` of a unit metric length, each by
+/// the next seed.
 pub fn backgrounds(subject: &Subject, most: f64) -> Vec<Background> {
     let own = background(&subject.case, &mut Nobody).unwrap();
     let jittered = |seed| {
@@ -64,8 +64,8 @@ fn jitter(mesh: &mut Mesh, sizing: &Sizing, most: f64, random: &mut Random) {
     mesh.commit();
 }
 
-/// The vector whose metric length is the length of `w`: `L^T v = w` with `M = L L^T`, so that what is evenly spread over a
-/// disc is evenly spread over the metric's.
+/// The vector whose metric length is the length of `w`: `L^T v = w` with `M = L L^T`, so that what is evenly spread
+/// over a disc is evenly spread over the metric's.
 fn of_metric_length(m: &Metric2, w: DVec2) -> DVec2 {
     let l_uu = m.uu.sqrt();
     let l_vu = m.uv / l_uu;

@@ -1,6 +1,6 @@
 //! The experiments behind the defaults (paper 4.3.1 to 4.3.7): each switch of the conversion against the others, on
-//! several backgrounds of each case, and what every built-in case comes to. Writes Markdown to standard output, the same
-//! bytes on every run; how far it is goes to standard error.
+//! several backgrounds of each case, and what every built-in case comes to. Writes Markdown to standard output, the
+//! same bytes on every run; how far it is goes to standard error.
 #![allow(clippy::unwrap_used)]
 
 mod background;
@@ -17,7 +17,8 @@ use report::{features, heading, operations, spread, tables};
 use settings::{QUESTIONS, Setting};
 use work::in_parallel;
 
-/// Cases of the tables that hold one switch against another, with the scale of their sizes and the number of backgrounds.
+/// Cases of the tables that hold one switch against another, with the scale of their sizes and the number of
+/// backgrounds.
 const COMPARED: [(&str, f64, u64); 11] = [
     ("example1", 1.0, 5),
     ("example1", 0.5, 5),

@@ -117,8 +117,7 @@ impl Default for Layers {
 }
 
 /// Everything that the card draws of one state, from back to front: `faces`, `edges`, `under`, `boundary`, `over`,
-/// `dots`,
-/// `over_dots`.
+/// `dots`, `over_dots`.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// The origin of all positions.

@@ -1,5 +1,5 @@
-//! What is written is the same mesh, to the last bit, to readers that share no code with ours: crates where there are some, else short
-//! ones made from the formats' documents (`plain_readers`).
+//! What is written is the same mesh, to the last bit, to readers that share no code with ours: crates where there are
+//! some, else short ones made from the formats' documents (`plain_readers`).
 
 use std::collections::BTreeMap;
 
@@ -71,8 +71,8 @@ fn msh_2_is_the_same_mesh_by_the_manual() {
     }
 }
 
-/// The same mesh with its points in the order in which MSH 4.1 has them, by entity: `mshio` counts nodes and passes over their tags
-/// where these are all the numbers from 1 on.
+/// The same mesh with its points in the order in which MSH 4.1 has them, by entity: `mshio` counts nodes and passes
+/// over their tags where these are all the numbers from 1 on.
 fn in_order_of_blocks(mesh: &MeshFile) -> MeshFile {
     let tag = |tags: &[u32], i: usize| tags.get(i).copied().unwrap_or(0);
     let mut owner = vec![(u8::MAX, u32::MAX); mesh.points.len()];

@@ -1,5 +1,5 @@
-//! Promises about files: what is written reads back the same and is the same mesh to readers that share no code with ours, what
-//! others write is read, what is broken is refused with its place, and no bytes make a reader panic or hang.
+//! Promises about files: what is written reads back the same and is the same mesh to readers that share no code with
+//! ours, what others write is read, what is broken is refused with its place, and no bytes make a reader panic or hang.
 #![allow(clippy::unwrap_used)]
 
 mod foreign;
@@ -52,7 +52,8 @@ fn plates() -> MeshFile {
     mesh
 }
 
-/// A planar metric (z is free) whose determinant is a perfect square, so that the completion of a planar `.sol` is exact.
+/// A planar metric (z is free) whose determinant is a perfect square, so that the completion of a planar `.sol` is
+/// exact.
 fn tensor(i: f64) -> Metric3 {
     Metric3 { xx: 4.0 * i, xy: 0.0, xz: 0.0, yy: i, yz: 0.0, zz: 2.0 * i }
 }

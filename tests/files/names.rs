@@ -1,5 +1,5 @@
-//! Named groups of faces and lines survive from every format to every format, as far as the two can carry them; what they name stays
-//! where it was.
+//! Named groups of faces and lines survive from every format to every format, as far as the two can carry them; what
+//! they name stays where it was.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -28,8 +28,8 @@ const GROUPS: [(u8, &str, u32, [f64; 5]); 7] = [
     (2, "right", 9, [0.5, 0.5, 1.0, 0.0, 1.0]),
 ];
 
-/// A plate of `2 n` by `2 n` squares, `n` a multiple of 4, bent up along a parabola: two regions and the line between them, two sides of
-/// it, a line across one region and one that ends within the other.
+/// A plate of `2 n` by `2 n` squares, `n` a multiple of 4, bent up along a parabola: two regions and the line between
+/// them, two sides of it, a line across one region and one that ends within the other.
 pub fn plate(n: u32, height: f64) -> MeshFile {
     let n = 2 * n;
     let mut mesh = grid(n, |x, _| height * x * x);

@@ -1,8 +1,8 @@
-//! Readers of what is written, made from the formats' own documents and of nothing of ours: they know no more of a format than a
-//! mesh of lines, triangles and quadrilaterals needs, and take every departure from it for a failure.
+//! Readers of what is written, made from the formats' own documents and of nothing of ours: they know no more of a
+//! format than a mesh of lines, triangles and quadrilaterals needs, and take every departure from it for a failure.
 //!
-//! Gmsh's reference manual, "MSH file format version 2 (Legacy)"; Frey, "Medit: an interactive mesh visualization software"
-//! (INRIA RT-0253, 2001); Abaqus's keyword reference, NODE, ELEMENT, ELSET and SURFACE.
+//! Gmsh's reference manual, "MSH file format version 2 (Legacy)"; Frey, "Medit: an interactive mesh visualization
+//! software" (INRIA RT-0253, 2001); Abaqus's keyword reference, NODE, ELEMENT, ELSET and SURFACE.
 
 use std::collections::BTreeMap;
 

@@ -17,8 +17,8 @@ pub fn fit(case: &mut Case, quads: f64) {
     }
 }
 
-/// About how many quadrilaterals follow the metric: where it turns or narrows along its long direction, edges have to be
-/// shorter than it asks for.
+/// About how many quadrilaterals follow the metric: where it turns or narrows along its long direction, edges have to
+/// be shorter than it asks for.
 fn needed(case: &Case) -> Option<f64> {
     let DomainSource::Curves { curves, faces } = &case.domain else { return None };
     let domain = Domain::build(curves.clone(), faces.clone()).ok()?;

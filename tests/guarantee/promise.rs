@@ -140,10 +140,10 @@ fn areas(mesh: &Mesh) -> BTreeMap<u32, f64> {
     areas
 }
 
-/// The mesh as a file would have it is sound: conforming, nothing overlaps, nothing hangs. Points on both sides of a crack
-/// are apart at the same place, and faces that meet in a point only pinch it, both by right. On surfaces each chart is
-/// held against that in the plane, and their points in space joined; there edges branch by right, and a mesh may be too coarse
-/// for its surface.
+/// The mesh as a file would have it is sound: conforming, nothing overlaps, nothing hangs. Points on both sides of a
+/// crack are apart at the same place, and faces that meet in a point only pinch it, both by right. On surfaces each
+/// chart is held against that in the plane, and their points in space joined; there edges branch by right, and a mesh
+/// may be too coarse for its surface.
 fn sound(mesh: &Mesh) -> Result<(), String> {
     let in_space = mesh.embedding().is_some();
     let by_right = [Defect::SeamNode, Defect::PinchedNode];

@@ -1,4 +1,5 @@
-//! Random domains with everything that a case can have: holes, cracks, repeated lines, islands, faces that share curves.
+//! Random domains with everything that a case can have: holes, cracks, repeated lines, islands, faces that share
+//! curves.
 
 use std::f64::consts::{PI, TAU};
 

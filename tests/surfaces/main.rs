@@ -1,5 +1,5 @@
-//! Promise: faces on curved surfaces become sound quadrilateral meshes that conform across shared curves, follow the metric in
-//! space, lie on their surfaces, and do not depend on the order of the faces.
+//! Promise: faces on curved surfaces become sound quadrilateral meshes that conform across shared curves, follow the
+//! metric in space, lie on their surfaces, and do not depend on the order of the faces.
 #![allow(clippy::unwrap_used)]
 
 mod faults;
@@ -42,7 +42,8 @@ pub(crate) fn make(case: &Case) -> Made {
 }
 
 impl Made {
-    /// All quadrilaterals, conforming, convex in the plane by exact predicates, and on the surface's side at every corner.
+    /// All quadrilaterals, conforming, convex in the plane by exact predicates, and on the surface's side at every
+    /// corner.
     pub(crate) fn assert_sound(&self, name: &str) {
         let allow = Allow { seams: true, branching: true, ..Allow::default() };
         self.converted.mesh.check().unwrap();

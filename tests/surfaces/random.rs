@@ -112,9 +112,9 @@ fn sides_of_cells() -> Vec<[Node; 4]> {
     sides
 }
 
-/// Twisted sides of a grid's cells, any of them left out, with up to six faces at an edge, cells closed and open; some edges
-/// with a given number of segments, odd or even, some faces with a hole. Where the given numbers cannot be even on all
-/// faces the fault says so and names a loop; all else converts.
+/// Twisted sides of a grid's cells, any of them left out, with up to six faces at an edge, cells closed and open; some
+/// edges with a given number of segments, odd or even, some faces with a hole. Where the given numbers cannot be even
+/// on all faces the fault says so and names a loop; all else converts.
 #[test]
 fn random_complexes_of_twisted_faces_are_sound_or_their_odd_loop_is_named() {
     let sides = sides_of_cells();

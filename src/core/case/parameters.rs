@@ -1,5 +1,5 @@
-//! The parameters of a conversion: thresholds of the paper and limits. Radians here, degrees in files, on the
-//! command line and in [`Parameters::text_of`].
+//! The parameters of a conversion: thresholds of the paper and limits. Radians here, degrees in files, on the command
+//! line and in [`Parameters::text_of`].
 
 use std::fmt::Display;
 use std::str::FromStr;

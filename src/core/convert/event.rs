@@ -275,8 +275,7 @@ pub enum Event {
     },
     /// Every segment is deferred: all are tried again with wider gates.
     SecondPass,
-    /// The triangles of a remaining component were matched (docs/algorithm.md, "The last resort", steps 1 to
-    /// 3).
+    /// The triangles of a remaining component were matched (docs/algorithm.md, "The last resort", steps 1 to 3).
     Matched {
         /// Number of its triangles.
         triangles: usize,

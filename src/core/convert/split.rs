@@ -77,8 +77,8 @@ fn slender(mesh: &Mesh, parameters: &Parameters, element: ElementId) -> Option<S
     (ratio > parameters.eps2).then_some(Slender { element, base, area, ratio })
 }
 
-/// Splits the front at the first slender triangle around a new quadrilateral that has a side edge whose collapse
-/// leaves two even loops (step iii), the shorter side first. What would spoil an element is not done.
+/// Splits the front at the first slender triangle around a new quadrilateral that has a side edge whose collapse leaves
+/// two even loops (step iii), the shorter side first. What would spoil an element is not done.
 fn split_front(front: &mut Front<'_>, quad: ElementId) -> Option<Event> {
     for Slender { base, area, ratio, .. } in narrow(front.mesh, front.parameters, quad).slender {
         let mut sides = [front.mesh.next(base), front.mesh.previous(base)];
@@ -105,8 +105,8 @@ fn split_front(front: &mut Front<'_>, quad: ElementId) -> Option<Event> {
     None
 }
 
-/// Segments of the two loops that the loop through both ends of a live edge would become by its collapse; `None`
-/// where the ends lie on two loops, which no collapse splits.
+/// Segments of the two loops that the loop through both ends of a live edge would become by its collapse; `None` where
+/// the ends lie on two loops, which no collapse splits.
 fn parts(mesh: &Mesh, side: HalfEdgeId) -> Option<[usize; 2]> {
     // The front segments that leave both ends, in the sector of the edge.
     let from = mesh.front_after(mesh.previous(side));

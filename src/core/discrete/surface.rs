@@ -1,5 +1,6 @@
-//! A surface of triangles as a domain: each chart is a face; borders of charts become curves between the points where they meet,
-//! divided once for all faces that share them, as the curves of a case are (docs/algorithm.md, "Charts of triangles").
+//! A surface of triangles as a domain: each chart is a face; borders of charts become curves between the points where
+//! they meet, divided once for all faces that share them, as the curves of a case are (docs/algorithm.md, "Charts of
+//! triangles").
 
 use std::sync::Arc;
 

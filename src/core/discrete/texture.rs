@@ -1,5 +1,5 @@
-//! Charts that the file brings itself: texture coordinates, where they lay a part of the surface into the plane one to one and do
-//! not stretch it too much (docs/algorithm.md, "Charts of triangles").
+//! Charts that the file brings itself: texture coordinates, where they lay a part of the surface into the plane one to
+//! one and do not stretch it too much (docs/algorithm.md, "Charts of triangles").
 
 use glam::{DVec2, DVec3};
 

@@ -33,8 +33,8 @@ impl Curve {
     /// The curve of a shape.
     ///
     /// # Errors
-    /// Numbers that are not finite or beyond 1e100, a radius that is not positive, an arc of no angle or of more than
-    /// a full turn, a polyline with fewer than two points or with two equal ones in a row, zero length, and what
+    /// Numbers that are not finite or beyond 1e100, a radius that is not positive, an arc of no angle or of more than a
+    /// full turn, a polyline with fewer than two points or with two equal ones in a row, zero length, and what
     /// [`NurbsCurve::new`] refuses.
     pub fn new(shape: &CurveShape) -> Result<Curve, Fault> {
         let mut closed = false;

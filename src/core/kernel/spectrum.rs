@@ -143,8 +143,8 @@ impl Metric2 {
         1.0 / largest.sqrt()
     }
 
-    /// The smallest size in any direction of a surface with the first fundamental form `g`: `1 / sqrt`
-    /// of the largest eigenvalue of the pair (M, g), which does not depend on the parametrisation.
+    /// The smallest size in any direction of a surface with the first fundamental form `g`: `1 / sqrt` of the largest
+    /// eigenvalue of the pair (M, g), which does not depend on the parametrisation.
     #[inline]
     pub fn min_size_against(&self, g: &Metric2) -> f64 {
         let det = g.det();

@@ -68,9 +68,9 @@ pub fn triangle_quality(m: &Metric2, a: DVec2, b: DVec2, c: DVec2) -> f64 {
     if squares > 0.0 { 4.0 * 3f64.sqrt() * triangle_area(m, a, b, c) / squares } else { 0.0 }
 }
 
-/// Quality of a quadrilateral (docs/algorithm.md, "Quality"): the least over its corners of
-/// `2 sqrt(det M_k) x(a, b) / (a^T M_k a + b^T M_k b)` with a and b the sides that leave the corner, anticlockwise, and
-/// M_k its metric; 1 for a metric square, at most 0 if a corner is not convex.
+/// Quality of a quadrilateral (docs/algorithm.md, "Quality"): the least over its corners of `2 sqrt(det M_k) x(a, b) /
+/// (a^T M_k a + b^T M_k b)` with a and b the sides that leave the corner, anticlockwise, and M_k its metric; 1 for a
+/// metric square, at most 0 if a corner is not convex.
 #[inline]
 pub fn quad_quality(metrics: [&Metric2; 4], corners: [DVec2; 4]) -> f64 {
     let mut least = f64::INFINITY;

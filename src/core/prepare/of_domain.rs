@@ -92,9 +92,9 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines })
 }
 
-/// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is the
-/// metric area (docs/algorithm.md, "Adaptation to the metric"), one place a triangle of the boundary's triangulation:
-/// rough, so that only what is beyond doubt is refused here. The adaptation itself holds the bound.
+/// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is
+/// the metric area (docs/algorithm.md, "Adaptation to the metric"), one place a triangle of the boundary's
+/// triangulation: rough, so that only what is beyond doubt is refused here. The adaptation itself holds the bound.
 fn check_size(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Result<(), Fault> {
     let mut quads = 0.0;
     for triangle in &set.triangles {

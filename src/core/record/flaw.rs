@@ -7,8 +7,8 @@ use crate::core::mesh::half_edge::Mesh;
 use crate::core::soup::soundness::{Allow, examine};
 
 impl Export {
-    /// What is wrong with the mesh that these arrays are of: its structure, exact convexity, folds over its surface, and the
-    /// file as others will see it. On the way to the end there are triangles.
+    /// What is wrong with the mesh that these arrays are of: its structure, exact convexity, folds over its surface,
+    /// and the file as others will see it. On the way to the end there are triangles.
     pub fn flaw(&self, mesh: &Mesh, on_the_way: bool) -> Option<Fault> {
         // Both sides of a crack lie at the same place.
         let allow = Allow { triangles: on_the_way, seams: true, branching: mesh.embedding().is_some() };

@@ -83,8 +83,8 @@ impl MeshFile {
         Ok(self)
     }
 
-    /// The mesh with a named line along sides of its triangles, each by the indices of its ends. The sides are kept, also
-    /// inside a region.
+    /// The mesh with a named line along sides of its triangles, each by the indices of its ends. The sides are kept,
+    /// also inside a region.
     #[must_use]
     pub fn with_line(mut self, name: impl Into<String>, sides: impl IntoIterator<Item = [u32; 2]>) -> MeshFile {
         let tag = self.free_tag(1);
@@ -104,8 +104,8 @@ impl MeshFile {
     /// Whether its lists agree with each other.
     ///
     /// # Errors
-    /// An element or line with a point that is not there; a polygon without three corners; tags or metric tensors that are
-    /// more or fewer than what they belong to; a tensor that is not positive definite and finite.
+    /// An element or line with a point that is not there; a polygon without three corners; tags or metric tensors that
+    /// are more or fewer than what they belong to; a tensor that is not positive definite and finite.
     pub(in crate::core) fn check_lists(&self) -> Result<(), Fault> {
         let n = self.points.len();
         let kinds: [(&str, &mut dyn Iterator<Item = &[u32]>); 4] = [

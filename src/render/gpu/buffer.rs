@@ -1,5 +1,5 @@
-//! Instances on the card, in pages: a growing list adds pages and is never copied, and only the stretches that
-//! changed are sent.
+//! Instances on the card, in pages: a growing list adds pages and is never copied, and only the stretches that changed
+//! are sent.
 
 use bytemuck::Pod;
 

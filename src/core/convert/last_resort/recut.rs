@@ -109,8 +109,8 @@ impl Planner<'_> {
         }
     }
 
-    /// The best way to cut a ring into firm quadrilaterals without new nodes, where the worst of them is
-    /// better than `least`: by dynamic programming over its stretches.
+    /// The best way to cut a ring into firm quadrilaterals without new nodes, where the worst of them is better than
+    /// `least`: by dynamic programming over its stretches.
     ///
     /// Quadrilaterals that are positive, and whose sides cancel out but for the ring, cover each place as often as the
     /// ring winds around it: once inside and never outside. So this is right also where the ring meets itself.
