@@ -1,5 +1,5 @@
 //! Timing of the background mesh, from a case in memory to a mesh in memory, on one thread: domain, survey of the
-//! metric, division of the curves, triangulation, adaptation. Issue figures: 100,000 triangles a second at 100,000
+//! metric, division of the curves, triangulation, adaptation. Targets: 100,000 triangles a second at 100,000
 //! triangles, cost exponent at most 1.1 up to a million.
 #![allow(clippy::unwrap_used)]
 

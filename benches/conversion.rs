@@ -1,5 +1,5 @@
 //! Timing and memory of the conversion of given triangles, on one thread: the front with its local post-processing, and
-//! with the global post-processing after it. Issue figures: 100,000 (uniform) and 50,000 (example 1) quadrilaterals a
+//! with the global post-processing after it. Targets: 100,000 (uniform) and 50,000 (example 1) quadrilaterals a
 //! second by the front, 50,000 and 30,000 with post-processing, cost exponent at most 1.05 up to a million, and at most
 //! 1 KiB a quadrilateral at the peak.
 #![allow(clippy::unwrap_used)]

@@ -1,4 +1,4 @@
-//! Timing of a run's history, on one thread: issue figures are 2 ms for a step of one quadrilateral forward or back at
+//! Timing of a run's history, on one thread: the targets are 2 ms for a step of one quadrilateral forward or back at
 //! 10,000, and for a leap anywhere 16 ms at 10,000 and 100 ms at 100,000 quadrilaterals; 512 MiB for what is kept.
 #![allow(clippy::unwrap_used)]
 
