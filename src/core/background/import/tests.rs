@@ -9,6 +9,9 @@ use crate::core::geometry::fixtures::{built, square, square_with_hole};
 use crate::core::kernel::tensor::Metric2;
 use crate::core::soup::mesh_file::Group;
 
+/// What makes a mesh defective.
+type Change = fn(&mut MeshFile);
+
 fn mesh(points: &[(f64, f64)], triangles: &[[u32; 3]]) -> MeshFile {
     MeshFile {
         points: points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect(),
@@ -85,7 +88,7 @@ fn quadrilaterals_and_polygons_among_triangles_are_cut_and_reported() {
 
 #[test]
 fn what_cannot_be_repaired_is_refused() {
-    let cases: [(fn(&mut MeshFile), &str); 7] = [
+    let cases: [(Change, &str); 7] = [
         (
             |file| (file.quads, file.triangles) = (vec![[0, 1, 2, 3]; 12], vec![]),
             "already quadrilateral: all of its 12",

@@ -1,5 +1,8 @@
 use super::*;
 
+/// What makes a mesh defective.
+type Change = fn(&mut MeshFile);
+
 /// `n` by `n` unit squares, translated by `at`.
 fn squares(n: u32, at: DVec3) -> MeshFile {
     let mut mesh = MeshFile::default();
@@ -68,7 +71,7 @@ fn a_ring_is_sound() {
 #[test]
 fn single_defects_are_found_in_squares() {
     use Defect::*;
-    let cases: [(u32, fn(&mut MeshFile), &[(Defect, u64)]); 10] = [
+    let cases: [(u32, Change, &[(Defect, u64)]); 10] = [
         (
             1,
             |mesh| {
@@ -99,7 +102,7 @@ fn single_defects_are_found_in_squares() {
 #[test]
 fn defects_beside_others_are_counted() {
     use Defect::*;
-    let cases: [(u32, fn(&mut MeshFile), Defect, u64); 6] = [
+    let cases: [(u32, Change, Defect, u64); 6] = [
         (2, |mesh| mesh.quads.push([1, 4, 3, 0]), DuplicateElement, 1),
         (2, |mesh| mesh.quads[0] = [0, 1, 1, 3], RepeatedNode, 1),
         (2, |mesh| mesh.quads[0].reverse(), OrientationConflict, 2),
