@@ -1,5 +1,5 @@
-//! Numbers for figures and the window: integers grouped by thin spaces, a true minus sign, an en dash for undefined
-//! values. is not defined.
+//! Numbers for figures and the window: integers grouped by thin spaces, a true minus sign, an en dash for
+//! undefined values.
 
 /// The text of an undefined number.
 pub const UNDEFINED: &str = "–";
@@ -44,17 +44,7 @@ pub fn size(x: f64) -> String {
     if !(1e-4..1e5).contains(&magnitude) {
         return format!("{x:.2e}").replace('-', &MINUS.to_string());
     }
-    let decimals = if magnitude >= 100.0 {
-        1
-    } else if magnitude >= 10.0 {
-        2
-    } else if magnitude >= 1.0 {
-        3
-    } else if magnitude >= 0.01 {
-        4
-    } else {
-        5
-    };
+    let decimals = 1 + [100.0, 10.0, 1.0, 0.01].iter().filter(|&&limit| magnitude < limit).count();
     fixed(x, decimals)
 }
 

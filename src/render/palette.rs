@@ -19,6 +19,17 @@ impl Rgba {
         Rgba(rgba.to_be_bytes())
     }
 
+    /// Opaque colours, each written `0xRRGGBB`.
+    const fn hexes<const N: usize>(rgb: [u32; N]) -> [Rgba; N] {
+        let mut colours = [Rgba([0; 4]); N];
+        let mut k = 0;
+        while k < N {
+            colours[k] = Rgba::hex(rgb[k]);
+            k += 1;
+        }
+        colours
+    }
+
     /// The same colour, its opacity multiplied by `factor` (0 to 1).
     #[must_use]
     pub fn faded(self, factor: f32) -> Rgba {
@@ -125,7 +136,7 @@ pub const DARK: Palette = Palette {
     hover: Rgba::hexa(0xAEB6BF8C),
     label: Rgba::hex(0xE6EAEE),
     label_plate: Rgba::hexa(0x0C0F12E0),
-    front: [Rgba::hex(0xCFF5FF), Rgba::hex(0x74CDF7), Rgba::hex(0x7E96F5), Rgba::hex(0x8798A9)],
+    front: Rgba::hexes([0xCFF5FF, 0x74CDF7, 0x7E96F5, 0x8798A9]),
     base: Rgba::hex(0xFFB01F),
     side: Rgba::hex(0xFFD690),
     refused: Rgba::hex(0x8A939E),
@@ -143,14 +154,7 @@ pub const DARK: Palette = Palette {
     accent_row: Rgba::hexa(0xFFB01F1F),
     stripe: Rgba::hex(0x1D2127),
     ellipse: Rgba::hexa(0x8A939E8C),
-    charts: [
-        Rgba::hex(0x24364A),
-        Rgba::hex(0x3A4226),
-        Rgba::hex(0x48362A),
-        Rgba::hex(0x3A3052),
-        Rgba::hex(0x17443F),
-        Rgba::hex(0x46293A),
-    ],
+    charts: Rgba::hexes([0x24364A, 0x3A4226, 0x48362A, 0x3A3052, 0x17443F, 0x46293A]),
 };
 
 /// The light theme.
@@ -168,7 +172,7 @@ pub const LIGHT: Palette = Palette {
     hover: Rgba::hexa(0x616A748C),
     label: Rgba::hex(0x14191E),
     label_plate: Rgba::hexa(0xFFFFFFE6),
-    front: [Rgba::hex(0x002B45), Rgba::hex(0x00659C), Rgba::hex(0x7C70DA), Rgba::hex(0x6E7A87)],
+    front: Rgba::hexes([0x002B45, 0x00659C, 0x7C70DA, 0x6E7A87]),
     base: Rgba::hex(0xAD4E00),
     side: Rgba::hex(0xC77812),
     refused: Rgba::hex(0x616A74),
@@ -186,14 +190,7 @@ pub const LIGHT: Palette = Palette {
     accent_row: Rgba::hexa(0xAD4E0018),
     stripe: Rgba::hex(0xECEEF0),
     ellipse: Rgba::hexa(0x616A748C),
-    charts: [
-        Rgba::hex(0xD3E2F2),
-        Rgba::hex(0xE4EDC8),
-        Rgba::hex(0xF5E0CB),
-        Rgba::hex(0xDCCFF3),
-        Rgba::hex(0xC3E8E4),
-        Rgba::hex(0xF4D7DF),
-    ],
+    charts: Rgba::hexes([0xD3E2F2, 0xE4EDC8, 0xF5E0CB, 0xDCCFF3, 0xC3E8E4, 0xF4D7DF]),
 };
 
 /// The style of a role in a figure: colours as `#RRGGBB`, widths in points.
@@ -233,18 +230,9 @@ pub fn bars(ink: Ink) -> [[&'static str; 2]; 2] {
 
 /// The `figure` palette.
 pub fn figure(role: Role, ink: Ink) -> Style {
-    let area = |grey, colour| Style {
-        fill: Some(if ink == Ink::Grey { grey } else { colour }),
-        stroke: None,
-        width: 0.0,
-        dash: None,
-    };
-    let line = |grey, colour, width| Style {
-        fill: None,
-        stroke: Some(if ink == Ink::Grey { grey } else { colour }),
-        width,
-        dash: None,
-    };
+    let of_ink = |grey, colour| Some(if ink == Ink::Grey { grey } else { colour });
+    let area = |grey, colour| Style { fill: of_ink(grey, colour), stroke: None, width: 0.0, dash: None };
+    let line = |grey, colour, width| Style { fill: None, stroke: of_ink(grey, colour), width, dash: None };
     match role {
         Role::LiveTriangle => area("#FFFFFF", "#FFFFFF"),
         Role::DeadQuad => area("#E4E4E4", "#DBE4EC"),
@@ -267,14 +255,19 @@ pub fn figure(role: Role, ink: Ink) -> Style {
 mod tests {
     use super::*;
 
+    /// Red, green and blue as linear light; the standards differ in where the curve begins.
+    fn linear(Rgba([r, g, b, _]): Rgba, begin: f64) -> [f64; 3] {
+        [r, g, b].map(|c| {
+            let c = f64::from(c) / 255.0;
+            if c <= begin { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
+        })
+    }
+
     /// Contrast after WCAG 2: 1 (none) to 21.
     fn contrast(a: Rgba, b: Rgba) -> f64 {
-        let luminance = |Rgba([r, g, b, _]): Rgba| {
-            let linear = |c: u8| {
-                let c = f64::from(c) / 255.0;
-                if c <= 0.03928 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
-            };
-            0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
+        let luminance = |colour| {
+            let [r, g, b] = linear(colour, 0.03928);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
         };
         let (a, b) = (luminance(a), luminance(b));
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
@@ -303,12 +296,8 @@ mod tests {
 
     /// The perceived distance of two colours, in OKLab times 100.
     fn apart(a: Rgba, b: Rgba) -> f64 {
-        let lab = |Rgba([r, g, b, _]): Rgba| {
-            let linear = |c: u8| {
-                let c = f64::from(c) / 255.0;
-                if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
-            };
-            let [r, g, b] = [r, g, b].map(linear);
+        let lab = |colour| {
+            let [r, g, b] = linear(colour, 0.04045);
             let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
             let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
             let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);

@@ -171,14 +171,9 @@ impl FrontTable {
         let best = BestOfClass::of(self);
         let c = self.parameters.c;
         // The choice changes only where the best segment of a class comes within reach, at window = c Hmin.
-        let mut bounds: Vec<f64> = best.windows().map(|window| window / self.h_min).collect();
-        bounds.extend([0.0, f64::INFINITY]);
-        bounds.sort_unstable_by(f64::total_cmp);
+        let bounds = best.bounds_of_c(self.h_min);
         let mut at = bounds.partition_point(|bound| *bound < c).clamp(1, bounds.len() - 1);
-        let stays = |low: f64, high: f64| {
-            let between = if high.is_finite() { 0.5 * (low + high) } else { low + 1.0 };
-            best.choice(between * self.h_min) == Some(row.h)
-        };
+        let stays = |low: f64, high: f64| best.choice(between(low, high) * self.h_min) == Some(row.h);
         let (mut low, mut high) = (bounds[at - 1], bounds[at]);
         for k in (1..at).rev() {
             if bounds[k - 1] < bounds[k] && !stays(bounds[k - 1], bounds[k]) {
@@ -200,12 +195,9 @@ impl FrontTable {
             return None;
         }
         let best = BestOfClass::of(self);
-        let mut bounds: Vec<f64> = best.windows().map(|window| window / self.h_min).collect();
-        bounds.extend([0.0, f64::INFINITY]);
-        bounds.sort_unstable_by(f64::total_cmp);
+        let mut bounds = best.bounds_of_c(self.h_min);
         bounds.dedup();
-        let between = |pair: &[f64]| if pair[1].is_finite() { 0.5 * (pair[0] + pair[1]) } else { pair[0] + 1.0 };
-        let chosen = |pair: &&[f64]| best.choice(between(pair) * self.h_min) == Some(row.h);
+        let chosen = |pair: &&[f64]| best.choice(between(pair[0], pair[1]) * self.h_min) == Some(row.h);
         let mut found = bounds.windows(2).skip_while(|pair| !chosen(pair)).take_while(chosen);
         let first = found.next()?;
         Some([first[0], found.last().map_or(first[1], |pair| pair[1])])
@@ -293,6 +285,11 @@ fn class_of(below: [bool; 2]) -> u8 {
     }
 }
 
+/// A value between two bounds, of which the upper one may be infinite.
+fn between(low: f64, high: f64) -> f64 {
+    if high.is_finite() { 0.5 * (low + high) } else { low + 1.0 }
+}
+
 /// The waiting segments of the smallest layer in classes 1 to 3, each class in order.
 struct BestOfClass {
     classes: [BTreeSet<(Key, HalfEdgeId)>; 3],
@@ -325,8 +322,13 @@ impl BestOfClass {
         }
     }
 
-    fn windows(&self) -> impl Iterator<Item = f64> + '_ {
-        self.classes.iter().filter_map(|waiting| waiting.first().map(|(Key([_, window, _]), _)| *window))
+    /// The values of c at which the choice may change, sorted, between 0 and infinity.
+    fn bounds_of_c(&self, h_min: f64) -> Vec<f64> {
+        let firsts = self.classes.iter().filter_map(|waiting| waiting.first());
+        let mut bounds: Vec<f64> = firsts.map(|(Key([_, window, _]), _)| window / h_min).collect();
+        bounds.extend([0.0, f64::INFINITY]);
+        bounds.sort_unstable_by(f64::total_cmp);
+        bounds
     }
 
     /// The choice where segments with a window value below `reach` are within reach.

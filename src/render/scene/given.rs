@@ -137,12 +137,9 @@ impl Scene {
                 n => n,
             };
             let colour = ink(palette.broken);
-            outlines.extend((0..sides).map(|k| Line {
-                ends: [corners[k], corners[(k + 1) % corners.len()]],
-                colour,
-                width: 3.2,
-                dash: [0.0; 2],
-                room: -1.0,
+            outlines.extend((0..sides).map(|k| {
+                let ends = [corners[k], corners[(k + 1) % corners.len()]];
+                Line { ends, colour, width: 3.2, dash: [0.0; 2], room: -1.0 }
             }));
             if let [at] = corners[..] {
                 let (ring, ring_width) = (ink(palette.ground), 1.5);
@@ -171,16 +168,10 @@ mod tests {
     /// A tent: two squares with a fold between them.
     fn tent() -> Triangles {
         let file = MeshFile {
-            points: [
-                [0.0, 0.0, 0.0],
-                [1.0, 0.0, 1.0],
-                [2.0, 0.0, 0.0],
-                [0.0, 1.0, 0.0],
-                [1.0, 1.0, 1.0],
-                [2.0, 1.0, 0.0],
-            ]
-            .map(DVec3::from)
-            .to_vec(),
+            points: [0.0, 1.0]
+                .into_iter()
+                .flat_map(|y| [(0.0, y, 0.0), (1.0, y, 1.0), (2.0, y, 0.0)].map(DVec3::from))
+                .collect(),
             quads: vec![[0, 1, 4, 3], [1, 2, 5, 4]],
             ..MeshFile::default()
         };

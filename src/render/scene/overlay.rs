@@ -114,6 +114,10 @@ impl Scene {
         over.extend(self.line(mesh, ends, colour, width, [0.0; 2]));
     }
 
+    fn add_sides(&self, over: &mut Vec<Line>, mesh: &Mesh, e: ElementId, colour: Rgba, width: f32) {
+        mesh.half_edges(e).for_each(|h| self.add(over, mesh, mesh.ends(h), colour, width));
+    }
+
     fn add_background(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, palette: &Palette) {
         let Some(background) = overlay.background else { return };
         for h in background.edges() {
@@ -129,9 +133,7 @@ impl Scene {
         let mesh = overlay.mesh;
         for (changed, fade) in overlay.changed.iter().zip(FADES).rev() {
             for &e in changed.iter().filter(|e| mesh.has_element(**e)) {
-                for h in mesh.half_edges(e) {
-                    self.add(over, mesh, mesh.ends(h), palette.changed_edge.faded(fade), 1.5);
-                }
+                self.add_sides(over, mesh, e, palette.changed_edge.faded(fade), 1.5);
             }
         }
     }
@@ -157,11 +159,7 @@ impl Scene {
         for what in overlay.lit {
             match *what {
                 Outlined::Edge(ends) => self.add(over, mesh, ends, palette.selection, 2.5),
-                Outlined::Element(e) if mesh.has_element(e) => {
-                    for h in mesh.half_edges(e) {
-                        self.add(over, mesh, mesh.ends(h), palette.selection, 2.0);
-                    }
-                }
+                Outlined::Element(e) if mesh.has_element(e) => self.add_sides(over, mesh, e, palette.selection, 2.0),
                 _ => {}
             }
         }
@@ -171,11 +169,7 @@ impl Scene {
         let mesh = overlay.mesh;
         match overlay.hovered {
             Some(Outlined::Edge(ends)) => self.add(over, mesh, ends, palette.hover, 8.0),
-            Some(Outlined::Element(e)) if mesh.has_element(e) => {
-                for h in mesh.half_edges(e) {
-                    self.add(over, mesh, mesh.ends(h), palette.hover, 4.0);
-                }
-            }
+            Some(Outlined::Element(e)) if mesh.has_element(e) => self.add_sides(over, mesh, e, palette.hover, 4.0),
             Some(Outlined::Node(node)) if mesh.has_node(node) => {
                 self.add_dot(dots, node, 7.0, Rgba::default(), palette.hover, 2.0)
             }
@@ -205,9 +199,7 @@ impl Scene {
             }
             Some(Outlined::Element(e)) if mesh.has_element(e) => {
                 for (colour, width) in [(palette.selection, 4.5), (palette.ground, 2.0)] {
-                    for h in mesh.half_edges(e) {
-                        self.add(over, mesh, mesh.ends(h), colour, width);
-                    }
+                    self.add_sides(over, mesh, e, colour, width);
                 }
             }
             Some(Outlined::Node(node)) if mesh.has_node(node) => {
@@ -225,11 +217,8 @@ impl Scene {
         }
         let Some([a, b]) = base else { return };
         let sides = [tops[0].map(|c| [a, c]), tops[1].map(|d| [b, d])];
-        for ends in sides.into_iter().flatten() {
-            self.add(over, mesh, ends, palette.ground.faded(0.9), SIDE + 2.8);
-        }
-        for ends in sides.into_iter().flatten() {
-            self.add(over, mesh, ends, palette.side, SIDE);
+        for (colour, width) in [(palette.ground.faded(0.9), SIDE + 2.8), (palette.side, SIDE)] {
+            sides.into_iter().flatten().for_each(|ends| self.add(over, mesh, ends, colour, width));
         }
         if let [Some(c), Some(d)] = tops {
             self.add(over, mesh, [c, d], palette.ground.faded(0.9), TOP + 2.8);
@@ -271,22 +260,19 @@ mod tests {
         scene
     }
 
+    fn bare(mesh: &Mesh) -> Overlay<'_> {
+        let decision = Decision::default();
+        let (picked, hovered, background) = (None, None, None);
+        Overlay { mesh, front: &[], changed: &[], decision, refused: &[], picked, hovered, lit: &[], background }
+    }
+
     #[test]
     fn the_decision_lies_over_the_front() {
         let mesh = square();
         let front = front(&mesh, &Parameters::default());
         let decision = Decision { base: Some([NodeId(0), NodeId(1)]), tops: [Some(NodeId(3)), Some(NodeId(2))] };
-        let overlay = Overlay {
-            mesh: &mesh,
-            front: &front,
-            changed: &[],
-            decision,
-            refused: &[[NodeId(0), NodeId(2)]],
-            picked: None,
-            hovered: None,
-            lit: &[],
-            background: None,
-        };
+        let refused = &[[NodeId(0), NodeId(2)]];
+        let overlay = Overlay { front: &front, decision, refused, ..bare(&mesh) };
         let mut scene = drawn(&mesh);
         scene.set_overlay(&overlay, Layers::default(), &DARK);
         let last = |colour: Rgba| scene.over.items().iter().rposition(|l| l.colour == colour.packed()).unwrap();
@@ -301,15 +287,11 @@ mod tests {
     fn what_is_no_longer_there_is_not_drawn() {
         let mesh = square();
         let overlay = Overlay {
-            mesh: &mesh,
-            front: &[],
             changed: &[[ElementId(7)].into()],
-            decision: Decision::default(),
-            refused: &[],
             picked: Some(Outlined::Edge([NodeId(0), NodeId(9)])),
             hovered: Some(Outlined::Element(ElementId(9))),
             lit: &[Outlined::Element(ElementId(5)), Outlined::Edge([NodeId(8), NodeId(9)])],
-            background: None,
+            ..bare(&mesh)
         };
         let mut scene = drawn(&mesh);
         scene.set_overlay(&overlay, Layers { boundary: false, ..Layers::default() }, &DARK);

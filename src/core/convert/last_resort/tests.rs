@@ -52,6 +52,24 @@ fn mesh_of(uv: Vec<DVec2>, triangles: Vec<[u32; 3]>) -> Mesh {
     Mesh::from_triangles(&TriangleSet { uv, point, triangles, region, ..TriangleSet::default() }, metric)
 }
 
+/// A mesh, all its elements and the plan for them; they are even in number and firm.
+fn planned(uv: Vec<DVec2>, triangles: Vec<[u32; 3]>) -> (Mesh, Vec<ElementId>, Plan) {
+    let mesh = mesh_of(uv, triangles);
+    let component: Vec<ElementId> = mesh.elements().collect();
+    let plan = Plan::new(&mesh, &component, &Uniform).expect("the triangles are firm and even in number");
+    (mesh, component, plan)
+}
+
+fn points<const N: usize>(uv: [(f64, f64); N]) -> Vec<DVec2> {
+    uv.map(DVec2::from).to_vec()
+}
+
+fn state(mesh: &Mesh) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    mesh.write_state(&mut bytes);
+    bytes
+}
+
 /// A grid of `columns` by `rows` squares, inner nodes moved by up to `jitter` sides, cut along random diagonals, then
 /// scaled by `flat` in height. Diagonals are chosen so that all triangles are positive.
 fn jittered_grid(random: &mut Random, columns: usize, rows: usize, jitter: f64, flat: f64) -> Mesh {
@@ -214,21 +232,16 @@ fn whatever_is_forbidden_the_result_is_right() {
 fn an_odd_component_is_refused_and_the_mesh_is_as_it_was() {
     let mut mesh = jittered_grid(&mut Random::new(0), 3, 3, 0.2, 1.0);
     let part: Vec<ElementId> = mesh.elements().skip(1).collect();
-    let (mut before, mut after) = (Vec::new(), Vec::new());
-    mesh.write_state(&mut before);
+    let before = state(&mesh);
     assert!(matches!(last_resort(&mut mesh, &part, &Uniform), Err(Stuck::Odd(_))));
-    mesh.write_state(&mut after);
-    assert_eq!(before, after);
+    assert_eq!(before, state(&mesh));
 }
 
 #[test]
 fn a_triangle_with_three_leaves_is_filled_from_its_middle() {
     // No two of the leaves have a partner at once: the only join is all three sides of the middle.
-    let uv = [(0.0, 0.0), (2.0, 0.0), (1.0, 2.0), (2.5, 1.5), (-0.5, 1.5), (1.0, -1.0)];
-    let uv = uv.map(|(x, y)| DVec2::new(x, y)).to_vec();
-    let mut mesh = mesh_of(uv, vec![[0, 1, 2], [1, 3, 2], [2, 4, 0], [0, 5, 1]]);
-    let component: Vec<ElementId> = mesh.elements().collect();
-    let plan = Plan::new(&mesh, &component, &Uniform).expect("four is even");
+    let uv = points([(0.0, 0.0), (2.0, 0.0), (1.0, 2.0), (2.5, 1.5), (-0.5, 1.5), (1.0, -1.0)]);
+    let (mut mesh, component, plan) = planned(uv, vec![[0, 1, 2], [1, 3, 2], [2, 4, 0], [0, 5, 1]]);
     let outcome = plan.outcome();
     assert_eq!((outcome.unmatched, outcome.unmatched_at_all, outcome.divided), (2, 2, 3));
     assert_eq!(outcome.template_quads, 3 + 3 * 5);
@@ -238,11 +251,8 @@ fn a_triangle_with_three_leaves_is_filled_from_its_middle() {
 #[test]
 fn a_pair_that_is_not_convex_is_cut_anew_with_its_neighbour() {
     // The chevron 0-1-2-3 has its notch at 3; with the quadrilateral 1-0-4-5 beside it the cut 3-5 is better than 0-1.
-    let uv = [(-1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.8), (-1.0, 0.0), (0.0, -0.2)];
-    let uv = uv.map(|(x, y)| DVec2::new(x, y)).to_vec();
-    let mut mesh = mesh_of(uv, vec![[0, 1, 3], [1, 2, 3], [1, 0, 4], [1, 4, 5]]);
-    let component: Vec<ElementId> = mesh.elements().collect();
-    let plan = Plan::new(&mesh, &component, &Uniform).expect("four is even");
+    let uv = points([(-1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.8), (-1.0, 0.0), (0.0, -0.2)]);
+    let (mut mesh, component, plan) = planned(uv, vec![[0, 1, 3], [1, 2, 3], [1, 0, 4], [1, 4, 5]]);
     assert_eq!((plan.outcome().recut, plan.outcome().quads()), (2, 2));
     assert_eq!(plan.means(0), Means::Recut);
     carry_out_and_check(&mut mesh, &component, &plan);
@@ -252,11 +262,8 @@ fn a_pair_that_is_not_convex_is_cut_anew_with_its_neighbour() {
 #[test]
 fn two_triangles_on_a_bulging_boundary_are_filled_around_a_new_node() {
     // Both 0-1-5 and 1-2-5 stand on the boundary 0-1-2, which bulges at 1: no cut without a new node is convex.
-    let uv = [(-1.0, 0.0), (0.0, 0.1), (1.0, 0.0), (1.8, 1.0), (0.9, 1.9), (0.0, 1.0)];
-    let uv = uv.map(|(x, y)| DVec2::new(x, y)).to_vec();
-    let mut mesh = mesh_of(uv, vec![[0, 1, 5], [1, 2, 5], [5, 2, 3], [5, 3, 4]]);
-    let component: Vec<ElementId> = mesh.elements().collect();
-    let plan = Plan::new(&mesh, &component, &Uniform).expect("four is even");
+    let uv = points([(-1.0, 0.0), (0.0, 0.1), (1.0, 0.0), (1.8, 1.0), (0.9, 1.9), (0.0, 1.0)]);
+    let (mut mesh, component, plan) = planned(uv, vec![[0, 1, 5], [1, 2, 5], [5, 2, 3], [5, 3, 4]]);
     assert_eq!((plan.outcome().recut, plan.outcome().quads()), (3, 3));
     carry_out_and_check(&mut mesh, &component, &plan);
     assert_eq!(mesh.node_count(), 7);
@@ -268,9 +275,7 @@ fn a_corner_that_is_straight_but_for_rounding_is_not_merged() {
     let bulge = 1.0 - f64::EPSILON;
     let uv = vec![DVec2::ZERO, DVec2::new(1.0, bulge), DVec2::new(2.0, 2.0), DVec2::new(0.0, 2.0)];
     assert!(convex(uv[0], uv[1], uv[2], uv[3]));
-    let mut mesh = mesh_of(uv, vec![[0, 1, 3], [1, 2, 3]]);
-    let component: Vec<ElementId> = mesh.elements().collect();
-    let plan = Plan::new(&mesh, &component, &Uniform).expect("two is even");
+    let (mut mesh, component, plan) = planned(uv, vec![[0, 1, 3], [1, 2, 3]]);
     assert_eq!((plan.outcome().merged, plan.outcome().template_quads), (0, 10));
     carry_out_and_check(&mut mesh, &component, &plan);
 }
@@ -294,9 +299,7 @@ fn no_template_is_inverted_by_rounding_while_triangles_are_firm() {
         let uv = vec![a, b, c, b + c - a, c + a - b, a + b - c];
         let triangles = vec![[0, 1, 2], [1, 3, 2], [2, 4, 0], [0, 5, 1]];
         if triangles.iter().all(|t| firm(uv[t[0] as usize], uv[t[1] as usize], uv[t[2] as usize])) {
-            let mut mesh = mesh_of(uv, triangles);
-            let component: Vec<ElementId> = mesh.elements().collect();
-            let plan = Plan::new(&mesh, &component, &Uniform).expect("the triangles are firm");
+            let (mut mesh, _, plan) = planned(uv, triangles);
             assert_eq!(plan.outcome().template_quads, 18);
             carry_out(&mut mesh, &plan);
             assert_eq!(mesh.check(), Ok(()));
@@ -331,7 +334,7 @@ fn a_missing_metric_at_a_new_node_is_an_error_and_the_mesh_is_as_it_was() {
             Err(Box::new(BadMetric { what: "nothing here".into(), place: MetricPlace::in_plane(uv) }))
         }
     }
-    let uv = [(0.0, 0.0), (2.0, 0.0), (3.0, 3.0), (1.9, 0.5)].map(|(x, y)| DVec2::new(x, y)).to_vec();
+    let uv = points([(0.0, 0.0), (2.0, 0.0), (3.0, 3.0), (1.9, 0.5)]);
     let mut mesh = mesh_of(uv, vec![[0, 1, 3], [1, 2, 3]]);
     let component: Vec<ElementId> = mesh.elements().collect();
     assert!(matches!(last_resort(&mut mesh, &component, &Nowhere), Err(Stuck::Metric(_))));
@@ -342,11 +345,6 @@ fn a_missing_metric_at_a_new_node_is_an_error_and_the_mesh_is_as_it_was() {
 fn what_was_done_is_taken_back_exactly_and_done_again_the_same() {
     let mut mesh = jittered_grid(&mut Random::new(5), 12, 12, 0.45, 1.0);
     let component: Vec<ElementId> = mesh.elements().collect();
-    let state = |mesh: &Mesh| {
-        let mut bytes = Vec::new();
-        mesh.write_state(&mut bytes);
-        bytes
-    };
     let (before, mark) = (state(&mesh), mesh.mark());
     let outcome = last_resort(&mut mesh, &component, &Uniform).expect("the grid is even");
     let after = state(&mesh);

@@ -2,6 +2,8 @@ use super::*;
 
 /// What makes a mesh defective.
 type Change = fn(&mut MeshFile);
+/// The defects that are found, with how many there are of each.
+type Found = &'static [(Defect, u64)];
 
 /// `n` by `n` unit squares, translated by `at`.
 fn squares(n: u32, at: DVec3) -> MeshFile {
@@ -71,7 +73,7 @@ fn a_ring_is_sound() {
 #[test]
 fn single_defects_are_found_in_squares() {
     use Defect::*;
-    let cases: [(u32, Change, &[(Defect, u64)]); 10] = [
+    let cases: [(u32, Change, Found); 10] = [
         (
             1,
             |mesh| {
