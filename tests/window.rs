@@ -9,7 +9,7 @@ mod window_harness;
 
 use std::time::Duration;
 
-use eframe::egui::{Key, Modifiers, Vec2};
+use eframe::egui::{Key, Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
 use quadfront::app::window::{App, Command, Direction, Goal, Lost, Source, SurfaceView, ViewLayer};
@@ -466,6 +466,18 @@ fn a_step_in_space_looks_the_same_however_one_came_to_it() {
     }
 }
 
+/// Drags from a point to the right and down, over several frames.
+fn drag(harness: &mut Window, at: Pos2) {
+    harness.drag_at(at);
+    harness.run_steps(1);
+    for k in 1..=4 {
+        harness.hover_at(at + Vec2::new(20.0 * k as f32, 8.0 * k as f32));
+        harness.run_steps(1);
+    }
+    harness.drop_at(at + Vec2::new(80.0, 32.0));
+    harness.run_steps(3);
+}
+
 #[test]
 fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_what_was_grabbed() {
     let Some(mut harness) = window_on("sphere") else { return };
@@ -489,14 +501,7 @@ fn a_click_in_space_selects_what_is_in_front_and_a_drag_turns_the_mesh_about_wha
         Outlined::Element(e) => mesh.corners(e).collect(),
     };
     assert!(nodes.iter().all(|n| (mesh.xyz(*n) - camera.centre).dot(towards) > 0.0), "it is on the near half");
-    harness.drag_at(at);
-    harness.run_steps(1);
-    for k in 1..=4 {
-        harness.hover_at(at + Vec2::new(20.0 * k as f32, 8.0 * k as f32));
-        harness.run_steps(1);
-    }
-    harness.drop_at(at + Vec2::new(80.0, 32.0));
-    harness.run_steps(3);
+    drag(&mut harness, at);
     let turned = harness.state().state.view().space.camera.unwrap();
     assert!(turned.towards().angle_between(towards) > 0.2, "{}", turned.towards().angle_between(towards));
     assert_eq!(turned.scale, camera.scale);
@@ -515,14 +520,7 @@ fn a_plane_view_that_is_moved_is_saved_with_the_run() {
     };
     assert!(!is_kept(&harness));
     let at = harness.query_all_by_label_contains("Mesh at step").map(|node| node.rect()).next().unwrap().center();
-    harness.drag_at(at);
-    harness.run_steps(1);
-    for k in 1..=4 {
-        harness.hover_at(at + Vec2::new(20.0 * k as f32, 8.0 * k as f32));
-        harness.run_steps(1);
-    }
-    harness.drop_at(at + Vec2::new(80.0, 32.0));
-    harness.run_steps(3);
+    drag(&mut harness, at);
     assert!(is_kept(&harness));
     press(&mut harness, Modifiers::NONE, Key::F);
     assert!(!is_kept(&harness), "the whole mesh is shown again");

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::helping::next_message;
+use super::waiting::next_message;
 use super::{Converter, TELL};
 use crate::core::convert::event::Event;
 use crate::core::convert::front::Done;

@@ -6,7 +6,7 @@
 
 mod counts;
 mod explaining;
-mod helping;
+mod waiting;
 mod faces;
 mod taking_back;
 
