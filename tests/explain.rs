@@ -120,7 +120,7 @@ fn every_segment_has_its_reason_in_words() {
         for row in &table.rows {
             let told = SegmentFacts::in_table(state, &table, row.a, row.b).unwrap();
             assert_eq!(told.verdict == Verdict::First, [row.a, row.b] == base);
-            assert_eq!(told.rank.is_none(), told.verdict == Verdict::PutOff);
+            assert_eq!(told.rank.is_none(), told.verdict == Verdict::Deferred);
             let text = told.to_string();
             assert!(text.contains("eq. 6") && text.contains("hosen") || text.contains("deferred"), "{text}");
             seen.insert(format!("{:?}", told.verdict).split([' ', '{']).next().unwrap().to_owned());

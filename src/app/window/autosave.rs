@@ -313,7 +313,7 @@ mod tests {
         drop(first);
         let offers = left_behind(folder.path());
         assert_eq!(offers.len(), 1);
-        assert_eq!(offers[0].text, "A run of example1 with 3 edits from a moment ago was not closed.");
+        assert_eq!(offers[0].text, "An unsaved run of example1 with 3 edits from a moment ago can be recovered.");
         assert!(left_behind(folder.path()).is_empty(), "whoever offers it holds it");
         drop(offers);
         second.ask(Ask::Forget);

@@ -145,7 +145,7 @@ impl FigureForm {
         part: Option<(FigurePart, f64)>,
         view: Option<(Bearing, HiddenLines)>,
     ) -> Result<FigureOptions, Fault> {
-        let wrong = |what: String| Fault::new(format!("The size of the figure is not understood: {what}"));
+        let wrong = |what: String| Fault::new(format!("The figure's size is not valid: {what}"));
         let text = self.size.trim();
         let mut size: Option<Size> = if text.is_empty() { None } else { Some(text.parse().map_err(wrong)?) };
         if let Some((_, shape)) = part {
@@ -187,7 +187,8 @@ impl FigureForm {
             return Ok(bookmarks.iter().map(|step| Wanted::at(Some(Stop::Step(*step)))).collect());
         }
         let stops = crate::app::input::stops(&format!("nq={}", self.stops.replace(' ', "")));
-        let stops = stops.map_err(|what| Fault::new(format!("\"{}\" are not valid stops: {what}", self.stops)))?;
+        let stops =
+            stops.map_err(|what| Fault::new(format!("\"{}\" is not a valid list of stops: {what}", self.stops)))?;
         Ok(stops.0.into_iter().map(Wanted::at).collect())
     }
 }

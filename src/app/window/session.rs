@@ -109,8 +109,8 @@ pub struct Tracked {
 #[derive(Clone, Debug)]
 pub struct Explained {
     pub told: SegmentFacts,
-    /// The step that put it off, with the reason of its last failure; none unless it is put off.
-    pub put_off: Option<(u64, Option<Why>)>,
+    /// The step that deferred it, with the reason of its last failure; none unless it is deferred.
+    pub deferred: Option<(u64, Option<Why>)>,
 }
 
 /// The history of something up to a step.

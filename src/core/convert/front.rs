@@ -30,7 +30,7 @@ pub(super) struct Front<'f> {
     pub queue: &'f mut Option<Queue>,
     /// The face that is being converted, by its region; none where all is converted together.
     pub face: Option<u32>,
-    /// Whether the gates are wide: every segment was put off and taken up again.
+    /// Whether the gates are wide: every segment was deferred and taken up again.
     pub second_pass: &'f mut bool,
     /// Whether the journal is kept, so that steps can be taken back.
     pub keeps_journal: bool,

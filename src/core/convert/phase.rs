@@ -119,7 +119,7 @@ pub enum Phase {
         /// Tops C and D.
         tops: [NodeId; 2],
     },
-    /// Every attempt has failed: the segment is to be put off.
+    /// Every attempt has failed: the segment is to be deferred.
     Defer {
         /// The base.
         base: Base,
@@ -191,7 +191,7 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// The base segment of the quadrilateral at hand, from its selection until it stands or is put off.
+    /// The base segment of the quadrilateral at hand, from its selection until it stands or is deferred.
     pub fn base(&self) -> Option<&Base> {
         match self {
             Phase::PrepareSide { base, .. }

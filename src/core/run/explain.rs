@@ -77,7 +77,7 @@ pub enum Verdict {
     /// It comes first.
     First,
     /// It is deferred until something near it changes.
-    PutOff,
+    Deferred,
     /// Rows nearer to the boundary come first.
     LaterLayer,
     /// Its window value is not below c Hmin (4.3.3, step ii): segments within reach come first, then smaller H-values.
@@ -158,7 +158,7 @@ impl SegmentFacts {
 }
 
 fn verdict(table: &FrontTable, row: &Row) -> Verdict {
-    let Some(choice) = table.choice().filter(|_| !row.is_put_off) else { return Verdict::PutOff };
+    let Some(choice) = table.choice().filter(|_| !row.is_deferred) else { return Verdict::Deferred };
     if choice.h == row.h {
         return Verdict::First;
     }

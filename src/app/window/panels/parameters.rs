@@ -39,7 +39,7 @@ const NUMBERS: [Number; 7] = [
         decimals: 2,
         unit: "",
         paper: "1.5–2.0",
-        tip: "A segment is within reach below c times the smallest H-value (section 4.3.3).",
+        tip: "A segment is within reach if its H-value is below c times the smallest one (section 4.3.3).",
     },
     Number {
         key: "theta_seam",

@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         Some((e, angle)) => format!("smallest {}°, of element {}", words::degrees(angle), e.0),
         None => String::new(),
     };
-    if head(ui, "Least and greatest angles of the quads, degrees (fig. 24)", note, palette)
+    if head(ui, "Smallest and largest angle of each quad, degrees (fig. 24)", note, palette)
         && let Some((e, _)) = worst
     {
         commands.push(Command::Pick(Some(Outlined::Element(e))));
@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         light(
             commands,
             lit,
-            &format!("quads with such an angle of {}° to {}°", words::fixed(low, 0), words::fixed(high, 0)),
+            &format!("quads with an angle from {}° to {}°", words::fixed(low, 0), words::fixed(high, 0)),
         );
     }
 }

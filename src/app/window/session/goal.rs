@@ -24,9 +24,9 @@ pub enum Goal {
     Step(u64),
     /// A number of steps forward, or back if it is negative.
     Steps(i64),
-    /// A number of quadrilaterals forward, or back if it is negative: to where their local post-processing is done.
+    /// A number of quadrilaterals forward, or back if it is negative; their local post-processing is included.
     Quads(i64),
-    /// To where there are so many quadrilaterals.
+    /// To the step at which this many quadrilaterals stand.
     ToQuads(u64),
     /// To the next event of a kind, or the one before.
     Kind(EventKind, Direction),
@@ -57,7 +57,7 @@ impl Goal {
     }
 }
 
-/// The step so many quadrilaterals back. From within a quadrilateral, the first of them leads to where it began.
+/// The step `by` quadrilaterals back. From within a quadrilateral, the first of them leads to its beginning.
 fn back(log: &Log, step: u64, by: u64) -> u64 {
     let first = |quads: u64| if quads == 0 { Some(0) } else { log.first_with(quads, 0) };
     let here = log.nq(step);

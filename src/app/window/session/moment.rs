@@ -42,7 +42,7 @@ pub struct Moment {
     pub just_changed: Arc<[ElementId]>,
     /// The front in the order of selection.
     pub front: Vec<Segment>,
-    /// The same segments with their loops, and whether they are put off.
+    /// The same segments with their loops, and whether they are deferred.
     pub rows: Vec<Row>,
     /// The loops of the front.
     pub loops: Vec<Loop>,

@@ -215,12 +215,12 @@ impl Worker {
 
     fn explain(&self, a: NodeId, b: NodeId) {
         let Some(told) = SegmentFacts::of(self.history.state(), a, b) else { return };
-        let put_off = if told.row.is_put_off { self.put_off(a, b) } else { None };
-        self.voice.say(SessionNews::Explained(self.history.step(), Arc::new(Explained { told, put_off })));
+        let deferred = if told.row.is_deferred { self.deferred(a, b) } else { None };
+        self.voice.say(SessionNews::Explained(self.history.step(), Arc::new(Explained { told, deferred })));
     }
 
     /// The last step that put a segment off, with the reason of its last failure, as far as events are kept.
-    fn put_off(&self, a: NodeId, b: NodeId) -> Option<(u64, Option<Why>)> {
+    fn deferred(&self, a: NodeId, b: NodeId) -> Option<(u64, Option<Why>)> {
         let log = self.history.log();
         let deferred = Event::Deferred { a, b };
         let step = (1..=self.history.step()).rev().find(|step| log.event(*step) == Some(&deferred))?;

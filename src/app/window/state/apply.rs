@@ -23,7 +23,7 @@ impl State {
     /// Does what the user asks for.
     pub(in crate::app::window) fn apply(&mut self, command: Command) {
         if self.run.import.is_some() && !command.fits_import() {
-            return self.notice("That belongs to a run: convert the mesh first, or cancel.".to_owned());
+            return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
         }
         match command {
             Command::Go(goal) => self.ask(|session| session.go(goal)),

@@ -58,7 +58,7 @@ pub struct Converter<'a> {
     undone: Option<Vec<Undone>>,
     /// Where the journal stood before the step at hand.
     step_mark: Mark,
-    /// Whether the gates are wide: every segment was put off and taken up again.
+    /// Whether the gates are wide: every segment was deferred and taken up again.
     second_pass: bool,
     /// On surfaces the faces by region, converted one after another; else none: all is converted together.
     faces: Arc<[u32]>,
@@ -190,7 +190,7 @@ impl<'a> Converter<'a> {
         Fingerprint::of(&bytes)
     }
 
-    /// The number of quadrilaterals that stand.
+    /// The number of finished quadrilaterals (NQ) at this step.
     pub fn standing(&self) -> u64 {
         match &self.phase {
             // Everything but the faces to come is a quadrilateral, also what clean-up has put in the place of others.
@@ -300,7 +300,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    /// Takes an attempt back; the next one follows, or where there is none the segment is put off (docs/algorithm.md,
+    /// Takes an attempt back; the next one follows, or where there is none the segment is deferred (docs/algorithm.md,
     /// "Rescue").
     fn take_attempt_back(&mut self, base: Base, attempt: Attempt, why: Why) -> Done {
         if self.keeps_history() {

@@ -57,7 +57,7 @@ pub fn untangle(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes) -> boo
     all_convex(mesh, core)
 }
 
-/// Relaxes the free ones of some nodes, so many rounds at the most.
+/// Relaxes the free ones of some nodes, for at most this many rounds.
 pub fn relax(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes, rounds: usize) {
     for _ in 0..rounds {
         let mut moved: f64 = 0.0;

@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         let parity = if ring.segments.is_multiple_of(2) { "even" } else { "odd" };
         about += &format!("  ·  loop {} of {}, {parity} ({})", row.front_loop + 1, moment.loops.len(), ring.segments);
     }
-    let rank = if row.is_put_off { "put off".to_owned() } else { format!("rank {}", place + 1) };
+    let rank = if row.is_deferred { "deferred".to_owned() } else { format!("rank {}", place + 1) };
     ui.horizontal_wrapped(|ui| {
         if is_base {
             let base = eframe::egui::RichText::new("base").font(theme::semibold(theme::TABLE));
@@ -38,8 +38,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
     let what = Outlined::Edge([s.a, s.b]);
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| {
-        let tip =
-            "Replaces the base that was just selected, or is selected next, whatever its rank. This changes the run";
+        let tip = "Replaces the base that was just selected, or the next base, whatever the rank. This changes the run";
         if !is_base && ui.button("Choose as base").on_hover_text(tip).clicked() {
             commands.push(Command::ChooseBase([s.a, s.b]));
         }
@@ -63,7 +62,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
     heading(ui, "Length", "eqs. 4, 5", palette);
     let length =
         format!("**{}** metric,  {} in space", words::fixed(s.length_metric, 2), words::size(s.length_physical));
-    formula(ui, &length, palette).on_hover_text("In a plane case the parametric length is that in space.");
+    formula(ui, &length, palette).on_hover_text("In a plane case the parametric length is the length in space.");
     heading(ui, "Ends", "sizes of their metrics", palette);
     ends(ui, moment, &[("A", s.a), ("B", s.b)], commands, palette);
 }
@@ -106,9 +105,9 @@ fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, pale
             degrees(parameters.theta_seam)
         ),
         Corner::Rectangle => format!("< {rect}°: {which} side is the front{front}"),
-        Corner::Flat => format!("\u{2265} {rect}°: {which} side is to be found"),
+        Corner::Flat => format!("\u{2265} {rect}°: {which} side must be found"),
         Corner::Reversal => {
-            format!("> {}° = \u{3b8}_{{revr}}: {which} side is to be found", degrees(parameters.theta_revr))
+            format!("> {}° = \u{3b8}_{{revr}}: {which} side must be found", degrees(parameters.theta_revr))
         }
     };
     formula(ui, &format!("\u{3b8}_{{{name}}}  **{}°**  {verdict}", words::degrees(theta)), palette);
