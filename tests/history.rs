@@ -226,36 +226,6 @@ fn what_is_told_to_have_changed_is_all_that_changed() {
 }
 
 #[test]
-fn the_next_and_previous_quadrilaterals_are_where_their_local_work_is_done() {
-    let (run, background) = run_of("example1", 1.6);
-    let mut history = History::of(run, &background, BUDGET).unwrap();
-    let mut stands = vec![0];
-    while let Some(step) = history.next_quad() {
-        assert!(step > history.step() && history.log().is_at_rest(step));
-        history.seek(step).unwrap();
-        assert!(!history.state().phase().is_local_post_processing());
-        stands.push(step);
-    }
-    assert!(stands.len() > 80, "{}", stands.len());
-    for (nq, _) in stands.iter().enumerate().skip(1).take(40) {
-        assert_eq!(history.step_with_quads(nq as u64), Some(stands[nq]), "nq {nq}");
-    }
-    for pair in stands.windows(2).rev() {
-        history.seek(pair[1]).unwrap();
-        assert_eq!(history.previous_quad(), Some(pair[0]));
-        if pair[0] + 1 < pair[1] {
-            history.seek(pair[1] - 1).unwrap();
-            assert_eq!((history.previous_quad(), history.next_quad()), (Some(pair[0]), Some(pair[1])));
-        }
-    }
-    history.seek(0).unwrap();
-    assert_eq!(history.previous_quad(), None);
-    let seam = history.next_of_kind(EventKind::RolledBack).unwrap();
-    history.seek(seam + 1).unwrap();
-    assert_eq!(history.previous_of_kind(EventKind::RolledBack), Some(seam));
-}
-
-#[test]
 fn conditions_stop_forward_and_back_at_the_same_steps_whatever_is_kept() {
     let (run, background) = run_of("example1", 0.4);
     let conditions = ["quad.quality < 0.5 || recovery.failed", "front.loops > 2"].map(|c| Condition::parse(c).unwrap());

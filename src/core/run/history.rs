@@ -186,6 +186,20 @@ impl History {
         self.recorder = Some(recorder);
     }
 
+    /// Searches, and where nothing is found runs further ahead and searches again.
+    pub(super) fn ahead<T>(&mut self, look: impl Fn(&History) -> Option<T>) -> Option<T> {
+        loop {
+            if let Some(found) = look(self) {
+                return Some(found);
+            }
+            let known = self.log.known();
+            self.extend(known + 4 * SPACING);
+            if self.log.known() == known {
+                return None;
+            }
+        }
+    }
+
     /// Lends the recorder, so that another thread can run ahead. [`History::accept`] takes its results,
     /// [`History::take_back`] the recorder itself. `None` where it is already lent, or where the end is known.
     pub fn lend(&mut self) -> Option<Recorder> {

@@ -8,7 +8,7 @@
 //! | copies of the mesh for other threads, updated by what changed | [`copies::Copies`] |
 //! | what a figure shows of a run | [`shown::Shown`] |
 //! | running ahead on another thread | [`recorder::Recorder`], which [`history::History::lend`] lends |
-//! | one event per step, the number of quadrilaterals, where to go next | [`log::Log`], `playback` |
+//! | one event per step, the number of quadrilaterals, where to go next | [`log::Log`] |
 //! | invariants and statistics along a run, lanes of its work | [`sample`], [`timeline`] |
 //! | the step that made each quadrilateral, without a history | [`births`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`watch`] |
@@ -29,7 +29,6 @@ pub mod recorder;
 pub mod history;
 pub mod copies;
 pub mod births;
-mod playback;
 pub mod breakpoint;
 pub mod watch;
 pub mod front_table;

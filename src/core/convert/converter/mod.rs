@@ -140,17 +140,6 @@ impl<'a> Converter<'a> {
         self.queue = None;
     }
 
-    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its
-    /// event says so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
-    ///
-    /// # Errors
-    /// Where there is no such front segment now.
-    pub fn override_base(&mut self, a: NodeId, b: NodeId) -> Result<(), Fault> {
-        self.check_base(a, b)?;
-        self.pick(a, b);
-        Ok(())
-    }
-
     /// Whether there is a front segment from A to B.
     ///
     /// # Errors
@@ -163,8 +152,9 @@ impl<'a> Converter<'a> {
         select::front_segment(&self.mesh, a, b).map(drop).ok_or_else(none)
     }
 
-    /// As [`Converter::override_base`], without asking whether there is such a segment now.
-    pub(in crate::core) fn pick(&mut self, a: NodeId, b: NodeId) {
+    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its
+    /// event says so. If it is not on the front when the selection comes, [`Event::PickLost`] says that.
+    pub fn pick(&mut self, a: NodeId, b: NodeId) {
         self.picked = Some([a, b]);
     }
 
