@@ -9,17 +9,13 @@ use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
 use quadfront::core::case::built_in;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::{Event, EventKind};
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::mesh::ids::NodeId;
+use quadfront::core::convert::{Converter, Event, EventKind, Phase};
+use quadfront::core::mesh::NodeId;
 use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
-use quadfront::core::run::breakpoint::Condition;
-use quadfront::core::run::history::{BUDGET, Changes, History};
-use quadfront::core::run::run::{Edit, EditKind, Run};
+use quadfront::core::run::history::BUDGET;
 use quadfront::core::run::timeline::lanes;
-use quadfront::core::run::watch::{Appearance, Watched};
+use quadfront::core::run::{Appearance, Changes, Condition, Edit, EditKind, History, Run, Watched};
 
 fn run_of(name: &str, size_scale: f64) -> (Run, Background) {
     let mut run = Run::of(built_in::named(name).unwrap().unwrap());

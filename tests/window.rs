@@ -13,7 +13,7 @@ use eframe::egui::{Key, Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
 use quadfront::app::window::{App, Command, Direction, Goal, Lost, Source, SurfaceView, ViewLayer};
-use quadfront::core::convert::event::EventKind;
+use quadfront::core::convert::EventKind;
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 

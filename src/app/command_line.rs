@@ -8,7 +8,7 @@ use super::figure::FigureOptions;
 use super::input::{InputFormat, Stops, Until, input_format, mesh_format, mesh_use, setting, stops, until};
 use super::output::Target;
 use crate::core::case::{ImportOptions, MeshUse};
-use crate::core::formats::format::Format;
+use crate::core::formats::Format;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
 #[derive(Parser)]

@@ -18,8 +18,8 @@ use slot::{RunSlot, left_behind};
 use super::import::ImportOptions;
 use super::session::{Opened, Source, Wake};
 use crate::core::fault::Fault;
-use crate::core::record::run_file::Keeper;
-use crate::core::run::run::{Bookmark, Camera, Edit, Run};
+use crate::core::record::Keeper;
+use crate::core::run::{Bookmark, Camera, Edit, Run};
 
 /// How long to wait after a failure before the next attempt.
 const AGAIN: Duration = Duration::from_secs(10);
@@ -285,7 +285,7 @@ mod tests {
 
     use super::*;
     use crate::core::case::built_in;
-    use crate::core::run::run::EditKind;
+    use crate::core::run::EditKind;
 
     fn run(edits: u64) -> Run {
         let mut run = Run::of(built_in::named("example1").unwrap().unwrap());

@@ -9,9 +9,9 @@ use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
 use super::words;
 use crate::core::case::built_in;
-use crate::core::convert::event::EventKind;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::watch::Watched;
+use crate::core::convert::EventKind;
+use crate::core::mesh::{ElementId, NodeId};
+use crate::core::run::Watched;
 use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 

@@ -20,17 +20,12 @@ pub use worker::Stops;
 
 use super::import::ImportOptions;
 use crate::core::case::Case;
-use crate::core::convert::event::{Event, EventKind, Why};
+use crate::core::convert::{Event, EventKind, Why};
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::breakpoint::Condition;
-use crate::core::run::explain::SegmentFacts;
-use crate::core::run::recorder::{Recorder, Stretch};
-use crate::core::run::run::{Edit, Run};
-use crate::core::run::sample::Sample;
-use crate::core::run::watch::Watched;
+use crate::core::run::{Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 use worker::Worker;
 
 /// How often progress is reported.

@@ -3,10 +3,9 @@
 
 use super::session::words_of;
 use super::state::Progress;
-use crate::core::convert::candidates::{Candidate, Candidates, Passed};
-use crate::core::convert::event::{Event, EventKind, Mending, Purpose, Why};
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::NodeId;
+use crate::core::convert::{Candidate, Candidates, Event, EventKind, Mending, Passed, Purpose, Why};
+use crate::core::front::Side;
+use crate::core::mesh::NodeId;
 use crate::core::progress::Stage;
 use crate::render::scene::Outlined;
 

@@ -2,7 +2,7 @@
 //! `assets/cases/README.md`. Deliberately absent: geometric checks (`geometry::domain`) and checks of formulas
 //! (`metric::formula`).
 
-pub mod parameters;
+mod parameters;
 pub(in crate::core) mod table;
 mod geometry;
 mod surfaces;
@@ -18,16 +18,15 @@ use std::sync::Arc;
 use glam::DVec2;
 
 pub use import_options::ImportOptions;
-use parameters::Parameters;
+pub use parameters::{Parameters, Selection, SelectionWindow};
 use table::{Source, Table};
 pub use taking::{MeshSource, MeshUse, Taking};
 
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::load;
-use crate::core::geometry::spec::ComplexSpec;
-use crate::core::geometry::spec::{CurveSpec, FaceSpec};
-use crate::core::metric::field::FieldSpec;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::geometry::{ComplexSpec, CurveSpec, FaceSpec};
+use crate::core::metric::FieldSpec;
+use crate::core::soup::MeshFile;
 
 /// The supported version of case files.
 pub const VERSION: u32 = 1;

@@ -2,11 +2,10 @@
 
 use super::event::Event;
 use super::phase::Phase;
-use crate::core::case::parameters::Parameters;
-use crate::core::front::selection::Queue;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::journal::Mark;
-use crate::core::metric::field::MetricSource;
+use crate::core::case::Parameters;
+use crate::core::front::Queue;
+use crate::core::mesh::{Mark, Mesh};
+use crate::core::metric::MetricSource;
 
 /// What a step comes to: the phase after it and what it did. Without an event it found nothing to do, and the next
 /// phase has its turn in the same step.

@@ -6,10 +6,8 @@ use smallvec::SmallVec;
 
 use super::last_resort::Plan;
 use super::last_resort::component::Component;
-use crate::core::front::sector::Side;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::mesh::journal::Mark;
+use crate::core::front::Side;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mark, Mesh, NodeId};
 
 /// The base segment of the quadrilateral at hand. Its half-edge changes with every swap beside it: nodes name it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,11 +4,8 @@ use super::event::Event;
 use super::front::{Done, Front};
 use super::last_resort::component::live_components;
 use super::phase::{Attempt, Base, Phase};
-use crate::core::front::sector::Side;
-use crate::core::front::segment::Segment;
-use crate::core::front::selection::BaseChoice;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::front::{BaseChoice, Segment, Side};
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
 
 /// Selects the base segment by the rules (4.3.3, steps i to iii), or takes the one that a person picked. Where every
 /// segment is deferred, all are taken up once more with wider gates; after that what is left over is closed.

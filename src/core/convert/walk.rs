@@ -10,7 +10,7 @@ use super::event::Event;
 use super::phase::{FinishPart, Phase};
 use super::side::candidates::Candidates;
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::NodeId;
 use crate::core::progress::{Stage, Watch};
 
 /// Where a walk stops.

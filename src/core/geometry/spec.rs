@@ -124,14 +124,14 @@ pub enum SpaceShape {
 /// The shape of a surface in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SurfaceShape {
-    /// See [`plane`](super::primitive::plane).
+    /// See `plane`.
     Plane {
         /// A corner.
         corner: DVec3,
         /// Two sides from it.
         sides: [DVec3; 2],
     },
-    /// See [`cone`](super::primitive::cone); a cylinder if both radii are equal.
+    /// See `cone`; a cylinder if both radii are equal.
     Cone {
         /// Foot, axis and direction of the angle 0.
         frame: AxisFrame,
@@ -142,7 +142,7 @@ pub enum SurfaceShape {
         /// First and last angle, degrees.
         angles: [f64; 2],
     },
-    /// See [`sphere`](super::primitive::sphere).
+    /// See `sphere`.
     Sphere {
         /// Centre, axis and direction of the angle 0.
         frame: AxisFrame,
@@ -153,7 +153,7 @@ pub enum SurfaceShape {
         /// First and last latitude, degrees.
         latitudes: [f64; 2],
     },
-    /// See [`torus`](super::primitive::torus).
+    /// See `torus`.
     Torus {
         /// Centre, axis and direction of the angle 0.
         frame: AxisFrame,
@@ -166,14 +166,14 @@ pub enum SurfaceShape {
         /// First and last angle about the tube, degrees.
         tube_angles: [f64; 2],
     },
-    /// See [`extrusion`](super::primitive::extrusion).
+    /// See `extrusion`.
     Extrusion {
         /// The name of a curve.
         curve: String,
         /// Direction and length.
         along: DVec3,
     },
-    /// See [`revolution`](super::primitive::revolution).
+    /// See `revolution`.
     Revolution {
         /// The name of a curve.
         curve: String,

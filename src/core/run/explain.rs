@@ -7,12 +7,11 @@ use glam::DVec2;
 use serde::Serialize;
 
 use super::front_table::{FrontTable, Loop, Row};
-use crate::core::case::parameters::{Parameters, Selection};
-use crate::core::convert::converter::Converter;
-use crate::core::front::sector::Side;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::case::{Parameters, Selection};
+use crate::core::convert::Converter;
+use crate::core::front::Side;
+use crate::core::kernel::Metric2;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 use crate::core::metric::measure::angle;
 
 /// A metric with its eigenpairs: sizes h = 1 / sqrt(lambda) along orthonormal directions.

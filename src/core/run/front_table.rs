@@ -5,10 +5,11 @@ use std::collections::BTreeSet;
 
 use serde::{Serialize, Serializer};
 
-use crate::core::case::parameters::{Parameters, Selection};
-use crate::core::convert::converter::Converter;
-use crate::core::front::segment::{Key, Segment, layer};
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::case::{Parameters, Selection};
+use crate::core::convert::Converter;
+use crate::core::front::Segment;
+use crate::core::front::segment::{Key, layer};
+use crate::core::mesh::{HalfEdgeId, NodeId};
 
 /// One segment of the front.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -13,12 +13,9 @@ use super::keyframes::{Keyframe, Keyframes};
 use super::log::Log;
 use super::recorder::{Recorder, SPACING, Stretch};
 use super::run::{EditKind, Run};
-use crate::core::convert::converter::Converter;
-use crate::core::convert::event::{Event, EventKind};
+use crate::core::convert::{Converter, Event, EventKind};
 use crate::core::fault::Fault;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::half_edge::touched::Touched;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, Mesh, NodeId, Touched};
 use crate::core::prepare::Background;
 use crate::core::progress::Watch;
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::front_count::FrontCount;
 use super::sample::Sample;
-use crate::core::convert::event::{Event, EventKind};
+use crate::core::convert::{Event, EventKind};
 
 /// Steps in a chunk of events.
 const CHUNK: usize = 4096;
@@ -260,7 +260,7 @@ fn kind_of(stored: u8) -> EventKind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::mesh::ids::NodeId;
+    use crate::core::mesh::NodeId;
 
     fn event(i: u64) -> Event {
         if i.is_multiple_of(10) { Event::SecondPass } else { Event::Deferred { a: NodeId(i as u32), b: NodeId(0) } }

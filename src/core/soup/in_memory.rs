@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 use super::counting::Counting;
 use super::mesh_file::{Group, MeshFile};
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::kernel::tensor::{Metric2, Metric3, check_sizes};
+use crate::core::kernel::tensor::check_sizes;
+use crate::core::kernel::{Metric2, Metric3};
 
 impl MeshFile {
     /// A mesh in the plane z = 0: points, and triangles by the indices of their points from 0, anticlockwise. Messages

@@ -12,7 +12,7 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::front::segment::Segment;
+use crate::core::front::Segment;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 

@@ -15,8 +15,8 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::explain::MetricFacts;
+use crate::core::mesh::{ElementId, NodeId};
+use crate::core::run::MetricFacts;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Decision, Outlined};
 

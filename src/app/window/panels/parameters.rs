@@ -7,8 +7,8 @@ use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
-use crate::core::case::parameters::Parameters;
-use crate::core::run::run::EditKind;
+use crate::core::case::Parameters;
+use crate::core::run::EditKind;
 use crate::render::palette::Palette;
 
 /// A number: key, name, range, decimals, unit, the paper's value, and its effect.

@@ -8,7 +8,7 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::mesh::ids::ElementId;
+use crate::core::mesh::ElementId;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Outlined, angles};
 

@@ -1,7 +1,7 @@
 //! Goals of a walk through the run, and the steps that they stand for.
 
-use crate::core::convert::event::EventKind;
-use crate::core::run::log::Log;
+use crate::core::convert::EventKind;
+use crate::core::run::Log;
 
 /// A direction along the steps of a run, or along the changes of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,8 +61,7 @@ mod tests {
     use super::*;
     use crate::core::case::built_in;
     use crate::core::progress::Nobody;
-    use crate::core::run::history::History;
-    use crate::core::run::run::Run;
+    use crate::core::run::{History, Run};
 
     fn history() -> History {
         let mut case = built_in::named("example1").unwrap().unwrap();

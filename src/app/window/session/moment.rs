@@ -3,16 +3,12 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::core::case::parameters::Parameters;
-use crate::core::convert::candidates::Candidates;
-use crate::core::convert::event::Event;
-use crate::core::convert::phase::Phase;
-use crate::core::front::segment::Segment;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::ElementId;
-use crate::core::run::explain::SegmentFacts;
+use crate::core::case::Parameters;
+use crate::core::convert::{Candidates, Event, Phase};
+use crate::core::front::Segment;
+use crate::core::mesh::{ElementId, Mesh};
 use crate::core::run::front_table::{Loop, Row};
-use crate::core::run::history::Changes;
+use crate::core::run::{Changes, SegmentFacts};
 
 /// Whether the invariants hold.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

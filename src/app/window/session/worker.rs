@@ -10,17 +10,13 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
 use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, Tracked, Voice};
-use crate::core::convert::event::{Event, Why};
+use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::breakpoint::{self, Condition};
-use crate::core::run::copies::{Copies, Since};
-use crate::core::run::explain::SegmentFacts;
-use crate::core::run::history::{BUDGET, History};
-use crate::core::run::recorder::{Recorder, Stretch};
-use crate::core::run::run::{Edit, Run};
-use crate::core::run::sample::Sample;
-use crate::core::run::watch::Watched;
+use crate::core::mesh::{ElementId, NodeId};
+use crate::core::run::breakpoint;
+use crate::core::run::copies::Since;
+use crate::core::run::history::BUDGET;
+use crate::core::run::{Condition, Copies, Edit, History, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 
 /// How many steps the recorder does before it hands them over, least and most: few at first, since the window may be
 /// waiting.

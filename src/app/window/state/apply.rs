@@ -12,12 +12,10 @@ use crate::app::window::files::Dialog;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Direction, Goal, Session, Source};
 use crate::app::window::words;
-use crate::core::convert::event::Event;
+use crate::core::convert::Event;
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::NodeId;
-use crate::core::run::breakpoint::Condition;
-use crate::core::run::run::{Edit, EditKind};
-use crate::core::run::watch::Watched;
+use crate::core::mesh::NodeId;
+use crate::core::run::{Condition, Edit, EditKind, Watched};
 
 impl State {
     /// Does what the user asks for.

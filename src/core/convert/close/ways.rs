@@ -8,10 +8,8 @@ use super::{MOST_SEGMENTS, MOST_TRIANGLES};
 use crate::core::convert::event::Event;
 use crate::core::convert::last_resort::component::Component;
 use crate::core::convert::relax::{Nodes, all_convex, put, settle, worst_quality};
-use crate::core::mesh::half_edge::{Mesh, NewElement};
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::mesh::refusals::Operation;
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NewElement, NodeId, Operation};
+use crate::core::metric::MetricSource;
 
 /// A closing is kept when every element around is at least this good.
 const LEAST_QUALITY: f64 = 0.1;

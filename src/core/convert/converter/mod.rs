@@ -24,15 +24,12 @@ use super::front::{Done, Front};
 use super::last_resort::Outcome;
 use super::phase::{Attempt, Base, FinishPart, Phase};
 use super::{close, form, local, seam, select, side, split, top};
-use crate::core::case::parameters::Parameters;
+use crate::core::case::Parameters;
 use crate::core::fault::Fault;
-use crate::core::front::sector::Side;
-use crate::core::front::selection::Queue;
-use crate::core::kernel::fingerprint::Fingerprint;
-use crate::core::mesh::half_edge::{Mesh, Undone};
-use crate::core::mesh::ids::NodeId;
-use crate::core::mesh::journal::Mark;
-use crate::core::metric::field::MetricSource;
+use crate::core::front::{Queue, Side};
+use crate::core::kernel::Fingerprint;
+use crate::core::mesh::{Mark, Mesh, NodeId, Undone};
+use crate::core::metric::MetricSource;
 use crate::core::progress::{Stage, Watch};
 
 /// Steps between two reports of progress.

@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use super::component::NONE;
 use super::planner::{Planner, firm_quad};
 use super::{Means, Stuck};
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, NodeId};
 use crate::core::metric::measure::quad_quality;
 
 /// A crooked pair is cut anew with up to this many pairs in all, itself included.

@@ -7,9 +7,8 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use crate::core::kernel::predicates::{convex, firm};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{ElementId, Mesh, NodeId};
+use crate::core::metric::MetricSource;
 
 /// Rounds of relaxation of the nodes around a trial.
 pub const RELAX_ROUNDS: usize = 4;

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::{Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, Verdict};
-use crate::core::case::parameters::{Parameters, Selection, SelectionWindow};
-use crate::core::mesh::ids::ElementId;
+use crate::core::case::{Parameters, Selection, SelectionWindow};
+use crate::core::mesh::ElementId;
 use crate::core::run::front_table::Row;
 
 impl Corner {

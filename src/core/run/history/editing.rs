@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::History;
-use crate::core::case::parameters::Parameters;
+use crate::core::case::Parameters;
 use crate::core::fault::Fault;
 use crate::core::run::run::{Edit, EditKind, OF_BACKGROUND, Run};
 

@@ -8,10 +8,9 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::{icons, words};
-use crate::core::convert::candidates::Candidates;
-use crate::core::front::sector::Side;
-use crate::core::front::segment::Segment;
-use crate::core::run::explain::Corner;
+use crate::core::convert::Candidates;
+use crate::core::front::{Segment, Side};
+use crate::core::run::Corner;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 

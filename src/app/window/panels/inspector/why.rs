@@ -8,9 +8,9 @@ use crate::app::window::command::Command;
 use crate::app::window::session::{Explained, Moment};
 use crate::app::window::state::{Lookup, State};
 use crate::app::window::words;
-use crate::core::case::parameters::{Selection, SelectionWindow};
-use crate::core::run::explain::{SegmentFacts, Verdict};
+use crate::core::case::{Selection, SelectionWindow};
 use crate::core::run::front_table::Row;
+use crate::core::run::{SegmentFacts, Verdict};
 use crate::render::palette::Palette;
 
 pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {

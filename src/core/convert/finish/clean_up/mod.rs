@@ -16,9 +16,8 @@ use super::worklist::Worklist;
 use crate::core::convert::event::{Cleaning, Event};
 use crate::core::convert::relax::{Nodes, RELAX_ROUNDS, energy, relax, untangle, worst_quality};
 use crate::core::convert::sums::summed;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::NodeId;
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{Mesh, NodeId};
+use crate::core::metric::MetricSource;
 use candidate::{Candidate, Ranked, Valences};
 use region::Region;
 
