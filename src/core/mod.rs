@@ -1,5 +1,5 @@
-//! The converter and what it stands on, from the lowest floor to the highest: a room imports only from those above it
-//! in this list (`tests/architecture.rs`). Deliberately absent: screens, clocks, threads' own state, unseeded
+//! The converter and what it stands on, from the lowest floor to the highest: a room imports only from rooms
+//! listed before it (`tests/architecture.rs`). Deliberately absent: screens, clocks, threads' own state, unseeded
 //! randomness.
 
 pub mod fault;

@@ -1,15 +1,15 @@
 //! From triangles to quadrilaterals: the merging front (paper 4.3), the guarantee (docs/algorithm.md, "The guarantee"),
-//! and what makes the mesh better in the end (docs/algorithm.md, "Post-processing").
+//! and the post-processing of the whole mesh (docs/algorithm.md, "Post-processing").
 //!
-//! How a base segment becomes a quadrilateral that stands: `select` chooses it (4.3.3); `side` prepares its left
+//! How a base segment becomes a finished quadrilateral: `select` chooses it (4.3.3); `side` prepares its left
 //! side, then its right one, and `top` the edge between their tops (4.3.4); `form` merges the triangles between the
 //! four, and where that fails everything is taken back and `form::attempts` finds another way, or the segment is
 //! deferred. Around the new quadrilateral `local` swaps, removes and smooths, `seam` closes small angles and `split`
 //! narrow regions (4.3.6). `close` converts what the front leaves over: small loops, then the rest by the
 //! `last_resort`. `finish` cleans up and smooths the whole (4.3.7).
 //!
-//! Each step works on a `Front` and returns the next [`Phase`] and an [`Event`]; the
-//! `converter` ties them, a phase a line.
+//! Each step works on a `Front` and returns the next [`Phase`] and an [`Event`]; the `converter` drives them, with one
+//! match arm per phase.
 
 mod sums;
 mod event;

@@ -42,7 +42,7 @@ impl BaseChoice {
     }
 }
 
-/// All front segments, ordered for selection.
+/// All front segments that are not deferred, ordered for selection.
 #[derive(Clone, Debug, Default)]
 pub struct Queue {
     /// Classes 1 to 3 by the selection window, and all segments by H-value; other criteria use only the last heap.
