@@ -11,3 +11,4 @@ pub(crate) mod parity;
 pub mod fingerprint;
 pub(crate) mod decimal;
 pub(crate) mod spelling;
+pub(crate) mod worded;
