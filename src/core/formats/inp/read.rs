@@ -16,27 +16,18 @@ use crate::core::soup::mesh_file::{Group, MeshFile};
 fn corners_of(kind: &str) -> Result<usize, ()> {
     let shells = ["STRI", "S", "CPS", "CPE", "CPEG", "CAX", "M3D", "R3D", "SFM3D", "DS", "DC2D"];
     let lines = ["T2D", "T3D", "B2", "B3", "R2D", "RAX"];
-    let letters_end =
-        |prefix: &str| kind.strip_prefix(prefix).filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
-    for prefix in shells {
-        if let Some(rest) = letters_end(prefix) {
-            return match rest.as_bytes()[0] {
-                b'3' => Ok(3),
-                b'4' => Ok(4),
-                _ => Err(()),
-            };
-        }
+    let digit = |prefix: &str| kind.strip_prefix(prefix)?.bytes().next().filter(u8::is_ascii_digit);
+    match shells.into_iter().find_map(digit) {
+        Some(b'3') => return Ok(3),
+        Some(b'4') => return Ok(4),
+        Some(_) => return Err(()),
+        None => {}
     }
-    for prefix in lines {
-        if let Some(rest) = letters_end(prefix) {
-            return if rest.as_bytes()[0] == b'3' || (prefix.starts_with('B') && rest.as_bytes()[0] == b'2') {
-                Err(())
-            } else {
-                Ok(2)
-            };
-        }
+    match lines.into_iter().find_map(|prefix| Some((prefix, digit(prefix)?))) {
+        None => Ok(0),
+        Some((_, b'3') | ("B2" | "B3", b'2')) => Err(()),
+        Some(_) => Ok(2),
     }
-    Ok(0)
 }
 
 /// The section of the following data lines.
@@ -62,13 +53,14 @@ struct Sets {
 }
 
 /// Lists by name, ignoring case.
+#[derive(Default)]
 struct NamedLists<T> {
     all: Vec<(String, Vec<T>)>,
     known: FxHashMap<String, usize>,
 }
 
 /// The numbers from `first` to `last` in steps of `step`.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Run {
     first: u64,
     last: u64,
@@ -307,12 +299,6 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
             _ => Section::Other,
         }),
         _ => Ok(Section::Other),
-    }
-}
-
-impl<T> Default for NamedLists<T> {
-    fn default() -> Self {
-        NamedLists { all: Vec::new(), known: FxHashMap::default() }
     }
 }
 
