@@ -41,7 +41,7 @@ pub fn divide_and_triangulate(
     for round in 0.. {
         let divided = division.nodes()?;
         match triangulate(domain, &divided) {
-            Ok(Triangulated { set, folded }) => {
+            Ok((set, folded)) => {
                 // A corner that refinement does not improve is a corner of the surface.
                 if round >= ROUNDS || !refined(&mut division, &divided, folded) {
                     return Ok((divided, set));
@@ -87,14 +87,15 @@ impl HasPosition for Vertex {
 
 type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 
-/// Triangulates the faces of divided curves, without the outside and holes. Regions are the faces by number.
+/// Triangulates the faces of divided curves, without the outside and holes. Regions are the faces by number. Also
+/// returns the chords at which triangles fold over in space: refinement may help.
 ///
 /// # Errors
 /// Chords that cross, touch or coincide, and triangles that are too thin (docs/algorithm.md, "Rounding").
 ///
 /// # Panics
 /// If a boundary loop is odd: [`Division::even_out`] has made them even.
-pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<Triangulated, Box<Clash>> {
+pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<(TriangleSet, Vec<DividedChord>), Box<Clash>> {
     let (mesh, folded) = triangles(domain, divided)?;
     for nodes in mesh.loops() {
         assert!(
@@ -103,15 +104,7 @@ pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<Triangula
             point_text(mesh.set.uv[nodes[0] as usize])
         );
     }
-    Ok(Triangulated { set: mesh.set, folded })
-}
-
-/// The result of [`triangulate`].
-pub struct Triangulated {
-    /// The triangles.
-    pub set: TriangleSet,
-    /// Chords at which triangles fold over in space: refinement may help.
-    pub folded: Vec<DividedChord>,
+    Ok((mesh.set, folded))
 }
 
 fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<(CutMesh, Vec<DividedChord>), Box<Clash>> {
