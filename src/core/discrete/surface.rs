@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rustc_hash::FxHashMap;
 
 use super::chart::{Chart, charts};
@@ -21,6 +21,7 @@ use crate::core::geometry::lifting::Piece;
 use crate::core::geometry::named_curve::NamedCurve;
 use crate::core::geometry::space_curve::SpaceCurve;
 use crate::core::geometry::spec::FaceSpec;
+use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::tensor::Metric3;
 use crate::core::mesh::names;
 use crate::core::metric::field::Field;
@@ -164,8 +165,7 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
     // Upper bounds by turning and by deviation.
     let mut most = vec![(f64::INFINITY, f64::INFINITY); mesh.points.len()];
-    let (low, high) =
-        mesh.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+    let (low, high) = extent(mesh.points.iter().copied());
     let away = MOST_AWAY * low.distance(high);
     let features = features(mesh, &edges, ANGLE);
     for edge in 0..edges.len() {

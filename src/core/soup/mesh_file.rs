@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
 use super::counting::{Counting, Elements, enumerate};
+use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::tensor::Metric3;
 use crate::core::mesh::names::Named;
 
@@ -140,10 +141,7 @@ impl MeshFile {
     pub fn is_plane(&self) -> bool {
         let elements = self.triangles.as_flattened().iter().chain(self.quads.as_flattened());
         let points = elements.chain(self.polygons.iter().flatten()).filter_map(|&k| self.points.get(k as usize));
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for p in points {
-            (low, high) = (low.min(*p), high.max(*p));
-        }
+        let (low, high) = extent(points.copied());
         let extent = high - low;
         // Points that are not finite are refused later, by number.
         let least = 1e-9 * extent.x.max(extent.y).max(high.z.abs());
