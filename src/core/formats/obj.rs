@@ -156,10 +156,8 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     for p in &mesh.points {
         writeln!(out, "v {} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
     }
-    let triangles = mesh.triangles.iter().enumerate().map(|(i, t)| (&t[..], tag_of(&mesh.triangle_tags, i)));
-    let quads = mesh.quads.iter().enumerate().map(|(i, q)| (&q[..], tag_of(&mesh.quad_tags, i)));
     let mut group = None;
-    for (face, tag) in triangles.chain(quads) {
+    for (face, tag) in mesh.faces() {
         enter(out, &mut group, mesh.group_name(2, tag))?;
         write_corners(out, "f", face)?;
     }

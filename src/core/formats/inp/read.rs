@@ -36,10 +36,8 @@ enum Section {
     /// Elements with this number of corners, and their set.
     Elements(usize, Option<usize>),
     Skipped(String),
-    /// The element numbers of a set.
-    Set(usize),
-    /// The element numbers of a set, as first, last and step (GENERATE).
-    GeneratedSet(usize),
+    /// The element numbers of a set; whether they are given as first, last and step (GENERATE).
+    Set(usize, bool),
     /// Element edges of a surface.
     Surface(usize),
     Other,
@@ -135,12 +133,12 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 Some(count) => *count += 1,
                 None => drop(skipped.insert(kind.clone(), 1)),
             },
-            Section::Set(set) | Section::GeneratedSet(set) => {
+            Section::Set(set, generated) => {
                 // Names of other sets are ignored.
                 let numbers: Vec<u64> = fields.filter_map(parse_whole).collect();
                 let runs = &mut sets.sets.all[*set].1;
                 match numbers[..] {
-                    [first, last, ref rest @ ..] if matches!(section, Section::GeneratedSet(_)) => {
+                    [first, last, ref rest @ ..] if *generated => {
                         runs.push(Run { first, last, step: rest.first().copied().unwrap_or(1) });
                     }
                     _ => runs.extend(numbers.into_iter().map(|number| Run { first: number, last: number, step: 1 })),
@@ -287,8 +285,7 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
             }
         }
         "ELSET" => Ok(match option("ELSET") {
-            Some(name) if option("GENERATE").is_some() => Section::GeneratedSet(sets.sets.index(name)),
-            Some(name) => Section::Set(sets.sets.index(name)),
+            Some(name) => Section::Set(sets.sets.index(name), option("GENERATE").is_some()),
             None => Section::Other,
         }),
         // The default type is ELEMENT.
