@@ -364,7 +364,8 @@ impl<'a> Edges<'a> {
                 }
                 let far = triangles[o][(i + 2) % 3];
                 let halves = [[a, far, apex], [far, b, apex]];
-                if halves.iter().all(|half| self.is_positive(*half)) {
+                let corners = halves.map(|half| half.map(|n| self.at(n)));
+                if corners.iter().all(|&[a, b, c]| positive(a, b, c)) {
                     [triangles[t], triangles[o]] = halves;
                     touched.extend([t, o]);
                 }
@@ -430,11 +431,6 @@ impl<'a> Edges<'a> {
         };
         let inside = curve.fine.iter().map(|entry| entry.0).filter(|&t| from < t && t < to);
         inside.map(off).fold(0.0, f64::max) / along.length()
-    }
-
-    fn is_positive(&self, triangle: [u32; 3]) -> bool {
-        let [a, b, c] = triangle.map(|n| self.at(n));
-        positive(a, b, c)
     }
 
     fn thin(&self, triangle: &[u32; 3]) -> Box<Clash> {
