@@ -10,8 +10,7 @@ use quadfront::core::case::built_in;
 use quadfront::core::convert::EventKind;
 use quadfront::core::mesh::NodeId;
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::Keeper;
-use quadfront::core::record::run_file;
+use quadfront::core::record::{Keeper, run_file};
 use quadfront::core::run::{Bookmark, Edit, EditKind, History, Run};
 
 /// Set for the child that saves until it is killed.

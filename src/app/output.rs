@@ -8,8 +8,7 @@ use std::str::FromStr;
 use super::command_line::Destination;
 use super::figure::Figure;
 use crate::core::fault::Fault;
-use crate::core::formats::format;
-use crate::core::formats::{Format, WriteOptions, save};
+use crate::core::formats::{Format, WriteOptions, format, save};
 use crate::core::soup::MeshFile;
 
 /// A file, or standard output.

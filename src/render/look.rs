@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::camera::Bearing;
 use super::picture::Role;
+use crate::core::kernel::worded::worded;
 
 /// The inks of figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,74 +17,45 @@ pub enum Ink {
     Colour,
 }
 
-/// A layer of the drawing of a state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Layer {
-    /// Live triangles.
-    Live,
-    /// Dead quadrilaterals.
-    Dead,
-    /// Elements that the last step changed.
-    Changed,
-    /// Boundary, cracks, interior lines.
-    Boundary,
-    /// The merging front, by the classes of table 1.
-    Front,
-    /// A wedge at every end of a front segment that already has a side: it distinguishes the classes without colours.
-    Wedges,
-    /// Base, sides and top of the current quadrilateral.
-    Decision,
-    /// The letters A, B, C and D.
-    Letters,
-    /// Nodes.
-    Nodes,
-    /// Class and H-value (eq. 6) of front segments.
-    H,
-    /// Frontal angles in degrees.
-    Angles,
-    /// Metric ellipses, scaled to a quarter of unit length.
-    Ellipses,
-    /// A scale bar.
-    Scale,
+worded! {
+    /// A layer of the drawing of a state.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Layer {
+        /// Live triangles.
+        Live = "live",
+        /// Dead quadrilaterals.
+        Dead = "dead",
+        /// Elements that the last step changed.
+        Changed = "changed",
+        /// Boundary, cracks, interior lines.
+        Boundary = "boundary",
+        /// The merging front, by the classes of table 1.
+        Front = "front",
+        /// A wedge at every end of a front segment that already has a side: it distinguishes the classes without
+        /// colours.
+        Wedges = "wedges",
+        /// Base, sides and top of the current quadrilateral.
+        Decision = "decision",
+        /// The letters A, B, C and D.
+        Letters = "letters",
+        /// Nodes.
+        Nodes = "nodes",
+        /// Class and H-value (eq. 6) of front segments.
+        H = "h",
+        /// Frontal angles in degrees.
+        Angles = "angles",
+        /// Metric ellipses, scaled to a quarter of unit length.
+        Ellipses = "ellipses",
+        /// A scale bar.
+        Scale = "scale",
+    }
+    /// All layers.
+    const ALL;
+    /// Its name.
+    fn name;
 }
 
 impl Layer {
-    /// All layers.
-    pub const ALL: [Layer; 13] = [
-        Layer::Live,
-        Layer::Dead,
-        Layer::Changed,
-        Layer::Boundary,
-        Layer::Front,
-        Layer::Wedges,
-        Layer::Decision,
-        Layer::Letters,
-        Layer::Nodes,
-        Layer::H,
-        Layer::Angles,
-        Layer::Ellipses,
-        Layer::Scale,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Layer::Live => "live",
-            Layer::Dead => "dead",
-            Layer::Changed => "changed",
-            Layer::Boundary => "boundary",
-            Layer::Front => "front",
-            Layer::Wedges => "wedges",
-            Layer::Decision => "decision",
-            Layer::Letters => "letters",
-            Layer::Nodes => "nodes",
-            Layer::H => "h",
-            Layer::Angles => "angles",
-            Layer::Ellipses => "ellipses",
-            Layer::Scale => "scale",
-        }
-    }
-
     /// The layer of a role.
     pub fn of(role: Role) -> Layer {
         match role {
@@ -127,48 +99,34 @@ impl Layers {
     }
 }
 
-/// How hidden lines are drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum HiddenLines {
-    /// Not drawn.
-    #[default]
-    Off,
-    /// Drawn faintly.
-    Faint,
-    /// Drawn almost like visible lines.
-    Shown,
+worded! {
+    /// How hidden lines are drawn.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum HiddenLines {
+        /// Not drawn.
+        #[default]
+        Off = "off",
+        /// Drawn faintly.
+        Faint = "faint",
+        /// Drawn almost like visible lines.
+        Shown = "shown",
+    }
+    /// All styles.
+    const ALL;
+    /// Its name.
+    fn name;
 }
 
 impl HiddenLines {
-    /// All styles.
-    pub const ALL: [HiddenLines; 3] = [HiddenLines::Off, HiddenLines::Faint, HiddenLines::Shown];
-
     /// The next style, cyclically.
     pub fn next(self) -> HiddenLines {
-        match self {
-            HiddenLines::Off => HiddenLines::Faint,
-            HiddenLines::Faint => HiddenLines::Shown,
-            HiddenLines::Shown => HiddenLines::Off,
-        }
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            HiddenLines::Off => "off",
-            HiddenLines::Faint => "faint",
-            HiddenLines::Shown => "shown",
-        }
+        HiddenLines::ALL[(self as usize + 1) % HiddenLines::ALL.len()]
     }
 
     /// The opacity of hidden lines.
     pub fn share(self) -> f32 {
-        match self {
-            HiddenLines::Off => 0.0,
-            HiddenLines::Faint => 0.2,
-            HiddenLines::Shown => 0.75,
-        }
+        [0.0, 0.2, 0.75][self as usize]
     }
 }
 

@@ -20,7 +20,6 @@ pub use overlay::{Decision, Outlined, Overlay, front};
 pub use placed::{Placed, STRETCH};
 pub use shading::{ColourBy, Shading, angles, metric_area};
 
-use super::palette::Rgba;
 use crate::core::mesh::{ElementId, Mesh, NodeId};
 use placed::Places;
 
@@ -154,11 +153,6 @@ pub struct Scene {
 /// A position relative to the anchor.
 fn relative(p: DVec3, anchor: DVec3) -> [f32; 3] {
     (p - anchor).as_vec3().to_array()
-}
-
-/// A colour that is drawn; 0 would mean nothing.
-fn ink(colour: Rgba) -> u32 {
-    colour.packed()
 }
 
 /// The bounding box of a mesh; `None` for an empty one.

@@ -19,8 +19,7 @@ pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint,
 use super::session::{Moment, Stops, Wake};
 use crate::core::case::Parameters;
 use crate::core::mesh::NodeId;
-use crate::core::run::run;
-use crate::core::run::{Bookmark, Condition, Run, Watched};
+use crate::core::run::{Bookmark, Condition, Run, Watched, run};
 use crate::render::scene::{ColourBy, Outlined};
 
 /// Everything that the window knows.

@@ -17,6 +17,7 @@ use super::cut::{Cut, CutMesh, Side, cut, sorted_sides};
 use crate::core::discrete::Triangles;
 use crate::core::discrete::defects::{capital, crossed, overlapping, used_points};
 use crate::core::discrete::lines::on_edges;
+use crate::core::discrete::repair::retain;
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::{firm, orient};
@@ -340,11 +341,6 @@ impl<'a> Import<'a> {
 
 fn same_edge(a: &Side, b: &Side) -> bool {
     a.ends() == b.ends()
-}
-
-fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
-    let mut keep = keep.iter();
-    items.retain(|_| keep.next().copied().unwrap_or(true));
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ pub fn divide_and_triangulate(
     for round in 0.. {
         let divided = division.nodes()?;
         match triangulate(domain, &divided) {
-            Ok(Triangulated { set, folded }) => {
+            Ok((set, folded)) => {
                 // A corner that refinement does not improve is a corner of the surface.
                 if round >= ROUNDS || !refined(&mut division, &divided, folded) {
                     return Ok((divided, set));
@@ -85,14 +85,15 @@ impl HasPosition for Vertex {
 
 type Cdt = ConstrainedDelaunayTriangulation<Vertex>;
 
-/// Triangulates the faces of divided curves, without the outside and holes. Regions are the faces by number.
+/// Triangulates the faces of divided curves, without the outside and holes. Regions are the faces by number. Also
+/// returns the chords at which triangles fold over in space: refinement may help.
 ///
 /// # Errors
 /// Chords that cross, touch or coincide, and triangles that are too thin (docs/algorithm.md, "Rounding").
 ///
 /// # Panics
 /// If a boundary loop is odd: [`Division::even_out`] has made them even.
-pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<Triangulated, Box<Clash>> {
+pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<(TriangleSet, Vec<DividedChord>), Box<Clash>> {
     let (mesh, folded) = triangles(domain, divided)?;
     for nodes in mesh.loops() {
         assert!(
@@ -101,15 +102,7 @@ pub fn triangulate(domain: &Domain, divided: &DividedDomain) -> Result<Triangula
             point_text(mesh.set.uv[nodes[0] as usize])
         );
     }
-    Ok(Triangulated { set: mesh.set, folded })
-}
-
-/// The result of [`triangulate`].
-pub struct Triangulated {
-    /// The triangles.
-    pub set: TriangleSet,
-    /// Chords at which triangles fold over in space: refinement may help.
-    pub folded: Vec<DividedChord>,
+    Ok((mesh.set, folded))
 }
 
 fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<(CutMesh, Vec<DividedChord>), Box<Clash>> {
@@ -369,7 +362,8 @@ impl<'a> Edges<'a> {
                 }
                 let far = triangles[o][(i + 2) % 3];
                 let halves = [[a, far, apex], [far, b, apex]];
-                if halves.iter().all(|half| self.is_positive(*half)) {
+                let corners = halves.map(|half| half.map(|n| self.at(n)));
+                if corners.iter().all(|&[a, b, c]| positive(a, b, c)) {
                     [triangles[t], triangles[o]] = halves;
                     touched.extend([t, o]);
                 }
@@ -435,11 +429,6 @@ impl<'a> Edges<'a> {
         };
         let inside = curve.fine.iter().map(|entry| entry.0).filter(|&t| from < t && t < to);
         inside.map(off).fold(0.0, f64::max) / along.length()
-    }
-
-    fn is_positive(&self, triangle: [u32; 3]) -> bool {
-        let [a, b, c] = triangle.map(|n| self.at(n));
-        positive(a, b, c)
     }
 
     fn thin(&self, triangle: &[u32; 3]) -> Box<Clash> {

@@ -19,6 +19,7 @@ use super::planar_map::{Stretch, StretchBound, stretch};
 use super::tutte;
 use crate::core::fault::Fault;
 use crate::core::kernel::DisjointSets;
+use crate::core::kernel::box_tree::extent;
 use crate::core::progress::{Cancel, Stage, Watch};
 
 /// Triangles with their map to the plane.
@@ -147,8 +148,7 @@ impl<'a> CutSurface<'a> {
             }
         }
         let centre = (0..mesh.triangles.len()).map(|t| mesh.corners(t).iter().sum::<DVec3>() / 3.0).collect();
-        let (low, high) =
-            mesh.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+        let (low, high) = extent(mesh.points.iter().copied());
         let size = (high - low).max_element();
         // Small enough for exact coordinates of ten thousand charts side by side, each as wide as the surface.
         let grid = if size > 0.0 { libm::ldexp(1.0, libm::ilogb(size) - 37) } else { 1.0 };

@@ -63,22 +63,21 @@ mod tests {
     use super::*;
     use crate::core::discrete::fixtures::{cube, three_half_planes};
 
+    /// The kinds of all feature edges.
+    fn found(mesh: &Triangles, angle: f64) -> Vec<Feature> {
+        features(mesh, &Edges::of(&mesh.triangles), angle).into_iter().flatten().collect()
+    }
+
     #[test]
     fn a_cube_has_its_twelve_edges_and_no_diagonals() {
-        let mesh = cube(2);
-        let edges = Edges::of(&mesh.triangles);
-        let found = features(&mesh, &edges, ANGLE);
-        assert_eq!(found.iter().filter(|f| **f == Some(Feature::Fold)).count(), 24);
-        assert_eq!(found.iter().flatten().count(), 24);
-        assert_eq!(features(&mesh, &edges, 1.7).iter().flatten().count(), 0);
+        assert_eq!(found(&cube(2), ANGLE), [Feature::Fold; 24]);
+        assert_eq!(found(&cube(2), 1.7), []);
     }
 
     #[test]
     fn branching_and_boundary_edges_of_half_planes_are_distinguished() {
-        let mesh = three_half_planes();
-        let edges = Edges::of(&mesh.triangles);
-        let found = features(&mesh, &edges, ANGLE);
-        let count = |kind| found.iter().filter(|f| **f == Some(kind)).count();
+        let found = found(&three_half_planes(), ANGLE);
+        let count = |kind| found.iter().filter(|f| **f == kind).count();
         assert_eq!((count(Feature::Branching), count(Feature::Boundary)), (1, 9));
     }
 
@@ -86,10 +85,7 @@ mod tests {
     fn region_borders_and_orientation_conflicts_are_features() {
         let mut mesh = cube(1);
         mesh.region[0] = 1;
-        let count = |mesh: &Triangles, kind| {
-            let edges = Edges::of(&mesh.triangles);
-            features(mesh, &edges, 3.2).iter().filter(|f| **f == Some(kind)).count()
-        };
+        let count = |mesh: &Triangles, kind| found(mesh, 3.2).into_iter().filter(|f| *f == kind).count();
         assert_eq!(count(&mesh, Feature::Region), 3);
         mesh.region[0] = 0;
         mesh.triangles[0].swap(0, 1);

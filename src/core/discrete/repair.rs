@@ -3,12 +3,11 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use glam::DVec3;
-
 use super::defects::{LARGEST, crossed, far_from_origin, one_sided, overlapping, used_points};
 use super::edges::{Edges, Groups, Triangles};
 use super::lines::on_edges;
 use crate::core::fault::Fault;
+use crate::core::kernel::box_tree::extent;
 use crate::core::mesh::Named;
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::core::soup::{MeshFile, Repair};
@@ -127,16 +126,18 @@ pub fn unrepaired(file: &MeshFile) -> Triangles {
     mesh
 }
 
+/// Removes the items whose flag is false.
+pub(in crate::core) fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    items.retain(|_| keep.next() != Some(&false));
+}
+
 impl Triangles {
     fn keep(&mut self, keep: &[bool]) {
-        let mut at = keep.iter();
-        self.triangles.retain(|_| at.next() != Some(&false));
-        let mut at = keep.iter();
-        self.region.retain(|_| at.next() != Some(&false));
-        let mut at = keep.iter();
-        self.texture.retain(|_| at.next() != Some(&false));
-        let mut at = keep.iter();
-        self.origin.retain(|_| at.next() != Some(&false));
+        retain(&mut self.triangles, keep);
+        retain(&mut self.region, keep);
+        retain(&mut self.texture, keep);
+        retain(&mut self.origin, keep);
     }
 
     /// Removes the texture coordinates of a changed triangle.
@@ -182,10 +183,7 @@ impl Triangles {
 
     /// Removes degenerate triangles; returns their number.
     fn remove_degenerate(&mut self) -> usize {
-        let (low, high) = self
-            .points
-            .iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
+        let (low, high) = extent(self.points.iter().copied());
         let least = LOW * (high - low).max_element();
         let is_flat = |mesh: &Triangles, triangle: usize| {
             let apex = mesh.apex(triangle);
@@ -336,6 +334,7 @@ mod tests {
     use crate::core::discrete::features::{Feature, features};
     use crate::core::discrete::fixtures::{border_edges, plate, sphere, torus};
     use crate::core::progress::Nobody;
+    use glam::DVec3;
 
     fn file(mesh: &Triangles) -> MeshFile {
         MeshFile { points: mesh.points.clone(), triangles: mesh.triangles.clone(), ..MeshFile::default() }

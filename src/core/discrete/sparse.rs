@@ -8,6 +8,8 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use crate::core::kernel::box_tree::extent;
+
 /// The matrix I - W in rows, with ascending columns including the diagonal.
 pub struct Means {
     start: Vec<u32>,
@@ -156,10 +158,7 @@ impl Means {
             order.extend_from_slice(nodes);
             return;
         }
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for &node in &*nodes {
-            (low, high) = (low.min(places[node as usize]), high.max(places[node as usize]));
-        }
+        let (low, high) = extent(nodes.iter().map(|&node| places[node as usize]));
         let extent = (high - low).to_array();
         let axis = (1..3).fold(0, |axis, k| if extent[k] > extent[axis] { k } else { axis });
         let at = |node: u32| places[node as usize][axis];

@@ -7,6 +7,7 @@ use rstar::{AABB, RTree};
 
 use super::edges::{Edges, Groups, Triangles};
 use crate::core::kernel::DisjointSets;
+use crate::core::kernel::box_tree::extent;
 use crate::core::progress::Cancel;
 use crate::core::soup::weld::weld;
 
@@ -157,8 +158,7 @@ impl Triangles {
         let fan_of: Vec<u32> = (0..corners as u32).map(|c| sets.find(c)).collect();
         let at = |c: u32| self.triangles[c as usize / 3][c as usize % 3];
         let mut by_point = Groups::of(corners, self.points.len(), at);
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        self.points.iter().for_each(|&p| (low, high) = (low.min(p), high.max(p)));
+        let (low, high) = extent(self.points.iter().copied());
         let size = (high - low).length();
         let (mut copies, mut places, mut pinched) = (Vec::new(), 0, 0);
         for (point, at_point) in (0_u32..).zip(by_point.iter_mut()) {

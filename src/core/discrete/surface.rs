@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rustc_hash::FxHashMap;
 
 use super::chart::{Chart, charts};
@@ -16,6 +16,7 @@ use crate::core::geometry::complex::{Lifted, assemble};
 use crate::core::geometry::lifting::Piece;
 use crate::core::geometry::{Domain, FaceSpec, FaceSurface, Facets, Image, NamedCurve, SpaceCurve};
 use crate::core::kernel::Metric3;
+use crate::core::kernel::box_tree::extent;
 use crate::core::mesh::names;
 use crate::core::metric::Field;
 use crate::core::metric::gradation::bound_gradation;
@@ -158,8 +159,7 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
     // Upper bounds by turning and by deviation.
     let mut most = vec![(f64::INFINITY, f64::INFINITY); mesh.points.len()];
-    let (low, high) =
-        mesh.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+    let (low, high) = extent(mesh.points.iter().copied());
     let away = MOST_AWAY * low.distance(high);
     let features = features(mesh, &edges, ANGLE);
     for edge in 0..edges.len() {

@@ -13,31 +13,38 @@ use super::save::{load_watched, save};
 use super::stl;
 use super::vtu;
 use crate::core::fault::{Fault, FaultKind};
+use crate::core::kernel::worded::worded;
 use crate::core::progress::{Nobody, Pace, Reading, Watch};
 use crate::core::soup::MeshFile;
 
-/// A mesh format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Format {
-    /// Gmsh, `.msh`.
-    Msh,
-    /// Medit, `.mesh`, with the metric in a `.sol` file of the same name.
-    Medit,
-    /// VTK XML, `.vtu`.
-    Vtu,
-    /// Wavefront, `.obj`.
-    Obj,
-    /// Abaqus, `.inp`.
-    Inp,
-    /// Stanford, `.ply`.
-    Ply,
-    /// Stereolithography, `.stl`; read only, since it has no quadrilaterals.
-    Stl,
-    /// Khronos glTF, `.gltf`; read only, likewise.
-    Gltf,
-    /// Binary glTF, `.glb`; read only.
-    Glb,
+worded! {
+    /// A mesh format.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[non_exhaustive]
+    pub enum Format {
+        /// Gmsh, `.msh`.
+        Msh = "msh",
+        /// Medit, `.mesh`, with the metric in a `.sol` file of the same name.
+        Medit = "mesh",
+        /// VTK XML, `.vtu`.
+        Vtu = "vtu",
+        /// Wavefront, `.obj`.
+        Obj = "obj",
+        /// Abaqus, `.inp`.
+        Inp = "inp",
+        /// Stanford, `.ply`.
+        Ply = "ply",
+        /// Stereolithography, `.stl`; read only, since it has no quadrilaterals.
+        Stl = "stl",
+        /// Khronos glTF, `.gltf`; read only, likewise.
+        Gltf = "gltf",
+        /// Binary glTF, `.glb`; read only.
+        Glb = "glb",
+    }
+    /// All formats; the writable ones come first.
+    const ALL;
+    /// The extension of its files, without the dot.
+    fn extension;
 }
 
 /// Options for writing.
@@ -48,19 +55,6 @@ pub struct WriteOptions {
 }
 
 impl Format {
-    /// All formats; the writable ones come first.
-    pub const ALL: [Format; 9] = [
-        Format::Msh,
-        Format::Medit,
-        Format::Vtu,
-        Format::Obj,
-        Format::Inp,
-        Format::Ply,
-        Format::Stl,
-        Format::Gltf,
-        Format::Glb,
-    ];
-
     /// The writable formats: those with quadrilaterals.
     pub fn written() -> impl Iterator<Item = Format> {
         Format::ALL.into_iter().filter(|format| format.is_written())
@@ -69,21 +63,6 @@ impl Format {
     /// Whether it can be written.
     pub fn is_written(self) -> bool {
         !matches!(self, Format::Stl | Format::Gltf | Format::Glb)
-    }
-
-    /// The extension of its files, without the dot.
-    pub fn extension(self) -> &'static str {
-        match self {
-            Format::Msh => "msh",
-            Format::Medit => "mesh",
-            Format::Vtu => "vtu",
-            Format::Obj => "obj",
-            Format::Inp => "inp",
-            Format::Ply => "ply",
-            Format::Stl => "stl",
-            Format::Gltf => "gltf",
-            Format::Glb => "glb",
-        }
     }
 
     /// The format of a file by its extension, ignoring case.

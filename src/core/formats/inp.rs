@@ -26,9 +26,7 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     write_elements(out, "S3", 1, &mesh.triangles)?;
     write_elements(out, "S4", mesh.triangles.len() + 1, &mesh.quads)?;
     let mut elements: BTreeMap<u32, Vec<u64>> = BTreeMap::new();
-    let triangle_tags = (0..mesh.triangles.len()).map(|i| tag_of(&mesh.triangle_tags, i));
-    let quad_tags = (0..mesh.quads.len()).map(|i| tag_of(&mesh.quad_tags, i));
-    for (tag, number) in triangle_tags.chain(quad_tags).zip(1..) {
+    for ((_, tag), number) in mesh.faces().zip(1..) {
         if tag != 0 {
             elements.entry(tag).or_default().push(number);
         }

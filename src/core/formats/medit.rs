@@ -13,7 +13,7 @@ use crate::core::fault::Fault;
 use crate::core::kernel::{Metric3, Shortest};
 use crate::core::progress::{Nobody, Pace, Reading};
 use crate::core::soup::MeshFile;
-use crate::core::soup::mesh_file::{positive_definite, tag_of};
+use crate::core::soup::mesh_file::tag_of;
 
 /// Reads a mesh from the bytes of a `.mesh` file; `name` is the file's name in messages. References become tags.
 ///
@@ -201,7 +201,7 @@ fn tensor(s: &mut Scanner, components: usize, vertex: usize) -> Result<Metric3, 
         }
         _ => Metric3 { xx: m[0], xy: m[1], xz: m[3], yy: m[2], yz: m[4], zz: m[5] },
     };
-    positive_definite(metric).ok_or_else(|| {
+    metric.is_spd().then_some(metric).ok_or_else(|| {
         s.fault(format!("The metric of vertex {vertex} is not positive definite"))
             .remedy("Its eigenvalues must be positive")
     })

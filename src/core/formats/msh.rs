@@ -29,6 +29,14 @@ enum Shape {
     Volume(&'static str, usize),
 }
 
+/// Volume elements by name: the type and its number of nodes.
+const VOLUMES: [(&str, [(i64, usize); 5]); 4] = [
+    ("tetrahedron", [(4, 4), (11, 10), (29, 20), (30, 35), (31, 56)]),
+    ("hexahedron", [(5, 8), (12, 27), (17, 20), (92, 64), (93, 125)]),
+    ("prism", [(6, 6), (13, 18), (18, 15), (90, 40), (91, 75)]),
+    ("pyramid", [(7, 5), (14, 14), (19, 13), (118, 30), (119, 55)]),
+];
+
 /// Gmsh's table of element types.
 fn shape(kind: i64) -> Option<Shape> {
     Some(match kind {
@@ -37,26 +45,11 @@ fn shape(kind: i64) -> Option<Shape> {
         3 => Shape::Quad,
         15 => Shape::Point,
         8 | 9 | 10 | 16 | 20..=28 | 36..=62 => Shape::HigherOrder,
-        4 => Shape::Volume("tetrahedron", 4),
-        11 => Shape::Volume("tetrahedron", 10),
-        29 => Shape::Volume("tetrahedron", 20),
-        30 => Shape::Volume("tetrahedron", 35),
-        31 => Shape::Volume("tetrahedron", 56),
-        5 => Shape::Volume("hexahedron", 8),
-        12 => Shape::Volume("hexahedron", 27),
-        17 => Shape::Volume("hexahedron", 20),
-        92 => Shape::Volume("hexahedron", 64),
-        93 => Shape::Volume("hexahedron", 125),
-        6 => Shape::Volume("prism", 6),
-        13 => Shape::Volume("prism", 18),
-        18 => Shape::Volume("prism", 15),
-        90 => Shape::Volume("prism", 40),
-        91 => Shape::Volume("prism", 75),
-        7 => Shape::Volume("pyramid", 5),
-        14 => Shape::Volume("pyramid", 14),
-        19 => Shape::Volume("pyramid", 13),
-        118 => Shape::Volume("pyramid", 30),
-        119 => Shape::Volume("pyramid", 55),
-        _ => return None,
+        _ => {
+            let of_kind = |&(name, kinds): &(&'static str, [(i64, usize); 5])| {
+                Some(Shape::Volume(name, kinds.iter().find(|(known, _)| *known == kind)?.1))
+            };
+            return VOLUMES.iter().find_map(of_kind);
+        }
     })
 }

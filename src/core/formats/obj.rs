@@ -24,7 +24,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     let mut faces = 0;
     // A face may precede its vertices: the largest index, with its position in the file, is checked at the end.
     let mut largest = (0, 0);
-    let (mut names, mut line_names) = (GroupNames::of(2), GroupNames::of(1));
+    let [mut names, mut line_names] = [2, 1].map(|dimension| GroupNames { dimension, ..GroupNames::default() });
     let mut texture = Texture::default();
     let mut corners_uv: Vec<u32> = Vec::new();
     while let Some(line) = s.line() {
@@ -93,6 +93,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
 }
 
 /// The groups of faces, or of lines, in the order of their first members.
+#[derive(Default)]
 struct GroupNames {
     dimension: u8,
     tags: BTreeMap<String, u32>,
@@ -102,10 +103,6 @@ struct GroupNames {
 }
 
 impl GroupNames {
-    fn of(dimension: u8) -> Self {
-        GroupNames { dimension, tags: BTreeMap::new(), next: None, current: 0 }
-    }
-
     /// The tag of the next face or line; adds its group to the mesh if this is its first member.
     fn tag(&mut self, mesh: &mut MeshFile) -> u32 {
         if let Some(name) = self.next.take() {
@@ -160,10 +157,8 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     for p in &mesh.points {
         writeln!(out, "v {} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
     }
-    let triangles = mesh.triangles.iter().enumerate().map(|(i, t)| (&t[..], tag_of(&mesh.triangle_tags, i)));
-    let quads = mesh.quads.iter().enumerate().map(|(i, q)| (&q[..], tag_of(&mesh.quad_tags, i)));
     let mut group = None;
-    for (face, tag) in triangles.chain(quads) {
+    for (face, tag) in mesh.faces() {
         enter(out, &mut group, mesh.group_name(2, tag))?;
         write_corners(out, "f", face)?;
     }

@@ -296,24 +296,18 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
         SIDES.iter().try_for_each(|side| writeln!(out, "property uint {side}"))?;
     }
     writeln!(out, "end_header")?;
-    let tags = |out: &mut dyn Write, face: usize, tag: u32| {
-        write!(out, " {tag}")?;
-        if !lines.is_empty() {
-            let [a, b, c, d] = tags_of_sides.get(&face).copied().unwrap_or_default();
-            write!(out, " {a} {b} {c} {d}")?;
-        }
-        writeln!(out)
-    };
     for p in &mesh.points {
         writeln!(out, "{} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
     }
-    for (i, [a, b, c]) in mesh.triangles.iter().enumerate() {
-        write!(out, "3 {a} {b} {c}")?;
-        tags(out, i, tag_of(&mesh.triangle_tags, i))?;
-    }
-    for (i, [a, b, c, d]) in mesh.quads.iter().enumerate() {
-        write!(out, "4 {a} {b} {c} {d}")?;
-        tags(out, mesh.triangles.len() + i, tag_of(&mesh.quad_tags, i))?;
+    for (i, (corners, tag)) in mesh.faces().enumerate() {
+        write!(out, "{}", corners.len())?;
+        corners.iter().try_for_each(|corner| write!(out, " {corner}"))?;
+        write!(out, " {tag}")?;
+        if !lines.is_empty() {
+            let [a, b, c, d] = tags_of_sides.get(&i).copied().unwrap_or_default();
+            write!(out, " {a} {b} {c} {d}")?;
+        }
+        writeln!(out)?;
     }
     Ok(())
 }

@@ -154,27 +154,23 @@ pub fn load_watched(path: &Path, pace: &dyn Pace) -> Result<Vec<u8>, Fault> {
 fn explain(path: &Path, done: &str, error: &io::Error) -> Fault {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (what, remedy) = match error.kind() {
-        ErrorKind::NotFound if done == "written" => (
-            format!("The folder \"{}\" does not exist", folder.display()),
-            "Create it first, or choose another path".to_string(),
-        ),
-        ErrorKind::NotFound => ("No such file".to_string(), "Check its name and folder".to_string()),
-        ErrorKind::IsADirectory => ("This is a folder".to_string(), "Give the path of a file in it".to_string()),
+        ErrorKind::NotFound if done == "written" => {
+            (format!("The folder \"{}\" does not exist", folder.display()), "Create it first, or choose another path")
+        }
+        ErrorKind::NotFound => ("No such file".to_owned(), "Check its name and folder"),
+        ErrorKind::IsADirectory => ("This is a folder".to_owned(), "Give the path of a file in it"),
         ErrorKind::NotADirectory => {
-            (format!("\"{}\" is not a folder", folder.display()), "Give the path of a file in a folder".to_string())
+            (format!("\"{}\" is not a folder", folder.display()), "Give the path of a file in a folder")
         }
-        ErrorKind::PermissionDenied => (
-            format!("Permission denied: it cannot be {done}"),
-            "Change its permissions, or choose another path".to_string(),
-        ),
-        ErrorKind::ReadOnlyFilesystem => ("The disk is read-only".to_string(), "Choose another path".to_string()),
+        ErrorKind::PermissionDenied => {
+            (format!("Permission denied: it cannot be {done}"), "Change its permissions, or choose another path")
+        }
+        ErrorKind::ReadOnlyFilesystem => ("The disk is read-only".to_owned(), "Choose another path"),
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            ("The disk is full".to_string(), "Free some space, or choose another path".to_string())
+            ("The disk is full".to_owned(), "Free some space, or choose another path")
         }
-        ErrorKind::InvalidFilename => {
-            ("Invalid file name".to_string(), "Use a shorter name without special characters".to_string())
-        }
-        _ => (format!("It cannot be {done}: {error}"), String::new()),
+        ErrorKind::InvalidFilename => ("Invalid file name".to_owned(), "Use a shorter name without special characters"),
+        _ => (format!("It cannot be {done}: {error}"), ""),
     };
     Fault::new(what).of_kind(FaultKind::Io).at(path.display().to_string()).remedy(remedy)
 }

@@ -295,7 +295,10 @@ impl<'a> Scanner<'a> {
     }
 
     /// The next `N` bytes, in little-endian order.
-    fn take<const N: usize>(&mut self, order: ByteOrder, what: &str) -> Result<[u8; N], Fault> {
+    ///
+    /// # Errors
+    /// The end of the file.
+    pub fn take<const N: usize>(&mut self, order: ByteOrder, what: &str) -> Result<[u8; N], Fault> {
         self.check_pace();
         let mut bytes = *self.bytes[self.at..].first_chunk::<N>().ok_or_else(|| self.ended(what))?;
         self.last = self.at;
@@ -304,30 +307,6 @@ impl<'a> Scanner<'a> {
             bytes.reverse();
         }
         Ok(bytes)
-    }
-
-    /// The next four bytes as an integer.
-    ///
-    /// # Errors
-    /// The end of the file.
-    pub fn binary_i32(&mut self, order: ByteOrder, what: &str) -> Result<i32, Fault> {
-        self.take(order, what).map(i32::from_le_bytes)
-    }
-
-    /// The next eight bytes as a non-negative integer.
-    ///
-    /// # Errors
-    /// The end of the file.
-    pub fn binary_u64(&mut self, order: ByteOrder, what: &str) -> Result<u64, Fault> {
-        self.take(order, what).map(u64::from_le_bytes)
-    }
-
-    /// The next eight bytes as a real number.
-    ///
-    /// # Errors
-    /// The end of the file.
-    pub fn binary_f64(&mut self, order: ByteOrder, what: &str) -> Result<f64, Fault> {
-        self.take(order, what).map(f64::from_le_bytes)
     }
 }
 
@@ -343,22 +322,8 @@ pub fn shown(word: &[u8]) -> String {
 
 /// A decimal integer with an optional sign, or `None`.
 pub fn parse_integer(word: &[u8]) -> Option<i64> {
-    let (negative, digits) = match word {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, word),
-    };
-    if digits.is_empty() {
-        return None;
-    }
-    let mut value = 0i64;
-    for &digit in digits {
-        if !digit.is_ascii_digit() {
-            return None;
-        }
-        value = value.checked_mul(10)?.checked_add(i64::from(digit - b'0'))?;
-    }
-    Some(if negative { -value } else { value })
+    // Without the least number, which has no absolute value.
+    std::str::from_utf8(word).ok()?.parse().ok().filter(|&value| value != i64::MIN)
 }
 
 /// A non-negative decimal integer, or `None`.
@@ -416,8 +381,8 @@ mod tests {
     #[test]
     fn binary_numbers_are_read_in_both_orders() {
         let mut s = Scanner::new("a", &[1, 0, 0, 0, 0, 0, 0, 1, 9]);
-        assert_eq!(s.binary_i32(ByteOrder::Little, "x").unwrap(), 1);
-        assert_eq!(s.binary_i32(ByteOrder::Big, "x").unwrap(), 1);
-        assert!(s.binary_f64(ByteOrder::Big, "x").is_err());
+        assert_eq!(s.take(ByteOrder::Little, "x").map(i32::from_le_bytes), Ok(1));
+        assert_eq!(s.take(ByteOrder::Big, "x").map(i32::from_le_bytes), Ok(1));
+        assert!(s.take(ByteOrder::Big, "x").map(f64::from_le_bytes).is_err());
     }
 }

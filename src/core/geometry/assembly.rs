@@ -6,6 +6,7 @@ use rstar::primitives::GeomWithData;
 use rustc_hash::FxHashMap;
 
 use super::course::Course;
+use super::curve::Curve;
 use super::domain_curve::{CurveId, CurveKind, DomainCurve};
 use super::spec::{CurveSpec, FaceSpec};
 use crate::core::fault::Fault;
@@ -110,7 +111,7 @@ pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCur
         let internal = (kind != CurveKind::Boundary).then_some(face);
         curves.push(DomainCurve {
             name: spec.name.clone(),
-            curve: Course::of_shape(&spec.shape).map_err(named)?,
+            curve: Course::of_curve(Curve::new(&spec.shape).map_err(named)?),
             segments: spec.segments,
             place: spec.place.clone(),
             ends: [0; 2],
@@ -135,8 +136,7 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
     // Ends given by coordinates come first: where they meet computed ones, the vertex takes the given coordinates.
     let mut ends: Vec<(bool, usize, usize, DVec2)> = Vec::new();
     for (i, c) in curves.iter().enumerate() {
-        ends.push((!c.curve.ends_given(), i, 0, c.curve.start()));
-        ends.push((!c.curve.ends_given(), i, 1, c.curve.end()));
+        ends.extend([0, 1].map(|which| (!c.curve.ends_given(), i, which, c.curve.point(which as f64))));
     }
     ends.sort_by_key(|e| (e.0, e.1, e.2));
     let mut tree: RTree<GeomWithData<[f64; 2], u32>> = RTree::new();
@@ -176,7 +176,8 @@ pub fn join_equal_ends(curves: &mut [DomainCurve]) -> Vec<DVec2> {
     let mut known: FxHashMap<[u64; 2], u32> = FxHashMap::default();
     let mut vertices: Vec<DVec2> = Vec::new();
     for curve in curves {
-        curve.ends = [curve.curve.start(), curve.curve.end()].map(|p| {
+        curve.ends = [0.0, 1.0].map(|t| {
+            let p = curve.curve.point(t);
             // The sum turns -0 into 0.
             *known.entry([(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits()]).or_insert_with(|| {
                 vertices.push(p);

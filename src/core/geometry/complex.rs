@@ -111,9 +111,7 @@ fn join_in_space(curves: &mut [NamedCurve]) -> Vec<DVec3> {
     let tolerance = SAME_VERTEX * (high - low).max_element();
     let mut ends: Vec<(bool, usize, usize, DVec3)> = Vec::new();
     for (i, c) in curves.iter().enumerate() {
-        for which in 0..2 {
-            ends.push((!c.curve.ends_given(), i, which, c.curve.point(which as f64)));
-        }
+        ends.extend([0, 1].map(|which| (!c.curve.ends_given(), i, which, c.curve.point(which as f64))));
     }
     ends.sort_by_key(|e| (e.0, e.1, e.2));
     // A grid with cells wider than the tolerance, so that the search visits a cell and its neighbours.
@@ -279,7 +277,6 @@ pub(in crate::core) fn assemble(
     let mut chains: Vec<Vec<Vec<DirectedCurve>>> = vec![Vec::new(); specs.len()];
     let mut places: Vec<(usize, usize, usize, DirectedCurve)> = Vec::new();
     let mut domain_curves: Vec<DomainCurve> = Vec::new();
-    let mut space: Vec<Arc<SpaceCurve>> = Vec::new();
     // The curve in space of each image.
     let mut numbers: Vec<usize> = Vec::new();
     let mut last: Option<(usize, CurveId)> = None;
@@ -304,7 +301,6 @@ pub(in crate::core) fn assemble(
             fine: Vec::new(),
             first,
         });
-        space.push(Arc::clone(&named.curve));
         numbers.push(c);
         if let Some((i, k)) = at {
             places.push((f, i, k, DirectedCurve { curve: id, forward: piece.forward }));
@@ -343,7 +339,7 @@ pub(in crate::core) fn assemble(
         atlas,
         vertices: vertices.to_vec(),
         vertex_of,
-        curves: space,
+        curves: numbers.iter().map(|&number| Arc::clone(&curves[number].curve)).collect(),
         polylines: curves.iter().map(|c| (c.name.clone(), c.curve.polyline())).collect(),
     }));
     Ok(domain)

@@ -6,8 +6,6 @@ use glam::DVec2;
 
 use super::curve::{Curve, chords};
 use super::image::Image;
-use super::spec::CurveShape;
-use crate::core::fault::Fault;
 use crate::core::kernel::box_tree::extent;
 
 /// The polynomial degree assumed for an image when it is divided into chords.
@@ -30,14 +28,6 @@ enum Path {
 }
 
 impl Course {
-    /// The course of a plane shape.
-    ///
-    /// # Errors
-    /// See [`Curve::new`].
-    pub fn of_shape(shape: &CurveShape) -> Result<Course, Fault> {
-        Curve::new(shape).map(Course::of_curve)
-    }
-
     /// The course of a plane curve.
     pub fn of_curve(curve: Curve) -> Course {
         let (closed, corners, breaks) = (curve.closed(), curve.corners().to_vec(), curve.breaks());
@@ -65,16 +55,6 @@ impl Course {
             Path::Plane(curve) => curve.at(t),
             Path::Image(image) => image.at(t),
         }
-    }
-
-    /// The start point.
-    pub fn start(&self) -> DVec2 {
-        self.point(0.0)
-    }
-
-    /// The end point.
-    pub fn end(&self) -> DVec2 {
-        self.point(1.0)
     }
 
     /// Whether its end is exactly its start.

@@ -15,6 +15,7 @@ use super::loops;
 use super::space_curve::SpaceCurve;
 use super::spec::{CurveSpec, FaceSpec};
 use crate::core::fault::Fault;
+use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::decimal::point_text;
 
 /// A face of the domain.
@@ -343,10 +344,7 @@ impl Extent {
     /// # Errors
     /// A domain that is too small for double precision at its distance from the origin.
     pub fn of(curves: &[DomainCurve]) -> Result<Extent, Fault> {
-        let (lower, upper) = curves
-            .iter()
-            .map(|c| c.curve.bounds())
-            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (l, h)| (low.min(l), high.max(h)));
+        let (lower, upper) = extent(curves.iter().flat_map(|c| <[DVec2; 2]>::from(c.curve.bounds())));
         let size = (upper - lower).max_element();
         let largest = lower.abs().max(upper.abs()).max_element();
         if size < 1e-90 || size < 1e-9 * largest {

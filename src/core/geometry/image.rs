@@ -51,16 +51,15 @@ pub struct Deviation {
 }
 
 impl Image {
+    fn new(surface: FaceSurface, curve: &Arc<SpaceCurve>, placing: Placing, table: Vec<(f64, DVec2)>) -> Image {
+        Image { surface, curve: Arc::clone(curve), placing, shift: DVec2::ZERO, straight: false, table }
+    }
+
     /// The image of a curve that is given in u and v of the chart's surface, moved by whole periods of it.
     pub fn of_trim(chart: &Arc<Chart>, curve: &Arc<SpaceCurve>, trim: &Curve, move_by: DVec2) -> Image {
-        let mut image = Image {
-            surface: FaceSurface::Chart(Arc::clone(chart)),
-            curve: Arc::clone(curve),
-            straight: chart.keeps_lines() && trim.straight(),
-            placing: Placing::Trim { chart: Arc::clone(chart), trim: Box::new(trim.clone()), move_by },
-            shift: DVec2::ZERO,
-            table: Vec::new(),
-        };
+        let placing = Placing::Trim { chart: Arc::clone(chart), trim: Box::new(trim.clone()), move_by };
+        let mut image = Image::new(FaceSurface::Chart(Arc::clone(chart)), curve, placing, Vec::new());
+        image.straight = chart.keeps_lines() && trim.straight();
         image.table = parameters(curve).into_iter().map(|t| (t, image.point(t))).collect();
         image
     }
@@ -94,27 +93,15 @@ impl Image {
         if worst.distance > ON_SURFACE * chart.surface().size() {
             return Err(worst);
         }
-        Ok(Image {
-            surface: FaceSurface::Chart(Arc::clone(chart)),
-            curve: Arc::clone(curve),
-            placing: Placing::Projected(Arc::clone(chart)),
-            shift: DVec2::ZERO,
-            straight: false,
-            table,
-        })
+        let placing = Placing::Projected(Arc::clone(chart));
+        Ok(Image::new(FaceSurface::Chart(Arc::clone(chart)), curve, placing, table))
     }
 
     /// The image of a chain of triangle edges through `points` of the chart.
     pub fn of_sides(facets: &Arc<Facets>, curve: &Arc<SpaceCurve>, points: &[DVec2]) -> Image {
         let last = (points.len() - 1) as f64;
-        Image {
-            surface: FaceSurface::Facets(Arc::clone(facets)),
-            curve: Arc::clone(curve),
-            placing: Placing::Straight,
-            shift: DVec2::ZERO,
-            straight: false,
-            table: points.iter().enumerate().map(|(k, &p)| (k as f64 / last, p)).collect(),
-        }
+        let table = points.iter().enumerate().map(|(k, &p)| (k as f64 / last, p)).collect();
+        Image::new(FaceSurface::Facets(Arc::clone(facets)), curve, Placing::Straight, table)
     }
 
     /// The same image, translated in the plane.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::curve::{Curve, LARGEST, check_coordinates, corners_of_polyline, inner_parameters, lerp, piece};
+use super::curve::{Curve, LARGEST, check_coordinates, corners_of_polyline, inner_parameters, lerp, piece, with_ends};
 use super::frame::{AxisFrame, sin_cos};
 use super::nurbs::NurbsCurve;
 use super::primitive::arc;
@@ -183,17 +183,12 @@ impl SpaceCurve {
 
     /// Parameters between which it is smooth, from 0 to 1.
     pub fn breaks(&self) -> Vec<f64> {
-        let mut breaks = vec![0.0];
         match &self.path {
-            Path::Segment { .. } | Path::Arc { .. } => {}
-            Path::Polyline { points } | Path::Sides { points, .. } => breaks.extend(inner_parameters(points)),
-            Path::Nurbs(nurbs) => breaks.extend(nurbs.basis().unit_knots()),
-            Path::On { trim, .. } => return trim.breaks(),
+            Path::Segment { .. } | Path::Arc { .. } => vec![0.0, 1.0],
+            Path::Polyline { points } | Path::Sides { points, .. } => with_ends(inner_parameters(points).into_iter()),
+            Path::Nurbs(nurbs) => with_ends(nurbs.basis().unit_knots()),
+            Path::On { trim, .. } => trim.breaks(),
         }
-        breaks.retain(|&t| t < 1.0);
-        breaks.dedup();
-        breaks.push(1.0);
-        breaks
     }
 
     /// Points along it, from end to end, dense enough for distances and sizes.

@@ -1,5 +1,5 @@
 //! Small algorithms and values that know nothing of meshes: exact predicates, metric tensors and their spectra, box
-//! trees, point location, disjoint sets, parity over GF(2), fingerprints, numbers as text, spelling suggestions.
+//! trees, point location, disjoint sets, parity over GF(2), fingerprints, numbers as text, spelling suggestions, enumerations with words.
 
 pub mod predicates;
 pub mod tensor;
@@ -11,6 +11,7 @@ pub(crate) mod parity;
 mod fingerprint;
 pub(crate) mod decimal;
 pub(crate) mod spelling;
+pub(crate) mod worded;
 
 pub(crate) use decimal::Shortest;
 pub(crate) use disjoint_sets::DisjointSets;

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use crate::core::fault::Fault;
 use crate::core::geometry::Line;
 use crate::core::kernel::Metric3;
-use crate::core::kernel::box_tree::{BoxTree, Spot, share_along};
+use crate::core::kernel::box_tree::{BoxTree, Spot, extent, share_along};
 use crate::core::kernel::tensor::LARGEST_ANISOTROPY;
 
 /// The size where a field sets no limit, as a multiple of the extent of its curves. It matters only if no other field
@@ -33,9 +33,7 @@ impl<P: Spot> Near<P> {
             segments.extend(line.windows(2).map(|w| [w[0], w[1]]).filter(|[a, b]| a != b));
         }
         let boxes: Vec<_> = segments.iter().map(|[a, b]| (a.least(*b), a.greatest(*b))).collect();
-        let [nowhere, everywhere] = P::NOWHERE;
-        let (low, high) =
-            boxes.iter().fold((nowhere, everywhere), |(low, high), b| (low.least(b.0), high.greatest(b.1)));
+        let (low, high) = extent(segments.iter().flatten().copied());
         let extent = (high - low).inner(high - low).sqrt();
         if !(extent > 0.0 && extent.is_finite()) {
             return Err(Fault::new("The curves have zero length"));

@@ -34,46 +34,34 @@ enum Op {
     Mul,
     Div,
     Pow,
-    Min,
-    Max,
-    Atan2,
-    Hypot,
     Neg,
-    Abs,
-    Sqrt,
-    Exp,
-    Ln,
-    Log10,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Floor,
-    Sign,
+    /// A function, by its place in [`FUNCTIONS`].
+    Call(u8),
 }
 
-/// Functions by name, with their number of arguments (`min` and `max`: at least two).
-const FUNCTIONS: [(&str, Op, usize); 18] = [
-    ("abs", Op::Abs, 1),
-    ("acos", Op::Acos, 1),
-    ("asin", Op::Asin, 1),
-    ("atan", Op::Atan, 1),
-    ("atan2", Op::Atan2, 2),
-    ("cos", Op::Cos, 1),
-    ("exp", Op::Exp, 1),
-    ("floor", Op::Floor, 1),
-    ("hypot", Op::Hypot, 2),
-    ("ln", Op::Ln, 1),
-    ("log10", Op::Log10, 1),
-    ("max", Op::Max, 2),
-    ("min", Op::Min, 2),
-    ("pow", Op::Pow, 2),
-    ("sign", Op::Sign, 1),
-    ("sin", Op::Sin, 1),
-    ("sqrt", Op::Sqrt, 1),
-    ("tan", Op::Tan, 1),
+/// A function of a formula: its name, its number of arguments (`min` and `max`: at least two), its value.
+type Function = (&'static str, usize, fn(f64, f64) -> f64);
+
+/// All functions. Unlike `f64::min` and `max`, those here propagate NaN, so that it is refused and not hidden.
+const FUNCTIONS: [Function; 18] = [
+    ("abs", 1, |a, _| a.abs()),
+    ("acos", 1, |a, _| libm::acos(a)),
+    ("asin", 1, |a, _| libm::asin(a)),
+    ("atan", 1, |a, _| libm::atan(a)),
+    ("atan2", 2, libm::atan2),
+    ("cos", 1, |a, _| libm::cos(a)),
+    ("exp", 1, |a, _| libm::exp(a)),
+    ("floor", 1, |a, _| a.floor()),
+    ("hypot", 2, libm::hypot),
+    ("ln", 1, |a, _| libm::log(a)),
+    ("log10", 1, |a, _| libm::log10(a)),
+    ("max", 2, |a, b| if a.is_nan() || a > b { a } else { b }),
+    ("min", 2, |a, b| if a.is_nan() || a < b { a } else { b }),
+    ("pow", 2, libm::pow),
+    ("sign", 1, |a, _| if a == 0.0 { a } else { a.signum() }),
+    ("sin", 1, |a, _| libm::sin(a)),
+    ("sqrt", 1, |a, _| a.sqrt()),
+    ("tan", 1, |a, _| libm::tan(a)),
 ];
 
 const CONSTANTS: [(&str, f64); 2] = [("e", std::f64::consts::E), ("pi", std::f64::consts::PI)];
@@ -81,33 +69,14 @@ const CONSTANTS: [(&str, f64); 2] = [("e", std::f64::consts::E), ("pi", std::f64
 impl Op {
     #[inline]
     fn apply(self, a: f64, b: f64) -> f64 {
-        // Unlike f64::min and max, this propagates NaN, so that it is refused and not hidden.
-        let a_if = |a_wins: bool| if a.is_nan() || a_wins { a } else { b };
         match self {
             Op::Add => a + b,
             Op::Sub => a - b,
             Op::Mul => a * b,
             Op::Div => a / b,
             Op::Pow => libm::pow(a, b),
-            Op::Min => a_if(a < b),
-            Op::Max => a_if(a > b),
-            Op::Atan2 => libm::atan2(a, b),
-            Op::Hypot => libm::hypot(a, b),
             Op::Neg => -a,
-            Op::Abs => a.abs(),
-            Op::Sqrt => a.sqrt(),
-            Op::Exp => libm::exp(a),
-            Op::Ln => libm::log(a),
-            Op::Log10 => libm::log10(a),
-            Op::Sin => libm::sin(a),
-            Op::Cos => libm::cos(a),
-            Op::Tan => libm::tan(a),
-            Op::Asin => libm::asin(a),
-            Op::Acos => libm::acos(a),
-            Op::Atan => libm::atan(a),
-            Op::Floor => a.floor(),
-            Op::Sign if a == 0.0 => a,
-            Op::Sign => a.signum(),
+            Op::Call(function) => FUNCTIONS[usize::from(function)].2(a, b),
         }
     }
 }

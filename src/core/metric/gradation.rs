@@ -1,28 +1,9 @@
 //! Gradation: a bound on the growth of the sizes of a tabulated metric (docs/algorithm.md, "Gradation"; after Alauzet's
 //! mixed-space gradation).
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-use crate::core::kernel::{Metric2, Metric3};
-
-/// A tensor whose sizes can grow along an edge.
-pub trait Gradable: Copy {
-    /// A point or an edge vector.
-    type Point: Copy + std::ops::Sub<Output = Self::Point>;
-
-    /// The tensor at the far end of the edge `d`, after its sizes have grown by at most `exp(ln_beta)` per unit length.
-    fn spanned(&self, d: Self::Point, ln_beta: f64) -> Self;
-
-    /// The intersection of two tensors.
-    #[must_use]
-    fn intersect(&self, other: &Self) -> Self;
-
-    /// The smallest size.
-    fn min_size(&self) -> f64;
-
-    /// Whether `self` differs from `old` by more than rounding errors.
-    fn is_news(&self, old: &Self) -> bool;
-}
+use crate::core::kernel::Metric3;
 
 /// The eigenvalue `lambda = 1 / h^2` after its size has grown along an edge of length `l_metric` in the metric,
 /// `l_euclid` in the plane and so `l_own = l_euclid / h` in that size. The growth factor is `(1 + l_metric ln
@@ -39,51 +20,18 @@ fn grown(lambda: f64, l_metric: f64, l_euclid: f64, ln_beta: f64) -> f64 {
 /// Changes below this fraction of the trace are not propagated.
 const NEWS: f64 = 1e-9;
 
-impl Gradable for Metric2 {
-    type Point = DVec2;
-
-    fn spanned(&self, d: DVec2, ln_beta: f64) -> Metric2 {
-        let (l_metric, l_euclid) = (self.norm2(d).max(0.0).sqrt(), d.length());
-        let (values, g) = self.eigen();
-        Metric2::from_eigen(values.map(|lambda| grown(lambda, l_metric, l_euclid, ln_beta)), g)
-    }
-
-    fn intersect(&self, other: &Metric2) -> Metric2 {
-        Metric2::intersect(self, other)
-    }
-
-    fn min_size(&self) -> f64 {
-        Metric2::min_size(self)
-    }
-
-    fn is_news(&self, old: &Metric2) -> bool {
-        let change = (self.uu - old.uu).abs() + (self.uv - old.uv).abs() + (self.vv - old.vv).abs();
-        change > NEWS * (self.uu + self.vv)
-    }
+/// The tensor at the far end of the edge `d`, after its sizes have grown by at most `exp(ln_beta)` per unit length.
+fn spanned(m: &Metric3, d: DVec3, ln_beta: f64) -> Metric3 {
+    let (l_metric, l_euclid) = (m.norm2(d).max(0.0).sqrt(), d.length());
+    let (values, g) = m.eigen();
+    Metric3::from_eigen(values.map(|lambda| grown(lambda, l_metric, l_euclid, ln_beta)), g)
 }
 
-impl Gradable for Metric3 {
-    type Point = DVec3;
-
-    fn spanned(&self, d: DVec3, ln_beta: f64) -> Metric3 {
-        let (l_metric, l_euclid) = (self.norm2(d).max(0.0).sqrt(), d.length());
-        let (values, g) = self.eigen();
-        Metric3::from_eigen(values.map(|lambda| grown(lambda, l_metric, l_euclid, ln_beta)), g)
-    }
-
-    fn intersect(&self, other: &Metric3) -> Metric3 {
-        Metric3::intersect(self, other)
-    }
-
-    fn min_size(&self) -> f64 {
-        Metric3::min_size(self)
-    }
-
-    fn is_news(&self, old: &Metric3) -> bool {
-        let diagonal = (self.xx - old.xx).abs() + (self.yy - old.yy).abs() + (self.zz - old.zz).abs();
-        let rest = (self.xy - old.xy).abs() + (self.xz - old.xz).abs() + (self.yz - old.yz).abs();
-        diagonal + rest > NEWS * (self.xx + self.yy + self.zz)
-    }
+/// Whether a tensor differs from `old` by more than rounding errors.
+fn is_news(m: &Metric3, old: &Metric3) -> bool {
+    let diagonal = (m.xx - old.xx).abs() + (m.yy - old.yy).abs() + (m.zz - old.zz).abs();
+    let rest = (m.xy - old.xy).abs() + (m.xz - old.xz).abs() + (m.yz - old.yz).abs();
+    diagonal + rest > NEWS * (m.xx + m.yy + m.zz)
 }
 
 /// Bounds the gradation of nodal metrics along edges to `beta` (greater than 1): intersects each metric with the grown
@@ -93,13 +41,13 @@ impl Gradable for Metric3 {
 ///
 /// # Panics
 /// If an edge names a node that does not exist, or the lengths differ (a programming error).
-pub fn bound_gradation<M: Gradable>(points: &[M::Point], edges: &[[u32; 2]], metrics: &mut [M], beta: f64) -> usize {
+pub fn bound_gradation(points: &[DVec3], edges: &[[u32; 2]], metrics: &mut [Metric3], beta: f64) -> usize {
     assert_eq!(points.len(), metrics.len(), "one metric for each node");
     assert!(beta > 1.0, "the gradation must exceed 1");
     let ln_beta = libm::log(beta);
     let (starts, neighbours) = neighbours(points.len(), edges);
     let mut served: Vec<u32> = (0..points.len() as u32).collect();
-    let sizes: Vec<f64> = metrics.iter().map(Gradable::min_size).collect();
+    let sizes: Vec<f64> = metrics.iter().map(Metric3::min_size).collect();
     served.sort_by(|&i, &j| sizes[i as usize].total_cmp(&sizes[j as usize]).then(i.cmp(&j)));
     let mut waits = vec![true; points.len()];
     let mut next = Vec::new();
@@ -113,10 +61,10 @@ pub fn bound_gradation<M: Gradable>(points: &[M::Point], edges: &[[u32; 2]], met
             let i = i as usize;
             waits[i] = false;
             for &j in &neighbours[starts[i] as usize..starts[i + 1] as usize] {
-                let asked = metrics[i].spanned(points[j as usize] - points[i], ln_beta);
+                let asked = spanned(&metrics[i], points[j as usize] - points[i], ln_beta);
                 let old = metrics[j as usize];
-                let new = old.intersect(&asked);
-                if new.is_news(&old) {
+                let new = Metric3::intersect(&old, &asked);
+                if is_news(&new, &old) {
                     metrics[j as usize] = new;
                     if !waits[j as usize] {
                         waits[j as usize] = true;
@@ -155,12 +103,14 @@ fn neighbours(count: usize, edges: &[[u32; 2]]) -> (Vec<u32>, Vec<u32>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::kernel::Metric2;
+    use glam::DVec2;
 
     /// A row of nodes 0.1 apart, the first with size 0.01, the others with size 10.
-    fn row(n: u32) -> (Vec<DVec2>, Vec<[u32; 2]>, Vec<Metric2>) {
-        let points = (0..n).map(|i| DVec2::new(0.1 * f64::from(i), 0.0)).collect();
+    fn row(n: u32) -> (Vec<DVec3>, Vec<[u32; 2]>, Vec<Metric3>) {
+        let points = (0..n).map(|i| DVec3::X * (0.1 * f64::from(i))).collect();
         let edges = (1..n).map(|i| [i - 1, i]).collect();
-        let metrics = (0..n).map(|i| Metric2::isotropic(if i == 0 { 0.01 } else { 10.0 })).collect();
+        let metrics = (0..n).map(|i| Metric3::isotropic(if i == 0 { 0.01 } else { 10.0 })).collect();
         (points, edges, metrics)
     }
 
@@ -187,7 +137,7 @@ mod tests {
         let mut edges = Vec::new();
         for i in 0..n {
             for j in 0..n {
-                points.push(DVec2::new(f64::from(i), f64::from(j)) * 0.3);
+                points.push(DVec3::new(f64::from(i), f64::from(j), 0.0) * 0.3);
                 if i > 0 {
                     edges.push([at(i - 1, j), at(i, j)]);
                 }
@@ -196,18 +146,19 @@ mod tests {
                 }
             }
         }
-        let given: Vec<Metric2> = (0..n * n)
+        let given: Vec<Metric3> = (0..n * n)
             .map(|k| {
                 let turn = f64::from(k) * 0.7;
                 let h = if k % 17 == 3 { [1e-3, 1.0] } else { [3.0, 5.0] };
-                Metric2::from_sizes(h, DVec2::new(libm::cos(turn), libm::sin(turn))).unwrap()
+                Metric2::from_sizes(h, DVec2::from_angle(turn)).unwrap().in_space()
             })
             .collect();
         let mut bounded = given.clone();
         bound_gradation(&points, &edges, &mut bounded, 1.5);
-        assert!(bounded.iter().all(Metric2::is_spd));
+        assert!(bounded.iter().all(Metric3::is_spd));
         let probes: Vec<DVec2> = (0..16).map(|k| DVec2::from_angle(0.2 * f64::from(k))).collect();
-        let covers = |m: &Metric2, other: &Metric2| {
+        let covers = |m: &Metric3, other: &Metric3| {
+            let (m, other) = (m.plane(), other.plane());
             probes.iter().all(|&d| m.norm2(d) > other.norm2(d) * (1.0 - 1e-6) - 1e-9 * (m.uu + m.vv))
         };
         for (before, after) in given.iter().zip(&bounded) {
@@ -215,7 +166,7 @@ mod tests {
         }
         for &[a, b] in &edges {
             for (i, j) in [(a as usize, b as usize), (b as usize, a as usize)] {
-                let asked = bounded[i].spanned(points[j] - points[i], libm::log(1.5));
+                let asked = spanned(&bounded[i], points[j] - points[i], libm::log(1.5));
                 assert!(covers(&bounded[j], &asked), "{i} {j}");
             }
         }
@@ -225,23 +176,7 @@ mod tests {
         let mut twice = bounded.clone();
         bound_gradation(&points, &edges, &mut twice, 1.5);
         for (one, two) in bounded.iter().zip(&twice) {
-            assert!((one.uu - two.uu).abs() + (one.vv - two.vv).abs() < 1e-6 * (one.uu + one.vv));
-        }
-    }
-
-    #[test]
-    fn space_and_plane_agree_on_planar_tensors() {
-        let (points, edges, mut plane) = row(10);
-        plane[4] = Metric2::from_sizes([0.003, 0.4], DVec2::new(1.0, 2.0)).unwrap();
-        let mut space: Vec<Metric3> =
-            plane.iter().map(|m| Metric3 { xx: m.uu, xy: m.uv, xz: 0.0, yy: m.vv, yz: 0.0, zz: 1.0 }).collect();
-        let points3: Vec<DVec3> = points.iter().map(|p| p.extend(0.0)).collect();
-        bound_gradation(&points, &edges, &mut plane, 1.3);
-        bound_gradation(&points3, &edges, &mut space, 1.3);
-        for (m2, m3) in plane.iter().zip(&space) {
-            let d = (m2.uu - m3.xx).abs() + (m2.uv - m3.xy).abs() + (m2.vv - m3.yy).abs();
-            assert!(d < 1e-6 * (m2.uu + m2.vv), "{m2:?} {m3:?}");
-            assert!(m3.is_spd());
+            assert!((one.xx - two.xx).abs() + (one.yy - two.yy).abs() < 1e-6 * (one.xx + one.yy));
         }
     }
 }

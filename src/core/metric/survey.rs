@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::field::{MetricSource, Sizing};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::Metric2;
+use crate::core::kernel::box_tree::extent;
 
 /// The extremes that a survey found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,8 +71,7 @@ impl Sizing {
             anisotropy: 0.0,
             anisotropy_at: first,
         };
-        let low = domain_points.iter().fold(first, |low, p| low.min(*p));
-        let high = domain_points.iter().fold(first, |high, p| high.max(*p));
+        let (low, high) = extent(domain_points.iter().copied());
         let extent = (high - low).length();
         let nothing = AS_GOOD_AS_ZERO * extent.max(low.abs().max(high.abs()).max_element());
         let mut starts = Starts { low, extent: high - low, of_cell: [None; CELLS * CELLS] };

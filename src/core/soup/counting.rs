@@ -35,10 +35,10 @@ pub struct Counting {
 /// The numbers of a file's elements, for messages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elements {
-    triangles: usize,
-    quads: usize,
-    polygons: usize,
-    counting: Counting,
+    pub(super) triangles: usize,
+    pub(super) quads: usize,
+    pub(super) polygons: usize,
+    pub(super) counting: Counting,
 }
 
 /// Triangles numbered from 1, for a mesh without a file.
@@ -103,11 +103,6 @@ impl Counting {
 }
 
 impl Elements {
-    /// The elements of a file with the given numbers of triangles, quadrilaterals and polygons.
-    pub(super) fn new([triangles, quads, polygons]: [usize; 3], counting: Counting) -> Elements {
-        Elements { triangles, quads, polygons, counting }
-    }
-
     /// Names elements for a message, by index (triangles, then quadrilaterals, then polygons): "triangle 7", "triangles
     /// 3, 7 and 9", "triangles 3, 7, 9, 10, 12 and 40 more"; "element 7" where several kinds share one sequence.
     pub fn describe(&self, indices: &[u32]) -> String {

@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::counting::{Counting, Elements, enumerate};
 use crate::core::kernel::Metric3;
+use crate::core::kernel::box_tree::extent;
 use crate::core::mesh::Named;
 
 /// The name of the group of lines that form the merging front of an intermediate mesh.
@@ -140,10 +141,7 @@ impl MeshFile {
     pub fn is_plane(&self) -> bool {
         let elements = self.triangles.as_flattened().iter().chain(self.quads.as_flattened());
         let points = elements.chain(self.polygons.iter().flatten()).filter_map(|&k| self.points.get(k as usize));
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for p in points {
-            (low, high) = (low.min(*p), high.max(*p));
-        }
+        let (low, high) = extent(points.copied());
         let extent = high - low;
         // Points that are not finite are refused later, by number.
         let least = 1e-9 * extent.x.max(extent.y).max(high.z.abs());
@@ -177,6 +175,12 @@ impl MeshFile {
         (0..self.lines.len()).filter(is_front)
     }
 
+    /// The corners and the tag of each triangle, then of each quadrilateral.
+    pub(in crate::core) fn faces(&self) -> impl Iterator<Item = (&[u32], u32)> {
+        let triangles = self.triangles.iter().enumerate().map(|(i, t)| (&t[..], tag_of(&self.triangle_tags, i)));
+        triangles.chain(self.quads.iter().enumerate().map(|(i, q)| (&q[..], tag_of(&self.quad_tags, i))))
+    }
+
     /// The groups of faces, and the groups of the given lines.
     pub(in crate::core) fn groups_with(&self, lines: &[usize]) -> impl Iterator<Item = &Group> {
         let tags: BTreeSet<u32> = lines.iter().map(|&i| tag_of(&self.line_tags, i)).collect();
@@ -195,8 +199,7 @@ impl MeshFile {
         if first.is_empty() {
             return Vec::new();
         }
-        let elements = self.triangles.iter().map(|t| &t[..]).chain(self.quads.iter().map(|q| &q[..]));
-        for (number, corners) in elements.enumerate() {
+        for (number, (corners, _)) in self.faces().enumerate() {
             for (k, &corner) in corners.iter().enumerate() {
                 if let Some(known) = first.get_mut(&key(corner, corners[(k + 1) % corners.len()])) {
                     known.get_or_insert((number, k));
@@ -241,7 +244,7 @@ impl MeshFile {
     /// The numbering of its elements, for messages after the file is gone.
     pub fn elements(&self) -> Elements {
         let [triangles, quads, polygons] = [self.triangles.len(), self.quads.len(), self.polygons.len()];
-        Elements::new([triangles, quads, polygons], self.counting.clone())
+        Elements { triangles, quads, polygons, counting: self.counting.clone() }
     }
 
     /// Appends a triangle, quadrilateral or polygon with its number in the file. Returns the tags of its kind, to which
@@ -289,11 +292,6 @@ impl MeshFile {
         let numbers = points.iter().filter_map(|&point| self.counting.points.number(point as usize));
         enumerate(["point", "points"], points.len(), numbers)
     }
-}
-
-/// The tensor, if it is finite and positive definite.
-pub(in crate::core) fn positive_definite(m: Metric3) -> Option<Metric3> {
-    m.is_spd().then_some(m)
 }
 
 /// The tag of element `i`; 0 without tags.

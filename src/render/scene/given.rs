@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 
 use super::form::folded;
-use super::{Dot, Face, Form, Line, Scene, ink, relative};
+use super::{Dot, Face, Form, Line, Scene, relative};
 use crate::core::discrete::{Division, Edges, Feature, Triangles};
 use crate::core::progress::Cancel;
 use crate::render::palette::{Palette, Rgba};
@@ -97,14 +97,14 @@ impl Scene {
                 return None;
             }
             let normal = folded(mesh.area_vector(t).normalize_or(DVec3::Z));
-            faces.push(Face { corners: [at(a), at(b), at(c), at(c)], normals: [normal; 4], colour: ink(fill(t)) });
+            faces.push(Face { corners: [at(a), at(b), at(c), at(c)], normals: [normal; 4], colour: fill(t).packed() });
         }
         let line = |[a, b]: [u32; 2], (colour, width): (Rgba, f32), room: f32| Line {
             ends: [at(a), at(b)],
-            colour: ink(colour),
+            colour: colour.packed(),
             width,
-            dash: [0.0; 2],
             room,
+            ..Line::default()
         };
         let (mut plain, mut standing_out) = (Vec::with_capacity(edges.len()), Vec::new());
         let mut seams = division.map_or(&[][..], |division| &division.seams).iter().peekable();
@@ -134,13 +134,13 @@ impl Scene {
                 n @ (1 | 2) => n - 1,
                 n => n,
             };
-            let colour = ink(palette.broken);
+            let colour = palette.broken.packed();
             outlines.extend((0..sides).map(|k| {
                 let ends = [corners[k], corners[(k + 1) % corners.len()]];
                 Line { ends, colour, width: 3.2, dash: [0.0; 2], room: -1.0 }
             }));
             if let [at] = corners[..] {
-                let (ring, ring_width) = (ink(palette.ground), 1.5);
+                let (ring, ring_width) = (palette.ground.packed(), 1.5);
                 dots.push(Dot { at, radius: 6.5, fill: colour, ring, ring_width, room: 1.0, least: 0.0 });
             }
         }
@@ -195,7 +195,7 @@ mod tests {
         };
         let scene = draw(Some(&division), &DARK);
         assert_eq!((scene.faces.items().len(), colours(&scene).len()), (4, 2));
-        assert_eq!(colours(&draw(None, &LIGHT)), [ink(LIGHT.live)]);
+        assert_eq!(colours(&draw(None, &LIGHT)), [LIGHT.live.packed()]);
         let widths: Vec<f32> = scene.boundary.items().iter().map(|line| line.width).collect();
         assert_eq!(widths.iter().filter(|width| **width == 1.75).count(), 1, "the ridge");
         assert_eq!(widths.len(), 7);
@@ -213,11 +213,11 @@ mod tests {
         let given =
             Given { mesh: &mesh, edges: &edges, features: &found, division: None, marks: &marks, palette: &DARK };
         let scene = Scene::of_given(&given, 1, &Cancel::default()).unwrap();
-        let plain = ink(DARK.live);
+        let plain = DARK.live.packed();
         let other: Vec<bool> = scene.faces.items().iter().map(|face| face.colour != plain).collect();
         assert_eq!(other, [true, false, false, false]);
         assert_eq!((scene.over.items().len(), scene.over_dots.items().len()), (3 + 1, 1));
-        assert!(scene.over.items().iter().all(|line| line.colour == ink(DARK.broken)));
+        assert!(scene.over.items().iter().all(|line| line.colour == DARK.broken.packed()));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::placed::Places;
-use super::{ColourBy, Dot, Face, Form, Layers, Line, Scene, Shading, Spot, ink, relative};
+use super::{ColourBy, Dot, Face, Form, Layers, Line, Scene, Shading, Spot, relative};
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 use crate::render::palette::Palette;
 
@@ -152,7 +152,7 @@ impl Scene {
             ColourBy::State => plain.mixed(palette.changed, change),
             _ => shading.colour(e).unwrap_or(plain),
         };
-        self.element_faces(mesh, e, ink(colour))
+        self.element_faces(mesh, e, colour.packed())
     }
 
     /// Highlights the faces just changed, and removes the previous highlight.
@@ -182,11 +182,10 @@ impl Scene {
         let ends = mesh.ends(h);
         let heights = sides.iter().flatten().map(|h| self.room_over(mesh, *h, ends));
         let line = Line {
-            ends: Default::default(),
-            colour: ink(if dead { palette.dead_edge } else { palette.live_edge }),
+            colour: if dead { palette.dead_edge } else { palette.live_edge }.packed(),
             width: EDGES[usize::from(dead)],
-            dash: [0.0; 2],
             room: heights.fold(f64::INFINITY, f64::min) as f32,
+            ..Line::default()
         };
         self.chain(mesh, ends, line).collect()
     }
@@ -196,13 +195,8 @@ impl Scene {
         if !drawn.layers.boundary {
             return Vec::new();
         }
-        let line = Line {
-            ends: Default::default(),
-            colour: ink(drawn.palette.boundary),
-            width: 1.75,
-            dash: [0.0; 2],
-            room: -1.0,
-        };
+        let colour = drawn.palette.boundary.packed();
+        let line = Line { colour, width: 1.75, room: -1.0, ..Line::default() };
         self.chain(mesh, mesh.ends(h), line).collect()
     }
 
@@ -217,8 +211,8 @@ impl Scene {
         let dot = Dot {
             at: relative(p, self.anchor),
             radius: 2.8,
-            fill: ink(if front { palette.label } else { palette.weak }),
-            ring: ink(palette.ground),
+            fill: if front { palette.label } else { palette.weak }.packed(),
+            ring: palette.ground.packed(),
             ring_width: 0.8,
             room: nearest.sqrt() as f32,
             least: if front { 6.0 } else { 14.0 },

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::mesh::FADES;
-use super::{Dot, Layers, Line, Scene, Spot, ink, relative};
+use super::{Dot, Layers, Line, Scene, Spot, relative};
 use crate::core::case::Parameters;
 use crate::core::convert::Phase;
 use crate::core::front::Segment;
@@ -105,7 +105,7 @@ impl Scene {
         if !ends.iter().all(|n| mesh.has_node(*n) && n.index() < self.spots.len()) {
             return Vec::new();
         }
-        let line = Line { ends: Default::default(), colour: ink(colour), width, dash, room: -1.0 };
+        let line = Line { ends: Default::default(), colour: colour.packed(), width, dash, room: -1.0 };
         self.chain(mesh, ends, line).collect()
     }
 
@@ -123,7 +123,7 @@ impl Scene {
             // Its nodes differ from those of the scene.
             let place = |n: NodeId| relative(Spot::of(background, n, self.form).at, self.anchor);
             let ends = background.ends(h).map(place);
-            let colour = ink(palette.hint.faded(0.5));
+            let colour = palette.hint.faded(0.5).packed();
             over.push(Line { ends, colour, width: 0.6, dash: [0.0; 2], room: -1.0 });
         }
     }
@@ -231,15 +231,8 @@ impl Scene {
     }
 
     fn add_dot(&self, dots: &mut Vec<Dot>, node: NodeId, radius: f32, fill: Rgba, ring: Rgba, ring_width: f32) {
-        dots.push(Dot {
-            at: relative(self.at(node), self.anchor),
-            radius,
-            fill: ink(fill),
-            ring: ink(ring),
-            ring_width,
-            room: 0.0,
-            least: 0.0,
-        });
+        let (at, fill, ring) = (relative(self.at(node), self.anchor), fill.packed(), ring.packed());
+        dots.push(Dot { at, radius, fill, ring, ring_width, ..Dot::default() });
     }
 }
 

@@ -1,55 +1,38 @@
 //! The quantities that elements can be coloured by, and their values.
 
+use crate::core::kernel::worded::worded;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh};
 use crate::core::metric::measure::triangle_area;
 use crate::render::colour_map::ColourMap;
 use crate::render::palette::Rgba;
 
-/// The quantity that elements are coloured by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColourBy {
-    /// Live and dead.
-    #[default]
-    State,
-    /// The mean of the smallest target sizes at the nodes (eq. 6), on a logarithmic scale.
-    HValue,
-    /// The smallest angle, in degrees of the plane.
-    Angle,
-    /// Rows from the boundary.
-    Level,
-    /// Quality in the metric.
-    Quality,
-    /// The step that made the element.
-    Birth,
-    /// Area in the metric.
-    Area,
+worded! {
+    /// The quantity that elements are coloured by.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum ColourBy {
+        /// Live and dead.
+        #[default]
+        State = "live and dead",
+        /// The mean of the smallest target sizes at the nodes (eq. 6), on a logarithmic scale.
+        HValue = "H",
+        /// The smallest angle, in degrees of the plane.
+        Angle = "smallest angle",
+        /// Rows from the boundary.
+        Level = "level",
+        /// Quality in the metric.
+        Quality = "quality",
+        /// The step that made the element.
+        Birth = "step of birth",
+        /// Area in the metric.
+        Area = "metric area",
+    }
+    /// All quantities, in the order of menus.
+    const ALL;
+    /// Its name.
+    fn name;
 }
 
 impl ColourBy {
-    /// All quantities, in the order of menus.
-    pub const ALL: [ColourBy; 7] = [
-        ColourBy::State,
-        ColourBy::HValue,
-        ColourBy::Angle,
-        ColourBy::Level,
-        ColourBy::Quality,
-        ColourBy::Birth,
-        ColourBy::Area,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            ColourBy::State => "live and dead",
-            ColourBy::HValue => "H",
-            ColourBy::Angle => "smallest angle",
-            ColourBy::Level => "level",
-            ColourBy::Quality => "quality",
-            ColourBy::Birth => "step of birth",
-            ColourBy::Area => "metric area",
-        }
-    }
-
     /// Its colour map; `None` where the state is shown.
     pub fn map(self) -> Option<ColourMap> {
         match self {

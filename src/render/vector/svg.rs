@@ -66,7 +66,8 @@ pub fn write(picture: &Picture, sheet: &Sheet<'_>) -> String {
     let look = &sheet.look;
     // The scale bar has its own row below the picture.
     let below = if look.layers.has(Layer::Scale) { 1.7 * LABEL } else { 0.0 };
-    let frame = SvgFrame::fit(bounds(picture, sheet), sheet.width, sheet.height.map(|h| h - below), look);
+    let part = look.part.map(|part| part_bounds(part, sheet.width, sheet.height));
+    let frame = SvgFrame::fit(part.or_else(|| picture.bounds()), sheet.width, sheet.height.map(|h| h - below), look);
     let mut page = Page::new(sheet, frame.size.y + below, uses_text(std::slice::from_ref(picture), look, false));
     draw(&mut page, picture, &frame, look, 0);
     if below > 0.0 {
@@ -88,10 +89,8 @@ pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> String {
     let own_row = if has_bar && each < NARROW && count == rows * columns { 1.5 * LABEL } else { 0.0 };
     let inner = sheet.height.map(|h| (h - own_row - GAP * (rows - 1) as f64) / rows as f64 - caption);
     let union = |a: [DVec2; 2], b: [DVec2; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    let all = match look.part {
-        Some(part) => Some(part_bounds(part, each, inner)),
-        None => pictures.iter().filter_map(Picture::bounds).reduce(union),
-    };
+    let part = look.part.map(|part| part_bounds(part, each, inner));
+    let all = part.or_else(|| pictures.iter().filter_map(Picture::bounds).reduce(union));
     let first = SvgFrame::fit(all, each, inner, look);
     let row = first.size.y + caption;
     let height = row * rows as f64 + GAP * (rows - 1) as f64 + own_row;
@@ -114,13 +113,6 @@ pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> String {
 fn letter(k: usize) -> String {
     let last = char::from(b'a' + (k % 26) as u8);
     if k < 26 { last.to_string() } else { letter(k / 26 - 1) + &last.to_string() }
-}
-
-fn bounds(picture: &Picture, sheet: &Sheet<'_>) -> Option<[DVec2; 2]> {
-    match sheet.look.part {
-        Some(part) => Some(part_bounds(part, sheet.width, sheet.height)),
-        None => picture.bounds(),
-    }
 }
 
 /// The bounds of a part with the aspect ratio of its page, 3 : 4 where the page has no height.

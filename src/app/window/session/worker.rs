@@ -13,10 +13,11 @@ use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, Tracked,
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
-use crate::core::run::breakpoint;
 use crate::core::run::copies::Since;
 use crate::core::run::history::BUDGET;
-use crate::core::run::{Condition, Copies, Edit, History, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
+use crate::core::run::{
+    Condition, Copies, Edit, History, Recorder, Run, Sample, SegmentFacts, Stretch, Watched, breakpoint,
+};
 
 /// How many steps the recorder does before it hands them over, least and most: few at first, since the window may be
 /// waiting.

@@ -143,35 +143,6 @@ fn a_hub_and_collinear_nodes_are_triangulated() {
     assert!(set.triangles.len() >= 5000, "{}", set.triangles.len());
 }
 
-/// Prints what a domain of 100,000 boundary nodes takes: `cargo test --release -- --ignored --nocapture`.
-#[test]
-#[ignore = "measures time"]
-fn time_of_a_hundred_thousand_nodes() {
-    for (name, specs, h) in
-        [("square_with_hole", square_with_hole(), 5.26e-5), ("disc", disc(), 1.26e-4), ("two_faces", two_faces(), 7e-5)]
-    {
-        let start = std::time::Instant::now();
-        let domain = built(specs);
-        let built = start.elapsed();
-        let divided = super::super::discretise::divide(&domain, &Uniform(h)).unwrap();
-        let division = start.elapsed() - built;
-        let start = std::time::Instant::now();
-        let edges = Edges::new(&domain, &divided).unwrap();
-        let (mut cdt, handles) = load(&domain, &divided).unwrap();
-        let loaded = start.elapsed();
-        edges.constrain(&mut cdt, &handles).unwrap();
-        let constrained = start.elapsed() - loaded;
-        let start = std::time::Instant::now();
-        let set = triangulate(&domain, &divided).unwrap().set;
-        let whole = start.elapsed();
-        let n = divided.nodes.len();
-        println!(
-            "{name}: {n} nodes, {} triangles; build {built:?} divide {division:?} load {loaded:?} constrain {constrained:?} triangulate {whole:?}",
-            set.triangles.len()
-        );
-    }
-}
-
 /// A star-shaped polygon around the origin with radii in `low..high`.
 fn star(name: &str, centre: (f64, f64), radii: &[f64]) -> crate::core::geometry::CurveSpec {
     let points: Vec<(f64, f64)> = radii

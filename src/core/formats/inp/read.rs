@@ -15,27 +15,18 @@ use crate::core::soup::{Count, Group, MeshFile};
 fn corners_of(kind: &str) -> Result<usize, ()> {
     let shells = ["STRI", "S", "CPS", "CPE", "CPEG", "CAX", "M3D", "R3D", "SFM3D", "DS", "DC2D"];
     let lines = ["T2D", "T3D", "B2", "B3", "R2D", "RAX"];
-    let letters_end =
-        |prefix: &str| kind.strip_prefix(prefix).filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
-    for prefix in shells {
-        if let Some(rest) = letters_end(prefix) {
-            return match rest.as_bytes()[0] {
-                b'3' => Ok(3),
-                b'4' => Ok(4),
-                _ => Err(()),
-            };
-        }
+    let digit = |prefix: &str| kind.strip_prefix(prefix)?.bytes().next().filter(u8::is_ascii_digit);
+    match shells.into_iter().find_map(digit) {
+        Some(b'3') => return Ok(3),
+        Some(b'4') => return Ok(4),
+        Some(_) => return Err(()),
+        None => {}
     }
-    for prefix in lines {
-        if let Some(rest) = letters_end(prefix) {
-            return if rest.as_bytes()[0] == b'3' || (prefix.starts_with('B') && rest.as_bytes()[0] == b'2') {
-                Err(())
-            } else {
-                Ok(2)
-            };
-        }
+    match lines.into_iter().find_map(|prefix| Some((prefix, digit(prefix)?))) {
+        None => Ok(0),
+        Some((_, b'3') | ("B2" | "B3", b'2')) => Err(()),
+        Some(_) => Ok(2),
     }
-    Ok(0)
 }
 
 /// The section of the following data lines.
@@ -44,10 +35,8 @@ enum Section {
     /// Elements with this number of corners, and their set.
     Elements(usize, Option<usize>),
     Skipped(String),
-    /// The element numbers of a set.
-    Set(usize),
-    /// The element numbers of a set, as first, last and step (GENERATE).
-    GeneratedSet(usize),
+    /// The element numbers of a set; whether they are given as first, last and step (GENERATE).
+    Set(usize, bool),
     /// Element edges of a surface.
     Surface(usize),
     Other,
@@ -61,13 +50,14 @@ struct Sets {
 }
 
 /// Lists by name, ignoring case.
+#[derive(Default)]
 struct NamedLists<T> {
     all: Vec<(String, Vec<T>)>,
     known: FxHashMap<String, usize>,
 }
 
 /// The numbers from `first` to `last` in steps of `step`.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Run {
     first: u64,
     last: u64,
@@ -142,12 +132,12 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 Some(count) => *count += 1,
                 None => drop(skipped.insert(kind.clone(), 1)),
             },
-            Section::Set(set) | Section::GeneratedSet(set) => {
+            Section::Set(set, generated) => {
                 // Names of other sets are ignored.
                 let numbers: Vec<u64> = fields.filter_map(parse_whole).collect();
                 let runs = &mut sets.sets.all[*set].1;
                 match numbers[..] {
-                    [first, last, ref rest @ ..] if matches!(section, Section::GeneratedSet(_)) => {
+                    [first, last, ref rest @ ..] if *generated => {
                         runs.push(Run { first, last, step: rest.first().copied().unwrap_or(1) });
                     }
                     _ => runs.extend(numbers.into_iter().map(|number| Run { first: number, last: number, step: 1 })),
@@ -294,8 +284,7 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
             }
         }
         "ELSET" => Ok(match option("ELSET") {
-            Some(name) if option("GENERATE").is_some() => Section::GeneratedSet(sets.sets.index(name)),
-            Some(name) => Section::Set(sets.sets.index(name)),
+            Some(name) => Section::Set(sets.sets.index(name), option("GENERATE").is_some()),
             None => Section::Other,
         }),
         // The default type is ELEMENT.
@@ -306,12 +295,6 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
             _ => Section::Other,
         }),
         _ => Ok(Section::Other),
-    }
-}
-
-impl<T> Default for NamedLists<T> {
-    fn default() -> Self {
-        NamedLists { all: Vec::new(), known: FxHashMap::default() }
     }
 }
 

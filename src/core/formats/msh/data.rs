@@ -6,7 +6,6 @@ use crate::core::fault::Fault;
 use crate::core::formats::numbering::Numbering;
 use crate::core::kernel::Metric3;
 use crate::core::soup::Data;
-use crate::core::soup::mesh_file::positive_definite;
 
 impl Reader<'_> {
     /// Reads $NodeData or $ElementData.
@@ -69,8 +68,8 @@ impl Reader<'_> {
             let scanner = &self.input.scanner;
             let metric = values.chunks_exact(9).zip(1u32..).map(|(m, node)| {
                 let metric = Metric3 { xx: m[0], xy: m[1], xz: m[2], yy: m[4], yz: m[5], zz: m[8] };
-                positive_definite(metric)
-                    .ok_or_else(|| scanner.fault(format!("The metric of node {node} is not positive definite")))
+                let found = metric.is_spd().then_some(metric);
+                found.ok_or_else(|| scanner.fault(format!("The metric of node {node} is not positive definite")))
             });
             self.file.metric = Some(metric.collect::<Result<_, _>>()?);
         } else if missing.is_none() {

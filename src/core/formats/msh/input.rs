@@ -14,7 +14,7 @@ impl Input<'_> {
     pub fn int(&mut self, what: &str) -> Result<i64, Fault> {
         match self.binary {
             None => self.scanner.integer(what),
-            Some(order) => self.scanner.binary_i32(order, what).map(i64::from),
+            Some(order) => self.scanner.take(order, what).map(|bytes| i32::from_le_bytes(bytes).into()),
         }
     }
 
@@ -28,7 +28,7 @@ impl Input<'_> {
     pub fn size(&mut self, what: &str) -> Result<u64, Fault> {
         match self.binary {
             None => self.scanner.whole(what),
-            Some(order) => self.scanner.binary_u64(order, what),
+            Some(order) => self.scanner.take(order, what).map(u64::from_le_bytes),
         }
     }
 
@@ -42,7 +42,7 @@ impl Input<'_> {
     pub fn real(&mut self, what: &str) -> Result<f64, Fault> {
         match self.binary {
             None => self.scanner.real(what),
-            Some(order) => self.scanner.binary_f64(order, what),
+            Some(order) => self.scanner.take(order, what).map(f64::from_le_bytes),
         }
     }
 

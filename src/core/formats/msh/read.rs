@@ -159,7 +159,7 @@ impl Reader<'_> {
         }
         if binary == 1 {
             scanner.set_binary();
-            self.input.binary = match scanner.binary_i32(ByteOrder::Little, "the byte order")? {
+            self.input.binary = match i32::from_le_bytes(scanner.take(ByteOrder::Little, "the byte order")?) {
                 1 => Some(ByteOrder::Little),
                 0x0100_0000 => Some(ByteOrder::Big),
                 other => return Err(scanner.fault(format!("The byte order mark is {other} instead of 1"))),

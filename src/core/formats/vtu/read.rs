@@ -9,7 +9,6 @@ use crate::core::fault::Fault;
 use crate::core::formats::scan::{Scanner, TRUNCATED, shown};
 use crate::core::kernel::Metric3;
 use crate::core::progress::Pace;
-use crate::core::soup::mesh_file::positive_definite;
 use crate::core::soup::{Counting, Data, Group, MeshFile};
 
 /// A data array of the file.
@@ -235,7 +234,7 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
                     };
                     let what =
                         || s.fault_at(array.mark, format!("The metric of point {point} is not positive definite"));
-                    positive_definite(m).ok_or_else(what)
+                    m.is_spd().then_some(m).ok_or_else(what)
                 });
                 mesh.metric = Some(tensors.collect::<Result<_, _>>()?);
             }

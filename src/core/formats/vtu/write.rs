@@ -87,9 +87,7 @@ fn point_data(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
 fn cell_data(out: &mut dyn Write, mesh: &MeshFile, lines: &[usize]) -> io::Result<()> {
     let of_lines = lines.iter().map(|&i| tag_of(&mesh.line_tags, i));
     if !mesh.triangle_tags.is_empty() || !mesh.quad_tags.is_empty() || !lines.is_empty() {
-        let triangles = (0..mesh.triangles.len()).map(|i| tag_of(&mesh.triangle_tags, i));
-        let quads = (0..mesh.quads.len()).map(|i| tag_of(&mesh.quad_tags, i));
-        array(out, "Int64", TAG, &[""], triangles.chain(quads).chain(of_lines).map(|tag| [tag]))?;
+        array(out, "Int64", TAG, &[""], mesh.faces().map(|face| face.1).chain(of_lines).map(|tag| [tag]))?;
     }
     let beside = if mesh.element_data.is_empty() { Vec::new() } else { mesh.sides_at(lines) };
     for Data { name, values } in &mesh.element_data {

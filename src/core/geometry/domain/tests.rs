@@ -36,11 +36,13 @@ fn outer_loops_run_anticlockwise_and_holes_clockwise() {
     }
 }
 
+/// The number of curves of each walk of each face.
+fn walks(specs: Specs) -> Vec<Vec<usize>> {
+    built(specs).faces.iter().map(|f| f.walks.iter().map(Vec::len).collect()).collect()
+}
+
 #[test]
 fn walks_include_all_connected_lines() {
-    let walks = |specs: Specs| -> Vec<Vec<usize>> {
-        built(specs).faces.iter().map(|f| f.walks.iter().map(Vec::len).collect()).collect()
-    };
     assert_eq!(walks(square()), [[4]]);
     assert_eq!(walks(square_with_hole()), [[4, 1]]);
     assert_eq!(walks(disc()), [[3]]);
@@ -62,9 +64,7 @@ fn tangent_curves_are_told_apart_by_their_curvature() {
         face("middle", "c2", &["c1"], "", ""),
         face("small", "c1", &[], "", ""),
     ];
-    let domain = built((curves, faces));
-    let walks: Vec<Vec<usize>> = domain.faces.iter().map(|f| f.walks.iter().map(Vec::len).collect()).collect();
-    assert_eq!(walks, [[2], [2], [1]]);
+    assert_eq!(walks((curves, faces)), [[2], [2], [1]]);
 }
 
 #[test]
@@ -141,12 +141,8 @@ fn a_quarter_disc_joins_arcs_and_segments() {
 }
 
 #[test]
-fn unknown_names_are_refused_with_a_suggestion() {
+fn names_that_are_unknown_or_given_twice_are_refused() {
     refused(with(vec![], "south eest north west", &[], ""), ["\"eest\"", "Did you mean \"east\"?"]);
-}
-
-#[test]
-fn names_given_twice_are_refused() {
     refused(with(vec![segment("west", (0.0, 0.0), (2.0, 2.0))], SQUARE, &[], ""), ["two curves \"west\""]);
     let (curves, faces) = square();
     refused((curves, [faces.clone(), faces].concat()), ["two faces \"plate\""]);
@@ -160,17 +156,13 @@ fn curves_without_a_face_are_left_out_even_bad_ones() {
 }
 
 #[test]
-fn open_loops_are_refused_with_their_loose_ends() {
+fn loops_that_are_open_or_in_pieces_are_refused_with_their_loose_ends() {
     refused(with(vec![], "south east west", &[], ""), ["outer loop of \"plate\" is open", "\"east\" begins at (1, 1)"]);
     refused(
         with(vec![segment("gap", (0.0, 1.0), (0.9, 1.0))], "south east gap west", &[], ""),
         ["\"gap\" ends at (0.9, 1), 0.1 apart"],
     );
     refused(with(vec![], "", &[], ""), ["has no curves"]);
-}
-
-#[test]
-fn loops_in_pieces_are_refused() {
     refused(
         with(vec![circle("c", (3.0, 3.0), 1.0)], "south east north west c", &[], ""),
         ["several closed loops", "\"c\" is not connected"],
@@ -231,17 +223,13 @@ fn touching_is_refused_with_its_remedy() {
 }
 
 #[test]
-fn holes_outside_or_in_holes_are_refused() {
+fn holes_and_internal_lines_outside_their_face_are_refused() {
     refused(
         with(vec![circle("h", (3.0, 0.5), 0.2)], SQUARE, &["h"], ""),
         ["\"h\" of hole 1 of \"plate\" lies outside"],
     );
     let nested = vec![circle("h", (0.5, 0.5), 0.3), circle("k", (0.5, 0.5), 0.2)];
     refused(with(nested, SQUARE, &["h", "k"], ""), ["\"k\"", "lies within hole 1"]);
-}
-
-#[test]
-fn internal_lines_outside_their_face_are_refused() {
     refused(with(vec![segment("c", (2.0, 2.0), (3.0, 2.0))], SQUARE, &[], "c"), ["\"c\" lies outside its face"]);
     let in_hole = vec![circle("h", (0.5, 0.5), 0.3), segment("c", (0.4, 0.5), (0.6, 0.5))];
     refused(with(in_hole, SQUARE, &["h"], "c"), ["\"c\" lies outside its face"]);

@@ -149,9 +149,10 @@ impl<'a> Parser<'a> {
         let rest = &self.text[self.at..];
         let length = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
         let (name, start) = (&rest[..length], self.at);
-        if let Some(&(_, op, arity)) = FUNCTIONS.iter().find(|f| f.0 == name) {
+        if let Some(function) = FUNCTIONS.iter().position(|f| f.0 == name) {
             self.at += length;
-            return self.call(name, op, arity);
+            let op = if name == "pow" { Op::Pow } else { Op::Call(function as u8) };
+            return self.call(name, op, FUNCTIONS[function].1);
         }
         let value = self.names.iter().find(|n| n.0 == name).map(|n| n.1);
         let value = value.or_else(|| CONSTANTS.iter().find(|c| c.0 == name).map(|c| self.graph.constant(c.1)));
@@ -188,7 +189,7 @@ impl<'a> Parser<'a> {
             arguments.push(self.sum()?);
         }
         self.closing()?;
-        let variadic = matches!(op, Op::Min | Op::Max) && arguments.len() > 2;
+        let variadic = matches!(name, "min" | "max") && arguments.len() > 2;
         if arguments.len() != arity && !variadic {
             let plural = if arity == 1 { "" } else { "s" };
             return Err(self.syntax(&format!("{name} takes {arity} argument{plural}, not {}, before", arguments.len())));

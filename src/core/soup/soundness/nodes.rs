@@ -7,6 +7,7 @@ use rstar::{AABB, RTree};
 use super::faces::Faces;
 use super::sides::Sides;
 use super::{Defect, Found};
+use crate::core::kernel::box_tree::extent;
 
 /// Nodes closer than this fraction of the mesh's diagonal coincide.
 const COINCIDENT: f64 = 1e-9;
@@ -15,11 +16,8 @@ const ON_EDGE: f64 = 1e-7;
 
 /// Notes coincident and hanging nodes. Returns for each node the first one at its position (usually itself).
 pub fn examine(faces: &Faces, sides: &Sides, found: &mut Found) -> Vec<u32> {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let mut nodes: Vec<u32> = (0..faces.nodes() as u32).filter(|&node| sides.used[node as usize]).collect();
-    for &node in &nodes {
-        (low, high) = (low.min(faces.point(node)), high.max(faces.point(node)));
-    }
+    let (low, high) = extent(nodes.iter().map(|&node| faces.point(node)));
     let tolerance = COINCIDENT * low.distance(high);
     let mut spot: Vec<u32> = (0..faces.nodes() as u32).collect();
     let mut together = Vec::new();

@@ -55,16 +55,12 @@ fn defects(mesh: &MeshFile) -> Vec<(Defect, u64)> {
 const SEAMS: Allow = Allow { triangles: false, seams: true, branching: false };
 
 #[test]
-fn a_grid_is_sound_and_counted() {
+fn a_grid_and_a_ring_are_sound_and_counted() {
     let soundness = examine(&squares(3, DVec3::ZERO));
     assert_eq!(soundness.verdict(Allow::default()), Ok(()));
     assert_eq!((soundness.edges, soundness.boundary_edges, soundness.boundary_loops), (24, 12, 1));
     assert_eq!((soundness.euler, soundness.components, soundness.planar), (1, 1, true));
     assert_eq!((soundness.area, soundness.boundary_length), (9.0, 12.0));
-}
-
-#[test]
-fn a_ring_is_sound() {
     let soundness = examine(&ring(12, 1.0, true));
     assert_eq!(soundness.findings, []);
     assert_eq!((soundness.boundary_loops, soundness.euler), (2, 0));

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use glam::DVec2;
 
 use super::Sheet;
@@ -33,7 +35,7 @@ impl Page {
             svg.push_str(&figure::metadata(run));
         }
         if has_text {
-            let font = base64(FONT);
+            let font = STANDARD.encode(FONT);
             // Writing to a String cannot fail.
             let _ = writeln!(
                 svg,
@@ -83,23 +85,20 @@ impl Page {
 
     /// Writes a text anchored with its start, middle or end at a point of its baseline.
     pub fn text(&mut self, at: DVec2, size: f64, anchor: &str, text: &str) {
-        let _ = writeln!(
-            self.svg,
-            "<text x=\"{}\" y=\"{}\" font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" font-size=\"{size}\" \
-             text-anchor=\"{anchor}\" fill=\"#000000\">{}</text>",
-            Short(at.x),
-            Short(at.y),
-            escaped(text)
-        );
+        self.placed_text(&format!("x=\"{}\" y=\"{}\"", Short(at.x), Short(at.y)), size, anchor, text);
     }
 
     /// Writes a vertical text with its middle at a point of its baseline.
     pub fn upright_text(&mut self, at: DVec2, size: f64, text: &str) {
-        let (x, y) = (Short(at.x), Short(at.y));
+        let place = format!("transform=\"translate({} {}) rotate(-90)\"", Short(at.x), Short(at.y));
+        self.placed_text(&place, size, "middle", text);
+    }
+
+    fn placed_text(&mut self, place: &str, size: f64, anchor: &str, text: &str) {
         let _ = writeln!(
             self.svg,
-            "<text transform=\"translate({x} {y}) rotate(-90)\" font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" \
-             font-size=\"{size}\" text-anchor=\"middle\" fill=\"#000000\">{}</text>",
+            "<text {place} font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" font-size=\"{size}\" \
+             text-anchor=\"{anchor}\" fill=\"#000000\">{}</text>",
             escaped(text)
         );
     }
@@ -192,30 +191,9 @@ fn escaped(text: &str) -> String {
     out
 }
 
-/// Bytes in Base64 (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let byte = |k: usize| u32::from(three.get(k).copied().unwrap_or(0));
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for k in 0..4 {
-            let digit = DIGITS[(bits >> (18 - 6 * k)) as usize & 63];
-            out.push(if k <= three.len() { char::from(digit) } else { '=' });
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bytes_are_written_as_rfc_4648_says() {
-        let words = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|word| base64(word.as_bytes()));
-        assert_eq!(words, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
-    }
 
     #[test]
     fn lengths_are_short_and_never_minus_nothing() {
