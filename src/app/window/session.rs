@@ -19,6 +19,7 @@ pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
 use super::import::ImportOptions;
+use crate::app::progress;
 use crate::core::case::Case;
 use crate::core::convert::event::{Event, EventKind, Why};
 use crate::core::fault::Fault;
@@ -37,7 +38,7 @@ use worker::Worker;
 pub(super) const EVERY: Duration = Duration::from_millis(50);
 
 /// Requests to a session, from the window or from its own recorder.
-enum Ask {
+pub enum Ask {
     /// Go to a goal, requested at this time.
     Go(Goal, Instant),
     /// Go to the next or the previous step at which a condition holds or something that is watched is touched.
@@ -50,9 +51,13 @@ enum Ask {
     Past(Watched),
     /// Count how often conditions hold.
     Count(Vec<Condition>),
+    /// Report why a segment of the front was or was not chosen.
     Explain([NodeId; 2]),
+    /// Change the run.
     Edits(Vec<Edit>),
+    /// The recorder's thread hands over what it has recorded.
     Found(Box<(Stretch, Recorder)>),
+    /// The window has closed the session.
     Gone,
 }
 
@@ -156,47 +161,8 @@ impl Session {
         Session { ask, told, stop, opening }
     }
 
-    /// Asks to go somewhere.
-    pub fn go(&self, goal: Goal) {
-        self.ask(Ask::Go(goal, Instant::now()));
-    }
-
-    /// Asks to go to where a breakpoint is met.
-    pub fn go_to_break(&self, stops: Stops, direction: Direction) {
-        self.ask(Ask::Break(stops, direction));
-    }
-
-    /// Asks to go to the step that touched something last.
-    pub fn go_to_touch(&self, watched: Watched) {
-        self.ask(Ask::Touch(watched));
-    }
-
-    /// Asks to go to the step that made the quadrilateral of an element.
-    pub fn go_to_making(&self, element: ElementId) {
-        self.ask(Ask::Made(element));
-    }
-
-    /// Asks for the history of something up to the current step.
-    pub fn past(&self, watched: Watched) {
-        self.ask(Ask::Past(watched));
-    }
-
-    /// Asks how often conditions hold.
-    pub fn count(&self, conditions: Vec<Condition>) {
-        self.ask(Ask::Count(conditions));
-    }
-
-    /// Asks why a segment of the front was or was not chosen.
-    pub fn explain(&self, ends: [NodeId; 2]) {
-        self.ask(Ask::Explain(ends));
-    }
-
-    /// Changes the run.
-    pub fn set_edits(&self, edits: Vec<Edit>) {
-        self.ask(Ask::Edits(edits));
-    }
-
-    fn ask(&self, ask: Ask) {
+    /// Asks for something.
+    pub fn ask(&self, ask: Ask) {
         // A session that has ended has reported why.
         let _ = self.ask.send(ask);
     }
@@ -259,15 +225,8 @@ impl Watch for Voice {
 
 /// The name of a stage of the work in the window.
 pub(super) fn words_of(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Read => "Reading",
-        Stage::Repair => "Repairing the mesh",
-        Stage::Chart => "Flattening the surface",
-        Stage::Divide => "Dividing the curves",
-        Stage::Triangulate => "Triangulating",
-        Stage::Adapt => "Adapting the triangles",
-        _ => "Converting",
-    }
+    // The later stages are parts of the conversion here.
+    progress::words(stage.min(Stage::Convert))
 }
 
 /// What a session is opened with.

@@ -19,7 +19,7 @@ pub use cameras::{lens_node, middle};
 
 use super::command::Command;
 use super::labels;
-use super::panels::{self, inspector};
+use super::panels::{self, inspector, on_click};
 use super::session::Moment;
 use super::state::{Look, State, SurfaceView, ViewCamera, ViewKind};
 use super::theme::ink;
@@ -188,11 +188,7 @@ impl Views {
         let Some(camera) = camera else {
             ground(ui);
             let text = "Select a node or a front segment to see it in its own metric.";
-            let inner = Rect::from_center_size(rect.center(), Vec2::new((rect.width() - 40.0).max(1.0), 60.0));
-            ui.scope_builder(egui::UiBuilder::new().max_rect(inner), |ui| {
-                ui.vertical_centered(|ui| ui.add(egui::Label::new(panels::note(text, palette)).wrap()));
-            });
-            return;
+            return instead(ui, rect, 60.0, text, palette);
         };
         let frame = ViewFrame { camera, rect };
         let (which, k) =
@@ -216,9 +212,7 @@ impl Views {
             self.hint = Some(e);
         }
         commands.extend(hovered.map(Command::Hover));
-        if response.clicked() {
-            commands.push(Command::Pick(hovered));
-        }
+        on_click(&response, Command::Pick(hovered), commands);
         if response.double_clicked()
             && let Some(what) = hovered
         {
@@ -273,17 +267,24 @@ impl Views {
             Form::Plane => (&self.plane, Light::NONE),
             _ => (&self.space, Light::on_surfaces(palette.dark)),
         };
-        let view = View {
-            camera: frame.camera,
-            size: frame.size(),
-            pixels: ui.pixels_per_point(),
-            ground: palette.ground,
-            light,
-            hidden,
-        };
-        let picture = Picture { scene: stage.scene.clone(), view, index };
-        ui.painter().add(Callback::new_paint_callback(frame.rect, picture));
+        paint(ui, index, frame, &stage.scene, palette, light, hidden);
     }
+}
+
+/// Draws a scene.
+fn paint(ui: &Ui, index: usize, frame: &ViewFrame, scene: &Arc<Scene>, palette: &Palette, light: Light, hidden: f32) {
+    let (camera, size, pixels, ground) = (frame.camera, frame.size(), ui.pixels_per_point(), palette.ground);
+    let view = View { camera, size, pixels, ground, light, hidden };
+    let picture = Picture { scene: scene.clone(), view, index };
+    ui.painter().add(Callback::new_paint_callback(frame.rect, picture));
+}
+
+/// Words in the middle of a view that shows nothing.
+fn instead(ui: &mut Ui, rect: Rect, height: f32, text: &str, palette: &Palette) {
+    let inner = Rect::from_center_size(rect.center(), Vec2::new((rect.width() - 40.0).max(1.0), height));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(inner), |ui| {
+        ui.vertical_centered(|ui| ui.add(egui::Label::new(panels::note(text, palette)).wrap()));
+    });
 }
 
 /// Reports where a view looks, if that has changed.
@@ -310,9 +311,7 @@ fn empty(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pale
         ui.vertical_centered(|ui| {
             ui.colored_label(ink(palette.weak), "No case is open. Drop a case or a mesh file here, or");
             for command in [Command::Open(super::Source::BuiltIn("example1".into())), Command::OpenPath] {
-                if ui.button(command.name()).clicked() {
-                    commands.push(command);
-                }
+                on_click(&ui.button(command.name()), command, commands);
             }
         });
     });

@@ -240,17 +240,15 @@ fn table(
             let response = row.response();
             let name = format!("Segment {}", words::segment(segment.a, segment.b));
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_picked, name.clone()));
-            let ends = [segment.a, segment.b];
+            let what = Outlined::Edge([segment.a, segment.b]);
             if response.hovered() {
-                commands.push(Command::Hover(Outlined::Edge(ends)));
+                commands.push(Command::Hover(what));
             }
-            response.context_menu(|ui| {
-                inspector::past::actions(ui, state, Outlined::Edge(ends), commands);
-            });
+            response.context_menu(|ui| inspector::past::actions(ui, state, what, commands));
             if response.double_clicked() {
-                commands.push(Command::Show(Outlined::Edge(ends)));
+                commands.push(Command::Show(what));
             } else if response.clicked() {
-                commands.push(Command::Pick(Some(Outlined::Edge(ends))));
+                commands.push(Command::Pick(Some(what)));
             }
         });
     });

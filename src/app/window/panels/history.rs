@@ -2,7 +2,7 @@
 
 use eframe::egui::{RichText, ScrollArea, Ui};
 
-use super::{heading, inset, note};
+use super::{heading, inset, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
@@ -25,9 +25,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                     EditKind::Parameter { key, value } => format!("{key} = {value}"),
                     EditKind::Base { a, b } => format!("base {}", words::segment(*a, *b)),
                 };
-                if ui.button(format!("from step {}: {what}", words::grouped(edit.step))).clicked() {
-                    commands.push(Command::Go(Goal::Step(edit.step)));
-                }
+                let button = ui.button(format!("from step {}: {what}", words::grouped(edit.step)));
+                on_click(&button, Command::Go(Goal::Step(edit.step)), commands);
             }
             heading(ui, "Steps around this one", "", palette);
             let now = moment.step as usize;
@@ -42,9 +41,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                     palette.hint
                 };
                 let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
-                if ui.selectable_label(false, text).clicked() {
-                    commands.push(Command::Go(Goal::Step(k as u64 + 1)));
-                }
+                on_click(&ui.selectable_label(false, text), Command::Go(Goal::Step(k as u64 + 1)), commands);
             }
         });
     });

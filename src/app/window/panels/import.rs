@@ -1,11 +1,11 @@
 //! The import of a mesh file: the options of the command line as a form, what the mesh is like, and what was repaired.
 
 use eframe::egui::{
-    self, Align, Button, ComboBox, DragValue, Frame, Grid, Layout, Panel, ProgressBar, Response, RichText, Role,
-    ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo,
+    self, Align, Button, DragValue, Frame, Grid, Layout, Panel, ProgressBar, Response, RichText, Role, ScrollArea,
+    Sense, Slider, Ui, Vec2, WidgetInfo,
 };
 
-use super::{heading, inset, note};
+use super::{choice, heading, inset, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, UNITS};
@@ -156,10 +156,8 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
         });
     });
     if !charted && import.loaded.is_some() {
-        ui.label(note(
-            "Triangles in the plane are converted as they are: features and charts are not needed.",
-            palette,
-        ));
+        let text = "Triangles in the plane are converted as they are: features and charts are not needed.";
+        ui.label(note(text, palette));
     }
     // The end of a drag is reported too.
     let gesture = if dragging { Gesture::Dragging } else { Gesture::Done };
@@ -191,18 +189,13 @@ fn unit(ui: &mut Ui, options: &mut ImportOptions, taking: &Taking, dragging: &mu
     let mut scale = taking.scale;
     row(ui, "unit", "The unit of lengths after scaling (--scale)", palette, |ui| {
         // The conversions that users think of; some have the same scale.
-        let mut known: Vec<(String, f64)> = vec![("as in the file".to_owned(), 1.0)];
+        let mut known: Vec<(f64, String)> = vec![(1.0, "as in the file".to_owned())];
         for (to, metres) in [UNITS[2], UNITS[0]] {
             let others = UNITS.iter().filter(|unit| unit.0 != to);
-            known.extend(others.map(|&(from, own)| (format!("{from} to {to}"), rounded(own / metres))));
+            known.extend(others.map(|&(from, own)| (rounded(own / metres), format!("{from} to {to}"))));
         }
-        let now = known.iter().find(|unit| unit.1 == scale).map_or("other", |unit| unit.0.as_str()).to_owned();
-        let shown = ComboBox::from_id_salt("unit").selected_text(now).width(112.0).show_ui(ui, |ui| {
-            for (name, factor) in &known {
-                ui.selectable_value(&mut scale, *factor, name);
-            }
-        });
-        shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Unit"));
+        let now = known.iter().find(|unit| unit.0 == scale).map_or("other", |unit| unit.1.as_str()).to_owned();
+        choice(ui, "Unit", 112.0, now, &mut scale, known);
         ui.label(note("×", palette));
         let speed = 0.01 * scale;
         *dragging |= number(ui, &mut scale, Taking::SCALES, speed, "", "Scale").dragged();
@@ -260,12 +253,8 @@ fn sizes(
             Sizing::Uniform => "the same everywhere",
             Sizing::ByCurvature => "finer where it is curved",
         };
-        let shown = ComboBox::from_id_salt("size").selected_text(name(before)).width(180.0).show_ui(ui, |ui| {
-            for sizing in [Sizing::OfMesh, Sizing::Uniform, Sizing::ByCurvature] {
-                ui.selectable_value(&mut wanted, sizing, name(sizing));
-            }
-        });
-        shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Size of elements"));
+        let all = [Sizing::OfMesh, Sizing::Uniform, Sizing::ByCurvature].map(|sizing| (sizing, name(sizing)));
+        choice(ui, "Size of elements", 180.0, name(before), &mut wanted, all);
     });
     if wanted != before {
         // Two digits are enough to start from.
@@ -295,25 +284,22 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     let census = loaded.census;
     let extent = loaded.extent * import.taking().scale;
     let named = |n: usize, one: &str, several: &str| format!("{} {}", grouped(n), if n == 1 { one } else { several });
-    Grid::new("counts").num_columns(2).striped(false).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES).show(
-        ui,
-        |ui| {
-            let mut line = |name: &str, value: String| {
-                ui.label(note(name, palette));
-                let text = RichText::new(value).font(theme::regular(theme::TABLE)).color(ink(palette.text));
-                ui.add(egui::Label::new(text).wrap());
-                ui.end_row();
-            };
-            line("extent", [extent.x, extent.y, extent.z].map(three_digits).join(" × "));
-            line("nodes", grouped(census.nodes));
-            line("triangles", grouped(census.triangles));
-            line("components", grouped(census.components));
-            line("boundary loops", grouped(census.border_loops));
-            if loaded.regions > 1 {
-                line("regions", grouped(loaded.regions));
-            }
-        },
-    );
+    let grid = Grid::new("counts").num_columns(2).striped(false).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES);
+    grid.show(ui, |ui| {
+        let mut line = |name: &str, value: String| {
+            ui.label(note(name, palette));
+            ui.add(egui::Label::new(line_text(value, palette)).wrap());
+            ui.end_row();
+        };
+        line("extent", extent.to_array().map(three_digits).join(" × "));
+        line("nodes", grouped(census.nodes));
+        line("triangles", grouped(census.triangles));
+        line("components", grouped(census.components));
+        line("boundary loops", grouped(census.border_loops));
+        if loaded.regions > 1 {
+            line("regions", grouped(loaded.regions));
+        }
+    });
     let Some(shown) = &import.shown else { return };
     ui.add_space(6.0);
     for (kind, count) in KINDS.into_iter().zip(shown.counts) {
@@ -333,12 +319,8 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
         Some(division) => {
             let seams = division.seams.len();
             if seams > 0 {
-                swatch(
-                    ui,
-                    seam_line(palette),
-                    named(seams, "edge cut for the plane", "edges cut for the plane"),
-                    palette,
-                );
+                let text = named(seams, "edge cut for the plane", "edges cut for the plane");
+                swatch(ui, seam_line(palette), text, palette);
             }
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(Vec2::new(30.0, 16.0), Sense::hover());
@@ -409,14 +391,10 @@ fn buttons(ui: &mut Ui, import: &Import, is_opening: bool, commands: &mut Vec<Co
     ui.horizontal(|ui| {
         let ready = import.is_ready() && !is_opening;
         let convert = Button::new(RichText::new("Convert").font(theme::semibold(theme::BODY)));
-        if ui.add_enabled(ready, convert.min_size(Vec2::new(120.0, 28.0))).clicked() {
-            commands.push(Command::Convert);
-        }
+        on_click(&ui.add_enabled(ready, convert.min_size(Vec2::new(120.0, 28.0))), Command::Convert, commands);
         let cancel = Button::new("Cancel").min_size(Vec2::new(84.0, 28.0));
         let tip = if is_opening { "Back to the import" } else { "Do not import this mesh  (Esc)" };
-        if ui.add(cancel).on_hover_text(tip).clicked() {
-            commands.push(Command::CancelImport);
-        }
+        on_click(&ui.add(cancel).on_hover_text(tip), Command::CancelImport, commands);
     });
     ui.add_space(4.0);
 }

@@ -2,6 +2,7 @@
 
 use eframe::egui::{Frame, Margin, Panel, RichText, Ui};
 
+use super::on_click;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::state::State;
@@ -18,9 +19,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         for (k, fault) in state.view().faults.iter().enumerate() {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::X_CIRCLE).font(theme::regular(theme::ICON)).color(ink(palette.broken)));
-                if ui.small_button("Close").clicked() {
-                    commands.push(Command::CloseFault(k));
-                }
+                on_click(&ui.small_button("Close"), Command::CloseFault(k), commands);
                 ui.add(eframe::egui::Label::new(RichText::new(fault).color(ink(palette.strong))).wrap());
             });
         }

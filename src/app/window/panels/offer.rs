@@ -2,6 +2,7 @@
 
 use eframe::egui::{Frame, Margin, Panel, RichText, Ui};
 
+use super::on_click;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::state::State;
@@ -19,9 +20,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             if offer.opens && ui.button("Open it").clicked() {
                 commands.push(Command::OpenKept);
             }
-            if ui.button("Discard").clicked() {
-                commands.push(Command::DiscardKept);
-            }
+            on_click(&ui.button("Discard"), Command::DiscardKept, commands);
             if more > 0 {
                 ui.label(RichText::new(format!("and {more} more")).color(ink(palette.weak)));
             }

@@ -32,11 +32,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         light(commands, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
     }
     let (least, greatest, worst) = corner_angles(moment);
-    let note = match worst {
-        Some((e, angle)) => format!("smallest {}°, of element {}", words::degrees(angle), e.0),
-        None => String::new(),
-    };
-    if head(ui, "Least and greatest angles of the quads, degrees (fig. 24)", note, palette)
+    let note = worst.map(|(e, angle)| format!("smallest {}°, of element {}", words::degrees(angle), e.0));
+    if head(ui, "Least and greatest angles of the quads, degrees (fig. 24)", note.unwrap_or_default(), palette)
         && let Some((e, _)) = worst
     {
         commands.push(Command::Pick(Some(Outlined::Element(e))));
@@ -47,11 +44,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         let fits = |angle: f64| (low..high).contains(&angle.to_degrees());
         let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && angles(mesh, *e).into_iter().any(fits));
         let lit = quads.map(Outlined::Element).collect();
-        light(
-            commands,
-            lit,
-            &format!("quads with such an angle of {}° to {}°", words::fixed(low, 0), words::fixed(high, 0)),
-        );
+        let what = format!("quads with such an angle of {}° to {}°", words::fixed(low, 0), words::fixed(high, 0));
+        light(commands, lit, &what);
     }
 }
 

@@ -143,13 +143,9 @@ impl Worker {
                 Ask::Go(goal, since) => self.go(Aim::Goal(goal), since),
                 Ask::Break(stops, direction) => self.go(Aim::Break(stops, direction), Instant::now()),
                 Ask::Touch(watched) => {
-                    let found = self.history.last_touch(watched);
-                    self.go_back(found, "Nothing has touched it before this step.");
+                    self.go_back(self.history.last_touch(watched), "Nothing has touched it before this step.");
                 }
-                Ask::Made(element) => {
-                    let found = self.history.made(element);
-                    self.go_back(found, "It exists from the beginning.");
-                }
+                Ask::Made(element) => self.go_back(self.history.made(element), "It exists from the beginning."),
                 Ask::Past(watched) => self.past(watched),
                 Ask::Count(conditions) => {
                     self.conditions = conditions;
@@ -207,10 +203,12 @@ impl Worker {
             }
             Ok(Past { step: history.step(), watched, touches, more, made, killed })
         };
-        match told() {
-            Ok(past) => self.voice.say(SessionNews::Past(Arc::new(past))),
-            Err(fault) => self.voice.say(SessionNews::Fault(fault, 0)),
-        }
+        self.report(told().map(|past| SessionNews::Past(Arc::new(past))), 0);
+    }
+
+    /// Reports an answer, or the fault instead, to so many requests.
+    fn report(&self, answer: Result<SessionNews, Fault>, asks: usize) {
+        self.voice.say(answer.unwrap_or_else(|fault| SessionNews::Fault(fault, asks)));
     }
 
     fn explain(&self, a: NodeId, b: NodeId) {
@@ -341,10 +339,8 @@ impl Worker {
             return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
         };
         self.pending = None;
-        match self.moment(step, since) {
-            Ok(moment) => self.voice.say(SessionNews::Moment(Arc::new(moment), asks)),
-            Err(fault) => self.voice.say(SessionNews::Fault(fault, asks)),
-        }
+        let moment = self.moment(step, since);
+        self.report(moment.map(|moment| SessionNews::Moment(Arc::new(moment), asks)), asks);
     }
 
     /// The nearest step at which a breakpoint is met or something that is watched is touched.

@@ -3,6 +3,7 @@
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
+use super::cameras::zoom;
 use super::{ViewFrame, Views, moved};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
@@ -90,13 +91,7 @@ pub(super) fn orbit(
     } else if response.dragged() {
         camera.pan(by);
     }
-    if let Some(at) = response.hover_pos() {
-        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
-        if factor != 1.0 {
-            camera.zoom(factor, frame.inside(at), frame.size());
-        }
-    }
+    zoom(ui, response, camera, &frame);
     *camera != before
 }
 

@@ -3,7 +3,7 @@
 
 use eframe::egui::{Label, RichText, Sense, Ui};
 
-use super::{elements, heading, note};
+use super::{elements, heading, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::{Lookup, State, watched};
@@ -47,23 +47,21 @@ pub fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Co
         offered.push((Command::Made(e), "Go to the step that made this quadrilateral"));
     }
     for (command, tip) in offered {
-        if ui.button(command.name()).on_hover_text(tip).clicked() {
-            commands.push(command);
-        }
+        on_click(&ui.button(command.name()).on_hover_text(tip), command, commands);
     }
     let is_watched = state.document().watches.iter().any(|watch| watch.watched == watched(what));
     let name = if is_watched { "Stop watching" } else { "Watch" };
     let tip = "F5 and Alt+F5 stop where it is touched";
-    if ui.button(name).on_hover_text(tip).clicked() {
-        commands.push(Command::Watch(what));
-    }
+    on_click(&ui.button(name).on_hover_text(tip), Command::Watch(what), commands);
 }
 
 fn step_link(ui: &mut Ui, step: u64, what: &str, commands: &mut Vec<Command>, palette: &Palette) {
     let text = format!("step {}  {what}", words::grouped(step));
     let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text));
     let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false).truncate());
-    if response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand).clicked() {
-        commands.push(Command::Go(Goal::Step(step)));
-    }
+    on_click(
+        &response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand),
+        Command::Go(Goal::Step(step)),
+        commands,
+    );
 }

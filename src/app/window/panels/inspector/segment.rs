@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{ends, formula, heading, note, table_head, table_row, title, why};
+use super::{ends, formula, heading, note, stands_for, table_head, table_row, title, why};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -167,11 +167,6 @@ fn candidates(
         let response = table_row(ui, &widths, &texts, colour, ground);
         let there = moment.mesh.has_node(candidate.node) && moment.mesh.are_joined(from, candidate.node);
         let what = if there { Outlined::Edge(ends) } else { Outlined::Node(candidate.node) };
-        if response.hovered() {
-            commands.push(Command::Hover(what));
-        }
-        if response.on_hover_text(&texts[4]).clicked() {
-            commands.push(Command::Pick(Some(what)));
-        }
+        stands_for(&response.on_hover_text(&texts[4]), what, commands);
     }
 }

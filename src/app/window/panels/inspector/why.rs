@@ -141,11 +141,7 @@ fn why_not(moment: &Moment, told: &SegmentFacts, place: usize) -> Vec<String> {
     };
     let mut sentences = vec![text];
     if let Some([low, high]) = told.chosen_for_c {
-        let range = match high.is_finite() {
-            true => format!("{} < c \u{2264} {}", up(low, 3), down(high, 3)),
-            false => format!("c > {}", up(low, 3)),
-        };
-        sentences.push(format!("It would be next for {range}."));
+        sentences.push(format!("It would be next for {}.", range_of_c(low, high)));
     }
     sentences
 }
@@ -153,15 +149,19 @@ fn why_not(moment: &Moment, told: &SegmentFacts, place: usize) -> Vec<String> {
 fn same_choice(told: &SegmentFacts) -> String {
     let mut bounds = Vec::new();
     if let Some([low, high]) = told.margin_of_c {
-        bounds.push(match high.is_finite() {
-            true => format!("{} < c \u{2264} {}", up(low, 3), down(high, 3)),
-            false => format!("c > {}", up(low, 3)),
-        });
+        bounds.push(range_of_c(low, high));
     }
     if let Some([low, high]) = told.margin_of_theta_rect {
         bounds.push(format!("{}° < \u{3b8}_{{rect}} \u{2264} {}°", up(low, 1), down(high, 1)));
     }
     if bounds.is_empty() { String::new() } else { format!("Same choice for {}.", bounds.join(" and ")) }
+}
+
+fn range_of_c(low: f64, high: f64) -> String {
+    match high.is_finite() {
+        true => format!("{} < c \u{2264} {}", up(low, 3), down(high, 3)),
+        false => format!("c > {}", up(low, 3)),
+    }
 }
 
 /// Bounds are rounded inwards, so that they stay true.

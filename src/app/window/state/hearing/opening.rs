@@ -102,9 +102,8 @@ impl State {
         self.view.look.ask(opened.run.camera.map_or(Look::Fit, Look::Kept));
         self.frame.hovered = None;
         self.run.awaited = opened.run.shown.as_ref().and_then(|shown| shown.state()).copied();
-        if let (Some(shown), Some(session)) = (self.run.awaited, &self.run.session) {
-            session.go(if shown.at.is_some() { Goal::Step(shown.step) } else { Goal::End });
-            self.run.waiting += 1;
+        if let Some(shown) = self.run.awaited {
+            self.go(if shown.at.is_some() { Goal::Step(shown.step) } else { Goal::End });
         }
         self.run.opened = Some(opened);
     }
