@@ -11,11 +11,7 @@ use serde_json::Value;
 
 use super::command::Command;
 use super::named::named;
-use super::panels::PanelStates;
-use super::state::State;
-use super::viewport::Views;
-use crate::render::palette::Palette;
-use docks::Docks;
+pub use docks::Docks;
 
 /// Widths in points: front, lens, inspector; and the least width of the view.
 const LEFT: f32 = 344.0;
@@ -107,15 +103,8 @@ impl Default for Layout {
 
 impl Layout {
     /// Shows all panels.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        state: &State,
-        local: &mut PanelStates,
-        views: &mut Views,
-        commands: &mut Vec<Command>,
-        palette: &'static Palette,
-    ) {
+    pub fn show(&mut self, ui: &mut Ui, docks: &mut Docks<'_>) {
+        let state = docks.state;
         let size = ui.available_size();
         let room = Room::of(size.x);
         if state.view().relayout.take(&mut self.relayouts).is_some() {
@@ -136,13 +125,12 @@ impl Layout {
         }
         self.size = size;
         let Some((tree, _)) = &mut self.tree else { return };
-        let mut docks = Docks { state, local, views, commands, palette, edited: false };
-        tree.ui(&mut docks, ui);
+        tree.ui(docks, ui);
         self.edited |= docks.edited;
         if self.edited && !ui.input(|input| input.pointer.any_down()) {
             self.edited = false;
             self.arranged.insert(room.name().to_owned(), written::write(tree));
-            commands.push(Command::Arrange(self.arranged().to_string()));
+            docks.commands.push(Command::Arrange(self.arranged().to_string()));
         }
     }
 

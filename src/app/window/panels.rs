@@ -13,7 +13,6 @@ pub mod parameters;
 pub mod layers;
 pub mod plots;
 pub mod messages;
-pub mod offer;
 pub mod notes;
 pub mod figure;
 pub mod import;
@@ -25,7 +24,7 @@ use eframe::egui::{
 
 use super::command::Command;
 use super::theme::{self, ink};
-use crate::render::palette::Palette;
+use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::Outlined;
 
 /// What the panels keep for themselves.
@@ -104,5 +103,10 @@ pub fn inset() -> Frame {
 
 /// Weak text, for units and notes.
 pub fn note(text: impl Into<String>, palette: &Palette) -> RichText {
-    RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.weak))
+    line(text, palette.weak)
+}
+
+/// Text of a table or a list.
+pub fn line(text: impl Into<String>, colour: Rgba) -> RichText {
+    RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour))
 }

@@ -19,6 +19,7 @@ pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
 use super::import::ImportOptions;
+use super::state::Progress;
 use crate::app::progress;
 use crate::core::case::Case;
 use crate::core::convert::event::{Event, EventKind, Why};
@@ -63,14 +64,18 @@ pub enum Ask {
 
 /// What a session reports.
 pub enum SessionNews {
-    /// Progress: how much is done of how much (0: unknown).
-    Progress { words: &'static str, done: u64, total: u64 },
+    Progress(Progress),
     /// The case is open and has its background mesh.
     Opened(Arc<Opened>),
     /// A state, with the number of requests that it answers.
     Moment(Arc<Moment>, usize),
     /// More of the run: steps after `from`, which replace those known before; `end`: they include the last one.
-    Track { from: u64, steps: Vec<Tracked>, samples: Vec<Sample>, end: bool },
+    Track {
+        from: u64,
+        steps: Vec<Tracked>,
+        samples: Vec<Sample>,
+        end: bool,
+    },
     /// The result of the checks of the whole mesh at a step.
     Checked(u64, Verdict),
     /// The history of something up to a step.
@@ -208,7 +213,7 @@ impl Voice {
     fn progress(&mut self, words: &'static str, done: u64, total: u64) {
         if self.last.elapsed() >= EVERY {
             self.last = Instant::now();
-            self.say(SessionNews::Progress { words, done, total });
+            self.say(SessionNews::Progress(Progress { words, done, total }));
         }
     }
 }

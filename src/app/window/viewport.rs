@@ -12,7 +12,7 @@ use std::sync::Arc;
 use eframe::egui::{self, PaintCallbackInfo, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::wgpu;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use cameras::{aim, metric_lens, other_end, steer};
 pub use cameras::{lens_node, middle};
@@ -58,7 +58,7 @@ pub struct Views {
     /// What the open context menu is about.
     menu_of: Option<Outlined>,
     /// The point about which a drag in space turns the mesh.
-    pivot: Option<glam::DVec3>,
+    pivot: Option<DVec3>,
     /// The part of the scene in space that hides labels.
     cover: space::Covering,
     /// The last request to look somewhere that the views have followed.
@@ -77,9 +77,9 @@ impl ViewFrame {
         DVec2::new(f64::from(self.rect.width()), f64::from(self.rect.height()))
     }
 
-    /// Where a point of the plane lies on the screen.
-    pub fn place(&self, p: DVec2) -> egui::Pos2 {
-        let at = self.camera.project(p.extend(0.0), self.size());
+    /// Where a point lies on the screen.
+    pub fn place(&self, p: DVec3) -> egui::Pos2 {
+        let at = self.camera.project(p, self.size());
         self.rect.min + Vec2::new(at.x as f32, at.y as f32)
     }
 

@@ -4,7 +4,7 @@ use eframe::egui::{
     self, Align, Id, Key, Label, Layout, Modifiers, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo,
 };
 
-use super::{icon_button, inset, note, on_click};
+use super::{icon_button, inset, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
@@ -173,8 +173,7 @@ fn field(ui: &mut Ui, text: &mut String, offers: &[(String, String)], commands: 
     } else if let (Err(fault), false) = (&parsed, text.trim().is_empty()) {
         // While the user types it is a hint; after Enter, until it is corrected, an error.
         let colour = if response.has_focus() { palette.weak } else { palette.broken };
-        let fault = RichText::new(fault.to_string()).font(theme::regular(theme::TABLE)).color(ink(colour));
-        ui.add(Label::new(fault).wrap());
+        ui.add(Label::new(line(fault.to_string(), colour)).wrap());
     }
     if entered {
         response.request_focus();

@@ -42,39 +42,35 @@ fn radios<T: PartialEq>(ui: &mut Ui, value: &mut T, both: [(T, &str); 2]) {
             ui.radio_value(value, one, text);
         }
     });
-    ui.end_row();
 }
 
 fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let mut figure = state.workspace().figure.clone();
-    let head = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).color(ink(palette.weak)));
     Grid::new("figure").num_columns(2).spacing(Vec2::new(12.0, 6.0)).show(ui, |ui| {
-        head(ui, "shows");
-        let all = Content::ALL.map(|content| (content, content.name()));
-        choice(ui, "What the figure shows", 196.0, figure.content.name(), &mut figure.content, all);
-        ui.end_row();
-        if figure.content == Content::Stops {
-            head(ui, "NQ");
-            field(ui, &mut figure.stops, "NQ of the strip", "50,100,150,end");
+        let mut row = |name: &str, widgets: &mut dyn FnMut(&mut Ui)| {
+            ui.label(RichText::new(name).color(ink(palette.weak)));
+            widgets(ui);
             ui.end_row();
+        };
+        let all = Content::ALL.map(|content| (content, content.name()));
+        row("shows", &mut |ui| {
+            choice(ui, "What the figure shows", 196.0, figure.content.name(), &mut figure.content, all);
+        });
+        if figure.content == Content::Stops {
+            row("NQ", &mut |ui| field(ui, &mut figure.stops, "NQ of the strip", "50,100,150,end"));
         }
-        head(ui, "size");
         let usual = if figure.is_strip() { "174mm" } else { "84mm" };
-        field(ui, &mut figure.size, "Size of the figure", &format!("{usual}, or 1920x1080"));
-        ui.end_row();
-        head(ui, "dots per inch");
-        let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
-        dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Dots per inch"));
-        ui.end_row();
-        head(ui, "ink");
-        radios(ui, &mut figure.ink, [(Ink::Colour, "colour"), (Ink::Grey, "grey")]);
-        head(ui, "ground");
-        radios(ui, &mut figure.transparent, [(false, "white"), (true, "transparent")]);
-        head(ui, "part");
-        radios(ui, &mut figure.in_view, [(false, "the whole mesh"), (true, "what is in view")]);
-        head(ui, "name");
-        field(ui, &mut figure.name, "Name of the figure", "from case and step");
-        ui.end_row();
+        let hint = format!("{usual}, or 1920x1080");
+        row("size", &mut |ui| field(ui, &mut figure.size, "Size of the figure", &hint));
+        row("dots per inch", &mut |ui| {
+            let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
+            dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Dots per inch"));
+        });
+        row("ink", &mut |ui| radios(ui, &mut figure.ink, [(Ink::Colour, "colour"), (Ink::Grey, "grey")]));
+        row("ground", &mut |ui| radios(ui, &mut figure.transparent, [(false, "white"), (true, "transparent")]));
+        let parts = [(false, "the whole mesh"), (true, "what is in view")];
+        row("part", &mut |ui| radios(ui, &mut figure.in_view, parts));
+        row("name", &mut |ui| field(ui, &mut figure.name, "Name of the figure", "from case and step"));
     });
     if !matches!(figure.content, Content::Lengths | Content::Angles) {
         ui.add_space(6.0);

@@ -1,12 +1,11 @@
 //! The steps around the current one, and the changes of the user.
 
-use eframe::egui::{RichText, ScrollArea, Ui};
+use eframe::egui::{ScrollArea, Ui};
 
-use super::{heading, inset, note, on_click};
+use super::{heading, inset, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
-use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::run::run::EditKind;
 use crate::render::palette::Palette;
@@ -40,8 +39,11 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                 } else {
                     palette.hint
                 };
-                let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
-                on_click(&ui.selectable_label(false, text), Command::Go(Goal::Step(k as u64 + 1)), commands);
+                on_click(
+                    &ui.selectable_label(false, line(text, colour)),
+                    Command::Go(Goal::Step(k as u64 + 1)),
+                    commands,
+                );
             }
         });
     });

@@ -5,7 +5,7 @@ use eframe::egui::{
     Sense, Slider, Ui, Vec2, WidgetInfo,
 };
 
-use super::{choice, heading, inset, note, on_click};
+use super::{choice, heading, inset, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, UNITS};
@@ -161,7 +161,7 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
     }
     // The end of a drag is reported too.
     let gesture = if dragging { Gesture::Dragging } else { Gesture::Done };
-    if options != import.options || import.gesture() != gesture {
+    if options != import.options || import.gesture != gesture {
         commands.push(Command::SetImport(Box::new(options), gesture));
     }
 }
@@ -286,18 +286,18 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     let named = |n: usize, one: &str, several: &str| format!("{} {}", grouped(n), if n == 1 { one } else { several });
     let grid = Grid::new("counts").num_columns(2).striped(false).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES);
     grid.show(ui, |ui| {
-        let mut line = |name: &str, value: String| {
+        let mut row = |name: &str, value: String| {
             ui.label(note(name, palette));
-            ui.add(egui::Label::new(line_text(value, palette)).wrap());
+            ui.add(egui::Label::new(line(value, palette.text)).wrap());
             ui.end_row();
         };
-        line("extent", extent.to_array().map(three_digits).join(" × "));
-        line("nodes", grouped(census.nodes));
-        line("triangles", grouped(census.triangles));
-        line("components", grouped(census.components));
-        line("boundary loops", grouped(census.border_loops));
+        row("extent", extent.to_array().map(three_digits).join(" × "));
+        row("nodes", grouped(census.nodes));
+        row("triangles", grouped(census.triangles));
+        row("components", grouped(census.components));
+        row("boundary loops", grouped(census.border_loops));
         if loaded.regions > 1 {
-            line("regions", grouped(loaded.regions));
+            row("regions", grouped(loaded.regions));
         }
     });
     let Some(shown) = &import.shown else { return };
@@ -331,7 +331,7 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
                         egui::Rect::from_min_size(rect.min + Vec2::new(k as f32 * width, 2.0), Vec2::new(width, 12.0));
                     ui.painter().rect_filled(part, 0.0, ink(*colour));
                 }
-                ui.label(line_text(named(division.charts, "chart", "charts"), palette));
+                ui.label(line(named(division.charts, "chart", "charts"), palette.text));
             });
         }
         None if import.has_charts() && import.refused.is_none() => {
@@ -344,14 +344,10 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
         for repair in &loaded.repairs {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK).font(theme::regular(theme::TABLE)).color(ink(palette.holds)));
-                ui.add(egui::Label::new(line_text(repair.clone(), palette)).wrap());
+                ui.add(egui::Label::new(line(repair.clone(), palette.text)).wrap());
             });
         }
     }
-}
-
-fn line_text(text: String, palette: &Palette) -> RichText {
-    RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text))
 }
 
 /// A line as the view draws it, with its meaning.
@@ -359,7 +355,7 @@ fn swatch(ui: &mut Ui, (colour, width): (Rgba, f32), text: String, palette: &Pal
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::new(30.0, 16.0), Sense::hover());
         ui.painter().hline(rect.x_range(), rect.center().y, (width, ink(colour)));
-        ui.label(line_text(text, palette));
+        ui.label(line(text, palette.text));
     });
 }
 

@@ -1,4 +1,5 @@
-//! Faults, which stay until they are closed, and notices, which go by themselves. Never modal.
+//! Faults, which stay until they are closed, notices, which go by themselves, and the offer to recover an autosaved run.
+//! Never modal.
 
 use eframe::egui::{Frame, Margin, Panel, RichText, Ui};
 
@@ -26,5 +27,24 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         if let Some((text, _)) = state.view().notice() {
             ui.label(RichText::new(text).color(ink(palette.text)));
         }
+    });
+}
+
+/// Shows the offer under the menus.
+pub fn offer(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some((offer, more)) = state.run().autosave.as_ref().and_then(|autosave| autosave.offer()) else { return };
+    let frame = Frame::NONE.fill(ink(palette.button)).inner_margin(Margin::symmetric(14, 5));
+    Panel::top("offer").frame(frame).resizable(false).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(icons::RESET).font(theme::regular(theme::ICON)).color(ink(palette.accent)));
+            ui.label(RichText::new(&offer.text).color(ink(palette.strong)));
+            if offer.opens && ui.button("Open it").clicked() {
+                commands.push(Command::OpenKept);
+            }
+            on_click(&ui.button("Discard"), Command::DiscardKept, commands);
+            if more > 0 {
+                ui.label(RichText::new(format!("and {more} more")).color(ink(palette.weak)));
+            }
+        });
     });
 }

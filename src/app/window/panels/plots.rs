@@ -3,6 +3,7 @@
 use eframe::egui::{RichText, Ui, Vec2b};
 use egui_plot::{Bar, BarChart, Legend, Plot};
 
+use super::line;
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -63,8 +64,7 @@ fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
         ui.add_space(12.0);
         ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
         if !note.is_empty() {
-            let note = RichText::new(note).font(theme::regular(theme::TABLE)).color(ink(palette.weak));
-            clicked = ui.link(note).clicked();
+            clicked = ui.link(line(note, palette.weak)).clicked();
         }
     });
     clicked

@@ -38,14 +38,12 @@ pub struct Stops {
 }
 
 /// Where to go.
-#[derive(Clone)]
 enum Aim {
     Goal(Goal),
     Break(Stops, Direction),
 }
 
 /// An aim that is not reached yet.
-#[derive(Clone)]
 struct Pending {
     aim: Aim,
     /// How many requests it answers.
@@ -318,27 +316,23 @@ impl Worker {
 
     /// Goes to the requested step, if it is known by now.
     fn arrive(&mut self) {
-        let Some(Pending { aim, asks, since }) = self.pending.clone() else { return };
+        let Some(Pending { aim, asks, since }) = self.pending.take() else { return };
         let end = self.history.end();
         let found = match &aim {
             Aim::Goal(goal) => goal.resolve(self.history.log(), self.history.step(), end),
             Aim::Break(stops, direction) => match self.stop_at(stops, *direction) {
                 Ok(None) if end.is_some() || *direction == Direction::Back => {
-                    self.pending = None;
                     return self.voice.say(SessionNews::Nothing("No breakpoint is hit in that direction.", asks));
                 }
                 Ok(found) => found,
-                Err(fault) => {
-                    self.pending = None;
-                    return self.voice.say(SessionNews::Fault(fault, asks));
-                }
+                Err(fault) => return self.voice.say(SessionNews::Fault(fault, asks)),
             },
         };
         let Some(step) = found else {
+            self.pending = Some(Pending { aim, asks, since });
             let words = "Converting: quad";
             return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
         };
-        self.pending = None;
         let moment = self.moment(step, since);
         self.report(moment.map(|moment| SessionNews::Moment(Arc::new(moment), asks)), asks);
     }

@@ -3,7 +3,7 @@
 use eframe::egui::{Role, Sense, Ui, WidgetInfo};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::space::{MARGIN, orbit};
+use super::space::{MARGIN, middle_of, orbit};
 use super::{ViewFrame, Views, instead, moved, paint, tools, whole_pixels};
 use crate::app::window::command::Command;
 use crate::app::window::import::Loaded;
@@ -86,13 +86,8 @@ fn fit(loaded: &Loaded, turn: DQuat, size: DVec2) -> Camera {
 
 /// The side from which marked elements are seen: the usual one, unless they are at the back.
 fn side_of(marks: &[Vec<DVec3>], loaded: &Loaded) -> Bearing {
-    let middle = |points: &mut dyn Iterator<Item = DVec3>| {
-        let ends = points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-        ends.map(|[low, high]| 0.5 * (low + high))
-    };
-    let of_marks = middle(&mut marks.iter().flatten().copied());
     let corners = loaded.mesh.triangles.as_flattened().iter().map(|&k| loaded.mesh.points[k as usize]);
-    let out = match (of_marks, middle(&mut { corners })) {
+    let out = match (middle_of(marks.iter().flatten().copied()), middle_of(corners)) {
         (Some(marks), Some(all)) if marks.distance(all) > 0.1 * loaded.extent.max_element() => marks - all,
         _ => return Bearing::Iso,
     };

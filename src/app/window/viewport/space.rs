@@ -68,7 +68,8 @@ impl Views {
             // The point that is grabbed stays under the pointer; beside the mesh, the drag turns about its middle.
             let press = ui.input(|input| input.pointer.press_origin());
             let hit = press.and_then(|at| pick::hit(&self.space.scene, camera, frame.size(), frame.inside(at)));
-            self.pivot = hit.map(|hit| hit.place).or_else(|| middle_of(moment));
+            self.pivot =
+                hit.map(|hit| hit.place).or_else(|| middle_of(moment.mesh.nodes().map(|n| moment.mesh.xyz(n))));
         }
         orbit(ui, response, camera, frame, self.pivot)
     }
@@ -99,8 +100,9 @@ fn fit(moment: &Moment, turn: DQuat, size: DVec2) -> Camera {
     Camera::fit_in_space(moment.mesh.nodes().map(|n| moment.mesh.xyz(n)), turn, size, MARGIN)
 }
 
-fn middle_of(moment: &Moment) -> Option<DVec3> {
-    let ends = moment.mesh.nodes().map(|n| moment.mesh.xyz(n)).map(|p| [p, p]);
+/// The middle of the least box around some points.
+pub(super) fn middle_of(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
+    let ends = points.map(|p| [p, p]);
     ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).map(|[low, high]| 0.5 * (low + high))
 }
 

@@ -1,13 +1,12 @@
 //! The history of something: the step that made it or ended it, the triangles that it was made of, every step that
 //! touched it; and what can be done with it.
 
-use eframe::egui::{Label, RichText, Sense, Ui};
+use eframe::egui::{Label, Sense, Ui};
 
-use super::{elements, heading, note, on_click};
+use super::{elements, heading, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::{Lookup, State, watched};
-use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
@@ -57,8 +56,7 @@ pub fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Co
 
 fn step_link(ui: &mut Ui, step: u64, what: &str, commands: &mut Vec<Command>, palette: &Palette) {
     let text = format!("step {}  {what}", words::grouped(step));
-    let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text));
-    let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false).truncate());
+    let response = ui.add(Label::new(line(text, palette.text)).sense(Sense::click()).selectable(false).truncate());
     on_click(
         &response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand),
         Command::Go(Goal::Step(step)),

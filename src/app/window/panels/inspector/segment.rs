@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{ends, formula, heading, note, stands_for, table_head, table_row, title, why};
+use super::{ends, formula, heading, length, note, stands_for, table_head, table_row, title, why};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -60,10 +60,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         }
         None => {}
     }
-    heading(ui, "Length", "eqs. 4, 5", palette);
-    let length =
-        format!("**{}** metric,  {} in space", words::fixed(s.length_metric, 2), words::size(s.length_physical));
-    formula(ui, &length, palette).on_hover_text("In a plane case the parametric length is that in space.");
+    length(ui, s.length_metric, s.length_physical, palette);
     heading(ui, "Ends", "sizes of their metrics", palette);
     ends(ui, moment, &[("A", s.a), ("B", s.b)], commands, palette);
 }

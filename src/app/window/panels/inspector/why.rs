@@ -120,22 +120,19 @@ fn why_not(moment: &Moment, told: &SegmentFacts, place: usize) -> Vec<String> {
         None => String::new(),
     };
     let has_least = smallest(moment).is_some_and(|least| least.h == row.h);
-    let but = if has_least { "It has H_{min}, but " } else { "" };
+    let but = |what: &str| if has_least { "It has H_{min}, but ".to_owned() + what } else { capital_of(what) };
     text += &match &told.verdict {
         Verdict::BetterClass { class } => {
             let what = format!(
                 "class {class} has a segment within c·H_{{min}} = {}.",
                 words::size(moment.parameters.c * told.h_min)
             );
-            if has_least { format!("{but}{what}") } else { capital_of(&what) }
+            but(&what)
         }
         Verdict::OutOfReach { .. } => {
             format!("Out of reach: {} is not below {}.", window(moment, row), reach(moment, told.h_min))
         }
-        Verdict::ClassFour => format!("{but}{}", {
-            let what = "class 4 is considered only when no segment of classes 1 to 3 is within reach.";
-            if has_least { what.to_owned() } else { capital_of(what) }
-        }),
+        Verdict::ClassFour => but("class 4 is considered only when no segment of classes 1 to 3 is within reach."),
         Verdict::First => "It will be selected next.".to_owned(),
         _ => capital(&told.reason()),
     };

@@ -4,16 +4,15 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::app::window::files::Watcher;
-use crate::app::window::import::News;
 use crate::app::window::session::{Goal, Opened, Session, SessionNews, Source};
-use crate::app::window::state::{Look, Progress, RunState, State, ViewCamera};
+use crate::app::window::state::{Look, RunState, State, ViewCamera};
 use crate::core::case::built_in;
 
 impl State {
     /// Takes in what the preview of an import reports; a mesh that cannot be read is given up.
     pub(in crate::app::window) fn hear_import(&mut self, dark: bool) {
         let Some(import) = &mut self.run.import else { return };
-        if let News::Refused(fault) = import.look(dark) {
+        if let Some(fault) = import.look(dark) {
             self.complain(&fault);
             self.give_up_import();
             self.say_what_stays();
@@ -30,9 +29,7 @@ impl State {
     pub(super) fn hear_opening(&mut self) {
         while let Some(told) = self.run.opening.as_ref().and_then(|(_, session)| session.hear().next()) {
             match told {
-                SessionNews::Progress { words, done, total } => {
-                    self.run.progress = Some(Progress { words, done, total })
-                }
+                SessionNews::Progress(progress) => self.run.progress = Some(progress),
                 SessionNews::Opened(opened) => {
                     if let Some((source, session)) = self.run.opening.take() {
                         self.begin(source, session, opened);
