@@ -315,7 +315,7 @@ impl eframe::App for App {
         self.keep(&context, false);
         self.moving = context.has_requested_repaint();
         let title = match &self.state.run().opened {
-            Some(opened) => format!("{} – quadfront", opened.case.name),
+            Some(opened) => format!("{} – quadfront", opened.run.case.name),
             None => "quadfront".to_owned(),
         };
         if self.title != title {

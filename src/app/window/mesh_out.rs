@@ -15,7 +15,7 @@ use crate::core::fault::Fault;
 pub fn suggested_path(state: &State) -> String {
     let (Some(moment), Some(opened)) = (&state.run().moment, &state.run().opened) else { return String::new() };
     let step = if state.run().is_at_the_end() { String::new() } else { format!("-step-{}", moment.step) };
-    free_path(&format!("{}{step}", opened.case.name), "vtu").display().to_string()
+    free_path(&format!("{}{step}", opened.run.case.name), "vtu").display().to_string()
 }
 
 /// Starts to write the current mesh, in the format of the path's extension; does nothing if nothing is open. The thread

@@ -21,7 +21,6 @@ pub use worker::Stops;
 use super::import::ImportOptions;
 use super::state::Progress;
 use crate::app::progress;
-use crate::core::case::Case;
 use crate::core::convert::event::{Event, EventKind, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::ids::{ElementId, NodeId};
@@ -92,7 +91,6 @@ pub enum SessionNews {
 
 /// A case that is open.
 pub struct Opened {
-    pub case: Case,
     /// The run as it was opened.
     pub run: Run,
     pub background: Background,

@@ -127,7 +127,7 @@ impl State {
 
     /// Parameters of the case, before any edit.
     pub fn parameters_of_case(&self) -> Option<&Parameters> {
-        self.run.opened.as_ref().map(|opened| &opened.case.parameters)
+        self.run.opened.as_ref().map(|opened| &opened.run.case.parameters)
     }
 }
 

@@ -162,8 +162,8 @@ impl Views {
             pick::pick(&moment.mesh, p, frame.inside(at), &project, self.hint)
         });
         self.point(ui, &response, state, hovered, commands);
-        self.update(state, moment, palette, &frame, Form::Plane, true);
-        self.paint(ui, index, &frame, palette, 0.0, Form::Plane);
+        self.plane.update(state, moment, palette, &frame, Form::Plane, true, &mut self.shading);
+        paint(ui, index, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
         faces::show(ui, &frame, state, moment, palette);
         let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
         labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[index]);
@@ -193,8 +193,8 @@ impl Views {
         let frame = ViewFrame { camera, rect };
         let (which, k) =
             if lens == Lens::Metric { (labels::ViewRole::Lens, LENS) } else { (labels::ViewRole::Whole, WHOLE) };
-        self.update(state, &moment, palette, &frame, Form::Plane, false);
-        self.paint(ui, k, &frame, palette, 0.0, Form::Plane);
+        self.plane.update(state, &moment, palette, &frame, Form::Plane, false, &mut self.shading);
+        paint(ui, k, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
         let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
         labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
     }
@@ -245,33 +245,9 @@ impl Views {
         self.plane.note(changes, slots);
         self.space.note(changes, slots);
     }
-
-    /// Brings a scene up to date with the state, by the differences if possible. `leads`: the scene is laid out for
-    /// this view.
-    fn update(
-        &mut self,
-        state: &State,
-        moment: &Moment,
-        palette: &Palette,
-        frame: &ViewFrame,
-        form: Form,
-        leads: bool,
-    ) {
-        let stage = if form.is_in_space() { &mut self.space } else { &mut self.plane };
-        stage.update(state, moment, palette, frame, form, leads, &mut self.shading);
-    }
-
-    /// Draws a view; `hidden`: the opacity of hidden lines.
-    fn paint(&self, ui: &Ui, index: usize, frame: &ViewFrame, palette: &Palette, hidden: f32, form: Form) {
-        let (stage, light) = match form {
-            Form::Plane => (&self.plane, Light::NONE),
-            _ => (&self.space, Light::on_surfaces(palette.dark)),
-        };
-        paint(ui, index, frame, &stage.scene, palette, light, hidden);
-    }
 }
 
-/// Draws a scene.
+/// Draws a scene; `hidden`: the opacity of hidden lines.
 fn paint(ui: &Ui, index: usize, frame: &ViewFrame, scene: &Arc<Scene>, palette: &Palette, light: Light, hidden: f32) {
     let (camera, size, pixels, ground) = (frame.camera, frame.size(), ui.pixels_per_point(), palette.ground);
     let view = View { camera, size, pixels, ground, light, hidden };

@@ -132,7 +132,7 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
     ui.spacing_mut().item_spacing.y = 5.0;
     unit(ui, &mut options, &taking, &mut dragging, palette);
     used(ui, &mut options, import, palette);
-    sizes(ui, &mut options, import, &taking, &mut dragging, palette);
+    sizes(ui, &mut options, import, &mut dragging, palette);
     let charted = import.has_charts();
     ui.add_enabled_ui(charted, |ui| {
         let defaults = Taking::default();
@@ -231,14 +231,7 @@ fn used(ui: &mut Ui, options: &mut ImportOptions, import: &Import, palette: &Pal
     }
 }
 
-fn sizes(
-    ui: &mut Ui,
-    options: &mut ImportOptions,
-    import: &Import,
-    taking: &Taking,
-    dragging: &mut bool,
-    palette: &Palette,
-) {
+fn sizes(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragging: &mut bool, palette: &Palette) {
     let Some(loaded) = &import.loaded else { return };
     let before = match (options.mesh_size, options.curvature) {
         (None, _) => Sizing::OfMesh,
@@ -258,7 +251,7 @@ fn sizes(
     });
     if wanted != before {
         // Two digits are enough to start from.
-        let mean = loaded.mean_edge * taking.scale;
+        let mean = loaded.mean_edge * import.taking().scale;
         let plain: f64 = format!("{mean:.1e}").parse().unwrap_or(mean);
         options.mesh_size = (wanted != Sizing::OfMesh).then(|| options.mesh_size.unwrap_or(plain));
         options.curvature = (wanted == Sizing::ByCurvature).then_some(CHORD);

@@ -38,10 +38,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     });
     // The panel of an import shows its name.
     if let Some(opened) = state.run().opened.as_ref().filter(|_| state.run().import.is_none()) {
-        let painter = ui.painter_at(bar);
-        let name = painter.layout_no_wrap(opened.case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
+        let (case, painter) = (&opened.run.case, ui.painter_at(bar));
+        let name = painter.layout_no_wrap(case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
         let room = (bar.width() - 720.0).max(0.0);
-        let title = title(&opened.case.title, &opened.case.name);
+        let title = title(&case.title, &case.name);
         let mut job = egui::text::LayoutJob::simple_singleline(title, theme::regular(theme::BODY), ink(palette.weak));
         job.wrap = egui::text::TextWrapping::truncate_at_width((room - name.size().x - 8.0).max(0.0));
         let title = painter.layout_job(job);

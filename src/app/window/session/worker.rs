@@ -96,11 +96,7 @@ impl Worker {
             Err(fault) => return Err((voice, Box::new(fault))),
         };
         let triangles = background.mesh.element_count() as u64;
-        voice.say(SessionNews::Opened(Arc::new(Opened {
-            case: history.run().case.clone(),
-            run: history.run().clone(),
-            background,
-        })));
+        voice.say(SessionNews::Opened(Arc::new(Opened { run: history.run().clone(), background })));
         let cancel = Arc::new(AtomicBool::new(false));
         let even = history.log().front(0).odd == 0;
         Ok(Worker {

@@ -4,13 +4,14 @@ use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
 use super::cameras::zoom;
-use super::{ViewFrame, Views, moved};
+use super::{ViewFrame, Views, moved, paint};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
 use crate::app::window::session::Moment;
 use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
 use crate::core::mesh::ids::NodeId;
 use crate::render::camera::{Bearing, Camera};
+use crate::render::gpu::Light;
 use crate::render::palette::Palette;
 use crate::render::pick::{self, Cover};
 use crate::render::scene::{Decision, Outlined};
@@ -46,11 +47,12 @@ impl Views {
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         // Picking needs the elements of the current state.
         let form = state.workspace().surfaces.form();
-        self.update(state, moment, palette, &frame, form, true);
+        self.space.update(state, moment, palette, &frame, form, true, &mut self.shading);
         let hovered = pointer
             .and_then(|at| pick::pick_in_space(&self.space.scene, &moment.mesh, &camera, size, frame.inside(at)));
         self.point(ui, &response, state, hovered, commands);
-        self.paint(ui, 0, &frame, palette, state.workspace().surfaces.hidden.share(), form);
+        let hidden = state.workspace().surfaces.hidden.share();
+        paint(ui, 0, &frame, &self.space.scene, palette, Light::on_surfaces(palette.dark), hidden);
         let of = Some((self.space.scene.shape(), camera, size));
         if self.cover.of != of {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };

@@ -22,7 +22,7 @@ impl State {
     /// Says that the run that is open stays, if there is one.
     fn say_what_stays(&mut self) {
         if let Some(opened) = &self.run.opened {
-            self.notice(format!("{} stays open.", opened.case.name));
+            self.notice(format!("{} stays open.", opened.run.case.name));
         }
     }
 
