@@ -212,7 +212,7 @@ impl Views {
             self.hint = Some(e);
         }
         commands.extend(hovered.map(Command::Hover));
-        on_click(&response, Command::Pick(hovered), commands);
+        on_click(response, Command::Pick(hovered), commands);
         if response.double_clicked()
             && let Some(what) = hovered
         {

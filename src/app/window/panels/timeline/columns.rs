@@ -239,7 +239,7 @@ impl Columns {
     pub fn value(&self, of: CurveKind, step: u64) -> String {
         let k = step.checked_sub(1).map(|k| k as usize);
         let figures = match k {
-            None => self.first.map(|first| [first.front.segments, first.front.live, first.front.loops.into()]),
+            None => self.first.map(|first| [first.front.segments, first.front.live, first.front.loops]),
             Some(k) => self.figures.get(k).copied(),
         };
         let figure = |at: usize| figures.map_or(words::UNDEFINED.to_owned(), |f| words::grouped(f[at].into()));
