@@ -1,5 +1,5 @@
-//! Faults, which stay until they are closed, notices, which go by themselves, and the offer to recover an autosaved run.
-//! Never modal.
+//! Faults, which stay until they are closed, notices, which go by themselves, and the offer to recover an autosaved
+//! run. Never modal.
 
 use eframe::egui::{Frame, Margin, Panel, RichText, Ui};
 

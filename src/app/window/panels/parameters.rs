@@ -11,69 +11,50 @@ use crate::core::case::parameters::Parameters;
 use crate::core::run::run::EditKind;
 use crate::render::palette::Palette;
 
-/// A number: key, name, range, decimals, unit, and the paper's value.
+/// A number: key, name, range, decimals, and unit.
 struct Number {
     key: &'static str,
     name: &'static str,
     range: [f64; 2],
     decimals: usize,
     unit: &'static str,
-    paper: &'static str,
 }
 
-/// The numbers with their effects.
-const NUMBERS: [(Number, &str); 7] = [
+/// The numbers with the paper's values and their effects.
+const NUMBERS: [(Number, &str, &str); 7] = [
     (
-        Number {
-            key: "theta_rect", name: "θ rect", range: [90.0, 180.0], decimals: 1, unit: "°", paper: "paper 135"
-        },
+        Number { key: "theta_rect", name: "θ rect", range: [90.0, 180.0], decimals: 1, unit: "°" },
+        "paper 135",
         "Below this frontal angle the neighbouring front segment is the side edge (table 1).",
     ),
     (
-        Number { key: "c", name: "c", range: [0.5, 4.0], decimals: 2, unit: "", paper: "1.5–2.0" },
+        Number { key: "c", name: "c", range: [0.5, 4.0], decimals: 2, unit: "" },
+        "1.5–2.0",
         "A segment is within reach below c times the smallest H-value (section 4.3.3).",
     ),
     (
-        Number {
-            key: "theta_seam",
-            name: "θ seam",
-            range: [0.0, 90.0],
-            decimals: 1,
-            unit: "°",
-            paper: "30, fig. 12: 45",
-        },
+        Number { key: "theta_seam", name: "θ seam", range: [0.0, 90.0], decimals: 1, unit: "°" },
+        "30, fig. 12: 45",
         "At or below this frontal angle a front corner is closed by a seam (section 4.3.6).",
     ),
     (
-        Number {
-            key: "side_deviation",
-            name: "side dev.",
-            range: [0.0, 90.0],
-            decimals: 1,
-            unit: "°",
-            paper: "paper 30",
-        },
+        Number { key: "side_deviation", name: "side dev.", range: [0.0, 90.0], decimals: 1, unit: "°" },
+        "paper 30",
         "The greatest deviation of a side edge from its target direction (eq. 8).",
     ),
     (
-        Number {
-            key: "side_split", name: "side split", range: [1.0, 4.0], decimals: 2, unit: "×", paper: "paper 1.5"
-        },
+        Number { key: "side_split", name: "side split", range: [1.0, 4.0], decimals: 2, unit: "×" },
+        "paper 1.5",
         "A live side edge longer than this times the base is divided (section 4.3.4).",
     ),
     (
-        Number { key: "layers", name: "layers", range: [0.0, 20.0], decimals: 0, unit: "", paper: "none" },
+        Number { key: "layers", name: "layers", range: [0.0, 20.0], decimals: 0, unit: "" },
+        "none",
         "Rows that are offset from the boundary before the front starts.",
     ),
     (
-        Number {
-            key: "theta_revr",
-            name: "θ revr",
-            range: [180.0, 360.0],
-            decimals: 1,
-            unit: "°",
-            paper: "225; classifies only",
-        },
+        Number { key: "theta_revr", name: "θ revr", range: [180.0, 360.0], decimals: 1, unit: "°" },
+        "225; classifies only",
         "Angles above this count as reversals (fig. 12). For display only: the mesh does not change.",
     ),
 ];
@@ -108,8 +89,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut ParametersState, commands: &
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         inset().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 5.0;
-            for (number, tip) in &NUMBERS {
-                row(ui, state, local, &moment.parameters, number, tip, commands, palette);
+            for number in &NUMBERS {
+                row(ui, state, local, &moment.parameters, number, commands, palette);
             }
             selection(ui, &moment.parameters, commands, palette);
             for (key, name, tip) in SWITCHES {
@@ -133,8 +114,7 @@ fn row(
     state: &State,
     local: &mut ParametersState,
     parameters: &Parameters,
-    number: &Number,
-    tip: &str,
+    (number, paper, tip): &(Number, &str, &str),
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
@@ -146,7 +126,7 @@ fn row(
         let label = RichText::new(number.name).color(ink(palette.text));
         ui.allocate_ui_with_layout(Vec2::new(58.0, 24.0), Layout::left_to_right(Align::Center), |ui| {
             ui.set_width(58.0);
-            ui.label(label).on_hover_text(tip);
+            ui.label(label).on_hover_text(*tip);
         });
         ui.spacing_mut().slider_width = 84.0;
         let [low, high] = number.range;
@@ -177,7 +157,7 @@ fn row(
         if changed {
             back(ui, state, number.key, commands);
         } else {
-            let paper = RichText::new(number.paper).font(theme::regular(theme::HEAD)).color(ink(palette.weak));
+            let paper = RichText::new(*paper).font(theme::regular(theme::HEAD)).color(ink(palette.weak));
             ui.add(egui::Label::new(paper).truncate());
         }
     });
