@@ -3,12 +3,10 @@
 //! triangles, cost exponent at most 1.1 up to a million.
 #![allow(clippy::unwrap_used)]
 
-use quadfront::core::case::Case;
-use quadfront::core::case::built_in;
+use quadfront::core::case::{Case, built_in};
 use quadfront::core::prepare::{Background, background};
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
-use quadfront::core::record::statistics::Statistics;
+use quadfront::core::record::{Export, Statistics};
 
 mod meter;
 

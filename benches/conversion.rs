@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 use quadfront::core::case::built_in;
-use quadfront::core::convert::converter::Converter;
+use quadfront::core::convert::Converter;
 use quadfront::core::prepare::{Background, background};
 use quadfront::core::progress::{Nobody, Stage, Watch};
 

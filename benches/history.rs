@@ -3,19 +3,14 @@
 #![allow(clippy::unwrap_used)]
 
 use glam::DVec2;
-use quadfront::core::case::built_in;
-use quadfront::core::case::parameters::Parameters;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::kernel::tensor::Metric2;
-use quadfront::core::mesh::half_edge::Mesh;
-use quadfront::core::mesh::ids::PointId;
-use quadfront::core::mesh::triangle_set::TriangleSet;
-use quadfront::core::metric::field::{Field, FieldSpec, Sizing};
+use quadfront::core::case::{Parameters, built_in};
+use quadfront::core::convert::Converter;
+use quadfront::core::kernel::Metric2;
+use quadfront::core::mesh::{Mesh, PointId, TriangleSet};
+use quadfront::core::metric::{Field, FieldSpec, Sizing};
 use quadfront::core::progress::Nobody;
-use quadfront::core::run::explain::SegmentFacts;
-use quadfront::core::run::front_table::FrontTable;
-use quadfront::core::run::history::{BUDGET, History};
-use quadfront::core::run::run::Run;
+use quadfront::core::run::history::BUDGET;
+use quadfront::core::run::{FrontTable, History, Run, SegmentFacts};
 
 mod meter;
 

@@ -10,14 +10,14 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use peak_alloc::PeakAlloc;
 use quadfront::core::discrete::chart::charts;
-use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
-use quadfront::core::discrete::planar_map::StretchBound;
 use quadfront::core::discrete::repair::repair;
+use quadfront::core::discrete::{Edges, StretchBound};
 use quadfront::core::fault::Fault;
-use quadfront::core::formats::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
+use quadfront::core::formats::format::{read_mesh, read_mesh_watched, write_to};
+use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
-use quadfront::core::soup::mesh_file::MeshFile;
+use quadfront::core::soup::MeshFile;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;

@@ -20,7 +20,7 @@ fn main() -> Result<(), Fault> {
         Some(case) => case?,
         None => Case::read(Path::new(&name))?,
     };
-    // Nobody watches how far the work is; a type of your own with the trait `Watch` can.
+    // `Nobody` ignores progress; implement `Watch` to show it or to cancel the conversion.
     let converted = convert(&case, &mut Nobody)?;
 
     print!("{}", Report::of(&case, &converted)?.summary());

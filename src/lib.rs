@@ -107,27 +107,20 @@ pub mod app;
 
 pub use glam;
 
-pub use crate::core::case::parameters::Parameters;
-pub use crate::core::case::{Case, DomainSource, MeshSource, MeshUse, Taking, built_in};
-pub use crate::core::convert::conversion::{Converted, convert};
-pub use crate::core::convert::converter::{Converter, Counts};
-pub use crate::core::convert::event::{Event, EventKind};
-pub use crate::core::convert::phase::Phase;
+pub use crate::core::case::{Case, DomainSource, MeshSource, MeshUse, Parameters, Taking, built_in};
+pub use crate::core::convert::conversion::convert;
+pub use crate::core::convert::{Converted, Converter, Counts, Event, EventKind, Phase};
 pub use crate::core::fault::{Fault, FaultKind};
 pub use crate::core::formats::format::{
-    Format, WriteOptions, read_bytes as read_mesh_bytes, read_mesh, write_mesh, write_to as write_mesh_to,
+    read_bytes as read_mesh_bytes, read_mesh, write_mesh, write_to as write_mesh_to,
 };
-pub use crate::core::kernel::tensor::{Metric2, Metric3};
-pub use crate::core::mesh::half_edge::Mesh;
-pub use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-pub use crate::core::mesh::names::{Named, Names};
-pub use crate::core::metric::field::{FieldSpec, MetricSource, Sizing};
+pub use crate::core::formats::{Format, WriteOptions};
+pub use crate::core::kernel::{Metric2, Metric3};
+pub use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, Named, Names, NodeId};
+pub use crate::core::metric::{FieldSpec, MetricSource, Sizing};
 pub use crate::core::prepare::{Background, background};
 pub use crate::core::progress::{Cancel, Nobody, Stage, Watch};
-pub use crate::core::record::export::Export;
-pub use crate::core::record::report::Report;
 pub use crate::core::record::run_file::{read as read_run, write as write_run};
-pub use crate::core::record::statistics::Statistics;
-pub use crate::core::run::history::History;
-pub use crate::core::run::run::{Edit, EditKind, Run};
-pub use crate::core::soup::mesh_file::{Group, MeshFile};
+pub use crate::core::record::{Export, Report, Statistics};
+pub use crate::core::run::{Edit, EditKind, History, Run};
+pub use crate::core::soup::{Group, MeshFile};

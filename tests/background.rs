@@ -4,12 +4,10 @@
 
 use std::path::Path;
 
-use quadfront::core::case::Case;
-use quadfront::core::case::built_in;
+use quadfront::core::case::{Case, built_in};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
-use quadfront::core::record::statistics::Statistics;
+use quadfront::core::record::{Export, Statistics};
 
 fn statistics(case: &Case) -> Statistics {
     let made = background(case, &mut Nobody).unwrap();

@@ -6,7 +6,8 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use quadfront::core::formats::format::{Format, read_bytes};
+use quadfront::core::formats::Format;
+use quadfront::core::formats::format::read_bytes;
 
 fn command(arguments: &[&str], folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_quadfront"));

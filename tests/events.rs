@@ -4,13 +4,9 @@
 
 use std::collections::BTreeMap;
 
-use quadfront::core::case::built_in;
-use quadfront::core::case::parameters::Parameters;
-use quadfront::core::convert::candidates::Candidate;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::{Event, Purpose, Why};
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::convert::walk::{StepReport, walk};
+use quadfront::core::case::{Parameters, built_in};
+use quadfront::core::convert::walk::walk;
+use quadfront::core::convert::{Candidate, Converter, Event, Phase, Purpose, StepReport, Why};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 

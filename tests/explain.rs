@@ -2,16 +2,13 @@
 //! far a parameter may go without another choice.
 #![allow(clippy::unwrap_used)]
 
-use quadfront::core::case::built_in;
-use quadfront::core::case::parameters::Parameters;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::Event;
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::mesh::ids::NodeId;
+use quadfront::core::case::{Parameters, built_in};
+use quadfront::core::convert::{Converter, Event, Phase};
+use quadfront::core::mesh::NodeId;
 use quadfront::core::progress::Nobody;
-use quadfront::core::run::explain::{Corner, EdgeFacts, EdgeKind, ElementFacts, NodeFacts, SegmentFacts, Verdict};
-use quadfront::core::run::front_table::FrontTable;
-use quadfront::core::run::run::Run;
+use quadfront::core::run::{
+    Corner, EdgeFacts, EdgeKind, ElementFacts, FrontTable, NodeFacts, Run, SegmentFacts, Verdict,
+};
 
 /// Calls `look` with each state before a selection and the base that was selected.
 fn selections(name: &str, settings: &[(&str, &str)], mut look: impl FnMut(u64, &Converter<'_>, [NodeId; 2])) {
@@ -120,7 +117,7 @@ fn every_segment_has_its_reason_in_words() {
         for row in &table.rows {
             let told = SegmentFacts::in_table(state, &table, row.a, row.b).unwrap();
             assert_eq!(told.verdict == Verdict::First, [row.a, row.b] == base);
-            assert_eq!(told.rank.is_none(), told.verdict == Verdict::PutOff);
+            assert_eq!(told.rank.is_none(), told.verdict == Verdict::Deferred);
             let text = told.to_string();
             assert!(text.contains("eq. 6") && text.contains("hosen") || text.contains("deferred"), "{text}");
             seen.insert(format!("{:?}", told.verdict).split([' ', '{']).next().unwrap().to_owned());

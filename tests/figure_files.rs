@@ -8,8 +8,7 @@ mod environment;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use quadfront::core::record::figure;
-use quadfront::core::record::run_file;
+use quadfront::core::record::{figure, run_file};
 
 fn run(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_quadfront")).args(arguments).current_dir(folder).output().unwrap()

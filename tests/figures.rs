@@ -4,14 +4,10 @@
 
 use glam::DVec2;
 use quadfront::core::case::built_in;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::{Event, Purpose};
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::front::segment::Segment;
-use quadfront::core::kernel::tensor::Metric2;
-use quadfront::core::mesh::half_edge::Mesh;
-use quadfront::core::mesh::ids::{HalfEdgeId, NodeId};
-use quadfront::core::mesh::refusals::Refusal;
+use quadfront::core::convert::{Converter, Event, Phase, Purpose};
+use quadfront::core::front::Segment;
+use quadfront::core::kernel::Metric2;
+use quadfront::core::mesh::{HalfEdgeId, Mesh, NodeId, Refusal};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 

@@ -9,17 +9,13 @@ use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
 use quadfront::core::case::built_in;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::{Event, EventKind};
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::mesh::ids::NodeId;
+use quadfront::core::convert::{Converter, Event, EventKind, Phase};
+use quadfront::core::mesh::NodeId;
 use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
-use quadfront::core::run::breakpoint::Condition;
-use quadfront::core::run::history::{BUDGET, Changes, History};
-use quadfront::core::run::run::{Edit, EditKind, Run};
+use quadfront::core::run::history::BUDGET;
 use quadfront::core::run::timeline::lanes;
-use quadfront::core::run::watch::{Appearance, Watched};
+use quadfront::core::run::{Appearance, Changes, Condition, Edit, EditKind, History, Run, Watched};
 
 fn run_of(name: &str, size_scale: f64) -> (Run, Background) {
     let mut run = Run::of(built_in::named(name).unwrap().unwrap());
@@ -223,36 +219,6 @@ fn what_is_told_to_have_changed_is_all_that_changed() {
         assert!(other.into_iter().all(|(e, _)| elements.contains(e)), "step {step}");
         before = after;
     }
-}
-
-#[test]
-fn the_next_and_previous_quadrilaterals_are_where_their_local_work_is_done() {
-    let (run, background) = run_of("example1", 1.6);
-    let mut history = History::of(run, &background, BUDGET).unwrap();
-    let mut stands = vec![0];
-    while let Some(step) = history.next_quad() {
-        assert!(step > history.step() && history.log().is_at_rest(step));
-        history.seek(step).unwrap();
-        assert!(!history.state().phase().is_local_post_processing());
-        stands.push(step);
-    }
-    assert!(stands.len() > 80, "{}", stands.len());
-    for (nq, _) in stands.iter().enumerate().skip(1).take(40) {
-        assert_eq!(history.step_with_quads(nq as u64), Some(stands[nq]), "nq {nq}");
-    }
-    for pair in stands.windows(2).rev() {
-        history.seek(pair[1]).unwrap();
-        assert_eq!(history.previous_quad(), Some(pair[0]));
-        if pair[0] + 1 < pair[1] {
-            history.seek(pair[1] - 1).unwrap();
-            assert_eq!((history.previous_quad(), history.next_quad()), (Some(pair[0]), Some(pair[1])));
-        }
-    }
-    history.seek(0).unwrap();
-    assert_eq!(history.previous_quad(), None);
-    let seam = history.next_of_kind(EventKind::RolledBack).unwrap();
-    history.seek(seam + 1).unwrap();
-    assert_eq!(history.previous_of_kind(EventKind::RolledBack), Some(seam));
 }
 
 #[test]

@@ -103,8 +103,7 @@ fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says(
         run.case.text
     );
     assert!(!run.case.text.contains("chart_stretch"), "what is as it is is not said");
-    let height =
-        |mesh: &quadfront::core::mesh::half_edge::Mesh| mesh.nodes().map(|n| mesh.xyz(n).z).fold(0.0, f64::max);
+    let height = |mesh: &quadfront::core::mesh::Mesh| mesh.nodes().map(|n| mesh.xyz(n).z).fold(0.0, f64::max);
     assert!((height(&state.run().moment.as_ref().unwrap().mesh) - 3.0).abs() < 1e-6);
     // A run that is saved keeps it, and opens without a question.
     let saved = folder.path().join("run.toml");

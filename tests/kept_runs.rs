@@ -84,7 +84,7 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
 
     let mut harness = window(example(), folder.path());
     until(&mut harness, "the run is offered", |harness| harness.query_by_label("Open it").is_some());
-    harness.get_by_label("A run of example1 with 2 edits from a moment ago was not closed.");
+    harness.get_by_label("An unsaved run of example1 with 2 edits from a moment ago can be recovered.");
     harness.get_by_label("Open it").click();
     until(&mut harness, "the run is opened", |harness| harness.state().state.document().edits.len() == 2);
     settle(&mut harness);
@@ -99,7 +99,7 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
     assert_eq!(runs(folder.path()), 1);
     let mut harness = window(example(), folder.path());
     until(&mut harness, "the run is offered", |harness| harness.query_by_label("Discard").is_some());
-    harness.get_by_label("A run of example1 with 3 edits from a moment ago was not closed.");
+    harness.get_by_label("An unsaved run of example1 with 3 edits from a moment ago can be recovered.");
     harness.get_by_label("Discard").click();
     harness.run_steps(3);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing stays behind");

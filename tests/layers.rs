@@ -5,15 +5,14 @@
 use glam::DVec2;
 use quadfront::core::case::built_in;
 use quadfront::core::convert::conversion::convert;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::Event;
-use quadfront::core::convert::phase::Phase;
+use quadfront::core::convert::{Converter, Event, Phase};
 use quadfront::core::fault::Fault;
 use quadfront::core::front::segment::front_level;
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
-use quadfront::core::soup::soundness::{Allow, examine};
+use quadfront::core::record::Export;
+use quadfront::core::soup::Allow;
+use quadfront::core::soup::soundness::examine;
 
 /// A base segment that was selected: its level, its middle, and the least level that could have been.
 struct Selected {

@@ -112,7 +112,7 @@ fn faults_of_a_mesh_in_memory_name_the_mesh_and_its_indices() {
     let mut mesh = plate();
     mesh.triangles[3] = [0, 1, 99];
     let told = fault_of(&Case::of_mesh_in_memory("plate", mesh)).to_string();
-    assert!(told.starts_with("the mesh \"plate\": The triangle of index 3 has the point of index 99"), "{told}");
+    assert!(told.starts_with("the mesh \"plate\": The triangle of index 3 uses point 99"), "{told}");
     let mut mesh = shell();
     mesh.points[7].x = f64::NAN;
     let told = fault_of(&Case::of_mesh_in_memory("shell", mesh)).to_string();

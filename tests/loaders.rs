@@ -20,8 +20,9 @@ use std::time::{Duration, Instant};
 
 use grid::grid;
 use peak_alloc::PeakAlloc;
-use quadfront::core::formats::format::{Format, WriteOptions, read_bytes, write_to};
-use quadfront::core::soup::mesh_file::{Group, MeshFile};
+use quadfront::core::formats::format::{read_bytes, write_to};
+use quadfront::core::formats::{Format, WriteOptions};
+use quadfront::core::soup::{Group, MeshFile};
 use xor_shift::XorShift;
 
 #[global_allocator]

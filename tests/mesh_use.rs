@@ -12,16 +12,16 @@ use grid::grid;
 use quadfront::core::case::Case;
 use quadfront::core::convert::conversion::convert;
 use quadfront::core::discrete::chart::charts;
-use quadfront::core::discrete::edges::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
-use quadfront::core::discrete::planar_map::StretchBound;
 use quadfront::core::discrete::repair::repair;
+use quadfront::core::discrete::{Edges, StretchBound};
 use quadfront::core::fault::Fault;
-use quadfront::core::formats::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
+use quadfront::core::formats::format::{read_bytes, read_mesh, write_mesh};
+use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
-use quadfront::core::soup::mesh_file::{Group, MeshFile};
-use quadfront::core::soup::soundness::{Allow, examine};
+use quadfront::core::record::Export;
+use quadfront::core::soup::soundness::examine;
+use quadfront::core::soup::{Allow, Group, MeshFile};
 
 /// A plate of `n` by `n` squares of two regions, bent up along a parabola.
 fn plate(n: u32, height: f64) -> MeshFile {

@@ -9,11 +9,12 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use quadfront::core::case::Case;
 use quadfront::core::convert::conversion::{convert, convert_by};
-use quadfront::core::formats::format::{Format, WriteOptions, write_mesh};
+use quadfront::core::formats::format::write_mesh;
+use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
-use quadfront::core::soup::mesh_file::MeshFile;
-use quadfront::core::soup::soundness::{Allow, examine};
+use quadfront::core::record::Export;
+use quadfront::core::soup::soundness::examine;
+use quadfront::core::soup::{Allow, MeshFile};
 
 /// A grid over the unit square, wrapped around where asked to, at the places that `at` gives.
 fn grid(nu: u32, nv: u32, wrap: [bool; 2], at: impl Fn(f64, f64) -> DVec3) -> MeshFile {

@@ -8,8 +8,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use quadfront::core::formats::format::{Format, read_bytes};
-use quadfront::core::soup::soundness::{Allow, examine};
+use quadfront::core::formats::Format;
+use quadfront::core::formats::format::read_bytes;
+use quadfront::core::soup::Allow;
+use quadfront::core::soup::soundness::examine;
 
 /// A mesh as an OBJ file says it: points, faces by their points from 0, and lines of text after that.
 #[derive(Clone, Default)]

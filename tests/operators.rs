@@ -6,11 +6,8 @@ mod environment;
 
 use glam::DVec2;
 use proptest::prelude::*;
-use quadfront::core::kernel::tensor::Metric2;
-use quadfront::core::mesh::half_edge::{Mesh, NewElement};
-use quadfront::core::mesh::ids::{ElementId, HalfEdgeId, NodeId, PointId};
-use quadfront::core::mesh::refusals::Refusal;
-use quadfront::core::mesh::triangle_set::TriangleSet;
+use quadfront::core::kernel::Metric2;
+use quadfront::core::mesh::{ElementId, HalfEdgeId, Mesh, NewElement, NodeId, PointId, Refusal, TriangleSet};
 
 /// A grid of `n` by `n` squares, each cut along one diagonal chosen by the bits, its inner nodes moved a little; from
 /// three squares a side on, the middle one is a hole.

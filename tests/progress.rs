@@ -5,16 +5,16 @@
 mod grid;
 
 use grid::grid;
-use quadfront::core::case::built_in;
-use quadfront::core::case::{Case, DomainSource};
+use quadfront::core::case::{Case, DomainSource, built_in};
 use quadfront::core::convert::conversion;
-use quadfront::core::discrete::edges::Edges;
+use quadfront::core::discrete::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
 use quadfront::core::discrete::repair::repair;
-use quadfront::core::formats::format::{Format, WriteOptions, read_mesh, read_mesh_watched, write_to};
+use quadfront::core::formats::format::{read_mesh, read_mesh_watched, write_to};
+use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
-use quadfront::core::soup::mesh_file::MeshFile;
+use quadfront::core::soup::MeshFile;
 
 /// Writes down what it is told, and asks for the end as soon as it has been told so much.
 #[derive(Default)]
@@ -94,7 +94,7 @@ fn every_format_tells_how_far_it_is_and_ends_when_it_is_told_to() {
 #[test]
 fn a_metric_beside_the_mesh_is_part_of_what_can_be_ended() {
     let mut mesh = plate(60);
-    mesh.metric = Some(vec![quadfront::core::kernel::tensor::Metric3::isotropic(0.1); mesh.points.len()]);
+    mesh.metric = Some(vec![quadfront::core::kernel::Metric3::isotropic(0.1); mesh.points.len()]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("plate.mesh");
     quadfront::core::formats::format::write_mesh(&path, Format::Medit, &mesh, WriteOptions::default()).unwrap();

@@ -7,12 +7,12 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use quadfront::core::case::built_in;
-use quadfront::core::convert::event::EventKind;
-use quadfront::core::mesh::ids::NodeId;
+use quadfront::core::convert::EventKind;
+use quadfront::core::mesh::NodeId;
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::run_file::{self, Keeper};
-use quadfront::core::run::history::History;
-use quadfront::core::run::run::{Bookmark, Edit, EditKind, Run};
+use quadfront::core::record::Keeper;
+use quadfront::core::record::run_file;
+use quadfront::core::run::{Bookmark, Edit, EditKind, History, Run};
 
 /// Set for the child that saves until it is killed.
 const CHILD: &str = "QUADFRONT_TEST_SAVES_TO";

@@ -10,13 +10,13 @@ use std::fs;
 use std::path::PathBuf;
 
 use quadfront::core::case::built_in;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::formats::format::{Format, WriteOptions, write_to};
-use quadfront::core::kernel::fingerprint::Fingerprint;
+use quadfront::core::convert::{Converter, Phase};
+use quadfront::core::formats::format::write_to;
+use quadfront::core::formats::{Format, WriteOptions};
+use quadfront::core::kernel::Fingerprint;
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
+use quadfront::core::record::Export;
 use rayon::prelude::*;
 
 /// Shares of all steps, in quarters, at which a state is compared.

@@ -3,9 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use quadfront::core::case::built_in;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::Event;
-use quadfront::core::convert::phase::Phase;
+use quadfront::core::convert::{Converter, Event, Phase};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 

@@ -13,7 +13,7 @@ use eframe::egui::{Key, Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
 use quadfront::app::window::{App, Command, Direction, Goal, Lost, Source, SurfaceView, ViewLayer};
-use quadfront::core::convert::event::EventKind;
+use quadfront::core::convert::EventKind;
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -250,7 +250,7 @@ fn a_node_that_is_watched_stops_the_run_forward_and_backward_and_tells_who_touch
     apply(&mut harness, Command::Go(Goal::Step(second)));
     wait_for(&mut harness, "Past steps");
     apply(&mut harness, Command::Go(Goal::Step(second + 1)));
-    harness.get_by_label("What touched this last").click();
+    harness.get_by_label("Last step that changed this").click();
     settle(&mut harness);
     assert!(step(&harness) <= second);
     harness.get_by_label("Stop watching").click();
@@ -271,7 +271,7 @@ fn a_quadrilateral_tells_when_it_was_made_and_what_it_ate() {
     harness.get_by_label(&format!("Quadrilateral {}", element.0));
     wait_for(&mut harness, "Past steps");
     assert!(harness.query_by_label_contains("made of the triangles").is_some());
-    harness.get_by_label("When was this made").click();
+    harness.get_by_label("Step that created this").click();
     settle(&mut harness);
     assert_eq!(step(&harness), at);
 }

@@ -6,12 +6,10 @@
 mod random;
 
 use glam::DVec2;
-use quadfront::core::case::Case;
-use quadfront::core::case::built_in;
-use quadfront::core::kernel::tensor::Metric2;
-use quadfront::core::mesh::half_edge::Mesh;
-use quadfront::core::mesh::ids::NodeId;
-use quadfront::core::metric::field::{MetricSource, Sizing};
+use quadfront::core::case::{Case, built_in};
+use quadfront::core::kernel::Metric2;
+use quadfront::core::mesh::{Mesh, NodeId};
+use quadfront::core::metric::{MetricSource, Sizing};
 use quadfront::core::prepare::{Background, background};
 use quadfront::core::progress::Nobody;
 

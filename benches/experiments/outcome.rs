@@ -1,13 +1,11 @@
 //! What one conversion comes to.
 
-use quadfront::core::case::parameters::Parameters;
-use quadfront::core::convert::converter::{Converter, Counts};
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::mesh::half_edge::Mesh;
+use quadfront::core::case::Parameters;
+use quadfront::core::convert::{Converter, Counts, Phase};
+use quadfront::core::mesh::Mesh;
 use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
-use quadfront::core::record::statistics::Statistics;
+use quadfront::core::record::{Export, Statistics};
 
 /// A converted mesh, measured; what went wrong instead where something did.
 pub type Outcome = Result<Measured, String>;

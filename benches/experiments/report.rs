@@ -135,7 +135,7 @@ pub fn features(setting: &Setting, rows: &[(&Subject, &Outcome)]) -> String {
         "last resort %",
         "rescues %",
         "right side replaced %",
-        "put off %",
+        "deferred %",
         "taken back %",
     ];
     let cells = |measured: &Measured| {

@@ -1,6 +1,6 @@
 //! What is held against what: the questions, and the settings that answer them.
 
-use quadfront::core::case::parameters::Parameters;
+use quadfront::core::case::Parameters;
 
 /// Parameters of an experiment.
 #[derive(Clone, Copy, Debug, PartialEq)]

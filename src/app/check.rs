@@ -8,8 +8,9 @@ use super::output;
 use super::progress::Progress;
 use super::{FALLS_SHORT, complain};
 use crate::core::fault::Fault;
-use crate::core::formats::format::Format;
-use crate::core::soup::soundness::{Allow, Soundness, examine};
+use crate::core::formats::Format;
+use crate::core::soup::soundness::examine;
+use crate::core::soup::{Allow, Soundness};
 
 /// Checks a mesh: success where it is valid, exit code 1 where not.
 pub(super) fn check(arguments: &CheckArguments) -> Result<ExitCode, Fault> {

@@ -8,7 +8,7 @@ use super::figure::FigureOptions;
 use super::input::{InputFormat, Stops, Until, input_format, mesh_format, mesh_use, setting, stops, until};
 use super::output::Target;
 use crate::core::case::{ImportOptions, MeshUse};
-use crate::core::formats::format::Format;
+use crate::core::formats::Format;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
 #[derive(Parser)]
@@ -57,7 +57,8 @@ pub(super) struct Source {
     /// Convert only this face (repeatable)
     #[arg(long = "face", value_name = "NAME")]
     pub faces: Vec<String>,
-    /// Use the paper's own rules for every parameter of the front instead of the case's; --set applies afterwards
+    /// Use the paper's parameters instead of the case's; size, layers, faces and limit stay, and --set applies
+    /// afterwards
     #[arg(long)]
     pub paper: bool,
     /// Print no progress and no summary

@@ -8,14 +8,13 @@ use super::input::Until;
 use super::output::{self, MeshTarget, Stream};
 use super::progress::Progress;
 use super::{FALLS_SHORT, complain, input, work};
-use crate::core::case::Case;
-use crate::core::case::parameters::Parameters;
-use crate::core::convert::walk::Stop;
+use crate::core::case::{Case, Parameters};
+use crate::core::convert::Stop;
 use crate::core::fault::Fault;
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::report::background_summary;
-use crate::core::run::shown::Shown;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::run::Shown;
+use crate::core::soup::MeshFile;
 
 /// Converts, and writes the requested mesh, report, events and picture.
 ///

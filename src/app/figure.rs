@@ -8,12 +8,11 @@ pub(super) use options::{PartWords, Size};
 
 use super::convert::describe;
 use super::work::{self, FigureFrame};
-use crate::core::convert::walk::Stop;
+use crate::core::convert::Stop;
 use crate::core::fault::Fault;
 use crate::core::progress::Watch;
 use crate::core::record::run_file;
-use crate::core::run::run::Run;
-use crate::core::run::shown::Shown;
+use crate::core::run::{Run, Shown};
 use crate::render::picture::Picture;
 use crate::render::vector::histogram::Histogram;
 use crate::render::vector::svg;

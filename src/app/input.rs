@@ -9,17 +9,16 @@ use super::command_line::Source;
 use crate::core::case::{Case, ImportOptions, MeshUse, built_in};
 #[cfg(feature = "window")]
 use crate::core::case::{DomainSource, Taking};
-use crate::core::convert::walk::Stop;
+use crate::core::convert::Stop;
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::formats::format::{self, Format};
+use crate::core::formats::Format;
+use crate::core::formats::format;
 use crate::core::formats::save::load;
 use crate::core::kernel::spelling::nearest;
 use crate::core::progress::Watch;
-use crate::core::record::figure;
-use crate::core::record::run_file;
-use crate::core::run::run::Run;
-use crate::core::run::shown::Shown;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::record::{figure, run_file};
+use crate::core::run::{Run, Shown};
+use crate::core::soup::MeshFile;
 
 /// The name of standard input in messages.
 const STANDARD_INPUT: &str = "standard input";

@@ -8,9 +8,9 @@ use std::str::FromStr;
 use super::command_line::Destination;
 use super::figure::Figure;
 use crate::core::fault::Fault;
-use crate::core::formats::format::{self, Format, WriteOptions};
-use crate::core::formats::save;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::formats::format;
+use crate::core::formats::{Format, WriteOptions, save};
+use crate::core::soup::MeshFile;
 
 /// A file, or standard output.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,26 +2,18 @@
 
 use std::io;
 
-use crate::core::case::parameters::Parameters;
-use crate::core::case::{Case, DomainSource, MeshUse};
-use crate::core::convert::conversion;
-use crate::core::convert::converter::Converter;
-use crate::core::convert::phase::Phase;
-use crate::core::convert::walk::{StepReport, Stop, Tell, walk_editing};
+use crate::core::case::{Case, DomainSource, MeshUse, Parameters};
+use crate::core::convert::walk::walk_editing;
+use crate::core::convert::{Converter, Phase, StepReport, Stop, Tell, conversion};
 use crate::core::fault::Fault;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::half_edge::touched::Touched;
-use crate::core::mesh::names::Names;
-use crate::core::metric::field::Sizing;
+use crate::core::mesh::{Mesh, Names, Touched};
+use crate::core::metric::Sizing;
 use crate::core::prepare::{self, Background};
 use crate::core::progress::{Stage, Watch};
-use crate::core::record::export::Export;
-use crate::core::record::report::Report;
-use crate::core::record::statistics::{Measured, Statistics};
-use crate::core::run::births::Births;
-use crate::core::run::run::Run;
-use crate::core::run::shown::{ShownState, fingerprint};
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::record::{Export, Measured, Report, Statistics};
+use crate::core::run::shown::fingerprint;
+use crate::core::run::{Births, Run, ShownState};
+use crate::core::soup::MeshFile;
 use crate::render::look::{Layer, Look};
 use crate::render::picture::{Picture, Seen};
 

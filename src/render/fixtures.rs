@@ -2,10 +2,8 @@
 
 use glam::DVec2;
 
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::PointId;
-use crate::core::mesh::triangle_set::TriangleSet;
+use crate::core::kernel::Metric2;
+use crate::core::mesh::{Mesh, PointId, TriangleSet};
 
 /// A unit square of two triangles, in the unit metric.
 pub fn square() -> Mesh {

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::camera::Bearing;
 use super::look::HiddenLines;
 use super::picture::{Line, Picture};
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::MeshFile;
 
 /// The number of parts of a line that are tested for visibility.
 const PARTS: usize = 12;

@@ -7,8 +7,7 @@ use glam::DVec2;
 pub use space::{Cover, Hit, hit, pick_in_space};
 
 use super::scene::Outlined;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 
 /// How close the pointer must be, in points: to a node, to an edge, to a front segment.
 const NEAR: [f64; 3] = [7.0, 4.0, 7.0];

@@ -8,15 +8,12 @@ use super::orthographic::{self, Cover, View};
 use super::look::{Layer, Layers, Look};
 use super::number;
 use super::scene::Decision;
-use crate::core::case::parameters::Parameters;
-use crate::core::convert::phase::Phase;
-use crate::core::front::sector::Side;
-use crate::core::front::segment::Segment;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::mesh::names::Names;
-use crate::core::record::export::Export;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::case::Parameters;
+use crate::core::convert::Phase;
+use crate::core::front::{Segment, Side};
+use crate::core::mesh::{ElementId, Mesh, Names, NodeId};
+use crate::core::record::Export;
+use crate::core::soup::MeshFile;
 
 /// Metric ellipses are drawn at this share of unit length.
 const ELLIPSE: f64 = 0.25;
@@ -379,7 +376,7 @@ fn corner(mesh: &Mesh, segment: &Segment, side: Side) -> (DVec2, [DVec2; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::convert::phase::Base;
+    use crate::core::convert::Base;
     use crate::render::fixtures::square;
     use crate::render::look::Ink;
     use glam::DVec3;

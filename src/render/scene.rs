@@ -21,8 +21,7 @@ pub use placed::{Placed, STRETCH};
 pub use shading::{ColourBy, Shading, angles, metric_area};
 
 use super::palette::Rgba;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, Mesh, NodeId};
 use placed::Places;
 
 /// A filled triangle or quadrilateral.

@@ -1,7 +1,7 @@
 //! The unit square as a mesh of triangles in space.
 
 use glam::DVec3;
-use quadfront::core::soup::mesh_file::MeshFile;
+use quadfront::core::soup::MeshFile;
 
 /// `n` by `n` squares of two triangles each, row by row, at the height `z(x, y)`.
 pub fn grid(n: u32, z: impl Fn(f64, f64) -> f64) -> MeshFile {

@@ -3,8 +3,10 @@
 use std::fs;
 
 use glam::DVec3;
-use quadfront::core::formats::format::{Format, read_bytes, read_mesh};
-use quadfront::core::soup::soundness::{Allow, examine};
+use quadfront::core::formats::Format;
+use quadfront::core::formats::format::{read_bytes, read_mesh};
+use quadfront::core::soup::Allow;
+use quadfront::core::soup::soundness::examine;
 
 use super::data;
 

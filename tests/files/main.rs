@@ -20,9 +20,10 @@ mod xor_shift;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use quadfront::core::formats::format::{Format, WriteOptions, write_to};
-use quadfront::core::kernel::tensor::Metric3;
-use quadfront::core::soup::mesh_file::{Data, Group, MeshFile};
+use quadfront::core::formats::format::write_to;
+use quadfront::core::formats::{Format, WriteOptions};
+use quadfront::core::kernel::Metric3;
+use quadfront::core::soup::{Data, Group, MeshFile};
 
 const TEXT: WriteOptions = WriteOptions { msh2: false };
 

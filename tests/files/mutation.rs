@@ -3,9 +3,9 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use quadfront::core::formats::format::{Format, read_bytes};
-use quadfront::core::formats::medit;
-use quadfront::core::soup::mesh_file::MeshFile;
+use quadfront::core::formats::format::read_bytes;
+use quadfront::core::formats::{Format, medit};
+use quadfront::core::soup::MeshFile;
 use quadfront::core::soup::soundness::examine;
 
 use super::foreign::SETS;

@@ -8,11 +8,12 @@ use std::path::Path;
 use glam::DVec3;
 use quadfront::core::case::Case;
 use quadfront::core::convert::conversion::convert;
-use quadfront::core::formats::format::{Format, WriteOptions, read_bytes, read_mesh, write_mesh};
+use quadfront::core::formats::format::{read_bytes, read_mesh, write_mesh};
+use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
-use quadfront::core::soup::mesh_file::{Group, MeshFile};
-use quadfront::core::soup::soundness::{Allow, examine};
+use quadfront::core::record::Export;
+use quadfront::core::soup::soundness::examine;
+use quadfront::core::soup::{Allow, Group, MeshFile};
 
 use super::grid::grid;
 use super::{MSH2, TEXT, bytes_of, data};

@@ -5,10 +5,12 @@ use std::path::Path;
 use std::process::Command;
 
 use glam::DVec3;
-use quadfront::core::formats::format::{Format, read_bytes, read_mesh, write_mesh};
+use quadfront::core::formats::Format;
+use quadfront::core::formats::format::{read_bytes, read_mesh, write_mesh};
 use quadfront::core::formats::save::{abandon, save};
-use quadfront::core::kernel::tensor::Metric3;
-use quadfront::core::soup::mesh_file::{FRONT, Group, MeshFile};
+use quadfront::core::kernel::Metric3;
+use quadfront::core::soup::mesh_file::FRONT;
+use quadfront::core::soup::{Group, MeshFile};
 
 use super::{MSH2, TEXT, bytes_of, plates};
 

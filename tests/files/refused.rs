@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use quadfront::core::formats::format::{Format, read_bytes, read_mesh, write_mesh};
-use quadfront::core::formats::medit;
+use quadfront::core::formats::format::{read_bytes, read_mesh, write_mesh};
+use quadfront::core::formats::{Format, medit};
 
 use super::{TEXT, plates};
 

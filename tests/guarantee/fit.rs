@@ -1,8 +1,8 @@
 //! The scale of sizes at which a random case has about the number of quadrilaterals that is wanted.
 
 use quadfront::core::case::{Case, DomainSource};
-use quadfront::core::geometry::domain::Domain;
-use quadfront::core::metric::field::{Field, MetricSource, Sizing};
+use quadfront::core::geometry::Domain;
+use quadfront::core::metric::{Field, MetricSource, Sizing};
 
 /// Sets the case's size_scale so that it needs about `quads` quadrilaterals. A case that cannot be measured stays as it
 /// is: the program is to refuse it.

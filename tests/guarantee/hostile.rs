@@ -192,7 +192,7 @@ fn beside_sides_that_are_much_too_long_no_needles_gather() {
 }
 
 #[test]
-fn segments_that_were_put_off_are_all_taken_up_again_once_only() {
+fn segments_that_were_deferred_are_all_taken_up_again_once_only() {
     // They were after every quadrilateral of the second pass, which is quadratic where the front fails at most of them.
     let converted = convert(&coarse_hole_in_a_thin_metric(), &mut Nobody).unwrap();
     let (steps, triangles) = (converted.counts.steps, converted.triangles as u64);

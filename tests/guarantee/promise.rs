@@ -5,16 +5,14 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 use quadfront::core::case::Case;
 use quadfront::core::convert::conversion::convert_by;
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::phase::Phase;
+use quadfront::core::convert::{Converter, Phase};
 use quadfront::core::fault::Fault;
 use quadfront::core::kernel::predicates::convex;
-use quadfront::core::mesh::half_edge::Mesh;
-use quadfront::core::mesh::ids::NodeId;
+use quadfront::core::mesh::{Mesh, NodeId};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
-use quadfront::core::soup::mesh_file::MeshFile;
-use quadfront::core::soup::soundness::{Defect, examine};
+use quadfront::core::soup::soundness::examine;
+use quadfront::core::soup::{Defect, MeshFile};
 
 /// What came of a case.
 pub struct Kept {

@@ -2,9 +2,8 @@
 
 use quadfront::core::case::Case;
 use quadfront::core::case::built_in::{CASES, named};
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::mesh::refusals::Refusals;
+use quadfront::core::convert::{Converter, Phase};
+use quadfront::core::mesh::Refusals;
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 

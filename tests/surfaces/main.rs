@@ -11,21 +11,17 @@ mod environment;
 use std::path::Path;
 
 use glam::DVec3;
-use quadfront::core::case::Case;
-use quadfront::core::case::built_in;
-use quadfront::core::convert::conversion::{Converted, convert};
-use quadfront::core::convert::converter::Converter;
-use quadfront::core::convert::event::Event;
-use quadfront::core::convert::phase::Phase;
-use quadfront::core::front::segment::Segment;
-use quadfront::core::metric::field::MetricSource;
+use quadfront::core::case::{Case, built_in};
+use quadfront::core::convert::conversion::convert;
+use quadfront::core::convert::{Converted, Converter, Event, Phase};
+use quadfront::core::front::Segment;
+use quadfront::core::metric::MetricSource;
 use quadfront::core::metric::measure::triangle_area;
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::export::Export;
-use quadfront::core::record::statistics::Statistics;
-use quadfront::core::soup::mesh_file::MeshFile;
-use quadfront::core::soup::soundness::{Allow, Defect, Soundness, examine};
+use quadfront::core::record::{Export, Statistics};
+use quadfront::core::soup::soundness::examine;
+use quadfront::core::soup::{Allow, Defect, MeshFile, Soundness};
 
 /// A converted case with everything that is held against it.
 pub(crate) struct Made {

@@ -6,7 +6,7 @@ use clap::{Args, Parser};
 use glam::DVec2;
 
 use crate::core::fault::Fault;
-use crate::core::run::shown::Shown;
+use crate::core::run::Shown;
 use crate::render::camera::Bearing;
 use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers, Look};
 use crate::render::vector::svg::{COLUMN, MILLIMETRE, PAGE, Sheet};

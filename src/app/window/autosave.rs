@@ -19,8 +19,8 @@ use super::files::work;
 use super::import::ImportOptions;
 use super::session::{Opened, Source, Wake};
 use crate::core::fault::Fault;
-use crate::core::record::run_file::Keeper;
-use crate::core::run::run::{Bookmark, Camera, Edit, Run};
+use crate::core::record::Keeper;
+use crate::core::run::{Bookmark, Camera, Edit, Run};
 
 /// How long to wait after a failure before the next attempt.
 const AGAIN: Duration = Duration::from_secs(10);
@@ -269,7 +269,7 @@ fn scan(folder: &Path, wake: &Wake) -> Receiver<Vec<Offer>> {
 mod tests {
     use super::*;
     use crate::core::case::built_in;
-    use crate::core::run::run::EditKind;
+    use crate::core::run::EditKind;
 
     fn run(edits: u64) -> Run {
         let mut run = Run::of(built_in::named("example1").unwrap().unwrap());
@@ -297,7 +297,7 @@ mod tests {
         drop(first);
         let offers = left_behind(folder.path());
         assert_eq!(offers.len(), 1);
-        assert_eq!(offers[0].text, "A run of example1 with 3 edits from a moment ago was not closed.");
+        assert_eq!(offers[0].text, "An unsaved run of example1 with 3 edits from a moment ago can be recovered.");
         assert!(left_behind(folder.path()).is_empty(), "whoever offers it holds it");
         drop(offers);
         second.ask(Ask::Forget);

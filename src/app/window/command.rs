@@ -9,9 +9,9 @@ use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
 use super::words;
 use crate::core::case::built_in;
-use crate::core::convert::event::EventKind;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::watch::Watched;
+use crate::core::convert::EventKind;
+use crate::core::mesh::{ElementId, NodeId};
+use crate::core::run::Watched;
 use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 
@@ -233,9 +233,9 @@ impl Command {
             Command::Hover(what) => format!("Point at {}", words::thing(*what)),
             Command::Pick(_) => "Select".into(),
             Command::Show(_) => "Show in the middle".into(),
-            Command::LightUp(..) => "Light up".into(),
-            Command::LastTouch(_) => "What touched this last".into(),
-            Command::Made(_) => "When was this made".into(),
+            Command::LightUp(..) => "Highlight".into(),
+            Command::LastTouch(_) => "Last step that changed this".into(),
+            Command::Made(_) => "Step that created this".into(),
             Command::Explain([a, b]) => format!("Explain {}", words::segment(*a, *b)),
             Command::TellPast(_) => "History of the selection".into(),
             Command::Watch(what) => format!("Watch {}", words::thing(*what)),
@@ -281,8 +281,8 @@ impl Command {
             Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
             Command::Reopen => "Reopen the file".into(),
             Command::Notes => "Notes on this case".into(),
-            Command::OpenKept => "Open the run that was not closed".into(),
-            Command::DiscardKept => "Discard the run that was not closed".into(),
+            Command::OpenKept => "Recover the unsaved run".into(),
+            Command::DiscardKept => "Discard the unsaved run".into(),
             Command::SaveRun => "Save the run".into(),
             Command::SaveMesh => "Save the mesh…".into(),
             Command::SaveMeshAs(path) => format!("Save the mesh as {path}"),

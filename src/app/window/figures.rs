@@ -10,15 +10,14 @@ use super::state::{State, ViewCamera};
 
 use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Size, Wanted};
 use crate::app::work::{self, FigureFrame};
-use crate::core::convert::walk::Stop;
+use crate::core::convert::Stop;
 use crate::core::fault::Fault;
 use crate::core::formats::save;
-use crate::core::mesh::names::Names;
+use crate::core::mesh::Names;
 use crate::core::progress::Nobody;
-use crate::core::record::export::Export;
-use crate::core::record::run_file;
-use crate::core::run::run::Run;
-use crate::core::run::shown::{Shown, ShownState, fingerprint};
+use crate::core::record::{Export, run_file};
+use crate::core::run::shown::fingerprint;
+use crate::core::run::{Run, Shown, ShownState};
 use crate::render::camera::Bearing;
 use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers};
 use crate::render::orthographic::View;
@@ -119,7 +118,7 @@ impl FigureForm {
         part: Option<(FigurePart, f64)>,
         view: Option<(Bearing, HiddenLines)>,
     ) -> Result<FigureOptions, Fault> {
-        let wrong = |what: String| Fault::new(format!("The size of the figure is not understood: {what}"));
+        let wrong = |what: String| Fault::new(format!("The figure's size is not valid: {what}"));
         let text = self.size.trim();
         let mut size: Option<Size> = if text.is_empty() { None } else { Some(text.parse().map_err(wrong)?) };
         if let Some((_, shape)) = part {
@@ -161,7 +160,8 @@ impl FigureForm {
             return Ok(bookmarks.iter().map(|step| Wanted::at(Some(Stop::Step(*step)))).collect());
         }
         let stops = crate::app::input::stops(&format!("nq={}", self.stops.replace(' ', "")));
-        let stops = stops.map_err(|what| Fault::new(format!("\"{}\" are not valid stops: {what}", self.stops)))?;
+        let stops =
+            stops.map_err(|what| Fault::new(format!("\"{}\" is not a valid list of stops: {what}", self.stops)))?;
         Ok(stops.0.into_iter().map(Wanted::at).collect())
     }
 }

@@ -13,8 +13,7 @@ use super::session::{Source, Wake};
 use crate::app::input;
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
-use crate::core::formats::format::Format;
-use crate::core::formats::save;
+use crate::core::formats::{Format, save};
 use crate::core::record::figure::KEYWORD;
 
 /// How often the watcher looks at its file.

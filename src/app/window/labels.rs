@@ -15,8 +15,8 @@ use super::state::State;
 use super::theme::{self, ink};
 use super::viewport::{ViewFrame, class_colour};
 use super::words;
-use crate::core::front::segment::Segment;
-use crate::core::mesh::ids::NodeId;
+use crate::core::front::Segment;
+use crate::core::mesh::NodeId;
 use crate::render::palette::Palette;
 use crate::render::pick::Cover;
 use crate::render::scene::{Decision, Outlined, Scene};
@@ -24,7 +24,7 @@ use glam::{DVec2, DVec3};
 
 /// The greatest number of labels in a view, and of ellipses.
 const MOST_LABELS: usize = 150;
-/// A node shows its id if its nearest neighbour is at least so many points away.
+/// A node shows its id if its nearest neighbour is at least this many points away.
 const LEAST_FOR_IDS: f64 = 34.0;
 const MOST_ELLIPSES: usize = 60;
 /// Ellipses are drawn at this fraction of the unit length.

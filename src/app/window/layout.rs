@@ -83,7 +83,7 @@ pub struct Layout {
     arranged: BTreeMap<String, Value>,
     /// Whether the user is moving something.
     edited: bool,
-    /// The last request to arrange the docks that was followed.
+    /// The last request to arrange the docks that was carried out.
     relayouts: u64,
 }
 

@@ -8,7 +8,7 @@ use super::session::{Moment, Opened, Wake};
 use super::state::State;
 use crate::app::output::MeshTarget;
 use crate::app::work;
-use crate::core::convert::phase::Phase;
+use crate::core::convert::Phase;
 use crate::core::fault::Fault;
 
 /// A path for the current mesh that is free.

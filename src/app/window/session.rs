@@ -21,17 +21,12 @@ pub use worker::Stops;
 use super::import::ImportOptions;
 use super::state::Progress;
 use crate::app::progress;
-use crate::core::convert::event::{Event, EventKind, Why};
+use crate::core::convert::{Event, EventKind, Why};
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::breakpoint::Condition;
-use crate::core::run::explain::SegmentFacts;
-use crate::core::run::recorder::{Recorder, Stretch};
-use crate::core::run::run::{Edit, Run};
-use crate::core::run::sample::Sample;
-use crate::core::run::watch::Watched;
+use crate::core::run::{Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 use worker::Worker;
 
 /// How often progress is reported.
@@ -117,8 +112,8 @@ pub struct Tracked {
 #[derive(Clone, Debug)]
 pub struct Explained {
     pub told: SegmentFacts,
-    /// The step that put it off, with the reason of its last failure; none unless it is put off.
-    pub put_off: Option<(u64, Option<Why>)>,
+    /// The step that deferred it, with the reason of its last failure; none unless it is deferred.
+    pub deferred: Option<(u64, Option<Why>)>,
 }
 
 /// The history of something up to a step.

@@ -15,11 +15,10 @@ pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState}
 pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint, Workspace};
 
 use super::session::{Moment, Stops, Wake};
-use crate::core::case::parameters::Parameters;
-use crate::core::mesh::ids::NodeId;
-use crate::core::run::breakpoint::Condition;
-use crate::core::run::run::{self, Bookmark, Run};
-use crate::core::run::watch::Watched;
+use crate::core::case::Parameters;
+use crate::core::mesh::NodeId;
+use crate::core::run::run;
+use crate::core::run::{Bookmark, Condition, Run, Watched};
 use crate::render::scene::{ColourBy, Outlined};
 
 /// Everything that the window knows.

@@ -3,10 +3,9 @@
 
 use super::session::words_of;
 use super::state::Progress;
-use crate::core::convert::candidates::{Candidate, Candidates, Passed};
-use crate::core::convert::event::{Event, EventKind, Mending, Purpose, Why};
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::NodeId;
+use crate::core::convert::{Candidate, Candidates, Event, EventKind, Mending, Passed, Purpose, Why};
+use crate::core::front::Side;
+use crate::core::mesh::NodeId;
 use crate::core::progress::Stage;
 use crate::render::scene::Outlined;
 
@@ -92,7 +91,7 @@ pub fn event(event: &Event) -> String {
         Event::RolledBack { attempt, why: reason } => {
             format!("attempt {} rolled back: {}", u32::from(attempt) + 1, why(reason))
         }
-        Event::Deferred { a, b } => format!("segment {} put off", segment(a, b)),
+        Event::Deferred { a, b } => format!("segment {} deferred", segment(a, b)),
         Event::Enhanced { new } => format!("edge {} made by a swap beside the new quadrilateral", edge(new)),
         Event::Smoothed { nodes } => format!("{nodes} nodes smoothed"),
         Event::Seamed { at, node, angle } => {
@@ -112,7 +111,7 @@ pub fn event(event: &Event) -> String {
         Event::Closed { segments, quads, quality } => {
             format!("loop of {segments} segments closed by {quads} quadrilaterals, worst quality {}", fixed(quality, 2))
         }
-        Event::SecondPass => "all segments are put off: second pass with wider tolerances".to_owned(),
+        Event::SecondPass => "all segments are deferred: second pass with wider tolerances".to_owned(),
         Event::Matched { triangles, unmatched, .. } => format!(
             "last resort: {} triangles paired, {} without a partner",
             grouped(triangles as u64),

@@ -10,12 +10,11 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use crate::core::fault::{Fault, FaultKind};
+use crate::core::kernel::Metric2;
 use crate::core::kernel::predicates::firm;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
 use crate::core::mesh::quality::{length_over, quality_over};
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
+use crate::core::metric::MetricSource;
 use crate::core::metric::measure::triangle_quality;
 use crate::core::progress::{Stage, Watch};
 

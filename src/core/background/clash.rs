@@ -4,8 +4,7 @@ use glam::DVec2;
 
 use super::discretise::DividedDomain;
 use crate::core::fault::Fault;
-use crate::core::geometry::domain::Domain;
-use crate::core::geometry::domain_curve::CurveId;
+use crate::core::geometry::{CurveId, Domain};
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::orient;
 

@@ -5,10 +5,9 @@
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use crate::core::kernel::disjoint_sets::DisjointSets;
-use crate::core::mesh::ids::PointId;
+use crate::core::kernel::DisjointSets;
 use crate::core::mesh::order::grouped;
-use crate::core::mesh::triangle_set::TriangleSet;
+use crate::core::mesh::{PointId, TriangleSet};
 
 /// The kind of a line inside a region along which the triangles are cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

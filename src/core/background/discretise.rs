@@ -7,11 +7,9 @@ use super::length::{Piece, give, measure, share_out};
 use crate::core::fault::Fault;
 use crate::core::geometry::assembly::{loop_name, placed};
 use crate::core::geometry::curve::distance_to_segment;
-use crate::core::geometry::domain::Domain;
-use crate::core::geometry::domain_curve::{CurveId, DirectedCurve};
-use crate::core::kernel::disjoint_sets::DisjointSets;
-use crate::core::kernel::parity;
-use crate::core::metric::field::MetricSource;
+use crate::core::geometry::{CurveId, DirectedCurve, Domain};
+use crate::core::kernel::{DisjointSets, parity};
+use crate::core::metric::MetricSource;
 
 /// More segments than this on all curves together are refused, since such sizes must be an error.
 const MOST_SEGMENTS: f64 = 2e7;
@@ -40,13 +38,9 @@ pub struct Division<'a> {
     pieces: Vec<Vec<Piece>>,
 }
 
-/// Divides the curves of a domain into segments of about unit metric length, so that all topological loops are even and
-/// have at least four segments.
-///
-/// # Errors
-/// If the metric fails, if fixed numbers of segments do not allow even loops, or if the sizes require too many
-/// segments.
-pub fn divide(domain: &Domain, metric: &dyn MetricSource) -> Result<DividedDomain, Fault> {
+/// All of the division, for tests.
+#[cfg(test)]
+pub(super) fn divide(domain: &Domain, metric: &dyn MetricSource) -> Result<DividedDomain, Fault> {
     let mut division = Division::measure(domain, metric)?;
     division.even_out()?;
     division.nodes()

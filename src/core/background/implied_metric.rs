@@ -3,9 +3,8 @@
 use glam::DVec2;
 
 use crate::core::kernel::predicates::orient;
-use crate::core::kernel::spectrum::LogMetric2;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::triangle_set::TriangleSet;
+use crate::core::kernel::{LogMetric2, Metric2};
+use crate::core::mesh::TriangleSet;
 
 /// The metric implied by the triangles, for each node. A triangle is equilateral with unit sides in its implied metric;
 /// at a point it is the log-Euclidean mean over the triangles there with equal weights, since each has the same area in

@@ -14,19 +14,16 @@ use rustc_hash::FxHashMap;
 
 use super::clash::too_thin;
 use super::cut::{Cut, CutMesh, Side, cut, sorted_sides};
+use crate::core::discrete::Triangles;
 use crate::core::discrete::defects::{capital, crossed, overlapping, used_points};
-use crate::core::discrete::edges::Triangles;
 use crate::core::discrete::lines::on_edges;
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::{firm, orient};
-use crate::core::kernel::spectrum::LogMetric3;
-use crate::core::kernel::tensor::Metric3;
-use crate::core::mesh::names::Named;
-use crate::core::mesh::triangle_set::TriangleSet;
+use crate::core::kernel::{LogMetric3, Metric3};
+use crate::core::mesh::{Named, TriangleSet};
 use crate::core::progress::Cancel;
-use crate::core::soup::mesh_file::MeshFile;
-use crate::core::soup::repairs::Repair;
+use crate::core::soup::{MeshFile, Repair};
 
 /// A triangle with a smaller ratio of height to longest side is flat (as in `predicates::firm`).
 const FLAT: f64 = 1e-7;

@@ -5,10 +5,10 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::core::fault::Fault;
+use crate::core::geometry::DomainCurve;
 use crate::core::geometry::assembly::placed;
-use crate::core::geometry::domain_curve::DomainCurve;
 use crate::core::kernel::decimal::point_text;
-use crate::core::metric::field::MetricSource;
+use crate::core::metric::MetricSource;
 
 /// A piece of a curve between two corners.
 pub struct Piece {

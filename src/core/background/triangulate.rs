@@ -11,13 +11,11 @@ use super::cut::{Cut, CutMesh, cut, sorted_sides};
 use super::discretise::{DividedDomain, Division};
 use crate::core::fault::Fault;
 use crate::core::geometry::crossing::crossing_of;
-use crate::core::geometry::domain::Domain;
-use crate::core::geometry::domain_curve::{CurveId, CurveKind};
+use crate::core::geometry::{CurveId, CurveKind, Domain};
 use crate::core::kernel::decimal::point_text;
 use crate::core::kernel::predicates::{firm, positive};
-use crate::core::mesh::ids::PointId;
-use crate::core::mesh::triangle_set::TriangleSet;
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{PointId, TriangleSet};
+use crate::core::metric::MetricSource;
 
 /// The number of refinements of clashing curves before the domain is refused.
 const ROUNDS: usize = 64;

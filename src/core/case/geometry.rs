@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
-use crate::core::geometry::spec::{CurveShape, CurveSpec, FaceSpec};
+use crate::core::geometry::{CurveShape, CurveSpec, FaceSpec};
 
 /// Reads the curves; `geometry` checks them.
 pub(super) fn curves(document: &Table<'_>) -> Result<Vec<CurveSpec>, Fault> {

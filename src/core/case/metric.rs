@@ -3,7 +3,7 @@
 use super::geometry::known_curves;
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
-use crate::core::metric::field::FieldSpec;
+use crate::core::metric::FieldSpec;
 
 /// Reads the metric fields; curves named by boundary layers must exist.
 pub(super) fn fields(document: &Table<'_>, curves: &[&str]) -> Result<Vec<FieldSpec>, Fault> {

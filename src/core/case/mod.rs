@@ -2,7 +2,7 @@
 //! `assets/cases/README.md`. Deliberately absent: geometric checks (`geometry::domain`) and checks of formulas
 //! (`metric::formula`).
 
-pub mod parameters;
+mod parameters;
 pub(in crate::core) mod table;
 mod geometry;
 mod surfaces;
@@ -18,16 +18,15 @@ use std::sync::Arc;
 use glam::DVec2;
 
 pub use import_options::ImportOptions;
-use parameters::Parameters;
+pub use parameters::{Parameters, Selection, SelectionWindow};
 use table::{Source, Table};
 pub use taking::{MeshSource, MeshUse, Taking};
 
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::load;
-use crate::core::geometry::spec::ComplexSpec;
-use crate::core::geometry::spec::{CurveSpec, FaceSpec};
-use crate::core::metric::field::FieldSpec;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::geometry::{ComplexSpec, CurveSpec, FaceSpec};
+use crate::core::metric::FieldSpec;
+use crate::core::soup::MeshFile;
 
 /// The supported version of case files.
 pub const VERSION: u32 = 1;
@@ -179,15 +178,15 @@ impl Case {
         Case::of_source(name, title, MeshSource::File { path, sol })
     }
 
-    /// The case that a mesh in memory is, called `name`: default parameters, the metric at its points or that of its
-    /// own triangles. The same mesh in a file converts to the same quadrilaterals.
+    /// A case of a mesh in memory, called `name`: default parameters, and the metric of its points, or else the metric
+    /// of its own triangles. The same mesh in a file converts to the same quadrilaterals.
     pub fn of_mesh_in_memory(name: impl Into<String>, mesh: impl Into<Arc<MeshFile>>) -> Case {
         let name = name.into();
         let title = format!("Mesh {name}");
         Case::of_source(name, title, MeshSource::Memory(mesh.into()))
     }
 
-    /// The case with its mesh taken so; a case without a mesh is as it was.
+    /// The case with these import options; without effect on a case that has no mesh.
     #[must_use]
     pub fn with_taking(mut self, new: Taking) -> Case {
         if let DomainSource::Mesh { taking, .. } = &mut self.domain {

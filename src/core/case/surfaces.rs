@@ -5,10 +5,9 @@ use glam::DVec3;
 use super::geometry::{self, known_curves, name, shape_of};
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
-use crate::core::geometry::frame::AxisFrame;
-use crate::core::geometry::spec::SpaceShape;
-use crate::core::geometry::spec::SurfaceShape;
-use crate::core::geometry::spec::{ComplexSpec, SpaceCurveSpec, SurfaceFaceSpec, SurfaceSpec};
+use crate::core::geometry::{
+    AxisFrame, ComplexSpec, SpaceCurveSpec, SpaceShape, SurfaceFaceSpec, SurfaceShape, SurfaceSpec,
+};
 
 /// Reads surfaces, curves and faces; `geometry` checks them.
 pub(super) fn complex(document: &Table<'_>) -> Result<ComplexSpec, Fault> {

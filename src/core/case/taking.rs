@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::table::Table;
+use crate::core::discrete::StretchBound;
 use crate::core::discrete::features::ANGLE;
-use crate::core::discrete::planar_map::StretchBound;
 use crate::core::fault::Fault;
-use crate::core::kernel::tensor::Metric3;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::kernel::Metric3;
+use crate::core::soup::MeshFile;
 
 /// Where a mesh is.
 #[derive(Clone, Debug, PartialEq)]

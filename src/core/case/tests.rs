@@ -1,5 +1,5 @@
 use super::*;
-use crate::core::geometry::spec::CurveShape;
+use crate::core::geometry::CurveShape;
 use glam::DVec2;
 
 fn parse(text: &str) -> Result<Case, Fault> {

@@ -3,12 +3,11 @@
 use super::converter::{Converter, Counts};
 use super::finish::Finished;
 use super::last_resort::Outcome;
-use crate::core::background::adapt::Adapted;
+use crate::core::background::Adapted;
 use crate::core::case::Case;
 use crate::core::fault::Fault;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::names::Names;
-use crate::core::metric::field::Sizing;
+use crate::core::mesh::{Mesh, Names};
+use crate::core::metric::Sizing;
 use crate::core::prepare::{Background, background};
 use crate::core::progress::Watch;
 

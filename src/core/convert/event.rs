@@ -11,8 +11,8 @@ use serde::{Serialize, Serializer};
 pub use self::kind::{EventKind, WhyKind};
 pub use self::reason::{Purpose, Unmerged, Why};
 use super::last_resort::{Means, Outcome};
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::front::Side;
+use crate::core::mesh::{ElementId, NodeId};
 
 /// A side edge with its angle and deviation, in radians.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -2,11 +2,10 @@
 
 use super::event::Event;
 use super::phase::Phase;
-use crate::core::case::parameters::Parameters;
-use crate::core::front::selection::Queue;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::journal::Mark;
-use crate::core::metric::field::MetricSource;
+use crate::core::case::Parameters;
+use crate::core::front::Queue;
+use crate::core::mesh::{Mark, Mesh};
+use crate::core::metric::MetricSource;
 
 /// What a step comes to: the phase after it and what it did. Without an event it found nothing to do, and the next
 /// phase has its turn in the same step.
@@ -30,7 +29,7 @@ pub(super) struct Front<'f> {
     pub queue: &'f mut Option<Queue>,
     /// The face that is being converted, by its region; none where all is converted together.
     pub face: Option<u32>,
-    /// Whether the gates are wide: every segment was put off and taken up again.
+    /// Whether the gates are wide: every segment was deferred and taken up again.
     pub second_pass: &'f mut bool,
     /// Whether the journal is kept, so that steps can be taken back.
     pub keeps_journal: bool,

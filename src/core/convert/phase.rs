@@ -6,10 +6,8 @@ use smallvec::SmallVec;
 
 use super::last_resort::Plan;
 use super::last_resort::component::Component;
-use crate::core::front::sector::Side;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::mesh::journal::Mark;
+use crate::core::front::Side;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mark, Mesh, NodeId};
 
 /// The base segment of the quadrilateral at hand. Its half-edge changes with every swap beside it: nodes name it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +117,7 @@ pub enum Phase {
         /// Tops C and D.
         tops: [NodeId; 2],
     },
-    /// Every attempt has failed: the segment is to be put off.
+    /// Every attempt has failed: the segment is to be deferred.
     Defer {
         /// The base.
         base: Base,
@@ -191,7 +189,7 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// The base segment of the quadrilateral at hand, from its selection until it stands or is put off.
+    /// The base segment of the quadrilateral at hand, from its selection until it stands or is deferred.
     pub fn base(&self) -> Option<&Base> {
         match self {
             Phase::PrepareSide { base, .. }

@@ -4,14 +4,11 @@ use super::event::Event;
 use super::front::{Done, Front};
 use super::last_resort::component::live_components;
 use super::phase::{Attempt, Base, Phase};
-use crate::core::front::sector::Side;
-use crate::core::front::segment::Segment;
-use crate::core::front::selection::BaseChoice;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::front::{BaseChoice, Segment, Side};
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
 
 /// Selects the base segment by the rules (4.3.3, steps i to iii), or takes the one that a person picked. Where every
-/// segment is put off, all are taken up once more with wider gates; after that what is left over is closed.
+/// segment is deferred, all are taken up once more with wider gates; after that what is left over is closed.
 pub(super) fn select(front: &mut Front<'_>, picked: Option<[NodeId; 2]>) -> Done {
     front.commit();
     let parameters = front.parameters;
@@ -26,7 +23,7 @@ pub(super) fn select(front: &mut Front<'_>, picked: Option<[NodeId; 2]>) -> Done
     let by_rule = queue.select(mesh, parameters);
     let choice = picked.map_or(by_rule, |segment| Some(BaseChoice::of_person(segment, by_rule, parameters)));
     let Some(BaseChoice { segment, h_min, within_reach }) = choice else {
-        return all_put_off(front);
+        return all_deferred(front);
     };
     let Segment { a, b, h_value, length_metric, length_physical, theta, class, level, .. } = segment;
     let attempt = Attempt { number: 0, divide: [false; 2], tops: [None; 2], mark: front.mesh.mark() };
@@ -53,7 +50,7 @@ pub(super) fn front_segment(mesh: &Mesh, a: NodeId, b: NodeId) -> Option<HalfEdg
 }
 
 /// Takes every segment up again, once; the second time what is left over is to be closed.
-fn all_put_off(front: &mut Front<'_>) -> Done {
+fn all_deferred(front: &mut Front<'_>) -> Done {
     let parameters = front.parameters;
     if !*front.second_pass {
         let (queue, mesh) = front.queue();

@@ -7,9 +7,8 @@ use super::event::Event;
 use super::front::{Done, Front};
 use super::phase::Phase;
 use super::seam::merge::merge;
-use crate::core::case::parameters::Parameters;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId};
+use crate::core::case::Parameters;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh};
 
 /// Neither part of a loop that is split may be shorter: two segments would be one edge glued to itself.
 const LEAST_PART: usize = 4;

@@ -5,8 +5,7 @@ use super::event::{Event, Purpose, Why};
 use super::front::{Done, Front};
 use super::phase::{Attempt, Base, Phase};
 use crate::core::kernel::predicates::orient;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
 
 /// More edges across the top edge than this are not worth swapping.
 const MOST_CROSSINGS: usize = 24;

@@ -10,15 +10,15 @@ use super::event::Event;
 use super::phase::{FinishPart, Phase};
 use super::side::candidates::Candidates;
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::NodeId;
 use crate::core::progress::{Stage, Watch};
 
 /// Where a walk stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// As soon as so many quadrilaterals stand and the local post-processing of the last one (4.3.6) is done.
+    /// As soon as this many quadrilaterals stand and the local post-processing of the last one (4.3.6) is done.
     Quads(u64),
-    /// After so many steps.
+    /// After this many steps.
     Step(u64),
 }
 

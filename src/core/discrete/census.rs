@@ -3,7 +3,7 @@
 use super::chart::Chart;
 use super::edges::{Edges, Triangles};
 use super::features::Feature;
-use crate::core::kernel::disjoint_sets::DisjointSets;
+use crate::core::kernel::DisjointSets;
 
 /// Counts of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -18,7 +18,7 @@ use super::features::Feature;
 use super::planar_map::{Stretch, StretchBound, stretch};
 use super::tutte;
 use crate::core::fault::Fault;
-use crate::core::kernel::disjoint_sets::DisjointSets;
+use crate::core::kernel::DisjointSets;
 use crate::core::progress::{Cancel, Stage, Watch};
 
 /// Triangles with their map to the plane.

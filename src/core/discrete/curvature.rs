@@ -7,9 +7,9 @@ use glam::DVec3;
 use super::edges::{Edge, Edges, Triangles};
 use super::features::features;
 use crate::core::fault::Fault;
-use crate::core::geometry::surface::Bend;
-use crate::core::kernel::tensor::Metric3;
-use crate::core::metric::curvature::Curvature;
+use crate::core::geometry::Bend;
+use crate::core::kernel::Metric3;
+use crate::core::metric::Curvature;
 
 /// A symmetric tensor: xx, xy, xz, yy, yz, zz.
 type Sum = [f64; 6];

@@ -8,8 +8,8 @@ use super::edges::{Edges, Triangles};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::orient;
-use crate::core::soup::mesh_file::MeshFile;
-use crate::core::soup::soundness::{Defect, examine};
+use crate::core::soup::soundness::examine;
+use crate::core::soup::{Defect, MeshFile};
 
 /// Largest coordinate, and inverse of the smallest size of a mesh: beyond, products of several coordinates overflow.
 pub(in crate::core) const LARGEST: f64 = 1e30;

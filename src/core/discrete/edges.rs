@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::core::fault::Fault;
 use crate::core::progress::Cancel;
-use crate::core::soup::counting::Elements;
+use crate::core::soup::Elements;
 
 /// Triangles in space by point index; whoever builds this has checked the indices.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Triangles {
     /// Texture coordinates of the corners of each triangle, if they have any; empty without a texture.
     pub texture: Vec<Option<[DVec2; 3]>>,
     /// The element of the file that each triangle belongs to
-    /// ([`MeshFile::origins`](crate::core::soup::mesh_file::MeshFile::origins)); empty without a file.
+    /// ([`MeshFile::origins`](crate::core::soup::MeshFile::origins)); empty without a file.
     pub origin: Vec<u32>,
     /// The numbering of the file's elements, for messages.
     pub elements: Elements,

@@ -4,21 +4,28 @@
 //!
 //! Deliberately absent: reading files (`formats`), sizes (`metric`).
 
-pub mod edges;
-pub mod stitch;
+mod edges;
+mod stitch;
 pub(crate) mod lines;
 pub(in crate::core) mod defects;
 pub mod repair;
 pub mod features;
-pub mod planar_map;
+mod planar_map;
 pub mod chart;
-pub(crate) mod sparse;
-pub(crate) mod tutte;
-pub mod as_rigid_as_possible;
-pub(crate) mod texture;
+mod sparse;
+mod tutte;
+mod as_rigid_as_possible;
+mod texture;
 pub mod surface;
 pub(crate) mod curvature;
 pub mod own_triangles;
 pub mod census;
+
+pub use census::{Census, Division};
+pub use edges::{Edge, Edges, Triangles};
+pub use features::Feature;
+pub use planar_map::{Stretch, StretchBound};
+pub use repair::Repaired;
+pub use surface::Surface;
 #[cfg(test)]
 mod fixtures;

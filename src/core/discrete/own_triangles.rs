@@ -11,13 +11,10 @@ use super::edges::{Corner, Edge, Edges, Triangles};
 use super::surface::{Surface, sides};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::point_text;
-use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::kernel::parity::toggles;
 use crate::core::kernel::predicates::firm;
-use crate::core::kernel::spectrum::LogMetric3;
-use crate::core::kernel::tensor::Metric3;
-use crate::core::mesh::ids::PointId;
-use crate::core::mesh::triangle_set::TriangleSet;
+use crate::core::kernel::{DisjointSets, LogMetric3, Metric3};
+use crate::core::mesh::{PointId, TriangleSet};
 
 /// A chart whose sides are being divided.
 struct DividedChart {
@@ -325,7 +322,7 @@ mod tests {
     use crate::core::discrete::fixtures::{cube, plate, sphere, torus};
     use crate::core::discrete::planar_map::StretchBound;
     use crate::core::discrete::surface::surface;
-    use crate::core::mesh::names::Named;
+    use crate::core::mesh::Named;
     use crate::core::progress::Nobody;
 
     #[test]

@@ -9,10 +9,9 @@ use super::defects::{LARGEST, crossed, far_from_origin, one_sided, overlapping, 
 use super::edges::{Edges, Groups, Triangles};
 use super::lines::on_edges;
 use crate::core::fault::Fault;
-use crate::core::mesh::names::Named;
+use crate::core::mesh::Named;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::soup::mesh_file::MeshFile;
-use crate::core::soup::repairs::Repair;
+use crate::core::soup::{MeshFile, Repair};
 
 /// A triangle whose height is below this fraction of its longest side is degenerate,
 const FLAT: f64 = 1e-6;

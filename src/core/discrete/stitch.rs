@@ -6,7 +6,7 @@ use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 
 use super::edges::{Edges, Groups, Triangles};
-use crate::core::kernel::disjoint_sets::DisjointSets;
+use crate::core::kernel::DisjointSets;
 use crate::core::progress::Cancel;
 use crate::core::soup::weld::weld;
 

@@ -14,7 +14,7 @@ use super::stl;
 use super::vtu;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::progress::{Nobody, Pace, Reading, Watch};
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::MeshFile;
 
 /// A mesh format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,9 +19,8 @@ use gltf::{Document, Node, json};
 use super::scan::{DAMAGED, TRUNCATED, shown};
 use crate::core::fault::Fault;
 use crate::core::progress::Pace;
-use crate::core::soup::counting::Count;
-use crate::core::soup::mesh_file::{Group, MeshFile, Texture};
 use crate::core::soup::weld::{SINGLE, weld};
+use crate::core::soup::{Count, Group, MeshFile, Texture};
 use bytes::Buffers;
 
 /// Prefixes of extensions that do not change the geometry, so that a document may require them.

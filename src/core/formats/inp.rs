@@ -8,8 +8,9 @@ use std::io::{self, Write};
 
 pub use read::read;
 
-use crate::core::kernel::decimal::Shortest;
-use crate::core::soup::mesh_file::{MeshFile, tag_of};
+use crate::core::kernel::Shortest;
+use crate::core::soup::MeshFile;
+use crate::core::soup::mesh_file::tag_of;
 
 /// Writes nodes (numbered from 1), triangles as S3 and quadrilaterals as S4 (numbered from 1, triangles first); an
 /// ELSET for each group of elements; and for each group of lines an NSET and a SURFACE of the element edges along its

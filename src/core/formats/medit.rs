@@ -10,10 +10,10 @@ use glam::DVec3;
 
 use super::scan::{Scanner, shown};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::Shortest;
-use crate::core::kernel::tensor::Metric3;
+use crate::core::kernel::{Metric3, Shortest};
 use crate::core::progress::{Nobody, Pace, Reading};
-use crate::core::soup::mesh_file::{MeshFile, positive_definite, tag_of};
+use crate::core::soup::MeshFile;
+use crate::core::soup::mesh_file::{positive_definite, tag_of};
 
 /// Reads a mesh from the bytes of a `.mesh` file; `name` is the file's name in messages. References become tags.
 ///

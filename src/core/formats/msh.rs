@@ -3,7 +3,7 @@
 //! Reads text and binary of either byte order; writes text. Deliberately absent: partitions, periodicity, elements of
 //! higher order (rejected), volume elements (counted in [`MeshFile::skipped`]).
 //!
-//! [`MeshFile::skipped`]: crate::core::soup::mesh_file::MeshFile::skipped
+//! [`MeshFile::skipped`]: crate::core::soup::MeshFile::skipped
 
 mod input;
 mod read;

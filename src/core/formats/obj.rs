@@ -8,9 +8,10 @@ use glam::{DVec2, DVec3};
 
 use super::scan::{Scanner, parse_integer, parse_real};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::Shortest;
+use crate::core::kernel::Shortest;
 use crate::core::progress::Pace;
-use crate::core::soup::mesh_file::{Group, MeshFile, Texture, tag_of};
+use crate::core::soup::mesh_file::tag_of;
+use crate::core::soup::{Group, MeshFile, Texture};
 
 /// Reads vertices, triangles, quadrilaterals, polygons and lines.
 ///

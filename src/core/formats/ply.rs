@@ -15,10 +15,10 @@ use rustc_hash::FxHashMap;
 
 use super::scan::{TRUNCATED, shown};
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::Shortest;
+use crate::core::kernel::Shortest;
 use crate::core::progress::Pace;
-use crate::core::soup::counting::Count;
-use crate::core::soup::mesh_file::{Group, MeshFile, tag_of};
+use crate::core::soup::mesh_file::tag_of;
+use crate::core::soup::{Count, Group, MeshFile};
 
 /// Elements parsed at a time, which bounds the parser's memory.
 const BATCH: usize = 256;

@@ -7,9 +7,8 @@ use glam::DVec3;
 use super::scan::{Scanner, TRUNCATED};
 use crate::core::fault::Fault;
 use crate::core::progress::Pace;
-use crate::core::soup::counting::{Count, Counting};
-use crate::core::soup::mesh_file::{Group, MeshFile};
-use crate::core::soup::weld::{SINGLE, Welder, weld};
+use crate::core::soup::weld::{SINGLE, weld};
+use crate::core::soup::{Count, Counting, Group, MeshFile, Welder};
 
 /// Header of a binary file: 80 free bytes and the number of triangles.
 const HEADER: usize = 84;

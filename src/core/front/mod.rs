@@ -5,5 +5,9 @@
 //! paper is a walk in the half-edge structure; only the keys that order the segments are cached.
 
 pub mod segment;
-pub mod sector;
-pub mod selection;
+mod sector;
+mod selection;
+
+pub use sector::{Side, Spoke, Spokes};
+pub use segment::Segment;
+pub use selection::{BaseChoice, Queue};

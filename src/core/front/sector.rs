@@ -5,8 +5,7 @@
 use serde::Serialize;
 use smallvec::SmallVec;
 
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
 use crate::core::metric::measure::angle;
 
 /// The left or right end of a front segment AB: A or B.

@@ -4,9 +4,8 @@
 use std::cmp::Ordering;
 
 use super::sector::Side;
-use crate::core::case::parameters::{Parameters, Selection, SelectionWindow};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::case::{Parameters, Selection, SelectionWindow};
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
 
 /// A front segment AB with all quantities on which its selection depends.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,10 +10,9 @@ use std::collections::BinaryHeap;
 use smallvec::SmallVec;
 
 use super::segment::{Key, Segment};
-use crate::core::case::parameters::{Parameters, Selection};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
-use crate::core::mesh::journal::{Entry, Mark};
+use crate::core::case::{Parameters, Selection};
+use crate::core::mesh::journal::Entry;
+use crate::core::mesh::{HalfEdgeId, Mark, Mesh, NodeId};
 
 /// A segment in the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

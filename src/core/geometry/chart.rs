@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 
 use super::curve::divided;
 use super::surface::{EDGES, Edge, NurbsSurface, SurfacePoint};
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 use polar_map::PolarMap;
 
 mod polar_map;

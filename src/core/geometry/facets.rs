@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 
 use super::chart::ChartPoint;
 use crate::core::fault::Fault;
+use crate::core::kernel::PlaneTriangles;
 use crate::core::kernel::box_tree::extent;
-use crate::core::kernel::plane_triangles::PlaneTriangles;
 
 /// A piecewise linear surface: triangles in the plane and in space.
 #[derive(Clone, Debug)]

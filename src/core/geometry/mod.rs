@@ -1,29 +1,47 @@
 //! Curves, surfaces, and the domains that they bound: their description in a case (`spec`), and the geometry built from
 //! it.
 
-pub mod frame;
-pub mod spec;
-pub mod nurbs;
+mod frame;
+mod spec;
+mod nurbs;
 pub mod curve;
-pub mod surface;
-pub mod primitive;
-pub mod space_curve;
-pub mod swept;
-pub mod chart;
-pub mod facets;
-pub mod face_surface;
-pub mod atlas;
-pub mod image;
-pub(crate) mod course;
-pub mod domain_curve;
+mod surface;
+mod primitive;
+mod space_curve;
+mod swept;
+mod chart;
+mod facets;
+mod face_surface;
+mod atlas;
+mod image;
+mod course;
+mod domain_curve;
 pub mod loops;
-pub(crate) mod inside;
+mod inside;
 pub(crate) mod crossing;
 pub(crate) mod assembly;
-pub mod domain;
-pub(in crate::core) mod named_curve;
+mod domain;
+mod named_curve;
 pub mod lifting;
 mod whole_surface;
 pub mod complex;
+
+pub use atlas::Atlas;
+pub use chart::{Chart, ChartPoint};
+pub use course::Course;
+pub use domain::{Domain, DomainFace, Line, Spatial};
+pub use domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
+pub use face_surface::FaceSurface;
+pub use facets::Facets;
+pub use frame::AxisFrame;
+pub use image::{Deviation, Image};
+pub(in crate::core) use named_curve::NamedCurve;
+pub use nurbs::{Basis, NurbsCurve, Vector};
+pub use space_curve::SpaceCurve;
+pub use spec::{
+    ComplexSpec, CurveShape, CurveSpec, FaceSpec, SpaceCurveSpec, SpaceShape, SurfaceFaceSpec, SurfaceShape,
+    SurfaceSpec,
+};
+pub use surface::{Bend, Edge, NurbsSurface, SurfacePoint};
 #[cfg(test)]
 pub(crate) mod fixtures;

@@ -240,7 +240,7 @@ impl<P: Vector> NurbsCurve<P> {
     /// A curve; an empty list of weights means that all are 1.
     ///
     /// # Errors
-    /// What [`Basis::new`] and [`weighted`] refuse.
+    /// What [`Basis::new`] refuses, points that are not finite, and weights that are not one positive number for each.
     pub fn new(degree: usize, knots: Vec<f64>, weights: &[f64], points: &[P]) -> Result<Self, Fault> {
         let basis = Basis::new(degree, knots, points.len())?;
         let weighted = weighted(points, weights)?;

@@ -124,14 +124,14 @@ pub enum SpaceShape {
 /// The shape of a surface in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SurfaceShape {
-    /// See [`plane`](super::primitive::plane).
+    /// A parallelogram; u and v are lengths along its sides.
     Plane {
         /// A corner.
         corner: DVec3,
         /// Two sides from it.
         sides: [DVec3; 2],
     },
-    /// See [`cone`](super::primitive::cone); a cylinder if both radii are equal.
+    /// A cone, a cylinder if both radii are equal: u is the angle in degrees, v the distance from the foot.
     Cone {
         /// Foot, axis and direction of the angle 0.
         frame: AxisFrame,
@@ -142,7 +142,7 @@ pub enum SurfaceShape {
         /// First and last angle, degrees.
         angles: [f64; 2],
     },
-    /// See [`sphere`](super::primitive::sphere).
+    /// A sphere: u is the longitude, v the latitude, in degrees.
     Sphere {
         /// Centre, axis and direction of the angle 0.
         frame: AxisFrame,
@@ -153,7 +153,7 @@ pub enum SurfaceShape {
         /// First and last latitude, degrees.
         latitudes: [f64; 2],
     },
-    /// See [`torus`](super::primitive::torus).
+    /// A torus: u is the angle about the axis, v about the tube from the outermost circle upwards, in degrees.
     Torus {
         /// Centre, axis and direction of the angle 0.
         frame: AxisFrame,
@@ -166,14 +166,14 @@ pub enum SurfaceShape {
         /// First and last angle about the tube, degrees.
         tube_angles: [f64; 2],
     },
-    /// See [`extrusion`](super::primitive::extrusion).
+    /// The surface that a curve sweeps along a straight line: u is the curve's parameter, v the length along the line.
     Extrusion {
         /// The name of a curve.
         curve: String,
         /// Direction and length.
         along: DVec3,
     },
-    /// See [`revolution`](super::primitive::revolution).
+    /// The surface that a curve sweeps about an axis: u is the angle in degrees, v the curve's parameter.
     Revolution {
         /// The name of a curve.
         curve: String,

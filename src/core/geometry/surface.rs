@@ -256,7 +256,7 @@ impl NurbsSurface {
         self.closed[axis].then_some(last - first)
     }
 
-    /// Which of [`EDGES`] degenerate to a singular point.
+    /// Which of the edges v = 0, u = 1, v = 1, u = 0 degenerate to a singular point.
     pub fn degenerate(&self) -> [bool; 4] {
         self.degenerate
     }

@@ -3,11 +3,18 @@
 
 pub mod predicates;
 pub mod tensor;
-pub mod spectrum;
+mod spectrum;
 pub(crate) mod box_tree;
-pub(crate) mod plane_triangles;
-pub(crate) mod disjoint_sets;
+mod plane_triangles;
+mod disjoint_sets;
 pub(crate) mod parity;
-pub mod fingerprint;
+mod fingerprint;
 pub(crate) mod decimal;
 pub(crate) mod spelling;
+
+pub(crate) use decimal::Shortest;
+pub(crate) use disjoint_sets::DisjointSets;
+pub use fingerprint::Fingerprint;
+pub(crate) use plane_triangles::PlaneTriangles;
+pub use spectrum::{LogMetric, LogMetric2, LogMetric3};
+pub use tensor::{Metric2, Metric3};

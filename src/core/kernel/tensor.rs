@@ -1,6 +1,6 @@
 //! Symmetric positive definite tensors: the metric of the plane (eq. 3) and of space (eqs. 2, 11).
 //!
-//! This module has the types, their constructors and products; [`super::spectrum`] has what needs eigenvalues
+//! This module has the types, their constructors and products; `spectrum` has what needs eigenvalues
 //! (logarithms, intersection).
 
 use glam::{DVec2, DVec3};

@@ -30,7 +30,7 @@ use glam::DVec2;
 use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
 use super::refusals::Refusals;
 use super::triangle_set::TriangleSet;
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 use crate::core::mesh::journal::Journal;
 
 /// Absence in the arrays; elsewhere absence is `Option`.

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 
 /// One change of an array of the mesh, with the old value. `u32::MAX` means absence, as in the arrays.

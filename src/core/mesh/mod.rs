@@ -3,13 +3,21 @@
 
 pub mod ids;
 pub mod journal;
-pub mod triangle_set;
+mod triangle_set;
 pub mod names;
 pub mod order;
 pub mod half_edge;
-pub mod refusals;
-pub mod operators;
-pub mod quad_operators;
-pub mod check;
+mod refusals;
+mod operators;
+mod quad_operators;
+mod check;
 pub mod quality;
 pub mod sines;
+
+pub use half_edge::touched::Touched;
+pub use half_edge::{Difference, Embedding, FreeLists, Mesh, NewElement, Undone};
+pub use ids::{ElementId, HalfEdgeId, NodeId, PointId};
+pub use journal::Mark;
+pub use names::{Named, Names};
+pub use refusals::{Operation, Refusal, Refusals};
+pub use triangle_set::TriangleSet;

@@ -10,8 +10,8 @@ use smallvec::SmallVec;
 use super::half_edge::{Mesh, NewElement};
 use super::ids::{ElementId, HalfEdgeId, NodeId};
 use super::refusals::{Operation, Refusal};
+use crate::core::kernel::Metric2;
 use crate::core::kernel::predicates::{convex, firm};
-use crate::core::kernel::tensor::Metric2;
 
 impl Mesh {
     // ---- edge swapping (paper 4.2.1, fig. 5) ----

@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 use super::half_edge::{Mesh, NewElement};
 use super::ids::{ElementId, HalfEdgeId, NodeId};
 use super::refusals::{Operation, Refusal};
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 
 impl Mesh {
     /// Whether the node has more edges than the minimum: three inside, two on a boundary.

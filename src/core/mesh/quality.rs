@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::half_edge::Mesh;
 use super::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 use crate::core::metric::measure::{quad_quality, triangle_quality};
 
 /// Length of `d` over two metrics: the logarithmic mean of the lengths in each (docs/algorithm.md, "Lengths and

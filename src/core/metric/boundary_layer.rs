@@ -4,9 +4,10 @@
 use glam::{DVec2, DVec3};
 
 use crate::core::fault::Fault;
-use crate::core::geometry::domain::Line;
+use crate::core::geometry::Line;
+use crate::core::kernel::Metric3;
 use crate::core::kernel::box_tree::{BoxTree, Spot, share_along};
-use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric3};
+use crate::core::kernel::tensor::LARGEST_ANISOTROPY;
 
 /// The size where a field sets no limit, as a multiple of the extent of its curves. It matters only if no other field
 /// bounds the sizes.

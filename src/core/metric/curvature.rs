@@ -5,8 +5,9 @@
 
 use super::boundary_layer::check_named_sizes;
 use crate::core::fault::Fault;
-use crate::core::geometry::surface::Bend;
-use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric3};
+use crate::core::geometry::Bend;
+use crate::core::kernel::Metric3;
+use crate::core::kernel::tensor::LARGEST_ANISOTROPY;
 
 /// Sizes by principal curvatures.
 #[derive(Clone, Copy, Debug)]

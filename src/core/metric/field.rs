@@ -14,9 +14,9 @@ use super::place::MetricPlace;
 use super::table::Table;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::assembly::placed;
-use crate::core::geometry::atlas::Atlas;
-use crate::core::geometry::domain::Line;
-use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, Metric2, Metric3, check_sizes};
+use crate::core::geometry::{Atlas, Line};
+use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, check_sizes};
+use crate::core::kernel::{Metric2, Metric3};
 use by_formula::FormulaField;
 
 /// The failure of a field at a point: what is wrong and where.

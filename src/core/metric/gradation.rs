@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::core::kernel::tensor::{Metric2, Metric3};
+use crate::core::kernel::{Metric2, Metric3};
 
 /// A tensor whose sizes can grow along an edge.
 pub trait Gradable: Copy {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::field::{BadMetric, MetricSource};
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 
 /// Eq. (4): the length of `d` in the metric `m`.
 #[inline]

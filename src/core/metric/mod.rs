@@ -1,11 +1,16 @@
 //! The metric: lengths and angles (eqs. 4, 5), and the fields that give a tensor (eqs. 2, 3, 11) at each point.
 
 pub mod measure;
-pub mod place;
-pub(crate) mod formula;
+mod place;
+mod formula;
 mod boundary_layer;
-pub(in crate::core) mod curvature;
+mod curvature;
 mod table;
-pub mod field;
-pub mod survey;
+mod field;
+mod survey;
 pub(crate) mod gradation;
+
+pub(in crate::core) use curvature::Curvature;
+pub use field::{BadMetric, Field, FieldSpec, MetricSource, Sizing};
+pub use place::MetricPlace;
+pub use survey::Survey;

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::core::geometry::surface::Bend;
+use crate::core::geometry::Bend;
 
 /// The point at which a metric field is evaluated, in space, on its surface and in the plane that is meshed.
 #[derive(Clone, Copy, Debug, PartialEq)]

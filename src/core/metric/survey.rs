@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::field::{MetricSource, Sizing};
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 
 /// The extremes that a survey found.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,9 +5,7 @@ use glam::DVec2;
 
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::point_text;
-use crate::core::kernel::plane_triangles::PlaneTriangles;
-use crate::core::kernel::spectrum::LogMetric3;
-use crate::core::kernel::tensor::Metric3;
+use crate::core::kernel::{LogMetric3, Metric3, PlaneTriangles};
 
 /// The mesh and the logarithms of the metric at its nodes.
 #[derive(Clone, Debug)]

@@ -3,11 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use crate::core::fault::Fault;
-use crate::core::kernel::tensor::Metric3;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::NodeId;
-use crate::core::metric::field::{Field, Sizing};
+use crate::core::kernel::Metric3;
+use crate::core::mesh::{Mesh, NodeId};
 use crate::core::metric::gradation::bound_gradation;
+use crate::core::metric::{Field, Sizing};
 
 /// The field at the nodes of a mesh, with gradation bounded by `beta`, as a table. Coincident nodes (on curves between
 /// faces, on both sides of cracks) are one node of the table: bounded separately, they would differ, and rounding would

@@ -4,13 +4,12 @@
 use glam::DVec2;
 use rustc_hash::FxHashSet;
 
-use crate::core::background::discretise::DividedDomain;
-use crate::core::case::parameters::Parameters;
+use crate::core::background::DividedDomain;
+use crate::core::case::Parameters;
 use crate::core::fault::Fault;
-use crate::core::geometry::domain::Domain;
+use crate::core::geometry::Domain;
 use crate::core::kernel::spelling::nearest;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::HalfEdgeId;
+use crate::core::mesh::{HalfEdgeId, Mesh};
 
 /// Indices of the curves on whose loops rows are offset; `None` for all loops or none.
 ///

@@ -1,7 +1,7 @@
 //! Prepares the background mesh of a case and its metric from `geometry`, `metric`, `discrete` and `background`.
 
 mod graded;
-pub(in crate::core) mod layers;
+mod layers;
 mod of_domain;
 mod of_elements;
 mod of_mesh;
@@ -10,16 +10,14 @@ use of_domain::{FileLines, from_domain};
 use of_elements::from_elements;
 use of_mesh::from_mesh;
 
-use crate::core::background::adapt::Adapted;
+use crate::core::background::Adapted;
 use crate::core::case::{Case, DomainSource};
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::geometry::complex;
-use crate::core::geometry::domain::Domain;
+use crate::core::geometry::{Domain, complex};
 use crate::core::kernel::predicates::firm;
 use crate::core::kernel::spelling::suggestion;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::names::Names;
-use crate::core::metric::field::Sizing;
+use crate::core::mesh::{Mesh, Names};
+use crate::core::metric::Sizing;
 use crate::core::progress::Watch;
 
 /// The background triangle mesh of a case with its metric.
@@ -117,7 +115,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::core::metric::field::MetricSource;
+    use crate::core::metric::MetricSource;
     use crate::core::progress::Nobody;
 
     /// Two adjacent squares; the left one has small sizes far from the common line.

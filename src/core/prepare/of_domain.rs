@@ -4,18 +4,15 @@ use std::sync::Arc;
 
 use super::graded::bounded;
 use super::{Background, layers};
-use crate::core::background::adapt::{Adapted, adapt};
-use crate::core::background::discretise::DividedDomain;
+use crate::core::background::adapt::adapt;
 use crate::core::background::triangulate::divide_and_triangulate;
+use crate::core::background::{Adapted, DividedDomain};
 use crate::core::case::Case;
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::geometry::domain::Domain;
-use crate::core::mesh::half_edge::{Embedding, Mesh};
-use crate::core::mesh::ids::PointId;
-use crate::core::mesh::names::{Named, Names};
-use crate::core::mesh::triangle_set::TriangleSet;
-use crate::core::metric::field::{Field, MetricSource, Sizing};
+use crate::core::geometry::Domain;
+use crate::core::mesh::{Embedding, Mesh, Named, Names, PointId, TriangleSet};
 use crate::core::metric::measure::triangle_area;
+use crate::core::metric::{Field, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
 
 /// Number of points at which the metric is checked first.

@@ -3,16 +3,14 @@
 use glam::DVec2;
 
 use super::Background;
-use crate::core::background::adapt::Adapted;
+use crate::core::background::Adapted;
 use crate::core::background::import::import;
 use crate::core::case::Case;
 use crate::core::fault::Fault;
 use crate::core::kernel::predicates::convex;
-use crate::core::mesh::half_edge::{Mesh, NewElement};
-use crate::core::mesh::ids::ElementId;
-use crate::core::mesh::names::Names;
-use crate::core::metric::field::{Field, MetricSource, Sizing};
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::mesh::{ElementId, Mesh, Names, NewElement};
+use crate::core::metric::{Field, MetricSource, Sizing};
+use crate::core::soup::MeshFile;
 
 /// The mesh in a case file, unchanged: nodes keep their numbers, and its quadrilaterals exist from the start.
 pub(super) fn from_elements(

@@ -7,24 +7,22 @@ use glam::DVec2;
 use super::Background;
 use super::graded::bounded;
 use super::of_domain::{FileLines, from_domain};
-use crate::core::background::adapt::Adapted;
+use crate::core::background::Adapted;
 use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::import::import;
 use crate::core::case::{Case, MeshSource, MeshUse, Taking};
 use crate::core::discrete::curvature::curvature_sizes;
-use crate::core::discrete::edges::Triangles;
 use crate::core::discrete::own_triangles::implied_metric_in_space;
-use crate::core::discrete::repair::{Repaired, repair};
-use crate::core::discrete::surface::{Surface, implied_sizes, surface};
+use crate::core::discrete::repair::repair;
+use crate::core::discrete::surface::{implied_sizes, surface};
+use crate::core::discrete::{Repaired, Surface, Triangles};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::{Embedding, Mesh};
-use crate::core::mesh::names::Names;
-use crate::core::metric::field::{Field, FieldSpec, MetricSource, Sizing};
+use crate::core::kernel::Metric2;
+use crate::core::mesh::{Embedding, Mesh, Names};
+use crate::core::metric::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
-use crate::core::soup::mesh_file::MeshFile;
-use crate::core::soup::repairs::Repair;
+use crate::core::soup::{MeshFile, Repair};
 
 /// The background of a given mesh: its own triangles (the default in the plane), or its shape (the default in space).
 /// The metric is that of the case's fields; without fields, that given at its nodes or implied by its triangles.

@@ -9,13 +9,12 @@ use rustc_hash::FxHashMap;
 
 use super::statistics::Measured;
 use crate::core::fault::Fault;
-use crate::core::geometry::atlas::Atlas;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, PointId};
-use crate::core::mesh::names::{Named, Names};
-use crate::core::metric::field::Sizing;
-use crate::core::run::births::Births;
-use crate::core::soup::mesh_file::{BUILT_IN, Data, FRONT, Group, MeshFile};
+use crate::core::geometry::Atlas;
+use crate::core::mesh::{ElementId, Mesh, Named, Names, PointId};
+use crate::core::metric::Sizing;
+use crate::core::run::Births;
+use crate::core::soup::mesh_file::{BUILT_IN, FRONT};
+use crate::core::soup::{Data, Group, MeshFile};
 
 /// Tag of lines with elements on one side (the boundary, both sides of a crack), unless a line of the file has it.
 const BOUNDARY: u32 = 1;
@@ -241,10 +240,8 @@ fn tags_of(named: &[Named]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::kernel::tensor::Metric2;
-    use crate::core::mesh::half_edge::{Mesh, NewElement};
-    use crate::core::mesh::ids::NodeId;
-    use crate::core::mesh::triangle_set::TriangleSet;
+    use crate::core::kernel::Metric2;
+    use crate::core::mesh::{Mesh, NewElement, NodeId, TriangleSet};
 
     /// Two triangles of two faces with doubled nodes along their common line.
     fn two_faces(points: [u32; 6], names: [&str; 2]) -> Export {

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::run_file;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::load;
-use crate::core::run::run::Run;
+use crate::core::run::Run;
 
 /// The keyword of the chunk in a PNG.
 pub const KEYWORD: &str = "quadfront run";

@@ -3,8 +3,9 @@
 use super::export::Export;
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::number;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::soup::soundness::{Allow, examine};
+use crate::core::mesh::Mesh;
+use crate::core::soup::Allow;
+use crate::core::soup::soundness::examine;
 
 impl Export {
     /// What is wrong with the mesh that these arrays are of: its structure, exact convexity, folds over its surface,

@@ -1,8 +1,13 @@
 //! The records of a run: exported meshes, statistics, reports, run files, and runs embedded in figures.
 
 pub mod statistics;
-pub mod export;
+mod export;
 mod flaw;
 pub mod report;
 pub mod run_file;
 pub mod figure;
+
+pub use export::Export;
+pub use report::Report;
+pub use run_file::Keeper;
+pub use statistics::{Measured, Statistics};

@@ -12,9 +12,8 @@ use serde_json::ser::{Formatter, PrettyFormatter};
 
 use super::export::Export;
 use super::statistics::{Angles, Range, Statistics};
-use crate::core::case::Case;
-use crate::core::case::parameters::Parameters;
-use crate::core::convert::conversion::Converted;
+use crate::core::case::{Case, Parameters};
+use crate::core::convert::Converted;
 use crate::core::fault::Fault;
 use crate::core::progress::Stage;
 
@@ -355,9 +354,9 @@ pub fn grouped(count: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::kernel::tensor::Metric2;
-    use crate::core::mesh::ids::PointId;
-    use crate::core::metric::field::{BadMetric, MetricSource};
+    use crate::core::kernel::Metric2;
+    use crate::core::mesh::PointId;
+    use crate::core::metric::{BadMetric, MetricSource};
     use crate::core::record::statistics::Measured;
     use glam::DVec2;
 

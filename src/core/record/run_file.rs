@@ -37,15 +37,13 @@ use std::path::{Path, PathBuf};
 
 use toml::de::DeTable;
 
-use crate::core::case::parameters::Parameters;
 use crate::core::case::table::{Source, Table, Value};
-use crate::core::case::{Case, DomainSource, MeshSource};
+use crate::core::case::{Case, DomainSource, MeshSource, Parameters};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::{load, save};
-use crate::core::kernel::decimal::Shortest;
-use crate::core::kernel::fingerprint::Fingerprint;
-use crate::core::mesh::ids::NodeId;
-use crate::core::run::run::{Bookmark, Camera, Edit, EditKind, Run};
+use crate::core::kernel::{Fingerprint, Shortest};
+use crate::core::mesh::NodeId;
+use crate::core::run::{Bookmark, Camera, Edit, EditKind, Run};
 
 /// The supported version of run files.
 pub const VERSION: u32 = 1;

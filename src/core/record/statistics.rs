@@ -4,11 +4,11 @@
 use glam::DVec2;
 use serde::Serialize;
 
-use crate::core::geometry::atlas::Atlas;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::ids::PointId;
-use crate::core::metric::field::{BadMetric, MetricSource};
+use crate::core::geometry::Atlas;
+use crate::core::kernel::Metric2;
+use crate::core::mesh::PointId;
 use crate::core::metric::measure::{angle, length_exact, quad_quality, triangle_quality};
+use crate::core::metric::{BadMetric, MetricSource};
 
 /// Number of angle classes, each 10 degrees wide; the last has no upper limit.
 pub const ANGLE_CLASSES: usize = 18;
@@ -327,7 +327,7 @@ impl Lengths {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::kernel::tensor::Metric2;
+    use crate::core::kernel::Metric2;
 
     /// A constant metric.
     struct Constant(Metric2);

@@ -1,9 +1,7 @@
 //! The step that made each quadrilateral, recorded during a conversion, for files and figures that show it.
 
-use crate::core::convert::converter::Converter;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::half_edge::touched::Touched;
-use crate::core::mesh::ids::ElementId;
+use crate::core::convert::Converter;
+use crate::core::mesh::{ElementId, Mesh, Touched};
 
 /// The step that made each quadrilateral: the last step that turned its element into a quadrilateral, regardless of
 /// later changes (as [`History::made`](super::history::History::made) defines it).
@@ -52,7 +50,7 @@ impl Births {
 mod tests {
     use super::*;
     use crate::core::case::built_in;
-    use crate::core::convert::phase::Phase;
+    use crate::core::convert::Phase;
     use crate::core::progress::Nobody;
     use crate::core::run::history::{BUDGET, History};
     use crate::core::run::run::Run;

@@ -18,7 +18,7 @@ use self::fields::Value;
 use super::front_count::FrontCount;
 use super::history::History;
 use super::log::Angles;
-use crate::core::convert::event::Event;
+use crate::core::convert::Event;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::spelling::nearest;
 
@@ -328,9 +328,9 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::convert::event::Why;
-    use crate::core::front::sector::Side;
-    use crate::core::mesh::ids::{ElementId, NodeId};
+    use crate::core::convert::Why;
+    use crate::core::front::Side;
+    use crate::core::mesh::{ElementId, NodeId};
 
     fn formed(quality: f64) -> Event {
         Event::Formed { element: ElementId(7), nodes: [NodeId(1); 4], quality, merged: 4, level: 3, attempt: 0 }

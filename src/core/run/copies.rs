@@ -4,8 +4,7 @@
 use std::sync::Arc;
 
 use super::history::Changes;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::half_edge::touched::Touched;
+use crate::core::mesh::{Mesh, Touched};
 
 /// The number of copies: one in use, one on its way, one to update.
 const KEPT: usize = 3;

@@ -7,12 +7,11 @@ use glam::DVec2;
 use serde::Serialize;
 
 use super::front_table::{FrontTable, Loop, Row};
-use crate::core::case::parameters::{Parameters, Selection};
-use crate::core::convert::converter::Converter;
-use crate::core::front::sector::Side;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::case::{Parameters, Selection};
+use crate::core::convert::Converter;
+use crate::core::front::Side;
+use crate::core::kernel::Metric2;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 use crate::core::metric::measure::angle;
 
 /// A metric with its eigenpairs: sizes h = 1 / sqrt(lambda) along orthonormal directions.
@@ -77,7 +76,7 @@ pub enum Verdict {
     /// It comes first.
     First,
     /// It is deferred until something near it changes.
-    PutOff,
+    Deferred,
     /// Rows nearer to the boundary come first.
     LaterLayer,
     /// Its window value is not below c Hmin (4.3.3, step ii): segments within reach come first, then smaller H-values.
@@ -158,7 +157,7 @@ impl SegmentFacts {
 }
 
 fn verdict(table: &FrontTable, row: &Row) -> Verdict {
-    let Some(choice) = table.choice().filter(|_| !row.is_put_off) else { return Verdict::PutOff };
+    let Some(choice) = table.choice().filter(|_| !row.is_deferred) else { return Verdict::Deferred };
     if choice.h == row.h {
         return Verdict::First;
     }

@@ -3,10 +3,8 @@
 
 use serde::Serialize;
 
-use crate::core::convert::event::Event;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::half_edge::touched::Touched;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::convert::Event;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId, Touched};
 
 const NONE: u32 = u32::MAX;
 
@@ -190,8 +188,7 @@ fn is_one_chain(mesh: &Mesh, event: &Event) -> bool {
 mod tests {
     use super::*;
     use crate::core::case::built_in;
-    use crate::core::convert::converter::Converter;
-    use crate::core::convert::phase::Phase;
+    use crate::core::convert::{Converter, Phase};
     use crate::core::progress::Nobody;
     use crate::core::run::run::Run;
 

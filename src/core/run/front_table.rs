@@ -5,10 +5,11 @@ use std::collections::BTreeSet;
 
 use serde::{Serialize, Serializer};
 
-use crate::core::case::parameters::{Parameters, Selection};
-use crate::core::convert::converter::Converter;
-use crate::core::front::segment::{Key, Segment, layer};
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::case::{Parameters, Selection};
+use crate::core::convert::Converter;
+use crate::core::front::Segment;
+use crate::core::front::segment::{Key, layer};
+use crate::core::mesh::{HalfEdgeId, NodeId};
 
 /// One segment of the front.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -37,7 +38,7 @@ pub struct Row {
     /// The index of its loop in [`FrontTable::loops`].
     pub front_loop: u32,
     /// Whether it is deferred until something near it changes.
-    pub is_put_off: bool,
+    pub is_deferred: bool,
     /// The value compared with c Hmin.
     pub window: f64,
 }
@@ -100,7 +101,7 @@ impl FrontTable {
             }
             loops.push(met);
         }
-        let waiting = || rows.iter().filter(|row| !row.is_put_off);
+        let waiting = || rows.iter().filter(|row| !row.is_deferred);
         let layer = waiting().map(|row| row.layer(&parameters)).min().unwrap_or(0);
         let h_min = waiting()
             .filter(|row| row.layer(&parameters) == layer)
@@ -121,7 +122,7 @@ impl FrontTable {
 
     /// The number of waiting segments that come before this one: 0 for the choice itself. `None` where it is deferred.
     pub fn rank(&self, row: &Row) -> Option<usize> {
-        if row.is_put_off {
+        if row.is_deferred {
             return None;
         }
         let order = self.order(row);
@@ -131,7 +132,7 @@ impl FrontTable {
     /// The indices of the rows in the order in which they would be chosen; deferred ones come last.
     pub fn in_order(&self) -> Vec<usize> {
         let mut places: Vec<usize> = (0..self.rows.len()).collect();
-        places.sort_by_cached_key(|&place| (self.rows[place].is_put_off, self.order(&self.rows[place])));
+        places.sort_by_cached_key(|&place| (self.rows[place].is_deferred, self.order(&self.rows[place])));
         places
     }
 
@@ -141,7 +142,7 @@ impl FrontTable {
     }
 
     pub(super) fn waiting(&self) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(|row| !row.is_put_off)
+        self.rows.iter().filter(|row| !row.is_deferred)
     }
 
     /// Whether the segment is within c Hmin and of class 1, 2 or 3 (4.3.3, step ii).
@@ -191,7 +192,7 @@ impl FrontTable {
     /// The first interval of c, from (excluded) to (included), in which a segment that is not the choice would be it,
     /// all else unchanged. `None` where there is none, or where the selection does not depend on c.
     pub fn chosen_for_c(&self, row: &Row) -> Option<[f64; 2]> {
-        if self.parameters.selection != Selection::Table1 || row.is_put_off || self.choice()?.h == row.h {
+        if self.parameters.selection != Selection::Table1 || row.is_deferred || self.choice()?.h == row.h {
             return None;
         }
         let best = BestOfClass::of(self);
@@ -214,7 +215,7 @@ impl FrontTable {
         let limits = [std::f64::consts::FRAC_PI_2, std::f64::consts::PI];
         // The classes change only where theta_rect crosses a frontal angle.
         let mut turns: Vec<(f64, usize)> = Vec::new();
-        for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| !row.is_put_off) {
+        for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| !row.is_deferred) {
             turns.extend(row.theta.iter().filter(|t| (limits[0]..=limits[1]).contains(*t)).map(|&t| (t, i)));
         }
         turns.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -243,7 +244,7 @@ impl FrontTable {
 }
 
 impl Row {
-    fn of(segment: &Segment, is_put_off: bool, parameters: &Parameters) -> Row {
+    fn of(segment: &Segment, is_deferred: bool, parameters: &Parameters) -> Row {
         Row {
             h: segment.h,
             a: segment.a,
@@ -256,7 +257,7 @@ impl Row {
             level: segment.level,
             face: segment.face,
             front_loop: 0,
-            is_put_off,
+            is_deferred,
             window: segment.window(parameters.selection_window),
         }
     }

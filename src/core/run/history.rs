@@ -13,12 +13,9 @@ use super::keyframes::{Keyframe, Keyframes};
 use super::log::Log;
 use super::recorder::{Recorder, SPACING, Stretch};
 use super::run::{EditKind, Run};
-use crate::core::convert::converter::Converter;
-use crate::core::convert::event::{Event, EventKind};
+use crate::core::convert::{Converter, Event, EventKind};
 use crate::core::fault::Fault;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::half_edge::touched::Touched;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, Mesh, NodeId, Touched};
 use crate::core::prepare::Background;
 use crate::core::progress::Watch;
 
@@ -184,6 +181,20 @@ impl History {
             self.accept(stretch);
         }
         self.recorder = Some(recorder);
+    }
+
+    /// Searches, and where nothing is found runs further ahead and searches again.
+    pub(super) fn ahead<T>(&mut self, look: impl Fn(&History) -> Option<T>) -> Option<T> {
+        loop {
+            if let Some(found) = look(self) {
+                return Some(found);
+            }
+            let known = self.log.known();
+            self.extend(known + 4 * SPACING);
+            if self.log.known() == known {
+                return None;
+            }
+        }
     }
 
     /// Lends the recorder, so that another thread can run ahead. [`History::accept`] takes its results,

@@ -1,8 +1,8 @@
 //! Stored states of a run, sorted by step: a few as whole meshes, the others as differences from the one before. Any
 //! state is a few steps from the nearest one.
 
-use crate::core::convert::converter::Converter;
-use crate::core::mesh::half_edge::{Difference, Mesh};
+use crate::core::convert::Converter;
+use crate::core::mesh::{Difference, Mesh};
 
 /// A stored state, before the edits of its step are applied.
 #[derive(Clone)]

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::front_count::FrontCount;
 use super::sample::Sample;
-use crate::core::convert::event::{Event, EventKind};
+use crate::core::convert::{Event, EventKind};
 
 /// Steps in a chunk of events.
 const CHUNK: usize = 4096;
@@ -222,6 +222,35 @@ impl Log {
         let found = numbers.into_iter().position(|(&n, kind)| u64::from(n) >= nq && kind & AT_REST != 0)?;
         Some(after + found as u64 + 1)
     }
+
+    /// The next step after `from` that completes a quadrilateral and its local post-processing (4.3.6): that of the
+    /// last quadrilateral while it is under way. `None` where there is no further one, or where it is not known yet.
+    pub fn next_quad(&self, from: u64) -> Option<u64> {
+        let made = if self.is_at_rest(from) { self.next_of(from, makes_quads)? } else { from };
+        self.rest_after(made)
+    }
+
+    /// The last step before `from` that completed a quadrilateral and its local post-processing, or the beginning.
+    pub fn previous_quad(&self, from: u64) -> u64 {
+        let mut until = from.saturating_sub(1);
+        while let Some(made) = self.last_of(until, makes_quads) {
+            match self.rest_after(made).filter(|&rest| rest < from) {
+                Some(rest) => return rest,
+                None => until = made - 1,
+            }
+        }
+        0
+    }
+
+    /// The first step from this one on after which no local post-processing is under way.
+    fn rest_after(&self, step: u64) -> Option<u64> {
+        (step..=self.known()).find(|&step| self.is_at_rest(step))
+    }
+}
+
+/// Whether a step of this kind makes quadrilaterals; clean-up does not count.
+fn makes_quads(kind: EventKind) -> bool {
+    matches!(kind, EventKind::Formed | EventKind::Closed | EventKind::Patched)
 }
 
 fn kind_of(stored: u8) -> EventKind {
@@ -231,7 +260,7 @@ fn kind_of(stored: u8) -> EventKind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::mesh::ids::NodeId;
+    use crate::core::mesh::NodeId;
 
     fn event(i: u64) -> Event {
         if i.is_multiple_of(10) { Event::SecondPass } else { Event::Deferred { a: NodeId(i as u32), b: NodeId(0) } }

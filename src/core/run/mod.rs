@@ -3,16 +3,16 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | the run: case, parameters, edits at steps, bookmarks, camera | [`run::Run`] |
-//! | reaching any state, bit-identical to a new run; stepping forward and back; editing | [`history::History`] |
-//! | copies of the mesh for other threads, updated by what changed | [`copies::Copies`] |
-//! | what a figure shows of a run | [`shown::Shown`] |
-//! | running ahead on another thread | [`recorder::Recorder`], which [`history::History::lend`] lends |
-//! | one event per step, the number of quadrilaterals, where to go next | [`log::Log`], `playback` |
-//! | invariants and statistics along a run, lanes of its work | [`sample`], [`timeline`] |
-//! | the step that made each quadrilateral, without a history | [`births`] |
-//! | breakpoints and watchpoints | [`breakpoint`], [`watch`] |
-//! | why a segment is chosen, what a node is | [`explain`], [`front_table`] |
+//! | the run: case, parameters, edits at steps, bookmarks, camera | [`Run`] |
+//! | reaching any state, bit-identical to a new run; stepping forward and back; editing | [`History`] |
+//! | copies of the mesh for other threads, updated by what changed | [`Copies`] |
+//! | what a figure shows of a run | [`Shown`] |
+//! | running ahead on another thread | [`Recorder`], which [`History::lend`] lends |
+//! | one event per step, the number of quadrilaterals, where to go next | [`Log`] |
+//! | invariants and statistics along a run, lanes of its work | [`Sample`], [`timeline`] |
+//! | the step that made each quadrilateral, without a history | [`Births`] |
+//! | breakpoints and watchpoints | [`breakpoint`], [`Watched`] |
+//! | why a segment is chosen, what a node is | [`SegmentFacts`], [`NodeFacts`], [`FrontTable`] |
 //!
 //! The state at step k is the state after k steps, with the edits of step k applied: an edit at step k changes what
 //! follows and nothing before.
@@ -20,17 +20,30 @@
 #[expect(clippy::module_inception, reason = "the module is about the run")]
 pub mod run;
 pub mod shown;
-pub mod front_count;
-pub mod sample;
-pub mod log;
+mod front_count;
+mod sample;
+mod log;
 pub mod timeline;
-pub(crate) mod keyframes;
-pub mod recorder;
+mod keyframes;
+mod recorder;
 pub mod history;
 pub mod copies;
-pub mod births;
-mod playback;
+mod births;
 pub mod breakpoint;
-pub mod watch;
+mod watch;
 pub mod front_table;
-pub mod explain;
+mod explain;
+
+pub use births::Births;
+pub use breakpoint::Condition;
+pub use copies::Copies;
+pub use explain::{Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, Verdict};
+pub use front_count::FrontCount;
+pub use front_table::FrontTable;
+pub use history::{Changes, History};
+pub use log::{Angles, Log};
+pub use recorder::{Recorder, Stretch};
+pub use run::{Bookmark, Camera, Edit, EditKind, Run};
+pub use sample::Sample;
+pub use shown::{Shown, ShownState};
+pub use watch::{Appearance, Beside, Watched};

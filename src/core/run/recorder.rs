@@ -9,13 +9,9 @@ use super::keyframes::{Keyframe, Keyframes};
 use super::log::{Angles, Log};
 use super::run::Run;
 use super::sample::{Measures, Sample};
-use crate::core::convert::converter::Converter;
-use crate::core::convert::event::Event;
-use crate::core::convert::phase::Phase;
+use crate::core::convert::{Converter, Event, Phase};
 use crate::core::fault::Fault;
-use crate::core::mesh::half_edge::touched::Touched;
-use crate::core::mesh::half_edge::{FreeLists, Mesh};
-use crate::core::mesh::ids::ElementId;
+use crate::core::mesh::{ElementId, FreeLists, Mesh, Touched};
 use crate::core::metric::measure::angle;
 
 /// A keyframe is due after this many steps, whose replay takes about a millisecond.

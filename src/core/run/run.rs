@@ -3,11 +3,10 @@
 use std::sync::Arc;
 
 use super::shown::Shown;
-use crate::core::case::Case;
-use crate::core::case::parameters::Parameters;
-use crate::core::convert::converter::Converter;
+use crate::core::case::{Case, Parameters};
+use crate::core::convert::Converter;
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::NodeId;
 use crate::core::prepare::{Background, background};
 use crate::core::progress::Watch;
 

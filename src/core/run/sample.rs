@@ -5,9 +5,7 @@ use serde::Serialize;
 
 use super::front_count::FrontCount;
 use crate::core::kernel::predicates::{convex, orient};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::half_edge::touched::Touched;
-use crate::core::mesh::ids::ElementId;
+use crate::core::mesh::{ElementId, Mesh, Touched};
 
 /// The invariants and statistics of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -1,9 +1,8 @@
 //! What a figure of a run shows: states with the fingerprints that identify them, and the options it was drawn with.
 
-use crate::core::convert::phase::Phase;
-use crate::core::convert::walk::Stop;
-use crate::core::kernel::fingerprint::Fingerprint;
-use crate::core::mesh::half_edge::Mesh;
+use crate::core::convert::{Phase, Stop};
+use crate::core::kernel::Fingerprint;
+use crate::core::mesh::Mesh;
 
 /// A state of a run as a figure shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::log::Log;
-use crate::core::convert::event::EventKind;
+use crate::core::convert::EventKind;
 
 /// The kinds of work; each is a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

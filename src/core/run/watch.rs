@@ -5,8 +5,7 @@ use smallvec::SmallVec;
 
 use super::history::History;
 use crate::core::fault::Fault;
-use crate::core::mesh::half_edge::{Difference, Mesh};
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{Difference, ElementId, Mesh, NodeId};
 
 /// What a watchpoint watches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 use super::counting::Counting;
 use super::mesh_file::{Group, MeshFile};
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::kernel::tensor::{Metric2, Metric3, check_sizes};
+use crate::core::kernel::tensor::check_sizes;
+use crate::core::kernel::{Metric2, Metric3};
 
 impl MeshFile {
     /// A mesh in the plane z = 0: points, and triangles by the indices of their points from 0, anticlockwise. Messages
@@ -74,7 +75,7 @@ impl MeshFile {
         for triangle in triangles {
             let Some(own) = self.triangle_tags.get_mut(triangle) else {
                 let n = self.triangles.len();
-                let what = format!("The region \"{name}\" has the triangle of index {triangle}, and there are {n}");
+                let what = format!("The region \"{name}\" names triangle {triangle}, but there are only {n}");
                 return Err(Fault::new(what).of_kind(FaultKind::Mesh).remedy("Indices count from 0"));
             };
             *own = tag;
@@ -117,8 +118,7 @@ impl MeshFile {
         for (kind, elements) in kinds {
             for (i, corners) in elements.enumerate() {
                 if let Some(bad) = corners.iter().find(|&&k| k as usize >= n) {
-                    let what =
-                        format!("The {kind} of index {i} has the point of index {bad}, and there are {n} points");
+                    let what = format!("The {kind} of index {i} uses point {bad}, but there are only {n} points");
                     return Err(Fault::new(what).remedy("Indices count from 0"));
                 }
                 if kind == "polygon" && corners.len() < 3 {
@@ -134,14 +134,14 @@ impl MeshFile {
             ("polygon", &self.polygon_tags, self.polygons.len()),
         ] {
             if !tags.is_empty() && tags.len() != count {
-                let what = format!("There are {} tags of {kind}s, and {count} {kind}s", tags.len());
-                return Err(Fault::new(what).remedy("Give one for each, or none"));
+                let what = format!("There are {} {kind} tags for {count} {kind}s", tags.len());
+                return Err(Fault::new(what).remedy("Give one tag for each, or no tags"));
             }
         }
         let metric = self.metric.as_deref().unwrap_or_default();
         if self.metric.is_some() && metric.len() != n {
-            let what = format!("The metric is given {} times, and there are {n} points", metric.len());
-            return Err(Fault::new(what).remedy("Give it once for each point"));
+            let what = format!("The metric has {} values for {n} points", metric.len());
+            return Err(Fault::new(what).remedy("Give one value for each point"));
         }
         match metric.iter().position(|m| !m.is_spd()) {
             Some(point) => {
@@ -169,12 +169,12 @@ mod tests {
             mesh.check_lists().unwrap_err().to_string()
         };
         assert!(two_triangles().check_lists().is_ok());
-        assert!(of(|m| m.triangles.push([0, 1, 4])).contains("triangle of index 2 has the point of index 4"));
-        assert!(of(|m| m.quads.push([0, 1, 2, 9])).contains("quadrilateral of index 0 has the point of index 9"));
-        assert!(of(|m| m.lines.push([7, 0])).contains("line of index 0 has the point of index 7"));
+        assert!(of(|m| m.triangles.push([0, 1, 4])).contains("triangle of index 2 uses point 4"));
+        assert!(of(|m| m.quads.push([0, 1, 2, 9])).contains("quadrilateral of index 0 uses point 9"));
+        assert!(of(|m| m.lines.push([7, 0])).contains("line of index 0 uses point 7"));
         assert!(of(|m| m.polygons.push(vec![0, 1])).contains("polygon of index 0 has 2 corners"));
-        assert!(of(|m| m.triangle_tags = vec![1]).contains("1 tags of triangles, and 2 triangles"));
-        assert!(of(|m| m.metric = Some(Vec::new())).contains("given 0 times, and there are 4 points"));
+        assert!(of(|m| m.triangle_tags = vec![1]).contains("1 triangle tags for 2 triangles"));
+        assert!(of(|m| m.metric = Some(Vec::new())).contains("has 0 values for 4 points"));
         let flat = Metric3 { xx: 1.0, xy: 2.0, xz: 0.0, yy: 1.0, yz: 0.0, zz: 1.0 };
         let fault = two_triangles().with_metric([flat; 4]).check_lists().unwrap_err();
         assert_eq!(fault.kind(), FaultKind::Metric);

@@ -7,8 +7,8 @@ use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
 use super::counting::{Counting, Elements, enumerate};
-use crate::core::kernel::tensor::Metric3;
-use crate::core::mesh::names::Named;
+use crate::core::kernel::Metric3;
+use crate::core::mesh::Named;
 
 /// The name of the group of lines that form the merging front of an intermediate mesh.
 pub const FRONT: &str = "front";

@@ -2,9 +2,15 @@
 //! triangulation of polygons, welding of equal points, and the validity check.
 
 pub mod mesh_file;
-pub mod counting;
+mod counting;
 mod in_memory;
-pub mod polygons;
+mod polygons;
 pub(in crate::core) mod weld;
 pub mod soundness;
-pub(in crate::core) mod repairs;
+mod repairs;
+
+pub use counting::{Count, Counting, Elements};
+pub use mesh_file::{Data, Group, MeshFile, Texture};
+pub(in crate::core) use repairs::Repair;
+pub use soundness::{Allow, Defect, Soundness};
+pub(in crate::core) use weld::Welder;

@@ -14,7 +14,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::Shortest;
+use crate::core::kernel::Shortest;
 use crate::core::soup::mesh_file::MeshFile;
 use faces::Faces;
 

@@ -3,8 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{NEAR, nearest};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 use crate::render::camera::Camera;
 use crate::render::scene::{Outlined, Scene};
 
@@ -151,8 +150,7 @@ mod tests {
     use super::*;
     use crate::core::case::built_in;
     use crate::core::progress::Nobody;
-    use crate::core::run::history::History;
-    use crate::core::run::run::Run;
+    use crate::core::run::{History, Run};
     use crate::render::camera::Bearing;
     use crate::render::palette::DARK;
     use crate::render::scene::{Drawn, Form, Layers, Shading};

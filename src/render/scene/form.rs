@@ -4,8 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Face, Line, Scene, relative};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, Mesh, NodeId};
 
 /// The form in which a mesh is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -7,9 +7,7 @@ use glam::DVec3;
 
 use super::form::folded;
 use super::{Dot, Face, Form, Line, Scene, ink, relative};
-use crate::core::discrete::census::Division;
-use crate::core::discrete::edges::{Edges, Triangles};
-use crate::core::discrete::features::Feature;
+use crate::core::discrete::{Division, Edges, Feature, Triangles};
 use crate::core::progress::Cancel;
 use crate::render::palette::{Palette, Rgba};
 
@@ -158,11 +156,11 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::discrete::StretchBound;
     use crate::core::discrete::chart::charts;
     use crate::core::discrete::features::{ANGLE, features};
-    use crate::core::discrete::planar_map::StretchBound;
     use crate::core::progress::Nobody;
-    use crate::core::soup::mesh_file::MeshFile;
+    use crate::core::soup::MeshFile;
     use crate::render::palette::{DARK, LIGHT};
 
     /// A tent: two squares with a fold between them.

@@ -6,8 +6,7 @@ use glam::DVec3;
 
 use super::placed::Places;
 use super::{ColourBy, Dot, Face, Form, Layers, Line, Scene, Shading, Spot, ink, relative};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 use crate::render::palette::Palette;
 
 /// Widths of mesh edges in points: live, dead.
@@ -248,8 +247,7 @@ mod tests {
     use super::*;
     use crate::core::case::built_in;
     use crate::core::progress::Nobody;
-    use crate::core::run::history::{Changes, History};
-    use crate::core::run::run::Run;
+    use crate::core::run::{Changes, History, Run};
     use crate::render::fixtures::two_squares;
     use crate::render::palette::DARK;
 

@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use super::mesh::FADES;
 use super::{Dot, Layers, Line, Scene, Spot, ink, relative};
-use crate::core::case::parameters::Parameters;
-use crate::core::convert::phase::Phase;
-use crate::core::front::segment::Segment;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::case::Parameters;
+use crate::core::convert::Phase;
+use crate::core::front::Segment;
+use crate::core::mesh::{ElementId, Mesh, NodeId};
 use crate::render::palette::{Palette, Rgba};
 
 /// Widths of front segments by class, in points.

@@ -1,7 +1,6 @@
 //! The quantities that elements can be coloured by, and their values.
 
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId};
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh};
 use crate::core::metric::measure::triangle_area;
 use crate::render::colour_map::ColourMap;
 use crate::render::palette::Rgba;

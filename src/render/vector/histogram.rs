@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use super::svg::page::{Page, Path, width};
 use super::svg::{LABEL, NOTE, Sheet};
-use crate::core::record::statistics::{ANGLE_CLASSES, LENGTH_CLASSES, Statistics};
+use crate::core::record::Statistics;
+use crate::core::record::statistics::{ANGLE_CLASSES, LENGTH_CLASSES};
 use crate::render::number::{fixed, grouped};
 use crate::render::palette::{LETTER, bars};
 

@@ -210,7 +210,7 @@ fn scale_bar(page: &mut Page, frame: &SvgFrame, right: DVec2, look: &Look) {
 
 /// A round length as text: 0.2, 50, 2e-7.
 fn length_in_words(length: f64) -> String {
-    let text = crate::core::kernel::decimal::Shortest(libm::round(length * 1e12) / 1e12).to_string();
+    let text = crate::core::kernel::Shortest(libm::round(length * 1e12) / 1e12).to_string();
     if length < 1e-9 { format!("{length:e}") } else { text }
 }
 

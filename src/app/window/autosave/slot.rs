@@ -90,9 +90,9 @@ impl Offer {
                     (1, _) => " with 1 edit".to_owned(),
                     (edits, _) => format!(" with {edits} edits"),
                 };
-                (format!("A run of {}{edits}{ago} was not closed.", run.case.name), true)
+                (format!("An unsaved run of {}{edits}{ago} can be recovered.", run.case.name), true)
             }
-            Err(fault) => (format!("A run{ago} was not closed, and cannot be opened: {fault}"), false),
+            Err(fault) => (format!("An unsaved run{ago} cannot be recovered: {fault}"), false),
         };
         Offer { slot, text, opens }
     }

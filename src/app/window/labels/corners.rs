@@ -5,8 +5,7 @@ use eframe::egui::{Align2, Pos2, Shape, Stroke, Vec2};
 use super::{Labels, ViewRole};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::front::sector::Side;
-use crate::core::front::segment::Segment;
+use crate::core::front::{Segment, Side};
 use crate::render::scene::Decision;
 
 impl Labels<'_> {

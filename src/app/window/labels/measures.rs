@@ -9,7 +9,7 @@ use crate::app::window::state::{State, SurfaceView, ViewCamera};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::viewport::{self, ViewFrame};
 use crate::app::window::words;
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::NodeId;
 use crate::render::palette::Palette;
 use crate::render::scene::{ColourBy, Shading};
 

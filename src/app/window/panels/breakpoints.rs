@@ -10,8 +10,8 @@ use crate::app::window::session::Goal;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::{icons, words};
-use crate::core::run::breakpoint::{Condition, FIELDS, Holds};
-use crate::core::run::watch::Watched;
+use crate::core::run::breakpoint::{FIELDS, Holds};
+use crate::core::run::{Condition, Watched};
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 

@@ -12,7 +12,7 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::front::segment::Segment;
+use crate::core::front::Segment;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
@@ -205,7 +205,7 @@ fn table(
             row.set_selected(is_picked);
             row.set_hovered(hovered.is_some_and(|e| is(segment, e)));
             let texts = [
-                if moment.rows[place].is_put_off { words::UNDEFINED.to_owned() } else { rank.to_string() },
+                if moment.rows[place].is_deferred { words::UNDEFINED.to_owned() } else { rank.to_string() },
                 words::segment(segment.a, segment.b),
                 String::new(),
                 words::fixed(segment.h_value, decimals),

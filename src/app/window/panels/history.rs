@@ -7,7 +7,7 @@ use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
 use crate::app::window::words;
-use crate::core::run::run::EditKind;
+use crate::core::run::EditKind;
 use crate::render::palette::Palette;
 
 /// Shows the panel.

@@ -13,8 +13,8 @@ use crate::app::window::state::{Progress, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::case::{MeshUse, Taking};
-use crate::core::discrete::features::Feature;
-use crate::core::kernel::decimal::Shortest;
+use crate::core::discrete::Feature;
+use crate::core::kernel::Shortest;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{feature_line, seam_line};
 

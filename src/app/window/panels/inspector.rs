@@ -15,8 +15,8 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::explain::MetricFacts;
+use crate::core::mesh::{ElementId, NodeId};
+use crate::core::run::MetricFacts;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Decision, Outlined};
 
@@ -122,7 +122,7 @@ fn link(ui: &mut Ui, text: String, what: Outlined, commands: &mut Vec<Command>, 
 fn length(ui: &mut Ui, metric: f64, physical: f64, palette: &Palette) {
     heading(ui, "Length", "eqs. 4, 5", palette);
     let text = format!("**{}** metric,  {} in space", words::fixed(metric, 2), words::size(physical));
-    formula(ui, &text, palette).on_hover_text("In a plane case the parametric length is that in space.");
+    formula(ui, &text, palette).on_hover_text("In a plane case the parametric length is the length in space.");
 }
 
 /// Elements as links.

@@ -7,7 +7,7 @@ use crate::app::window::mesh_out;
 use crate::app::window::session::Source;
 use crate::app::window::state::{Overlay, State};
 use crate::app::window::theme::{self, ink};
-use crate::core::formats::format::Format;
+use crate::core::formats::Format;
 use crate::render::palette::Palette;
 
 const WIDTH: f32 = 460.0;

@@ -7,8 +7,8 @@ use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
-use crate::core::case::parameters::Parameters;
-use crate::core::run::run::EditKind;
+use crate::core::case::Parameters;
+use crate::core::run::EditKind;
 use crate::render::palette::Palette;
 
 /// A number: key, name, range, decimals, and unit.
@@ -30,7 +30,7 @@ const NUMBERS: [(Number, &str, &str); 7] = [
     (
         Number { key: "c", name: "c", range: [0.5, 4.0], decimals: 2, unit: "" },
         "1.5–2.0",
-        "A segment is within reach below c times the smallest H-value (section 4.3.3).",
+        "A segment is within reach if its H-value is below c times the smallest one (section 4.3.3).",
     ),
     (
         Number { key: "theta_seam", name: "θ seam", range: [0.0, 90.0], decimals: 1, unit: "°" },

@@ -9,7 +9,7 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::mesh::ids::ElementId;
+use crate::core::mesh::ElementId;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Outlined, angles};
 
@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     }
     let (least, greatest, worst) = corner_angles(moment);
     let note = worst.map(|(e, angle)| format!("smallest {}°, of element {}", words::degrees(angle), e.0));
-    if head(ui, "Least and greatest angles of the quads, degrees (fig. 24)", note.unwrap_or_default(), palette)
+    if head(ui, "Smallest and largest angle of each quad, degrees (fig. 24)", note.unwrap_or_default(), palette)
         && let Some((e, _)) = worst
     {
         commands.push(Command::Pick(Some(Outlined::Element(e))));
@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         let fits = |angle: f64| (low..high).contains(&angle.to_degrees());
         let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && angles(mesh, *e).into_iter().any(fits));
         let lit = quads.map(Outlined::Element).collect();
-        let what = format!("quads with such an angle of {}° to {}°", words::fixed(low, 0), words::fixed(high, 0));
+        let what = format!("quads with an angle from {}° to {}°", words::fixed(low, 0), words::fixed(high, 0));
         light(commands, lit, &what);
     }
 }

@@ -1,7 +1,7 @@
 //! Goals of a walk through the run, and the steps that they stand for.
 
-use crate::core::convert::event::EventKind;
-use crate::core::run::log::Log;
+use crate::core::convert::EventKind;
+use crate::core::run::Log;
 
 /// A direction along the steps of a run, or along the changes of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,9 +24,10 @@ pub enum Goal {
     Step(u64),
     /// A number of steps forward, or back if it is negative.
     Steps(i64),
-    /// A number of quadrilaterals forward, or back if it is negative: to where their local post-processing is done.
+    /// To where this many quadrilaterals more are complete with their local post-processing, or back if it is negative.
+    /// From within a quadrilateral, the first one is its end, or its beginning.
     Quads(i64),
-    /// To where there are so many quadrilaterals.
+    /// To the step at which this many quadrilaterals stand.
     ToQuads(u64),
     /// To the next event of a kind, or the one before.
     Kind(EventKind, Direction),
@@ -39,15 +40,13 @@ impl Goal {
     /// it is known.
     pub fn resolve(self, log: &Log, step: u64, end: Option<u64>) -> Option<u64> {
         let known = |target: u64| if target <= log.known() { Some(target) } else { end };
-        let with = |quads: u64, after: u64| if quads == 0 { Some(0) } else { log.first_with(quads, after).or(end) };
         match self {
             Goal::Step(target) => known(target),
             Goal::Steps(by) => known(step.saturating_add_signed(by)),
-            Goal::Quads(by) => match u64::try_from(by) {
-                Ok(on) => with(log.nq(step) + on, step),
-                Err(_) => Some(back(log, step, by.unsigned_abs())),
-            },
-            Goal::ToQuads(quads) => with(quads, 0),
+            Goal::Quads(by) if by < 0 => Some((by..0).fold(step, |at, _| log.previous_quad(at))),
+            Goal::Quads(by) => (0..by).try_fold(step, |at, _| log.next_quad(at)).or(end),
+            Goal::ToQuads(0) => Some(0),
+            Goal::ToQuads(quads) => log.first_with(quads, 0).or(end),
             Goal::Kind(wanted, Direction::Forward) => log.next_of(step, |kind| kind == wanted).or(end),
             Goal::Kind(wanted, Direction::Back) => {
                 Some(log.last_of(step.saturating_sub(1), |kind| kind == wanted).unwrap_or(0))
@@ -57,22 +56,12 @@ impl Goal {
     }
 }
 
-/// The step so many quadrilaterals back. From within a quadrilateral, the first of them leads to where it began.
-fn back(log: &Log, step: u64, by: u64) -> u64 {
-    let first = |quads: u64| if quads == 0 { Some(0) } else { log.first_with(quads, 0) };
-    let here = log.nq(step);
-    let within = first(here).is_some_and(|stood| stood < step);
-    let target = here.saturating_sub(by - u64::from(within));
-    first(target).unwrap_or(0).min(step.saturating_sub(1))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::core::case::built_in;
     use crate::core::progress::Nobody;
-    use crate::core::run::history::History;
-    use crate::core::run::run::Run;
+    use crate::core::run::{History, Run};
 
     fn history() -> History {
         let mut case = built_in::named("example1").unwrap().unwrap();
@@ -87,17 +76,20 @@ mod tests {
         let history = history();
         let (log, end) = (history.log(), history.end());
         let go = |goal: Goal, from: u64| goal.resolve(log, from, end).unwrap();
-        let mut step = 0;
-        for quads in 1..=8 {
-            let next = go(Goal::Quads(1), step);
-            assert!(next > step && log.is_at_rest(next) && log.nq(next) >= quads);
-            assert_eq!(go(Goal::Quads(-1), next), step);
-            step = next;
+        let mut stands = vec![0];
+        while stands.last() < end.as_ref() {
+            let step = go(Goal::Quads(1), stands[stands.len() - 1]);
+            assert!(step > stands[stands.len() - 1] && log.is_at_rest(step), "{step}");
+            stands.push(step);
         }
-        assert_eq!(go(Goal::Quads(8), 0), step);
-        assert_eq!(go(Goal::Quads(-8), step), 0);
-        let within = go(Goal::Steps(2), step);
-        assert_eq!(go(Goal::Quads(-1), within), step, "from within a quadrilateral back to where it began");
+        stands.pop();
+        assert!(stands.len() > 30, "{}", stands.len());
+        for (quads, pair) in (1..).zip(stands.windows(2)) {
+            assert!(log.nq(pair[1]) >= quads);
+            assert_eq!(go(Goal::Quads(-1), pair[1]), pair[0]);
+            assert_eq!(go(Goal::Quads(-1), pair[1] + 1), pair[1], "from within a quadrilateral to its beginning");
+        }
+        assert_eq!((go(Goal::Quads(8), 0), go(Goal::Quads(-8), stands[8])), (stands[8], 0));
     }
 
     #[test]

@@ -3,16 +3,12 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::core::case::parameters::Parameters;
-use crate::core::convert::candidates::Candidates;
-use crate::core::convert::event::Event;
-use crate::core::convert::phase::Phase;
-use crate::core::front::segment::Segment;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::ElementId;
-use crate::core::run::explain::SegmentFacts;
+use crate::core::case::Parameters;
+use crate::core::convert::{Candidates, Event, Phase};
+use crate::core::front::Segment;
+use crate::core::mesh::{ElementId, Mesh};
 use crate::core::run::front_table::{Loop, Row};
-use crate::core::run::history::Changes;
+use crate::core::run::{Changes, SegmentFacts};
 
 /// Whether the invariants hold.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -42,7 +38,7 @@ pub struct Moment {
     pub just_changed: Arc<[ElementId]>,
     /// The front in the order of selection.
     pub front: Vec<Segment>,
-    /// The same segments with their loops, and whether they are put off.
+    /// The same segments with their loops, and whether they are deferred.
     pub rows: Vec<Row>,
     /// The loops of the front.
     pub loops: Vec<Loop>,

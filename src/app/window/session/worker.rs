@@ -10,17 +10,13 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
 use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, Tracked, Voice};
-use crate::core::convert::event::{Event, Why};
+use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::breakpoint::{self, Condition};
-use crate::core::run::copies::{Copies, Since};
-use crate::core::run::explain::SegmentFacts;
-use crate::core::run::history::{BUDGET, History};
-use crate::core::run::recorder::{Recorder, Stretch};
-use crate::core::run::run::{Edit, Run};
-use crate::core::run::sample::Sample;
-use crate::core::run::watch::Watched;
+use crate::core::mesh::{ElementId, NodeId};
+use crate::core::run::breakpoint;
+use crate::core::run::copies::Since;
+use crate::core::run::history::BUDGET;
+use crate::core::run::{Condition, Copies, Edit, History, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 
 /// How many steps the recorder does before it hands them over, least and most: few at first, since the window may be
 /// waiting.
@@ -207,12 +203,12 @@ impl Worker {
 
     fn explain(&self, a: NodeId, b: NodeId) {
         let Some(told) = SegmentFacts::of(self.history.state(), a, b) else { return };
-        let put_off = if told.row.is_put_off { self.put_off(a, b) } else { None };
-        self.voice.say(SessionNews::Explained(self.history.step(), Arc::new(Explained { told, put_off })));
+        let deferred = if told.row.is_deferred { self.deferred(a, b) } else { None };
+        self.voice.say(SessionNews::Explained(self.history.step(), Arc::new(Explained { told, deferred })));
     }
 
     /// The last step that put a segment off, with the reason of its last failure, as far as events are kept.
-    fn put_off(&self, a: NodeId, b: NodeId) -> Option<(u64, Option<Why>)> {
+    fn deferred(&self, a: NodeId, b: NodeId) -> Option<(u64, Option<Why>)> {
         let log = self.history.log();
         let deferred = Event::Deferred { a, b };
         let step = (1..=self.history.step()).rev().find(|step| log.event(*step) == Some(&deferred))?;

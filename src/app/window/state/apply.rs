@@ -12,18 +12,16 @@ use crate::app::window::files::Dialog;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
-use crate::core::convert::event::Event;
+use crate::core::convert::Event;
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::NodeId;
-use crate::core::run::breakpoint::Condition;
-use crate::core::run::run::{Edit, EditKind};
-use crate::core::run::watch::Watched;
+use crate::core::mesh::NodeId;
+use crate::core::run::{Condition, Edit, EditKind, Watched};
 
 impl State {
     /// Does what the user asks for.
     pub(in crate::app::window) fn apply(&mut self, command: Command) {
         if self.run.import.is_some() && !command.fits_import() {
-            return self.notice("That belongs to a run: convert the mesh first, or cancel.".to_owned());
+            return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
         }
         match command {
             Command::Go(goal) => self.go(goal),

@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 use super::State;
 use crate::app::figure::another_state;
 use crate::app::window::session::{Moment, SessionNews, Source};
-use crate::core::convert::phase::Phase;
-use crate::core::run::history::Changes;
-use crate::core::run::shown::{ShownState, fingerprint};
+use crate::core::convert::Phase;
+use crate::core::run::shown::fingerprint;
+use crate::core::run::{Changes, ShownState};
 
 /// How long a frame waits for the state that it asked for.
 const PATIENCE: Duration = Duration::from_millis(4);

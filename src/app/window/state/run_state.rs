@@ -8,12 +8,10 @@ use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, Tracked, Verdict};
-use crate::core::convert::phase::Phase;
-use crate::core::mesh::ids::NodeId;
+use crate::core::convert::Phase;
+use crate::core::mesh::NodeId;
 use crate::core::run::copies::Since;
-use crate::core::run::sample::Sample;
-use crate::core::run::shown::ShownState;
-use crate::core::run::watch::Watched;
+use crate::core::run::{Sample, ShownState, Watched};
 
 /// How far some work is.
 #[derive(Clone, Debug)]

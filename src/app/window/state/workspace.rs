@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::app::window::figures::FigureForm;
 use crate::app::window::named::named;
 use crate::app::window::session::Direction;
-use crate::core::run::run::Edit;
-use crate::core::run::watch::Watched;
+use crate::core::run::{Edit, Watched};
 use crate::render::look::HiddenLines;
 use crate::render::scene::{ColourBy, Form, Layers, Outlined};
 

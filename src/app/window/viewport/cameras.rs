@@ -6,7 +6,7 @@ use glam::{DMat2, DVec2};
 use super::ViewFrame;
 use crate::app::window::session::Moment;
 use crate::app::window::state::{Look, State, ViewCamera};
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::NodeId;
 use crate::render::camera::Camera;
 use crate::render::scene::{self, Decision, Outlined};
 

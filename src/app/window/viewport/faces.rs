@@ -7,7 +7,7 @@ use super::{ViewFrame, middle};
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::ink;
-use crate::core::mesh::half_edge::Mesh;
+use crate::core::mesh::Mesh;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 

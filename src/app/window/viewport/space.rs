@@ -9,7 +9,7 @@ use crate::app::window::command::Command;
 use crate::app::window::labels;
 use crate::app::window::session::Moment;
 use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::NodeId;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::gpu::Light;
 use crate::render::palette::Palette;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::ViewFrame;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
-use crate::core::convert::candidates::Passed;
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::NodeId;
+use crate::core::convert::Passed;
+use crate::core::front::Side;
+use crate::core::mesh::NodeId;
+use crate::core::run::Changes;
 use crate::core::run::copies::Since;
-use crate::core::run::history::Changes;
 use crate::render::palette::Palette;
 use crate::render::scene::{ColourBy, Decision, Drawn, Form, Overlay, Scene, Shading};
 

@@ -1,14 +1,13 @@
 use super::*;
+use crate::core::discrete::StretchBound;
 use crate::core::discrete::features::ANGLE;
-use crate::core::discrete::planar_map::StretchBound;
 use crate::core::discrete::repair::repair;
 use crate::core::discrete::surface::surface;
 use crate::core::geometry::fixtures::*;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::metric::field::BadMetric;
-use crate::core::metric::place::MetricPlace;
+use crate::core::kernel::Metric2;
+use crate::core::metric::{BadMetric, MetricPlace};
 use crate::core::progress::Nobody;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::MeshFile;
 
 /// The same size everywhere.
 pub struct Uniform(pub f64);

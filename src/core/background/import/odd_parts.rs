@@ -8,10 +8,10 @@ use rustc_hash::FxHashMap;
 use super::{Import, same_edge};
 use crate::core::background::cut::{Side, cut, sorted_sides};
 use crate::core::fault::Fault;
+use crate::core::kernel::DisjointSets;
 use crate::core::kernel::decimal::point_text;
-use crate::core::kernel::disjoint_sets::DisjointSets;
 use crate::core::kernel::parity::toggles;
-use crate::core::soup::repairs::Repair;
+use crate::core::soup::Repair;
 
 impl Import<'_> {
     /// Makes the number of triangles of every part even by the division of sides.

@@ -6,8 +6,8 @@ use crate::core::background::discretise::tests::Uniform;
 use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::geometry::fixtures::{built, square, square_with_hole};
-use crate::core::kernel::tensor::Metric2;
-use crate::core::soup::mesh_file::Group;
+use crate::core::kernel::Metric2;
+use crate::core::soup::Group;
 
 /// What makes a mesh defective.
 type Change = fn(&mut MeshFile);
@@ -164,7 +164,7 @@ fn triangles_between_the_sides_of_a_crack_are_refused_by_their_numbers_in_the_fi
     let mut file = star();
     file.points.push(DVec3::new(0.5, 0.5, 0.0));
     file.triangles.extend([[0, 4, 5], [4, 5, 2]]);
-    file.counting.triangles = crate::core::soup::counting::Count::From(11);
+    file.counting.triangles = crate::core::soup::Count::From(11);
     let fault = import(&file, false).unwrap_err();
     let says = fault.to_string();
     assert!(says.contains("Triangles 15 and 16 are too flat: the first is without area"), "{says}");

@@ -134,10 +134,7 @@ fn a_hub_and_collinear_nodes_are_triangulated() {
     let domain = built((curves, vec![face("f", "w", &[], "", "")]));
     struct Wall;
     impl MetricSource for Wall {
-        fn metric(
-            &self,
-            uv: DVec2,
-        ) -> Result<crate::core::kernel::tensor::Metric2, Box<crate::core::metric::field::BadMetric>> {
+        fn metric(&self, uv: DVec2) -> Result<crate::core::kernel::Metric2, Box<crate::core::metric::BadMetric>> {
             let h = if uv.x > 0.999 { 2e-4 } else { 1.0 };
             Uniform(h).metric(uv)
         }
@@ -176,7 +173,7 @@ fn time_of_a_hundred_thousand_nodes() {
 }
 
 /// A star-shaped polygon around the origin with radii in `low..high`.
-fn star(name: &str, centre: (f64, f64), radii: &[f64]) -> crate::core::geometry::spec::CurveSpec {
+fn star(name: &str, centre: (f64, f64), radii: &[f64]) -> crate::core::geometry::CurveSpec {
     let points: Vec<(f64, f64)> = radii
         .iter()
         .enumerate()

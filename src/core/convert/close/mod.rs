@@ -11,8 +11,7 @@ use super::last_resort::component::{Component, small_component};
 use super::last_resort::{Outcome, Plan};
 use super::phase::{Base, FinishPart, Phase};
 use crate::core::fault::Fault;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::HalfEdgeId;
+use crate::core::mesh::{HalfEdgeId, Mesh};
 
 /// Longer loops are left to the last resort.
 const MOST_SEGMENTS: usize = 10;

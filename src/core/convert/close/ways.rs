@@ -8,10 +8,8 @@ use super::{MOST_SEGMENTS, MOST_TRIANGLES};
 use crate::core::convert::event::Event;
 use crate::core::convert::last_resort::component::Component;
 use crate::core::convert::relax::{Nodes, all_convex, put, settle, worst_quality};
-use crate::core::mesh::half_edge::{Mesh, NewElement};
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::mesh::refusals::Operation;
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NewElement, NodeId, Operation};
+use crate::core::metric::MetricSource;
 
 /// A closing is kept when every element around is at least this good.
 const LEAST_QUALITY: f64 = 0.1;
@@ -28,7 +26,7 @@ struct Way {
 /// What is done to one of the elements over a loop, by its number.
 #[derive(Clone, Copy, Debug)]
 enum Repair {
-    /// A side is rotated with the neighbour's, by so many nodes.
+    /// A side is rotated with the neighbour's, by this many nodes.
     Rotate(usize, u32, usize),
     /// The node at the start of a side is merged with the opposite one: the element goes, as by two seams.
     Collapse(usize, u32),
@@ -37,7 +35,7 @@ enum Repair {
 }
 
 impl Repair {
-    /// All repairs of so many elements, those that make no nodes first.
+    /// All repairs of this many elements, those that make no nodes first.
     fn all(quads: usize) -> impl Iterator<Item = Repair> {
         let rotations =
             (0..quads).flat_map(|q| (0..4).flat_map(move |side| [1, 2].map(|by| Repair::Rotate(q, side, by))));

@@ -17,7 +17,7 @@ pub struct Counts {
     pub rescued: u64,
     /// Attempts taken back.
     pub rolled_back: u64,
-    /// Segments put off.
+    /// Deferred segments.
     pub deferred: u64,
     /// Quadrilaterals over small loops that were closed.
     pub closed: u64,

@@ -9,8 +9,7 @@ use crate::core::convert::side::candidates::{self, Candidates};
 use crate::core::convert::side::choice::BaseSide;
 use crate::core::convert::split::{self, Narrow};
 use crate::core::convert::top;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, Mesh, NodeId};
 
 impl Converter<'_> {
     /// What the next step chooses a side edge from; `None` where it chooses none.

@@ -24,15 +24,12 @@ use super::front::{Done, Front};
 use super::last_resort::Outcome;
 use super::phase::{Attempt, Base, FinishPart, Phase};
 use super::{close, form, local, seam, select, side, split, top};
-use crate::core::case::parameters::Parameters;
+use crate::core::case::Parameters;
 use crate::core::fault::Fault;
-use crate::core::front::sector::Side;
-use crate::core::front::selection::Queue;
-use crate::core::kernel::fingerprint::Fingerprint;
-use crate::core::mesh::half_edge::{Mesh, Undone};
-use crate::core::mesh::ids::NodeId;
-use crate::core::mesh::journal::Mark;
-use crate::core::metric::field::MetricSource;
+use crate::core::front::{Queue, Side};
+use crate::core::kernel::Fingerprint;
+use crate::core::mesh::{Mark, Mesh, NodeId, Undone};
+use crate::core::metric::MetricSource;
 use crate::core::progress::{Stage, Watch};
 
 /// Steps between two reports of progress.
@@ -58,7 +55,7 @@ pub struct Converter<'a> {
     undone: Option<Vec<Undone>>,
     /// Where the journal stood before the step at hand.
     step_mark: Mark,
-    /// Whether the gates are wide: every segment was put off and taken up again.
+    /// Whether the gates are wide: every segment was deferred and taken up again.
     second_pass: bool,
     /// On surfaces the faces by region, converted one after another; else none: all is converted together.
     faces: Arc<[u32]>,
@@ -140,17 +137,6 @@ impl<'a> Converter<'a> {
         self.queue = None;
     }
 
-    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its
-    /// event says so. Where it is not on the front any more when the selection comes, [`Event::PickLost`] says that.
-    ///
-    /// # Errors
-    /// Where there is no such front segment now.
-    pub fn override_base(&mut self, a: NodeId, b: NodeId) -> Result<(), Fault> {
-        self.check_base(a, b)?;
-        self.pick(a, b);
-        Ok(())
-    }
-
     /// Whether there is a front segment from A to B.
     ///
     /// # Errors
@@ -163,8 +149,9 @@ impl<'a> Converter<'a> {
         select::front_segment(&self.mesh, a, b).map(drop).ok_or_else(none)
     }
 
-    /// As [`Converter::override_base`], without asking whether there is such a segment now.
-    pub(in crate::core) fn pick(&mut self, a: NodeId, b: NodeId) {
+    /// Lets the next selection choose the front segment from A to B, whatever its rank: a person's choice, and its
+    /// event says so. If it is not on the front when the selection comes, [`Event::PickLost`] says that.
+    pub fn pick(&mut self, a: NodeId, b: NodeId) {
         self.picked = Some([a, b]);
     }
 
@@ -190,7 +177,7 @@ impl<'a> Converter<'a> {
         Fingerprint::of(&bytes)
     }
 
-    /// The number of quadrilaterals that stand.
+    /// The number of finished quadrilaterals (NQ) at this step.
     pub fn standing(&self) -> u64 {
         match &self.phase {
             // Everything but the faces to come is a quadrilateral, also what clean-up has put in the place of others.
@@ -300,7 +287,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    /// Takes an attempt back; the next one follows, or where there is none the segment is put off (docs/algorithm.md,
+    /// Takes an attempt back; the next one follows, or where there is none the segment is deferred (docs/algorithm.md,
     /// "Rescue").
     fn take_attempt_back(&mut self, base: Base, attempt: Attempt, why: Why) -> Done {
         if self.keeps_history() {

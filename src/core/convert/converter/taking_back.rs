@@ -6,10 +6,7 @@ use crate::core::convert::finish::parts::PartMarks;
 use crate::core::convert::last_resort::Outcome;
 use crate::core::convert::last_resort::component::Component;
 use crate::core::convert::phase::Phase;
-use crate::core::mesh::half_edge::touched::Touched;
-use crate::core::mesh::half_edge::{Mesh, Undone};
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::mesh::journal::Mark;
+use crate::core::mesh::{ElementId, Mark, Mesh, NodeId, Touched, Undone};
 
 /// What a step needs to be taken back.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::NodeId;
+use crate::core::front::Side;
+use crate::core::mesh::NodeId;
 
 /// Why an attempt to form a quadrilateral was rolled back.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

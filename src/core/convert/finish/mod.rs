@@ -19,8 +19,8 @@ use super::event::{Event, Mending};
 use super::front::Done;
 use super::phase::{FinishPart, Phase};
 use super::relax::energy;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::Mesh;
+use crate::core::metric::MetricSource;
 
 /// A node that moved farther than this (in its metric) sends its neighbours to be looked at again.
 const STIRRED: f64 = 0.02;

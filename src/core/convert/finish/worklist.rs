@@ -5,7 +5,7 @@
 
 use std::collections::VecDeque;
 
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::NodeId;
 
 /// Nodes that wait.
 #[derive(Clone, Debug)]

@@ -1,10 +1,9 @@
 //! The next way to try a quadrilateral whose formation was taken back (docs/algorithm.md, "Rescue").
 
-use crate::core::case::parameters::Parameters;
+use crate::core::case::Parameters;
 use crate::core::convert::phase::{Attempt, Base};
-use crate::core::front::sector::Side;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::journal::Mark;
+use crate::core::front::Side;
+use crate::core::mesh::{Mark, Mesh};
 
 /// The first attempt that lays tops down: every other edge at B, then at A; the two Lee-Lo pairs come after.
 const ALTERNATIVES: u8 = 4;

@@ -12,11 +12,9 @@ use super::event::{Event, Why};
 use super::front::{Done, Front};
 use super::local;
 use super::phase::{Attempt, Base};
-use crate::core::front::sector::Side;
+use crate::core::front::Side;
 use crate::core::kernel::predicates::convex;
-use crate::core::mesh::half_edge::{Mesh, NewElement};
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::mesh::refusals::Operation;
+use crate::core::mesh::{ElementId, Mesh, NewElement, NodeId, Operation};
 
 /// A quadrilateral does not replace more triangles than this.
 const MOST_TRIANGLES: usize = 64;

@@ -3,8 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::core::convert::event::Why;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
 
 /// Whether every loop through the front segments of these nodes is even. All loops but the last one to close are
 /// walked, all at the same pace: the last one follows from the parity of the component.

@@ -5,9 +5,9 @@ use glam::DVec2;
 use crate::core::convert::front::Front;
 use crate::core::convert::phase::Base;
 use crate::core::convert::side::choice::BaseSide;
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::front::Side;
 use crate::core::mesh::quality::length_over;
+use crate::core::mesh::{ElementId, NodeId};
 use crate::core::metric::measure::quad_quality;
 
 /// Places a new top node at the mean of the place at unit metric length along the side's target direction and the

@@ -3,8 +3,7 @@
 //! By 3T = 2E + B a component of T triangles with B sides on its boundary has T even exactly where B is even
 //! (docs/algorithm.md, "The parity invariant"), and only even ones can become quadrilaterals with their boundary kept.
 
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId};
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh};
 
 /// No side.
 pub(super) const NONE: u32 = u32::MAX;

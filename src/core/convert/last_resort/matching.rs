@@ -55,17 +55,6 @@ pub struct Matching {
     pending: Vec<[u32; 2]>,
 }
 
-/// A maximum cardinality matching of the graph with `n` vertices and the given edges, the partner of each vertex.
-///
-/// `rank` has one value per edge; among several maximum matchings edges of higher rank are favoured (greedily). The
-/// same input gives the same matching.
-pub fn maximum_matching(n: usize, edges: &[[u32; 2]], rank: &[f32]) -> Vec<Option<u32>> {
-    let mut matching = Matching::new(n, edges, &[]);
-    matching.start(edges, rank);
-    matching.augment(false);
-    (0..n as u32).map(|v| matching.mate(v)).collect()
-}
-
 impl Matching {
     /// The graph with `n` vertices (below 2^30), the preferred and the reserve edges; nothing is matched yet.
     pub fn new(n: usize, preferred: &[[u32; 2]], reserve: &[[u32; 2]]) -> Self {
@@ -342,6 +331,14 @@ mod tests {
     use petgraph::graph::{NodeIndex, UnGraph};
     use proptest::prelude::Rng;
     use proptest::test_runner::{RngAlgorithm, TestRng};
+
+    /// A maximum matching; among several, edges of higher rank are favoured.
+    fn maximum_matching(n: usize, edges: &[[u32; 2]], rank: &[f32]) -> Vec<Option<u32>> {
+        let mut matching = Matching::new(n, edges, &[]);
+        matching.start(edges, rank);
+        matching.augment(false);
+        (0..n as u32).map(|v| matching.mate(v)).collect()
+    }
 
     use super::*;
     /// Seeded random numbers.

@@ -35,11 +35,9 @@ use smallvec::SmallVec;
 
 use self::planner::Planner;
 use super::sums::summed;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::{Mesh, NewElement};
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::mesh::refusals::Operation;
-use crate::core::metric::field::{BadMetric, MetricSource};
+use crate::core::kernel::Metric2;
+use crate::core::mesh::{ElementId, Mesh, NewElement, NodeId, Operation};
+use crate::core::metric::{BadMetric, MetricSource};
 
 summed! {
 /// What the last resort did.

@@ -7,9 +7,8 @@ use super::matching::Matching;
 use super::t_join::t_join;
 use super::{Means, Outcome, Patch, Plan, Stuck};
 use crate::core::kernel::predicates::{firm, orient};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{ElementId, Mesh, NodeId};
+use crate::core::metric::MetricSource;
 use crate::core::metric::measure::quad_quality;
 
 /// A pair of triangles that have only each other in the join.

@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use super::component::NONE;
 use super::planner::{Planner, firm_quad};
 use super::{Means, Stuck};
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, NodeId};
 use crate::core::metric::measure::quad_quality;
 
 /// A crooked pair is cut anew with up to this many pairs in all, itself included.
@@ -38,9 +38,8 @@ struct Ring {
 }
 
 impl Planner<'_> {
-    /// Cuts a crooked pair anew together with a few pairs around it: with one, and where that gives nothing good with
-    /// two, and so on; where none of that is good, perhaps with a new node in their middle. Where all of that fails,
-    /// the pair is left to the templates.
+    /// Divides a crooked pair again together with pairs around it: first with one, then with two, and so on, at last
+    /// with a new node in their middle. If all of that fails, the pair is left to the templates.
     pub fn recut(&mut self, side: u32, allowed: &dyn Fn(Means, [ElementId; 2]) -> bool) -> Result<(), Stuck> {
         let pair = self.pair(side);
         let start = Ring {

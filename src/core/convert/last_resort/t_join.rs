@@ -8,7 +8,7 @@
 
 use super::component::{Dual, NONE};
 use super::matching::Matching;
-use crate::core::kernel::disjoint_sets::DisjointSets;
+use crate::core::kernel::DisjointSets;
 
 /// The join as three bits a triangle: bit k says that its side k is in the join.
 ///

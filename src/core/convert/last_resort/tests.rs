@@ -5,9 +5,8 @@ use super::planner::firm_quad;
 use super::*;
 use crate::core::convert::last_resort::component::live_components;
 use crate::core::kernel::predicates::{convex, firm, positive};
-use crate::core::mesh::ids::PointId;
-use crate::core::mesh::triangle_set::TriangleSet;
-use crate::core::metric::place::MetricPlace;
+use crate::core::mesh::{PointId, TriangleSet};
+use crate::core::metric::MetricPlace;
 
 /// Plans the last resort and carries all of it out.
 fn last_resort(mesh: &mut Mesh, component: &[ElementId], source: &dyn MetricSource) -> Result<Outcome, Stuck> {

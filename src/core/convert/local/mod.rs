@@ -8,10 +8,8 @@ use smallvec::SmallVec;
 use super::event::{Event, Purpose};
 use super::front::{Done, Front};
 use super::phase::Phase;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
-use crate::core::mesh::journal::Mark;
+use crate::core::kernel::Metric2;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mark, Mesh, NodeId};
 
 /// Looks at edges for one enhancement: four times a ring's size (docs/algorithm.md, "Structural enhancement").
 const ENHANCEMENTS: u8 = 48;

@@ -5,8 +5,7 @@ use smallvec::SmallVec;
 
 use crate::core::convert::front::Front;
 use crate::core::convert::relax::energy;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::mesh::{ElementId, Mesh, NodeId};
 
 /// A smoothed node must not let the worst quality around fall below this share of what it was.
 const KEPT_QUALITY: f64 = 0.9;

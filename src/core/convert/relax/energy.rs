@@ -9,10 +9,9 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::metric::field::MetricSource;
+use crate::core::kernel::Metric2;
+use crate::core::mesh::{ElementId, Mesh, NodeId};
+use crate::core::metric::MetricSource;
 
 /// Weight of an edge's length against the shape of a corner: 0.5 * 4 ln^2 l, half of it from the metric of each end.
 const LENGTH_WEIGHT: f64 = 0.25;

@@ -7,9 +7,8 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use crate::core::kernel::predicates::{convex, firm};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{ElementId, Mesh, NodeId};
+use crate::core::metric::MetricSource;
 
 /// Rounds of relaxation of the nodes around a trial.
 pub const RELAX_ROUNDS: usize = 4;
@@ -57,7 +56,7 @@ pub fn untangle(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes) -> boo
     all_convex(mesh, core)
 }
 
-/// Relaxes the free ones of some nodes, so many rounds at the most.
+/// Relaxes the free ones of some nodes, for at most this many rounds.
 pub fn relax(mesh: &mut Mesh, source: &dyn MetricSource, core: &Nodes, rounds: usize) {
     for _ in 0..rounds {
         let mut moved: f64 = 0.0;

@@ -2,8 +2,7 @@
 
 use crate::core::convert::event::Unmerged;
 use crate::core::convert::front::Front;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 
 /// Collapses a live edge between two nodes of the front at the fixed end, else in the middle or as near to it as stays
 /// valid and, as far as elements are `judged`, good. Returns the merged node.

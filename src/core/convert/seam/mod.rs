@@ -12,8 +12,8 @@ use super::event::{Event, Unmerged};
 use super::front::{Done, Front};
 use super::phase::Phase;
 use super::top::{MOST_SWAPS, Recovery, recover_step};
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::front::Side;
+use crate::core::mesh::{ElementId, HalfEdgeId, NodeId};
 
 /// Segments whose lengths differ by more than this factor need a transition seam.
 const MOST_UNLIKE: f64 = 2.5;

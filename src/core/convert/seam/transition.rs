@@ -3,8 +3,7 @@
 use crate::core::convert::event::Unmerged;
 use crate::core::convert::front::Front;
 use crate::core::kernel::predicates::{convex, firm};
-use crate::core::mesh::half_edge::NewElement;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::mesh::{HalfEdgeId, NewElement, NodeId};
 
 /// Divides the long front segment PQ of a transition seam, one of whose ends is A, at its metric middle M; what is cut
 /// off the quadrilateral beyond is live again. Drawn with A = P:

@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::choice::{BaseSide, Way};
 use crate::core::convert::event::{SideEdge, degrees};
 use crate::core::convert::phase::Attempt;
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::NodeId;
+use crate::core::front::Side;
+use crate::core::mesh::NodeId;
 
 /// Why a candidate is not the side edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -2,12 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::core::case::parameters::Parameters;
+use crate::core::case::Parameters;
 use crate::core::convert::event::{SideEdge, Why};
 use crate::core::convert::phase::{Attempt, Base};
-use crate::core::front::sector::{Side, Spoke, Spokes};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
+use crate::core::front::{Side, Spoke, Spokes};
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
 use crate::core::metric::measure::angle;
 
 /// The widest frontal angle that is bisected: at 225 degrees the bisector, at 112, is still near a right angle. Our

@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::choice::BaseSide;
 use crate::core::convert::event::Why;
 use crate::core::convert::phase::Attempt;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
-use crate::core::metric::field::MetricSource;
+use crate::core::kernel::Metric2;
+use crate::core::mesh::{HalfEdgeId, NodeId};
+use crate::core::metric::MetricSource;
 
 /// Half a divided side must be at least this long in the metric.
 const LEAST_HALF: f64 = 0.5;

@@ -11,8 +11,8 @@ use self::division::Division;
 use super::event::{Event, Why};
 use super::front::{Done, Front};
 use super::phase::{Attempt, Base, Phase};
-use crate::core::front::sector::Side;
-use crate::core::mesh::ids::NodeId;
+use crate::core::front::Side;
+use crate::core::mesh::NodeId;
 
 /// Prepares one side as [`BaseSide::choose`] decides (side edges i to v).
 pub(super) fn prepare(

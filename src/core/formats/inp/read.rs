@@ -9,8 +9,7 @@ use crate::core::fault::Fault;
 use crate::core::formats::numbering::{Numbering, sort_by_number};
 use crate::core::formats::scan::{Scanner, parse_whole, shown};
 use crate::core::progress::Pace;
-use crate::core::soup::counting::Count;
-use crate::core::soup::mesh_file::{Group, MeshFile};
+use crate::core::soup::{Count, Group, MeshFile};
 
 /// The number of corners of an Abaqus element type; 0 for a type that is skipped, `Err` for one of higher order.
 fn corners_of(kind: &str) -> Result<usize, ()> {

@@ -4,8 +4,9 @@ use super::METRIC;
 use super::read::Reader;
 use crate::core::fault::Fault;
 use crate::core::formats::numbering::Numbering;
-use crate::core::kernel::tensor::Metric3;
-use crate::core::soup::mesh_file::{Data, positive_definite};
+use crate::core::kernel::Metric3;
+use crate::core::soup::Data;
+use crate::core::soup::mesh_file::positive_definite;
 
 impl Reader<'_> {
     /// Reads $NodeData or $ElementData.

@@ -11,8 +11,7 @@ use crate::core::fault::Fault;
 use crate::core::formats::numbering::{Numbering, sort_by_number};
 use crate::core::formats::scan::{ByteOrder, Scanner, TRUNCATED, shown};
 use crate::core::progress::Pace;
-use crate::core::soup::counting::Count;
-use crate::core::soup::mesh_file::{Group, MeshFile};
+use crate::core::soup::{Count, Group, MeshFile};
 
 /// Reads a mesh from the bytes of an MSH file; `name` is the file's name in messages.
 ///

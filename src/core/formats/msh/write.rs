@@ -5,8 +5,9 @@ use std::io::{self, Write};
 use glam::DVec3;
 
 use super::METRIC;
-use crate::core::kernel::decimal::Shortest;
-use crate::core::soup::mesh_file::{Group, MeshFile, tag_of};
+use crate::core::kernel::Shortest;
+use crate::core::soup::mesh_file::tag_of;
+use crate::core::soup::{Group, MeshFile};
 
 /// The version to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

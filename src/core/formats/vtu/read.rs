@@ -7,10 +7,10 @@ use glam::{DVec2, DVec3};
 use super::{METRIC, TAG, UV};
 use crate::core::fault::Fault;
 use crate::core::formats::scan::{Scanner, TRUNCATED, shown};
-use crate::core::kernel::tensor::Metric3;
+use crate::core::kernel::Metric3;
 use crate::core::progress::Pace;
-use crate::core::soup::counting::Counting;
-use crate::core::soup::mesh_file::{Data, Group, MeshFile, positive_definite};
+use crate::core::soup::mesh_file::positive_definite;
+use crate::core::soup::{Counting, Data, Group, MeshFile};
 
 /// A data array of the file.
 struct Array {

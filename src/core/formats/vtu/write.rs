@@ -4,8 +4,9 @@ use std::fmt::Display;
 use std::io::{self, Write};
 
 use super::{METRIC, TAG, UV};
-use crate::core::kernel::decimal::Shortest;
-use crate::core::soup::mesh_file::{Data, MeshFile, tag_of};
+use crate::core::kernel::Shortest;
+use crate::core::soup::mesh_file::tag_of;
+use crate::core::soup::{Data, MeshFile};
 
 /// Writes a mesh with its data.
 ///

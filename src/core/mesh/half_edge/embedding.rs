@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Mesh;
-use crate::core::geometry::atlas::Atlas;
+use crate::core::geometry::Atlas;
 use crate::core::mesh::ids::NodeId;
 
 /// The surfaces on which a mesh lies, and the positions of its boundary points in space, which all faces share.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::slots::Element;
 use super::{Mesh, NONE};
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::journal::Entry;
 

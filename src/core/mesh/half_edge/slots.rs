@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Mesh, NONE};
-use crate::core::kernel::tensor::Metric2;
+use crate::core::kernel::Metric2;
 use crate::core::mesh::ids::{ElementId, NodeId};
 
 /// The contents of the slot of a node: position, metric, anchor, point.

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::{BadMetric, bad};
 use crate::core::fault::Fault;
-use crate::core::kernel::tensor::{Metric3, check_sizes, orthonormal};
+use crate::core::kernel::Metric3;
+use crate::core::kernel::tensor::{check_sizes, orthonormal};
 use crate::core::metric::formula::Program;
 use crate::core::metric::place::MetricPlace;
 

@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::core::background::adapt::Adapted;
-use crate::core::convert::conversion::Converted;
-use crate::core::convert::converter::Counts;
+use crate::core::background::Adapted;
+use crate::core::convert::{Converted, Counts};
 
 /// Numbers of events by kind.
 pub(super) fn events(converted: &Converted) -> BTreeMap<String, u64> {

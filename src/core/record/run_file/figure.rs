@@ -2,9 +2,9 @@
 
 use super::quoted;
 use crate::core::case::table::{Table, Value};
-use crate::core::convert::walk::Stop;
+use crate::core::convert::Stop;
 use crate::core::fault::Fault;
-use crate::core::run::shown::{Shown, ShownState};
+use crate::core::run::{Shown, ShownState};
 
 /// Maximum number of states in a figure.
 const MOST_STATES: usize = 1000;

@@ -1,8 +1,8 @@
 //! The fields that conditions can name, with their meanings.
 
 use super::StepFacts;
-use crate::core::convert::event::{Event, EventKind, WhyKind};
-use crate::core::front::sector::Side;
+use crate::core::convert::{Event, EventKind, WhyKind};
+use crate::core::front::Side;
 
 /// The type of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::{Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, Verdict};
-use crate::core::case::parameters::{Parameters, Selection, SelectionWindow};
-use crate::core::mesh::ids::ElementId;
+use crate::core::case::{Parameters, Selection, SelectionWindow};
+use crate::core::mesh::ElementId;
 use crate::core::run::front_table::Row;
 
 impl Corner {
@@ -75,7 +75,7 @@ impl fmt::Display for SegmentFacts {
         let parity = if self.front_loop.segments.is_multiple_of(2) { "even" } else { "odd" };
         writeln!(
             f,
-            "  priority {class} of table 1 (4.3.3), level {level}, loop {} of {} segments ({parity})",
+            "  class {class} of table 1 (4.3.3), level {level}, loop {} of {} segments ({parity})",
             self.row.front_loop, self.front_loop.segments
         )?;
         if let Some((rank, count)) = self.rank {
@@ -111,7 +111,7 @@ impl SegmentFacts {
                 format!("chosen: the smallest {what} of the best class within c Hmin (4.3.3, ii)")
             }
             Verdict::First => "chosen: the smallest H-value, since no segment is within c Hmin (4.3.3, iii)".to_owned(),
-            Verdict::PutOff => "deferred until something near it changes: every attempt failed".to_owned(),
+            Verdict::Deferred => "deferred until something near it changes: every attempt failed".to_owned(),
             Verdict::LaterLayer => "not chosen: rows nearer to the boundary are offset first".to_owned(),
             Verdict::OutOfReach { window, reach } => {
                 format!("not chosen: {what} {} is not below c Hmin = {} (4.3.3, ii)", five(window), five(reach))
@@ -120,7 +120,7 @@ impl SegmentFacts {
                 "not chosen: neither angle is below theta_rect, and others are within reach (table 1)".to_owned()
             }
             Verdict::BetterClass { class } => {
-                format!("not chosen: a segment of priority {class} is within reach (table 1)")
+                format!("not chosen: a segment of class {class} is within reach (table 1)")
             }
             Verdict::Larger if self.parameters.selection != Selection::Table1 => {
                 format!("not chosen: another has a smaller {what}")
@@ -128,7 +128,7 @@ impl SegmentFacts {
             Verdict::Larger if self.row.class == 4 => {
                 "not chosen: another has a smaller H-value (4.3.3, iii)".to_owned()
             }
-            Verdict::Larger => format!("not chosen: another of its priority has a smaller {what}"),
+            Verdict::Larger => format!("not chosen: another of its class has a smaller {what}"),
         };
         if self.is_base { format!("{reason}; it is the base of the current quadrilateral") } else { reason }
     }

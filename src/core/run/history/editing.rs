@@ -1,11 +1,11 @@
-//! Changing a run: edits at steps, parameters from the beginning, bookmarks and camera.
+//! Changing a run: edits at steps, parameters from the beginning.
 
 use std::sync::Arc;
 
 use super::History;
-use crate::core::case::parameters::Parameters;
+use crate::core::case::Parameters;
 use crate::core::fault::Fault;
-use crate::core::run::run::{Bookmark, Camera, Edit, EditKind, OF_BACKGROUND, Run};
+use crate::core::run::run::{Edit, EditKind, OF_BACKGROUND, Run};
 
 impl History {
     /// Makes an edit at the current step; it replaces an edit of the same thing there. It changes what follows and
@@ -48,12 +48,6 @@ impl History {
         let mut run = Run::clone(&self.run);
         run.parameters = parameters;
         self.change(run, 0)
-    }
-
-    /// Replaces bookmarks and camera, which change no state.
-    pub fn annotate(&mut self, change: impl FnOnce(&mut Vec<Bookmark>, &mut Option<Camera>)) {
-        let run = Arc::make_mut(&mut self.run);
-        change(&mut run.bookmarks, &mut run.camera);
     }
 
     /// Replaces the run by one that differs from step `first` on.

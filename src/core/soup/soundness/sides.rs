@@ -2,7 +2,7 @@
 
 use super::faces::Faces;
 use super::{Defect, Found};
-use crate::core::kernel::disjoint_sets::DisjointSets;
+use crate::core::kernel::DisjointSets;
 
 /// The connectivity of the elements' sides.
 #[derive(Default)]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::core::soup::mesh_file::MeshFile;
+use crate::core::soup::MeshFile;
 use crate::render::look::{Ink, Layers};
 use crate::render::picture::Mark;
 use glam::DVec3;

@@ -7,8 +7,8 @@ use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::words;
-use crate::core::mesh::ids::{ElementId, NodeId};
-use crate::core::run::explain::ElementFacts;
+use crate::core::mesh::{ElementId, NodeId};
+use crate::core::run::ElementFacts;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 

@@ -7,8 +7,8 @@ use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::words;
-use crate::core::mesh::ids::NodeId;
-use crate::core::run::explain::NodeFacts;
+use crate::core::mesh::NodeId;
+use crate::core::run::NodeFacts;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 

@@ -8,10 +8,9 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::{icons, words};
-use crate::core::convert::candidates::Candidates;
-use crate::core::front::sector::Side;
-use crate::core::front::segment::Segment;
-use crate::core::run::explain::Corner;
+use crate::core::convert::Candidates;
+use crate::core::front::{Segment, Side};
+use crate::core::run::Corner;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
@@ -25,7 +24,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         let parity = if ring.segments.is_multiple_of(2) { "even" } else { "odd" };
         about += &format!("  ·  loop {} of {}, {parity} ({})", row.front_loop + 1, moment.loops.len(), ring.segments);
     }
-    let rank = if row.is_put_off { "put off".to_owned() } else { format!("rank {}", place + 1) };
+    let rank = if row.is_deferred { "deferred".to_owned() } else { format!("rank {}", place + 1) };
     ui.horizontal_wrapped(|ui| {
         if is_base {
             let base = eframe::egui::RichText::new("base").font(theme::semibold(theme::TABLE));
@@ -38,8 +37,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
     let what = Outlined::Edge([s.a, s.b]);
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| {
-        let tip =
-            "Replaces the base that was just selected, or is selected next, whatever its rank. This changes the run";
+        let tip = "Replaces the base that was just selected, or the next base, whatever the rank. This changes the run";
         if !is_base && ui.button("Choose as base").on_hover_text(tip).clicked() {
             commands.push(Command::ChooseBase([s.a, s.b]));
         }
@@ -103,9 +101,9 @@ fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, pale
             degrees(parameters.theta_seam)
         ),
         Corner::Rectangle => format!("< {rect}°: {which} side is the front{front}"),
-        Corner::Flat => format!("\u{2265} {rect}°: {which} side is to be found"),
+        Corner::Flat => format!("\u{2265} {rect}°: {which} side must be found"),
         Corner::Reversal => {
-            format!("> {}° = \u{3b8}_{{revr}}: {which} side is to be found", degrees(parameters.theta_revr))
+            format!("> {}° = \u{3b8}_{{revr}}: {which} side must be found", degrees(parameters.theta_revr))
         }
     };
     formula(ui, &format!("\u{3b8}_{{{name}}}  **{}°**  {verdict}", words::degrees(theta)), palette);

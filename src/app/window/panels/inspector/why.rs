@@ -8,28 +8,28 @@ use crate::app::window::command::Command;
 use crate::app::window::session::{Explained, Moment};
 use crate::app::window::state::{Lookup, State};
 use crate::app::window::words;
-use crate::core::case::parameters::{Selection, SelectionWindow};
-use crate::core::run::explain::{SegmentFacts, Verdict};
+use crate::core::case::{Selection, SelectionWindow};
 use crate::core::run::front_table::Row;
+use crate::core::run::{SegmentFacts, Verdict};
 use crate::render::palette::Palette;
 
 pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {
     let row = &moment.rows[place];
     let ends = [row.a, row.b];
     let base = moment.base.as_ref().filter(|told| [told.row.a, told.row.b] == ends);
-    let (told, put_off) = match base {
+    let (told, deferred) = match base {
         Some(told) => (told.clone(), None),
         None => match state.run().explanation(ends) {
             Lookup::Known(explained) => {
-                let Explained { told, put_off } = &*explained;
-                (told.clone(), *put_off)
+                let Explained { told, deferred } = &*explained;
+                (told.clone(), *deferred)
             }
             Lookup::Pending => return,
             Lookup::Unasked => return commands.push(Command::Explain(ends)),
         },
     };
     heading(ui, if told.is_base { "Why this segment" } else { "Why not this segment" }, "table 1, 4.3.3", palette);
-    if let Some((step, why)) = put_off {
+    if let Some((step, why)) = deferred {
         let why = why.map_or(String::new(), |why| format!(" ({})", words::why(why)));
         let text =
             format!("Deferred at step {}{why}; available again when something near it changes.", words::grouped(step));
@@ -47,14 +47,14 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
 }
 
 fn waiting(moment: &Moment) -> impl Iterator<Item = &Row> {
-    moment.rows.iter().filter(|row| !row.is_put_off)
+    moment.rows.iter().filter(|row| !row.is_deferred)
 }
 
 fn count_of_class(moment: &Moment, class: u8) -> usize {
     waiting(moment).filter(|row| row.class == class).count()
 }
 
-/// The segment with the smallest H among those that are not put off.
+/// The segment with the smallest H among those that are not deferred.
 fn smallest(moment: &Moment) -> Option<&Row> {
     waiting(moment).min_by(|a, b| a.h_value.total_cmp(&b.h_value))
 }

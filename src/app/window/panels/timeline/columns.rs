@@ -4,8 +4,8 @@ use crate::app::window::named::named;
 use crate::app::window::session::Tracked;
 use crate::app::window::state::State;
 use crate::app::window::words;
-use crate::core::convert::event::EventKind;
-use crate::core::run::sample::Sample;
+use crate::core::convert::EventKind;
+use crate::core::run::Sample;
 
 /// The rows: each with the kinds that share it.
 const ROWS: [(&str, &[EventKind]); 5] = [

@@ -7,12 +7,11 @@ use std::time::Instant;
 use super::super::SessionNews;
 use super::super::moment::{Moment, Verdict, segment};
 use super::{RECENT, Worker};
-use crate::core::convert::candidates::Candidates;
+use crate::core::convert::Candidates;
 use crate::core::fault::Fault;
-use crate::core::mesh::ids::ElementId;
-use crate::core::run::explain::SegmentFacts;
-use crate::core::run::front_table::{FrontTable, Row};
-use crate::core::run::history::Changes;
+use crate::core::mesh::ElementId;
+use crate::core::run::front_table::Row;
+use crate::core::run::{Changes, FrontTable, SegmentFacts};
 
 impl Worker {
     /// Goes to a step and notes the changes.

@@ -9,8 +9,8 @@ use crate::app::window::import::{Import, ImportOptions};
 use crate::app::window::session::{Session, Source};
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
-use crate::core::formats::format::Format;
-use crate::core::run::run::Run;
+use crate::core::formats::Format;
+use crate::core::run::Run;
 
 impl State {
     /// Opens a case or a mesh; what is open stays until the other one is ready. A mesh is shown before it is converted.

@@ -5,10 +5,8 @@ use smallvec::SmallVec;
 
 use crate::core::convert::event::Cleaning;
 use crate::core::convert::relax::{Nodes, put};
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{HalfEdgeId, NodeId};
-use crate::core::mesh::refusals::Refusal;
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{HalfEdgeId, Mesh, NodeId, Refusal};
+use crate::core::metric::MetricSource;
 use crate::core::metric::measure::angle;
 
 /// One change to try.

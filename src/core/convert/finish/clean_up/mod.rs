@@ -16,9 +16,8 @@ use super::worklist::Worklist;
 use crate::core::convert::event::{Cleaning, Event};
 use crate::core::convert::relax::{Nodes, RELAX_ROUNDS, energy, relax, untangle, worst_quality};
 use crate::core::convert::sums::summed;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::NodeId;
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{Mesh, NodeId};
+use crate::core::metric::MetricSource;
 use candidate::{Candidate, Ranked, Valences};
 use region::Region;
 
@@ -35,14 +34,14 @@ const MOST_WORSE: i32 = 2;
 /// A trial whose energy has risen by this much when its own nodes are relaxed is given up before its surroundings are:
 /// those seldom give back more (for one trial in a hundred).
 const HOPELESS: f64 = 1.5;
-/// So it is when it stands this much higher after its nodes were relaxed once: the other rounds give back less.
+/// It is also given up if it has risen by this much after one round: the other rounds give back less.
 const LATER_ROUNDS_GIVE: f64 = 0.5;
-/// Up to so many elements a face is searched thoroughly for sequences of changes. What a thorough search finds beyond
-/// the lean one is a tenth of the irregular nodes, for three times the trials: it matters where there are few.
+/// Up to this many elements, a face is searched thoroughly for sequences of changes. What a thorough search finds
+/// beyond the lean one is a tenth of the irregular nodes, for three times the trials: it matters where there are few.
 const SMALL: usize = 3000;
-/// Trials of pairs for every mesh, and one more for so many elements. Small meshes are searched to the end, and the
-/// time of large ones stays linear.
+/// Trials of pairs for every mesh, which search small meshes to the end.
 const PAIR_TRIALS: usize = 30_000;
+/// One trial more for this many elements, so that the time of large meshes is linear.
 const ELEMENTS_A_PAIR_TRIAL: usize = 20;
 /// Trials of longer sequences, for every mesh whose pairs were searched to the end.
 const LONGER_TRIALS: usize = 40_000;
@@ -90,7 +89,7 @@ impl Reach {
         }
     }
 
-    /// How wide a face of so many elements is searched.
+    /// How wide a face of this many elements is searched.
     fn breadth(self, elements: usize) -> Breadth {
         let (firsts, most_rise, later) = match (self, elements <= SMALL) {
             (Reach::Longer, true) => (24, 6.0, [4, 3, 3]),

@@ -2,8 +2,7 @@
 
 use super::candidate::Valences;
 use crate::core::convert::relax::energy;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::{Mesh, NodeId};
 
 /// Weight of a squared excess against the shape of a corner and the length of an edge. With a little more than 1
 /// sequences of changes find as good angles and fewer irregular nodes.

@@ -16,10 +16,8 @@ use super::worklist::Worklist;
 use crate::core::convert::event::{Event, Mending};
 use crate::core::convert::relax::{Nodes, elements_around, energy, put, settle};
 use crate::core::convert::sums::summed;
-use crate::core::mesh::half_edge::{Mesh, NewElement};
-use crate::core::mesh::ids::{ElementId, NodeId, PointId};
-use crate::core::mesh::refusals::Operation;
-use crate::core::metric::field::MetricSource;
+use crate::core::mesh::{ElementId, Mesh, NewElement, NodeId, Operation, PointId};
+use crate::core::metric::MetricSource;
 use crate::core::progress::Cancel;
 use crate::core::soup::weld::weld;
 

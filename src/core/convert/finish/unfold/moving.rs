@@ -5,10 +5,9 @@ use smallvec::SmallVec;
 
 use super::{FOLDED, Unfolding};
 use crate::core::convert::relax::energy;
-use crate::core::kernel::tensor::Metric2;
-use crate::core::mesh::half_edge::Mesh;
-use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
+use crate::core::kernel::Metric2;
 use crate::core::mesh::sines::Corners;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 
 /// Nodes are moved until the sines around are this large; larger is not better here.
 const ENOUGH: f64 = 0.1;
