@@ -172,42 +172,29 @@ pub(super) fn check(targets: &[Option<&Target>], picture: Option<&Target>) -> Re
         }
     }
     if let Some(Target::File(path)) = picture {
-        image_format(path)?;
+        is_png(path)?;
     }
     Ok(if all.contains(&&Target::StandardOutput) { Stream::Error } else { Stream::Output })
 }
 
-/// The format of a picture.
-enum Image {
-    Svg,
-    #[cfg(feature = "window")]
-    Png,
-}
-
-fn image_format(path: &Path) -> Result<Image, Fault> {
+/// Whether a picture is written as pixels, and not as vectors, according to its extension.
+fn is_png(path: &Path) -> Result<bool, Fault> {
     let is = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
-    match () {
-        () if is("svg") => Ok(Image::Svg),
-        #[cfg(feature = "window")]
-        () if is("png") => Ok(Image::Png),
-        () => {
-            let known = if cfg!(feature = "window") { ".svg or .png" } else { ".svg" };
-            Err(Fault::new(format!("Pictures are written as {known} files"))
-                .at(path.display().to_string())
-                .remedy("Use such an extension"))
-        }
+    if is("svg") || (cfg!(feature = "window") && is("png")) {
+        return Ok(is("png"));
     }
+    let known = if cfg!(feature = "window") { ".svg or .png" } else { ".svg" };
+    Err(Fault::new(format!("Pictures are written as {known} files"))
+        .at(path.display().to_string())
+        .remedy("Use such an extension"))
 }
 
 /// Writes a figure as vectors or pixels, according to its extension.
 pub(super) fn write_figure(target: &Target, figure: &Figure) -> Result<(), Fault> {
     let bytes = match target {
-        Target::StandardOutput => figure.svg.as_bytes().to_vec(),
-        Target::File(path) => match image_format(path)? {
-            Image::Svg => figure.svg.as_bytes().to_vec(),
-            #[cfg(feature = "window")]
-            Image::Png => figure.png()?,
-        },
+        #[cfg(feature = "window")]
+        Target::File(path) if is_png(path)? => figure.png()?,
+        _ => figure.svg.as_bytes().to_vec(),
     };
     target.write(|out| out.write_all(&bytes))
 }

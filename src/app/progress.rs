@@ -107,7 +107,8 @@ impl Watch for Progress {
     }
 }
 
-fn words(stage: Stage) -> &'static str {
+/// The name of a stage of the work.
+pub(super) fn words(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => "Reading",
         Stage::Repair => "Repairing the mesh",

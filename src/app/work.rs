@@ -54,12 +54,9 @@ pub(super) struct Quads {
 pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
     let Background { mesh, sizing, names, repairs, .. } = prepare::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
-    let frame = {
-        let (parameters, phase) = (&case.parameters, &Phase::Select);
-        let shown = ShownState { step: 0, at: Some(Stop::Step(0)), state: fingerprint(&mesh, phase) };
-        let seen = Seen { mesh: &mesh, parameters, phase, changed: &[] };
-        FigureFrame { picture: Picture::of_state(&seen, &Look::default()), shown, statistics: None }
-    };
+    let seen = Seen { mesh: &mesh, parameters: &case.parameters, phase: &Phase::Select, changed: &[] };
+    let shown = ShownState { step: 0, at: Some(Stop::Step(0)), state: fingerprint(&mesh, seen.phase) };
+    let frame = FigureFrame::of(&seen, &Look::default(), shown);
     let mut export = Export::of(&mesh, &names);
     let statistics = Statistics::measure(export.measured(), &sizing)?;
     if shows_data {
@@ -151,9 +148,8 @@ pub(super) fn convert(
 impl Quads {
     /// Its frame for a figure.
     pub fn frame(&self, look: &Look) -> FigureFrame {
-        let (mesh, parameters, phase) = (&self.mesh, &self.in_force, &self.phase);
-        let seen = Seen { mesh, parameters, phase, changed: &[] };
-        FigureFrame { picture: Picture::of_state(&seen, look), shown: self.shown, statistics: None }
+        let seen = Seen { mesh: &self.mesh, parameters: &self.in_force, phase: &self.phase, changed: &[] };
+        FigureFrame::of(&seen, look, self.shown)
     }
 }
 
@@ -165,6 +161,13 @@ pub(super) struct FigureFrame {
     pub shown: ShownState,
     /// Its statistics, where they are plotted: of its quadrilaterals, or of its triangles where it has none.
     pub statistics: Option<Statistics>,
+}
+
+impl FigureFrame {
+    /// A state, without statistics.
+    pub fn of(seen: &Seen<'_>, look: &Look, shown: ShownState) -> FigureFrame {
+        FigureFrame { picture: Picture::of_state(seen, look), shown, statistics: None }
+    }
 }
 
 /// The states of a run at several stops.
@@ -194,10 +197,9 @@ pub(super) fn frames(
             let mut changed = Touched::default();
             converter.note_last_step(&mut changed);
             let (mesh, phase) = (&converter.mesh, converter.phase());
-            let (parameters, changed) = (converter.parameters(), changed.elements());
-            let seen = Seen { mesh, parameters, phase, changed };
+            let seen = Seen { mesh, parameters: converter.parameters(), phase, changed: changed.elements() };
             let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
-            frames.push(FigureFrame { picture: Picture::of_state(&seen, look), shown, statistics: None });
+            frames.push(FigureFrame::of(&seen, look, shown));
             if plotted {
                 meshes.push(Export::of(mesh, &Names::default()));
             }

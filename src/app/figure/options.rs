@@ -246,19 +246,10 @@ impl FigureOptions {
     pub fn or(&self, figure: Option<&Shown>) -> Result<FigureOptions, Fault> {
         let Some(shown) = figure else { return Ok(self.clone()) };
         let theirs = FigureOptions::from_words(&shown.drawn)?;
-        let own = self.clone();
-        Ok(FigureOptions {
-            size: own.size.or(theirs.size),
-            dpi: own.dpi.or(theirs.dpi),
-            ink: own.ink.or(theirs.ink),
-            transparent: own.transparent.or(theirs.transparent),
-            layers: own.layers.or(theirs.layers),
-            plot: own.plot.or(theirs.plot),
-            part: own.part.or(theirs.part),
-            view: own.view.or(theirs.view),
-            hidden: own.hidden.or(theirs.hidden),
-            columns: own.columns.or(theirs.columns),
-        })
+        macro_rules! completed {
+            ($($option:ident),*) => { FigureOptions { $($option: self.$option.clone().or(theirs.$option),)* } };
+        }
+        Ok(completed!(size, dpi, ink, transparent, layers, plot, part, view, hidden, columns))
     }
 
     /// The look of the figure.

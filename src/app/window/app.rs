@@ -11,14 +11,13 @@ use super::command::{Command, keys};
 use super::figures::carried;
 use super::files::{free_path, write_png};
 use super::graphics::{self, Lost};
-use super::layout::{Layout, TIMELINE_HEIGHTS};
+use super::layout::{Docks, Layout, TIMELINE_HEIGHTS};
 use super::panels::{self, PanelStates};
 use super::session::Source;
 use super::settings::Settings;
 use super::state::State;
 use super::theme;
 use super::viewport::Views;
-use crate::render::palette::Palette;
 
 /// How long after a change the settings are written.
 const SETTLED: Duration = Duration::from_millis(1500);
@@ -252,49 +251,38 @@ impl App {
         let (state, local, asked) = (&self.state, &mut self.panels, &mut commands);
         Panel::top("menus").frame(plain).exact_size(32.0).show(ui, |ui| panels::top::show(ui, state, asked, palette));
         if state.run().import.is_some() {
-            panels::offer::show(ui, state, asked, palette);
+            panels::messages::offer(ui, state, asked, palette);
             panels::messages::show(ui, state, asked, palette);
             panels::import::show(ui, state, plain, asked, palette);
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
                 self.views.given(ui, state, asked, palette);
             });
         } else {
-            docks(ui, state, local, &mut self.views, &mut self.layout, asked, palette, plain);
+            // A window without room for the timeline must not change the height that the user has chosen.
+            let height = &mut self.layout.timeline_height;
+            let squashed = ui.available_height() < *height + TIMELINE_HEIGHTS[0];
+            let time = Panel::bottom(if squashed { "time squashed" } else { "time" })
+                .frame(plain)
+                .default_size(*height)
+                .size_range(TIMELINE_HEIGHTS[0]..=TIMELINE_HEIGHTS[1])
+                .resizable(true)
+                .show(ui, |ui| panels::time::show(ui, state, &mut local.time, asked, palette));
+            if !squashed {
+                *height = time.response.rect.height();
+            }
+            panels::messages::offer(ui, state, asked, palette);
+            panels::messages::show(ui, state, asked, palette);
+            egui::CentralPanel::default().frame(plain).show(ui, |ui| {
+                let views = &mut self.views;
+                let mut docks = Docks { state, local, views, commands: asked, palette, edited: false };
+                self.layout.show(ui, &mut docks);
+            });
+            panels::notes::show(&context, state, asked, palette);
+            panels::figure::show(&context, state, asked, palette);
         }
         panels::over::show(&context, state, &mut local.over, asked, palette);
         self.state.end_frame(commands)
     }
-}
-
-/// The window on a run: transport, timeline, docks and what floats over them.
-fn docks(
-    ui: &mut Ui,
-    state: &State,
-    local: &mut PanelStates,
-    views: &mut Views,
-    layout: &mut Layout,
-    commands: &mut Vec<Command>,
-    palette: &'static Palette,
-    plain: Frame,
-) {
-    // A window without room for the timeline must not change the height that the user has chosen.
-    let squashed = ui.available_height() < layout.timeline_height + TIMELINE_HEIGHTS[0];
-    let time = Panel::bottom(if squashed { "time squashed" } else { "time" })
-        .frame(plain)
-        .default_size(layout.timeline_height)
-        .size_range(TIMELINE_HEIGHTS[0]..=TIMELINE_HEIGHTS[1])
-        .resizable(true)
-        .show(ui, |ui| panels::time::show(ui, state, &mut local.time, commands, palette));
-    if !squashed {
-        layout.timeline_height = time.response.rect.height();
-    }
-    panels::offer::show(ui, state, commands, palette);
-    panels::messages::show(ui, state, commands, palette);
-    egui::CentralPanel::default().frame(plain).show(ui, |ui| {
-        layout.show(ui, state, local, views, commands, palette);
-    });
-    panels::notes::show(ui.ctx(), state, commands, palette);
-    panels::figure::show(ui.ctx(), state, commands, palette);
 }
 
 impl eframe::App for App {
@@ -327,7 +315,7 @@ impl eframe::App for App {
         self.keep(&context, false);
         self.moving = context.has_requested_repaint();
         let title = match &self.state.run().opened {
-            Some(opened) => format!("{} – quadfront", opened.case.name),
+            Some(opened) => format!("{} – quadfront", opened.run.case.name),
             None => "quadfront".to_owned(),
         };
         if self.title != title {

@@ -6,7 +6,7 @@
 
 mod slot;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 pub use slot::{Offer, folder};
 use slot::{RunSlot, left_behind};
 
+use super::files::work;
 use super::import::ImportOptions;
 use super::session::{Opened, Source, Wake};
 use crate::core::fault::Fault;
@@ -116,15 +117,9 @@ impl Work {
     }
 
     fn keep(&mut self, run: &Run) -> Result<(), Fault> {
-        let slot = match self.slot.take() {
-            Some(slot) => slot,
-            None => RunSlot::new(&self.folder)?,
-        };
+        let slot = self.slot.take().map_or_else(|| RunSlot::new(&self.folder), Ok)?;
         let slot = self.slot.insert(slot);
-        let keeper = match self.keeper.take() {
-            Some(keeper) => keeper,
-            None => Keeper::new(slot.path.clone(), run)?,
-        };
+        let keeper = self.keeper.take().map_or_else(|| Keeper::new(slot.path.clone(), run), Ok)?;
         let kept = self.keeper.insert(keeper).keep(run);
         kept.map(drop).map_err(|mut fault| {
             fault.what = format!("The run cannot be autosaved: {}", fault.what);
@@ -144,10 +139,6 @@ struct Changes {
 impl Changes {
     fn of(run: &Run) -> Changes {
         Changes { edits: run.edits().to_vec(), bookmarks: run.bookmarks.clone() }
-    }
-
-    fn are_of(&self, run: &Run) -> bool {
-        self.edits == run.edits() && self.bookmarks == run.bookmarks
     }
 }
 
@@ -172,7 +163,7 @@ impl Autosave {
     /// Autosaves runs in a folder, and searches it for abandoned runs in the background.
     pub fn new(folder: PathBuf, wake: Wake) -> Autosave {
         let saver = Saver::new(folder.clone(), None, wake.clone());
-        let scan = scan(folder.clone(), wake.clone());
+        let scan = scan(&folder, &wake);
         Autosave { folder, wake, saver, offers: Vec::new(), scan, opened: None, saved: None, kept: None, opening: None }
     }
 
@@ -221,15 +212,15 @@ impl Autosave {
             self.begin(opened, source);
         }
         let Some(run) = run() else { return (faults, None) };
-        let unsaved = self.saved.as_ref().is_none_or(|saved| !saved.are_of(&run));
-        if !unsaved {
+        let now = Changes::of(&run);
+        if self.saved.as_ref() == Some(&now) {
             if self.kept.take().is_some() {
                 self.saver.ask(Ask::Forget);
             }
             return (faults, None);
         }
         if let Some((changes, camera, since)) = &self.kept
-            && changes.are_of(&run)
+            && *changes == now
         {
             if *camera == run.camera {
                 return (faults, None);
@@ -239,7 +230,7 @@ impl Autosave {
                 return (faults, Some(left));
             }
         }
-        self.kept = Some((Changes::of(&run), run.camera, Instant::now()));
+        self.kept = Some((now, run.camera, Instant::now()));
         self.saver.ask(Ask::Keep(Box::new(run)));
         (faults, None)
     }
@@ -262,27 +253,20 @@ impl Autosave {
         // The old one ends first and releases its lock.
         drop(std::mem::replace(&mut self.saver, Saver::new(self.folder.clone(), slot, self.wake.clone())));
         if was_unsaved {
-            self.scan = scan(self.folder.clone(), self.wake.clone());
+            self.scan = scan(&self.folder, &self.wake);
         }
         self.opened = Some(opened.clone());
     }
 }
 
 /// Searches for abandoned runs on a thread of its own.
-fn scan(folder: PathBuf, wake: Wake) -> Receiver<Vec<Offer>> {
-    let (tell, told) = channel();
-    std::thread::spawn(move || {
-        // Nobody listens while the window is being closed.
-        let _ = tell.send(left_behind(&folder));
-        wake();
-    });
-    told
+fn scan(folder: &Path, wake: &Wake) -> Receiver<Vec<Offer>> {
+    let folder = folder.to_path_buf();
+    work(wake.clone(), move || left_behind(&folder))
 }
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
     use crate::core::case::built_in;
     use crate::core::run::EditKind;

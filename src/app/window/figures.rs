@@ -1,11 +1,10 @@
 //! Figures from the window: the current state, or several steps as a strip, made in the background by the code of
 //! `render`.
 
-use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::channel;
 
-use super::files::{Writing, free_path};
+use super::files::{self, Writing, free_path};
+use super::named::named;
 use super::session::{Moment, Opened, Wake};
 use super::state::{State, ViewCamera};
 
@@ -24,58 +23,33 @@ use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers};
 use crate::render::orthographic::View;
 use crate::render::picture::{Picture, Seen};
 
-/// The formats of a figure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Formats {
-    /// Vectors.
-    Svg,
-    /// Pixels drawn from them.
-    Png,
-    /// Both.
-    Both,
-}
-
-impl Formats {
-    /// Their name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Formats::Svg => "SVG",
-            Formats::Png => "PNG",
-            Formats::Both => "SVG and PNG",
-        }
+named! {
+    /// The formats of a figure.
+    pub enum Formats {
+        /// Vectors.
+        Svg = "SVG",
+        /// Pixels drawn from them.
+        Png = "PNG",
+        /// Both.
+        Both = "SVG and PNG",
     }
 }
 
-/// What a figure shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Content {
-    /// The current state.
-    #[default]
-    State,
-    /// The steps with a bookmark, side by side.
-    Bookmarks,
-    /// Stops that the user has typed, side by side.
-    Stops,
-    /// Edge lengths of the current state.
-    Lengths,
-    /// Angles of the current state.
-    Angles,
-}
-
-impl Content {
-    /// All of them.
-    pub const ALL: [Content; 5] =
-        [Content::State, Content::Bookmarks, Content::Stops, Content::Lengths, Content::Angles];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Content::State => "this state",
-            Content::Bookmarks => "the bookmarks, side by side",
-            Content::Stops => "several NQ, side by side",
-            Content::Lengths => "edge lengths (fig. 23)",
-            Content::Angles => "angles (fig. 24)",
-        }
+named! {
+    /// What a figure shows.
+    #[derive(Default)]
+    pub enum Content {
+        /// The current state.
+        #[default]
+        State = "this state",
+        /// The steps with a bookmark, side by side.
+        Bookmarks = "the bookmarks, side by side",
+        /// Stops that the user has typed, side by side.
+        Stops = "several NQ, side by side",
+        /// Edge lengths of the current state.
+        Lengths = "edge lengths (fig. 23)",
+        /// Angles of the current state.
+        Angles = "angles (fig. 24)",
     }
 }
 
@@ -225,21 +199,17 @@ pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writi
     };
     let name = form.name.trim();
     let stem = if name.is_empty() { format!("{}{what}", current.case.name) } else { name.to_owned() };
-    let (tell, told) = channel();
-    std::thread::spawn(move || {
-        let made = match wanted {
+    Ok(Some(files::work(wake, move || {
+        let figure = match wanted {
             Some(wanted) => {
                 let mut run = current;
                 run.case.parameters = run.parameters.clone();
-                figure::make(&run, &wanted, &options, true, &mut Nobody).map(|made| made.0)
+                figure::make(&run, &wanted, &options, true, &mut Nobody)?.0
             }
-            None => of_state(&moment, &opened, &current, &options),
+            None => of_state(&moment, &opened, &current, &options)?,
         };
-        // Nobody listens once the window has been closed.
-        let _ = tell.send(made.and_then(|figure| write(&figure, &stem, formats)));
-        wake();
-    });
-    Ok(Some(told))
+        write(&figure, &stem, formats)
+    })))
 }
 
 /// The text of the run at the current state, as figures carry it; none if the mesh that it starts from is gone.
@@ -270,18 +240,17 @@ fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &Fig
 
 /// Writes a figure under names that are free. Returns the message that says which.
 fn write(figure: &Figure, stem: &str, formats: Formats) -> Result<String, Fault> {
-    let mut names: Vec<PathBuf> = Vec::new();
+    let mut names: Vec<String> = Vec::new();
+    let mut keep = |extension: &str, bytes: &[u8]| {
+        let path = free_path(stem, extension);
+        names.push(path.display().to_string());
+        save::save(&path, |out| out.write_all(bytes))
+    };
     if formats != Formats::Png {
-        let path = free_path(stem, "svg");
-        save::save(&path, |out| out.write_all(figure.svg.as_bytes()))?;
-        names.push(path);
+        keep("svg", figure.svg.as_bytes())?;
     }
     if formats != Formats::Svg {
-        let path = free_path(stem, "png");
-        let pixels = figure.png()?;
-        save::save(&path, |out| out.write_all(&pixels))?;
-        names.push(path);
+        keep("png", &figure.png()?)?;
     }
-    let names: Vec<String> = names.iter().map(|path| path.display().to_string()).collect();
     Ok(format!("The figure was saved as {}.", names.join(" and ")))
 }

@@ -44,6 +44,17 @@ impl Source {
 /// A file that a thread writes: what to tell the user when it is done, or what went wrong.
 pub type Writing = Receiver<Result<String, Fault>>;
 
+/// Does some work on a thread of its own. The thread calls `wake` when it has answered.
+pub fn work<T: Send + 'static>(wake: Wake, work: impl FnOnce() -> T + Send + 'static) -> Receiver<T> {
+    let (tell, told) = channel();
+    std::thread::spawn(move || {
+        // Nobody listens once the window has been closed or has given the work up.
+        let _ = tell.send(work());
+        wake();
+    });
+    told
+}
+
 /// Takes the answers that have come. Receivers that have answered, or never will, are dropped.
 pub fn answers<T>(waiting: &mut Vec<Receiver<T>>) -> Vec<T> {
     let mut answers = Vec::new();
@@ -84,14 +95,11 @@ pub enum Answer {
 impl Dialog {
     /// Opens the dialog; `wake` is called when it has answered.
     pub fn open(wake: Wake) -> Dialog {
-        let (tell, answer) = channel();
-        std::thread::spawn(move || {
-            let dialog = rfd::FileDialog::new()
+        let answer = work(wake, || {
+            rfd::FileDialog::new()
                 .set_title("Open a case, a mesh or a figure")
-                .add_filter("Cases, meshes, figures", &extensions());
-            // Nobody listens once the window has given it up.
-            let _ = tell.send(dialog.pick_file());
-            wake();
+                .add_filter("Cases, meshes, figures", &extensions())
+                .pick_file()
         });
         Dialog { answer, since: Instant::now() }
     }

@@ -48,22 +48,14 @@ pub struct Import {
     /// The progress of the preview, while it is under way.
     pub progress: Option<Progress>,
     wanted: Option<Wanted>,
-    /// The number of the last picture that was asked for.
-    generation: u64,
+    /// The number of the last picture that was asked for: pictures of another import have later ones.
+    pub generation: u64,
     undo: Vec<ImportOptions>,
     redo: Vec<ImportOptions>,
     /// What the last change was part of.
-    gesture: Gesture,
+    pub gesture: Gesture,
     /// Where the view of it looks.
     pub view: ViewCamera,
-}
-
-/// What the preview means for the window.
-pub enum News {
-    /// Nothing.
-    Nothing,
-    /// The mesh cannot be read.
-    Refused(Fault),
 }
 
 impl Import {
@@ -84,16 +76,6 @@ impl Import {
             gesture: Gesture::Done,
             view: ViewCamera::default(),
         }
-    }
-
-    /// What the last change was part of.
-    pub fn gesture(&self) -> Gesture {
-        self.gesture
-    }
-
-    /// The number after which pictures of another import are numbered.
-    pub fn generation(&self) -> u64 {
-        self.generation
     }
 
     /// The options in the terms of `core`.
@@ -181,9 +163,10 @@ impl Import {
         self.gesture = Gesture::Done;
     }
 
-    /// Takes in what the preview reports, and asks for another picture if the options have changed.
-    pub fn look(&mut self, dark: bool) -> News {
-        let mut news = News::Nothing;
+    /// Takes in what the preview reports, and asks for another picture if the options have changed. Returns why the
+    /// mesh cannot be read, if that has turned out.
+    pub fn look(&mut self, dark: bool) -> Option<Fault> {
+        let mut unreadable = None;
         for told in self.preview.hear() {
             match told {
                 PreviewNews::Progress(progress) => self.progress = Some(progress),
@@ -193,7 +176,7 @@ impl Import {
                     }
                     self.loaded = Some(loaded);
                 }
-                PreviewNews::Loaded(Err(fault)) => news = News::Refused(fault),
+                PreviewNews::Loaded(Err(fault)) => unreadable = Some(fault),
                 PreviewNews::Shown(shown) => self.shown = Some(shown),
                 PreviewNews::Refused(fault) => self.refuse(fault),
             }
@@ -214,7 +197,7 @@ impl Import {
                 self.progress = None;
             }
         }
-        news
+        unreadable
     }
 }
 
@@ -247,7 +230,7 @@ mod tests {
         let mut import = Import::begin(PathBuf::from("no such.stl"), ImportOptions::default(), 0, Arc::new(|| {}));
         let begin = std::time::Instant::now();
         let fault = loop {
-            if let News::Refused(fault) = import.look(true) {
+            if let Some(fault) = import.look(true) {
                 break fault;
             }
             assert!(begin.elapsed().as_secs() < 20);

@@ -210,15 +210,8 @@ impl Labels<'_> {
         for (at, letter) in letters {
             let away = (at - middle).normalized();
             let away = if away.x.is_nan() || away == Vec2::ZERO { Vec2::new(0.0, -1.0) } else { away };
-            let colour = ink(self.palette.accent);
-            self.label(
-                at + 17.0 * away,
-                Align2::CENTER_CENTER,
-                &letter.to_string(),
-                theme::semibold(13.0),
-                colour,
-                true,
-            );
+            let (text, font, colour) = (letter.to_string(), theme::semibold(13.0), ink(self.palette.accent));
+            self.label(at + 17.0 * away, Align2::CENTER_CENTER, &text, font, colour, true);
         }
     }
 
@@ -292,16 +285,9 @@ impl Labels<'_> {
             if nearest.sqrt() * scale < LEAST_FOR_IDS {
                 continue;
             }
-            let colour = ink(self.palette.weak);
-            if !self.label(
-                at + Vec2::new(7.0, -9.0),
-                Align2::LEFT_CENTER,
-                &node.0.to_string(),
-                theme::regular(11.0),
-                colour,
-                false,
-            ) && self.taken.len() >= MOST_LABELS
-            {
+            let (text, font, colour) = (node.0.to_string(), theme::regular(11.0), ink(self.palette.weak));
+            let is_shown = self.label(at + Vec2::new(7.0, -9.0), Align2::LEFT_CENTER, &text, font, colour, false);
+            if !is_shown && self.taken.len() >= MOST_LABELS {
                 break;
             }
         }

@@ -10,11 +10,8 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde_json::Value;
 
 use super::command::Command;
-use super::panels::PanelStates;
-use super::state::State;
-use super::viewport::Views;
-use crate::render::palette::Palette;
-use docks::Docks;
+use super::named::named;
+pub use docks::Docks;
 
 /// Widths in points: front, lens, inspector; and the least width of the view.
 const LEFT: f32 = 344.0;
@@ -22,51 +19,21 @@ const LENS: f32 = 263.0;
 const RIGHT: f32 = 332.0;
 const VIEW: f32 = 480.0;
 
-/// A panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Pane {
-    Front,
-    Breakpoints,
-    Bookmarks,
-    Space,
-    Quality,
-    MetricLens,
-    Parametric,
-    Inspector,
-    History,
-    Parameters,
-    Layers,
-}
-
-impl Pane {
-    const ALL: [Pane; 11] = [
-        Pane::Front,
-        Pane::Breakpoints,
-        Pane::Bookmarks,
-        Pane::Space,
-        Pane::Quality,
-        Pane::MetricLens,
-        Pane::Parametric,
-        Pane::Inspector,
-        Pane::History,
-        Pane::Parameters,
-        Pane::Layers,
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Pane::Front => "Front",
-            Pane::Breakpoints => "Breakpoints",
-            Pane::Bookmarks => "Bookmarks",
-            Pane::Space => "Space",
-            Pane::Quality => "Quality",
-            Pane::MetricLens => "Metric lens",
-            Pane::Parametric => "Parametric",
-            Pane::Inspector => "Inspector",
-            Pane::History => "History",
-            Pane::Parameters => "Parameters",
-            Pane::Layers => "Layers",
-        }
+named! {
+    /// A panel.
+    #[derive(PartialOrd, Ord)]
+    pub enum Pane {
+        Front = "Front",
+        Breakpoints = "Breakpoints",
+        Bookmarks = "Bookmarks",
+        Space = "Space",
+        Quality = "Quality",
+        MetricLens = "Metric lens",
+        Parametric = "Parametric",
+        Inspector = "Inspector",
+        History = "History",
+        Parameters = "Parameters",
+        Layers = "Layers",
     }
 }
 
@@ -136,15 +103,8 @@ impl Default for Layout {
 
 impl Layout {
     /// Shows all panels.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        state: &State,
-        local: &mut PanelStates,
-        views: &mut Views,
-        commands: &mut Vec<Command>,
-        palette: &'static Palette,
-    ) {
+    pub fn show(&mut self, ui: &mut Ui, docks: &mut Docks<'_>) {
+        let state = docks.state;
         let size = ui.available_size();
         let room = Room::of(size.x);
         if state.view().relayout.take(&mut self.relayouts).is_some() {
@@ -165,13 +125,12 @@ impl Layout {
         }
         self.size = size;
         let Some((tree, _)) = &mut self.tree else { return };
-        let mut docks = Docks { state, local, views, commands, palette, edited: false };
-        tree.ui(&mut docks, ui);
+        tree.ui(docks, ui);
         self.edited |= docks.edited;
         if self.edited && !ui.input(|input| input.pointer.any_down()) {
             self.edited = false;
             self.arranged.insert(room.name().to_owned(), written::write(tree));
-            commands.push(Command::Arrange(self.arranged().to_string()));
+            docks.commands.push(Command::Arrange(self.arranged().to_string()));
         }
     }
 
@@ -196,32 +155,25 @@ impl Layout {
             let panes = panes.iter().map(|pane| tiles.insert_pane(*pane)).collect();
             tiles.insert_tab_tile(panes)
         };
-        let (left, right, lens);
         let view = match room {
             Room::Wide => tabs(&[Pane::Space, Pane::Quality]),
             _ => tabs(&[Pane::Space, Pane::Quality, Pane::MetricLens, Pane::Parametric]),
         };
-        match room {
-            Room::Narrow => {
-                left = Vec::new();
-                right = vec![
-                    (tabs(&[Pane::Inspector, Pane::Front, Pane::Breakpoints, Pane::Bookmarks, Pane::History]), 1.0),
-                    (tabs(&[Pane::Parameters, Pane::Layers]), 210.0 / size.y.max(420.0)),
-                ];
-                lens = Vec::new();
-            }
-            _ => {
-                left = vec![(tabs(&[Pane::Front]), 1.0), (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42)];
-                right = vec![
-                    (tabs(&[Pane::Inspector, Pane::History]), 1.0),
-                    (tabs(&[Pane::Parameters, Pane::Layers]), 0.42),
-                ];
-                lens = match room {
-                    Room::Wide => vec![(tabs(&[Pane::MetricLens]), 1.0), (tabs(&[Pane::Parametric]), 1.0)],
-                    _ => Vec::new(),
-                };
-            }
+        let (mut left, mut lens) = (Vec::new(), Vec::new());
+        if room != Room::Narrow {
+            left = vec![(tabs(&[Pane::Front]), 1.0), (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42)];
         }
+        if room == Room::Wide {
+            lens = vec![(tabs(&[Pane::MetricLens]), 1.0), (tabs(&[Pane::Parametric]), 1.0)];
+        }
+        let (inspector, share): (&[Pane], f32) = match room {
+            Room::Narrow => (
+                &[Pane::Inspector, Pane::Front, Pane::Breakpoints, Pane::Bookmarks, Pane::History],
+                210.0 / size.y.max(420.0),
+            ),
+            _ => (&[Pane::Inspector, Pane::History], 0.42),
+        };
+        let right = vec![(tabs(inspector), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), share)];
         let mut columns = Vec::new();
         for (column, width) in [(left, LEFT), (vec![(view, 1.0)], 0.0), (lens, LENS), (right, RIGHT)] {
             let id = match column.len() {

@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::channel;
 
-use super::files::{Writing, free_path};
+use super::files::{self, Writing, free_path};
 use super::session::{Moment, Opened, Wake};
 use super::state::State;
 use crate::app::output::MeshTarget;
@@ -16,7 +15,7 @@ use crate::core::fault::Fault;
 pub fn suggested_path(state: &State) -> String {
     let (Some(moment), Some(opened)) = (&state.run().moment, &state.run().opened) else { return String::new() };
     let step = if state.run().is_at_the_end() { String::new() } else { format!("-step-{}", moment.step) };
-    free_path(&format!("{}{step}", opened.case.name), "vtu").display().to_string()
+    free_path(&format!("{}{step}", opened.run.case.name), "vtu").display().to_string()
 }
 
 /// Starts to write the current mesh, in the format of the path's extension; does nothing if nothing is open. The thread
@@ -38,13 +37,7 @@ pub fn begin(state: &State, path: &str, wake: Wake) -> Result<Option<Writing>, F
         false => fault,
     };
     let target = MeshTarget::file(path.clone()).map_err(named).and_then(|target| target.check().map(|()| target))?;
-    let (tell, told) = channel();
-    std::thread::spawn(move || {
-        // Nobody listens once the window has been closed.
-        let _ = tell.send(write(&moment, &opened, &target, &path));
-        wake();
-    });
-    Ok(Some(told))
+    Ok(Some(files::work(wake, move || write(&moment, &opened, &target, &path))))
 }
 
 /// Checks and writes a mesh. Returns what to tell the user.

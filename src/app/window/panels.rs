@@ -13,17 +13,19 @@ pub mod parameters;
 pub mod layers;
 pub mod plots;
 pub mod messages;
-pub mod offer;
 pub mod notes;
 pub mod figure;
 pub mod import;
 pub mod over;
 
-use eframe::egui::{self, Align, Button, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo};
+use eframe::egui::{
+    self, Align, Button, ComboBox, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo, WidgetText,
+};
 
 use super::command::Command;
 use super::theme::{self, ink};
-use crate::render::palette::Palette;
+use crate::render::palette::{Palette, Rgba};
+use crate::render::scene::Outlined;
 
 /// What the panels keep for themselves.
 #[derive(Default)]
@@ -36,11 +38,43 @@ pub struct PanelStates {
 }
 
 /// A button with an icon, its name for screen readers, and a tooltip with its key.
-pub fn icon_button(ui: &mut Ui, icon: &str, size: f32, command: &Command, enabled: bool) -> Response {
+pub fn icon_button(ui: &mut Ui, icon: &str, size: f32, command: Command, enabled: bool, commands: &mut Vec<Command>) {
     let button = Button::new(RichText::new(icon).font(theme::regular(size))).frame_when_inactive(false);
     let response = ui.add_enabled(enabled, button);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, command.name()));
-    response.on_hover_text(command.tip())
+    on_click(&response.on_hover_text(command.tip()), command, commands);
+}
+
+/// A list to choose from, with its name for screen readers and the text that it shows.
+pub fn choice<T: PartialEq + Copy, N: Into<WidgetText>>(
+    ui: &mut Ui,
+    name: &str,
+    width: f32,
+    shown: impl Into<WidgetText>,
+    value: &mut T,
+    all: impl IntoIterator<Item = (T, N)>,
+) {
+    let list = ComboBox::from_id_salt(name).selected_text(shown).width(width).show_ui(ui, |ui| {
+        for (one, text) in all {
+            ui.selectable_value(value, one, text.into());
+        }
+    });
+    list.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, name));
+}
+
+/// Asks for a command when a widget is clicked.
+pub fn on_click(response: &Response, command: Command, commands: &mut Vec<Command>) {
+    if response.clicked() {
+        commands.push(command);
+    }
+}
+
+/// A widget that stands for something: points at it, and selects it when it is clicked.
+pub fn stands_for(response: &Response, what: Outlined, commands: &mut Vec<Command>) {
+    if response.hovered() {
+        commands.push(Command::Hover(what));
+    }
+    on_click(response, Command::Pick(Some(what)), commands);
 }
 
 /// The heading of a section, with its source at the right.
@@ -69,5 +103,10 @@ pub fn inset() -> Frame {
 
 /// Weak text, for units and notes.
 pub fn note(text: impl Into<String>, palette: &Palette) -> RichText {
-    RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.weak))
+    line(text, palette.weak)
+}
+
+/// Text of a table or a list.
+pub fn line(text: impl Into<String>, colour: Rgba) -> RichText {
+    RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour))
 }

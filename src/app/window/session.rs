@@ -19,7 +19,8 @@ pub use moment::{Moment, Verdict};
 pub use worker::Stops;
 
 use super::import::ImportOptions;
-use crate::core::case::Case;
+use super::state::Progress;
+use crate::app::progress;
 use crate::core::convert::{Event, EventKind, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
@@ -32,7 +33,7 @@ use worker::Worker;
 pub(super) const EVERY: Duration = Duration::from_millis(50);
 
 /// Requests to a session, from the window or from its own recorder.
-enum Ask {
+pub enum Ask {
     /// Go to a goal, requested at this time.
     Go(Goal, Instant),
     /// Go to the next or the previous step at which a condition holds or something that is watched is touched.
@@ -45,22 +46,30 @@ enum Ask {
     Past(Watched),
     /// Count how often conditions hold.
     Count(Vec<Condition>),
+    /// Report why a segment of the front was or was not chosen.
     Explain([NodeId; 2]),
+    /// Change the run.
     Edits(Vec<Edit>),
+    /// The recorder's thread hands over what it has recorded.
     Found(Box<(Stretch, Recorder)>),
+    /// The window has closed the session.
     Gone,
 }
 
 /// What a session reports.
 pub enum SessionNews {
-    /// Progress: how much is done of how much (0: unknown).
-    Progress { words: &'static str, done: u64, total: u64 },
+    Progress(Progress),
     /// The case is open and has its background mesh.
     Opened(Arc<Opened>),
     /// A state, with the number of requests that it answers.
     Moment(Arc<Moment>, usize),
     /// More of the run: steps after `from`, which replace those known before; `end`: they include the last one.
-    Track { from: u64, steps: Vec<Tracked>, samples: Vec<Sample>, end: bool },
+    Track {
+        from: u64,
+        steps: Vec<Tracked>,
+        samples: Vec<Sample>,
+        end: bool,
+    },
     /// The result of the checks of the whole mesh at a step.
     Checked(u64, Verdict),
     /// The history of something up to a step.
@@ -77,7 +86,6 @@ pub enum SessionNews {
 
 /// A case that is open.
 pub struct Opened {
-    pub case: Case,
     /// The run as it was opened.
     pub run: Run,
     pub background: Background,
@@ -151,47 +159,8 @@ impl Session {
         Session { ask, told, stop, opening }
     }
 
-    /// Asks to go somewhere.
-    pub fn go(&self, goal: Goal) {
-        self.ask(Ask::Go(goal, Instant::now()));
-    }
-
-    /// Asks to go to where a breakpoint is met.
-    pub fn go_to_break(&self, stops: Stops, direction: Direction) {
-        self.ask(Ask::Break(stops, direction));
-    }
-
-    /// Asks to go to the step that touched something last.
-    pub fn go_to_touch(&self, watched: Watched) {
-        self.ask(Ask::Touch(watched));
-    }
-
-    /// Asks to go to the step that made the quadrilateral of an element.
-    pub fn go_to_making(&self, element: ElementId) {
-        self.ask(Ask::Made(element));
-    }
-
-    /// Asks for the history of something up to the current step.
-    pub fn past(&self, watched: Watched) {
-        self.ask(Ask::Past(watched));
-    }
-
-    /// Asks how often conditions hold.
-    pub fn count(&self, conditions: Vec<Condition>) {
-        self.ask(Ask::Count(conditions));
-    }
-
-    /// Asks why a segment of the front was or was not chosen.
-    pub fn explain(&self, ends: [NodeId; 2]) {
-        self.ask(Ask::Explain(ends));
-    }
-
-    /// Changes the run.
-    pub fn set_edits(&self, edits: Vec<Edit>) {
-        self.ask(Ask::Edits(edits));
-    }
-
-    fn ask(&self, ask: Ask) {
+    /// Asks for something.
+    pub fn ask(&self, ask: Ask) {
         // A session that has ended has reported why.
         let _ = self.ask.send(ask);
     }
@@ -237,7 +206,7 @@ impl Voice {
     fn progress(&mut self, words: &'static str, done: u64, total: u64) {
         if self.last.elapsed() >= EVERY {
             self.last = Instant::now();
-            self.say(SessionNews::Progress { words, done, total });
+            self.say(SessionNews::Progress(Progress { words, done, total }));
         }
     }
 }
@@ -254,15 +223,8 @@ impl Watch for Voice {
 
 /// The name of a stage of the work in the window.
 pub(super) fn words_of(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Read => "Reading",
-        Stage::Repair => "Repairing the mesh",
-        Stage::Chart => "Flattening the surface",
-        Stage::Divide => "Dividing the curves",
-        Stage::Triangulate => "Triangulating",
-        Stage::Adapt => "Adapting the triangles",
-        _ => "Converting",
-    }
+    // The later stages are parts of the conversion here.
+    progress::words(stage.min(Stage::Convert))
 }
 
 /// What a session is opened with.

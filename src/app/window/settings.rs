@@ -126,8 +126,13 @@ impl Settings {
     }
 }
 
-/// The path of the file: in `XDG_STATE_HOME` or this system's equivalent; none if the user has no home.
+/// The path of the file; none if the user has no home.
 pub fn path() -> Option<PathBuf> {
+    state_folder().map(|own| own.join("window.json"))
+}
+
+/// The user's folder for state: in `XDG_STATE_HOME` or this system's equivalent; none if the user has no home.
+pub fn state_folder() -> Option<PathBuf> {
     let folder = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = |rest: &str| folder("HOME").map(|home| home.join(rest));
     let own = if cfg!(windows) {
@@ -137,7 +142,7 @@ pub fn path() -> Option<PathBuf> {
     } else {
         folder("XDG_STATE_HOME").or_else(|| home(".local/state"))
     };
-    own.map(|own| own.join("quadfront").join("window.json"))
+    own.map(|own| own.join("quadfront"))
 }
 
 #[cfg(test)]

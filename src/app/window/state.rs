@@ -7,13 +7,11 @@
 mod run_state;
 mod workspace;
 mod view_state;
-mod frame_state;
 mod apply;
 mod hearing;
 
-pub use frame_state::FrameState;
 pub use run_state::{Lookup, Progress, RunState};
-pub use view_state::{Look, Overlay, ViewCamera, ViewKind, ViewState};
+pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState};
 pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint, Workspace};
 
 use super::session::{Moment, Stops, Wake};
@@ -127,7 +125,7 @@ impl State {
 
     /// Parameters of the case, before any edit.
     pub fn parameters_of_case(&self) -> Option<&Parameters> {
-        self.run.opened.as_ref().map(|opened| &opened.case.parameters)
+        self.run.opened.as_ref().map(|opened| &opened.run.case.parameters)
     }
 }
 

@@ -50,36 +50,18 @@ pub fn regular(size: f32) -> FontId {
 /// Text with subscripts, written `_{x}`, and emphasis, written `**x**`.
 pub fn formula(text: &str, size: f32, colour: Color32, strong: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
-    let mut stands_out = false;
-    for (k, part) in text.split("**").enumerate() {
-        if k > 0 {
-            stands_out = !stands_out;
-        }
-        let mut rest = part;
+    for (k, mut rest) in text.split("**").enumerate() {
+        let (font, colour) = match k % 2 {
+            1 => (semibold as fn(f32) -> FontId, strong),
+            _ => (regular as fn(f32) -> FontId, colour),
+        };
         while !rest.is_empty() {
-            let (plain, low, after) = match rest.split_once("_{").and_then(|(plain, after)| {
-                let (low, after) = after.split_once('}')?;
-                Some((plain, low, after))
-            }) {
-                Some(parts) => parts,
-                None => (rest, "", ""),
-            };
-            let (font, colour) = match stands_out {
-                true => (semibold as fn(f32) -> FontId, strong),
-                false => (regular as fn(f32) -> FontId, colour),
-            };
-            job.append(
-                plain,
-                0.0,
-                TextFormat { font_id: font(size), color: colour, valign: Align::Center, ..TextFormat::default() },
-            );
-            let format = TextFormat {
-                font_id: font(0.75 * size),
-                color: colour,
-                valign: Align::BOTTOM,
-                ..TextFormat::default()
-            };
-            job.append(low, 0.0, format);
+            let parts = rest.split_once("_{").and_then(|(plain, after)| Some((plain, after.split_once('}')?)));
+            let (plain, (low, after)) = parts.unwrap_or((rest, ("", "")));
+            for (text, size, valign) in [(plain, size, Align::Center), (low, 0.75 * size, Align::BOTTOM)] {
+                let format = TextFormat { font_id: font(size), color: colour, valign, ..TextFormat::default() };
+                job.append(text, 0.0, format);
+            }
             rest = after;
         }
     }

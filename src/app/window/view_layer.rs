@@ -1,59 +1,33 @@
 //! The layers of the views, which the digit keys switch.
 
+use super::named::named;
 use crate::render::scene::Layers;
 
-/// A layer of the views.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ViewLayer {
-    /// Triangles that are still to be converted.
-    LiveTriangles,
-    /// Finished quadrilaterals.
-    DeadQuads,
-    /// Segments of the merging front.
-    Front,
-    /// The boundary.
-    Boundary,
-    /// Nodes.
-    Nodes,
-    /// Numbers, letters and H-values.
-    Labels,
-    /// Arcs at frontal angles.
-    AngleArcs,
-    /// Unit circles of the metric, at a quarter of their size.
-    MetricEllipses,
-    /// The mesh from which the conversion started.
-    BackgroundMesh,
+named! {
+    /// A layer of the views, in the order of their digits from 1.
+    pub enum ViewLayer {
+        /// Triangles that are still to be converted.
+        LiveTriangles = "live triangles",
+        /// Finished quadrilaterals.
+        DeadQuads = "dead quads",
+        /// Segments of the merging front.
+        Front = "front",
+        /// The boundary.
+        Boundary = "boundary",
+        /// Nodes.
+        Nodes = "nodes",
+        /// Numbers, letters and H-values.
+        Labels = "labels",
+        /// Arcs at frontal angles.
+        AngleArcs = "angle arcs",
+        /// Unit circles of the metric, at a quarter of their size.
+        MetricEllipses = "metric ellipses",
+        /// The mesh from which the conversion started.
+        BackgroundMesh = "background mesh",
+    }
 }
 
 impl ViewLayer {
-    /// All layers, in the order of their digits from 1.
-    pub const ALL: [ViewLayer; 9] = [
-        ViewLayer::LiveTriangles,
-        ViewLayer::DeadQuads,
-        ViewLayer::Front,
-        ViewLayer::Boundary,
-        ViewLayer::Nodes,
-        ViewLayer::Labels,
-        ViewLayer::AngleArcs,
-        ViewLayer::MetricEllipses,
-        ViewLayer::BackgroundMesh,
-    ];
-
-    /// Its name in menus and panels.
-    pub fn name(self) -> &'static str {
-        match self {
-            ViewLayer::LiveTriangles => "live triangles",
-            ViewLayer::DeadQuads => "dead quads",
-            ViewLayer::Front => "front",
-            ViewLayer::Boundary => "boundary",
-            ViewLayer::Nodes => "nodes",
-            ViewLayer::Labels => "labels",
-            ViewLayer::AngleArcs => "angle arcs",
-            ViewLayer::MetricEllipses => "metric ellipses",
-            ViewLayer::BackgroundMesh => "background mesh",
-        }
-    }
-
     /// Its switch among those of the scene.
     pub fn switch(self, layers: &mut Layers) -> &mut bool {
         match self {

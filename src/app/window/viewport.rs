@@ -12,14 +12,14 @@ use std::sync::Arc;
 use eframe::egui::{self, PaintCallbackInfo, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 use eframe::wgpu;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use cameras::{aim, metric_lens, other_end, steer};
 pub use cameras::{lens_node, middle};
 
 use super::command::Command;
 use super::labels;
-use super::panels::{self, inspector};
+use super::panels::{self, inspector, on_click};
 use super::session::Moment;
 use super::state::{Look, State, SurfaceView, ViewCamera, ViewKind};
 use super::theme::ink;
@@ -58,7 +58,7 @@ pub struct Views {
     /// What the open context menu is about.
     menu_of: Option<Outlined>,
     /// The point about which a drag in space turns the mesh.
-    pivot: Option<glam::DVec3>,
+    pivot: Option<DVec3>,
     /// The part of the scene in space that hides labels.
     cover: space::Covering,
     /// The last request to look somewhere that the views have followed.
@@ -77,9 +77,9 @@ impl ViewFrame {
         DVec2::new(f64::from(self.rect.width()), f64::from(self.rect.height()))
     }
 
-    /// Where a point of the plane lies on the screen.
-    pub fn place(&self, p: DVec2) -> egui::Pos2 {
-        let at = self.camera.project(p.extend(0.0), self.size());
+    /// Where a point lies on the screen.
+    pub fn place(&self, p: DVec3) -> egui::Pos2 {
+        let at = self.camera.project(p, self.size());
         self.rect.min + Vec2::new(at.x as f32, at.y as f32)
     }
 
@@ -162,8 +162,8 @@ impl Views {
             pick::pick(&moment.mesh, p, frame.inside(at), &project, self.hint)
         });
         self.point(ui, &response, state, hovered, commands);
-        self.update(state, moment, palette, &frame, Form::Plane, true);
-        self.paint(ui, index, &frame, palette, 0.0, Form::Plane);
+        self.plane.update(state, moment, palette, &frame, Form::Plane, true, &mut self.shading);
+        paint(ui, index, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
         faces::show(ui, &frame, state, moment, palette);
         let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
         labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[index]);
@@ -188,17 +188,13 @@ impl Views {
         let Some(camera) = camera else {
             ground(ui);
             let text = "Select a node or a front segment to see it in its own metric.";
-            let inner = Rect::from_center_size(rect.center(), Vec2::new((rect.width() - 40.0).max(1.0), 60.0));
-            ui.scope_builder(egui::UiBuilder::new().max_rect(inner), |ui| {
-                ui.vertical_centered(|ui| ui.add(egui::Label::new(panels::note(text, palette)).wrap()));
-            });
-            return;
+            return instead(ui, rect, 60.0, text, palette);
         };
         let frame = ViewFrame { camera, rect };
         let (which, k) =
             if lens == Lens::Metric { (labels::ViewRole::Lens, LENS) } else { (labels::ViewRole::Whole, WHOLE) };
-        self.update(state, &moment, palette, &frame, Form::Plane, false);
-        self.paint(ui, k, &frame, palette, 0.0, Form::Plane);
+        self.plane.update(state, &moment, palette, &frame, Form::Plane, false, &mut self.shading);
+        paint(ui, k, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
         let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
         labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
     }
@@ -216,9 +212,7 @@ impl Views {
             self.hint = Some(e);
         }
         commands.extend(hovered.map(Command::Hover));
-        if response.clicked() {
-            commands.push(Command::Pick(hovered));
-        }
+        on_click(response, Command::Pick(hovered), commands);
         if response.double_clicked()
             && let Some(what) = hovered
         {
@@ -251,39 +245,22 @@ impl Views {
         self.plane.note(changes, slots);
         self.space.note(changes, slots);
     }
+}
 
-    /// Brings a scene up to date with the state, by the differences if possible. `leads`: the scene is laid out for
-    /// this view.
-    fn update(
-        &mut self,
-        state: &State,
-        moment: &Moment,
-        palette: &Palette,
-        frame: &ViewFrame,
-        form: Form,
-        leads: bool,
-    ) {
-        let stage = if form.is_in_space() { &mut self.space } else { &mut self.plane };
-        stage.update(state, moment, palette, frame, form, leads, &mut self.shading);
-    }
+/// Draws a scene; `hidden`: the opacity of hidden lines.
+fn paint(ui: &Ui, index: usize, frame: &ViewFrame, scene: &Arc<Scene>, palette: &Palette, light: Light, hidden: f32) {
+    let (camera, size, pixels, ground) = (frame.camera, frame.size(), ui.pixels_per_point(), palette.ground);
+    let view = View { camera, size, pixels, ground, light, hidden };
+    let picture = Picture { scene: scene.clone(), view, index };
+    ui.painter().add(Callback::new_paint_callback(frame.rect, picture));
+}
 
-    /// Draws a view; `hidden`: the opacity of hidden lines.
-    fn paint(&self, ui: &Ui, index: usize, frame: &ViewFrame, palette: &Palette, hidden: f32, form: Form) {
-        let (stage, light) = match form {
-            Form::Plane => (&self.plane, Light::NONE),
-            _ => (&self.space, Light::on_surfaces(palette.dark)),
-        };
-        let view = View {
-            camera: frame.camera,
-            size: frame.size(),
-            pixels: ui.pixels_per_point(),
-            ground: palette.ground,
-            light,
-            hidden,
-        };
-        let picture = Picture { scene: stage.scene.clone(), view, index };
-        ui.painter().add(Callback::new_paint_callback(frame.rect, picture));
-    }
+/// Words in the middle of a view that shows nothing.
+fn instead(ui: &mut Ui, rect: Rect, height: f32, text: &str, palette: &Palette) {
+    let inner = Rect::from_center_size(rect.center(), Vec2::new((rect.width() - 40.0).max(1.0), height));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(inner), |ui| {
+        ui.vertical_centered(|ui| ui.add(egui::Label::new(panels::note(text, palette)).wrap()));
+    });
 }
 
 /// Reports where a view looks, if that has changed.
@@ -310,9 +287,7 @@ fn empty(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pale
         ui.vertical_centered(|ui| {
             ui.colored_label(ink(palette.weak), "No case is open. Drop a case or a mesh file here, or");
             for command in [Command::Open(super::Source::BuiltIn("example1".into())), Command::OpenPath] {
-                if ui.button(command.name()).clicked() {
-                    commands.push(command);
-                }
+                on_click(&ui.button(command.name()), command, commands);
             }
         });
     });

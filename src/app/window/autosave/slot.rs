@@ -4,21 +4,13 @@ use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use crate::app::window::settings::state_folder;
 use crate::core::fault::Fault;
 use crate::core::record::run_file;
 
-/// The folder of autosaved runs: in `XDG_STATE_HOME` or this system's equivalent; none if the user has no home.
+/// The folder of autosaved runs; none if the user has no home.
 pub fn folder() -> Option<PathBuf> {
-    let of = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let home = |rest: &str| of("HOME").map(|home| home.join(rest));
-    let own = if cfg!(windows) {
-        of("LOCALAPPDATA")
-    } else if cfg!(target_os = "macos") {
-        home("Library/Application Support")
-    } else {
-        of("XDG_STATE_HOME").or_else(|| home(".local/state"))
-    };
-    own.map(|own| own.join("quadfront").join("runs"))
+    state_folder().map(|own| own.join("runs"))
 }
 
 /// The file of an autosaved run, with the lock of the window that it belongs to.

@@ -32,7 +32,7 @@ impl Labels<'_> {
     }
 
     /// The place of the corner and the screen directions of its two legs, anticlockwise in the mesh, with their
-    /// lengths.
+    /// lengths; none if it is too small to be marked.
     fn corner(&self, segment: &Segment, side: Side) -> Option<(Pos2, [Vec2; 2])> {
         let mesh = &self.moment.mesh;
         let h = mesh.front_between(segment.a, segment.b)?;
@@ -42,15 +42,15 @@ impl Labels<'_> {
         };
         let centre = self.place(at)?;
         let legs = [self.place(from)? - centre, self.place(to)? - centre];
+        if legs.iter().any(|leg| leg.length() < 40.0) {
+            return None;
+        }
         // Seen from behind, the mesh turns the other way.
         Some((centre, if self.is_behind(at) { [legs[1], legs[0]] } else { legs }))
     }
 
     fn wedge(&self, segment: &Segment, side: Side) {
         let Some((centre, legs)) = self.corner(segment, side) else { return };
-        if legs.iter().any(|leg| leg.length() < 40.0) {
-            return;
-        }
         let colour = ink(self.palette.label.faded(0.8));
         let mut points = vec![centre];
         points.extend(arc(centre, legs, 14.0));
@@ -59,9 +59,6 @@ impl Labels<'_> {
 
     fn arc(&mut self, segment: &Segment, side: Side) {
         let Some((centre, legs)) = self.corner(segment, side) else { return };
-        if legs.iter().any(|leg| leg.length() < 40.0) {
-            return;
-        }
         let points = arc(centre, legs, 26.0);
         let middle = points[points.len() / 2];
         self.painter.add(Shape::line(points, Stroke::new(1.25, ink(self.palette.accent))));

@@ -47,13 +47,9 @@ impl Labels<'_> {
             }
             _ => (p.extend(0.0), axes.map(|axis| axis.extend(0.0))),
         };
-        let place = |q: glam::DVec3| {
-            let at = self.frame.camera.project(q, self.frame.size());
-            self.frame.rect.min + Vec2::new(at.x as f32, at.y as f32)
-        };
         let point = |k: i32| {
             let t = f64::from(k) * std::f64::consts::TAU / 48.0;
-            place(centre + axes[0] * libm::cos(t) + axes[1] * libm::sin(t))
+            self.frame.place(centre + axes[0] * libm::cos(t) + axes[1] * libm::sin(t))
         };
         (0..48).map(point).collect()
     }
@@ -101,7 +97,7 @@ impl Labels<'_> {
         let ViewCamera { camera, is_fitted, size } = state.view().plane;
         let Some(camera) = camera.filter(|_| in_plane && !is_fitted) else { return };
         let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), size, DVec2::new(0.0, size.y)];
-        let corners = corners.map(|at| camera.unproject(at, size).map(|p| self.frame.place(p)));
+        let corners = corners.map(|at| camera.unproject(at, size).map(|p| self.frame.place(p.extend(0.0))));
         if let [Some(a), Some(b), Some(c), Some(d)] = corners {
             let stroke = Stroke::new(1.25, ink(self.palette.selection));
             self.painter.add(Shape::closed_line(vec![a, b, c, d], stroke));

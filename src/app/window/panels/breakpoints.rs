@@ -4,7 +4,7 @@ use eframe::egui::{
     self, Align, Id, Key, Label, Layout, Modifiers, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo,
 };
 
-use super::{icon_button, inset, note};
+use super::{icon_button, inset, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
@@ -52,10 +52,7 @@ fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: 
                 commands.push(Command::SwitchBreakpoint(k));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let command = Command::RemoveBreakpoint(k);
-                if icon_button(ui, icons::X, 13.0, &command, true).clicked() {
-                    commands.push(command);
-                }
+                icon_button(ui, icons::X, 13.0, Command::RemoveBreakpoint(k), true, commands);
                 if let Some(hits) = state.run().hits.get(k) {
                     let text = format!("{} in this run", words::grouped(*hits as u64));
                     ui.label(note(text, palette)).on_hover_text("How often it holds in the recorded part of the run");
@@ -95,13 +92,10 @@ fn watches(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pa
                 let response = ui.add(button.frame_when_inactive(false));
                 let label = format!("Stop watching {}", words::thing(what));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label.clone()));
-                if response.on_hover_text(&label).clicked() {
-                    commands.push(Command::Watch(what));
-                }
+                on_click(&response.on_hover_text(&label), Command::Watch(what), commands);
                 let touched = ui.add(Label::new(note("last touch", palette)).sense(Sense::click()).selectable(false));
-                if touched.on_hover_text("Go back to the step that touched it last").clicked() {
-                    commands.push(Command::LastTouch(what));
-                }
+                let touched = touched.on_hover_text("Go back to the step that touched it last");
+                on_click(&touched, Command::LastTouch(what), commands);
             });
         });
     }
@@ -179,8 +173,7 @@ fn field(ui: &mut Ui, text: &mut String, offers: &[(String, String)], commands: 
     } else if let (Err(fault), false) = (&parsed, text.trim().is_empty()) {
         // While the user types it is a hint; after Enter, until it is corrected, an error.
         let colour = if response.has_focus() { palette.weak } else { palette.broken };
-        let fault = RichText::new(fault.to_string()).font(theme::regular(theme::TABLE)).color(ink(colour));
-        ui.add(Label::new(fault).wrap());
+        ui.add(Label::new(line(fault.to_string(), colour)).wrap());
     }
     if entered {
         response.request_focus();
@@ -197,9 +190,7 @@ pub fn bookmarks(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palett
             let what = step.checked_sub(1).and_then(|k| state.run().track.get(k as usize));
             let what = what.map_or(String::new(), |tracked| words::kind(tracked.kind));
             let text = format!("{}  step {}   {what}", icons::BOOKMARK, words::grouped(*step));
-            if ui.button(text).on_hover_text("Go to that step").clicked() {
-                commands.push(Command::Go(Goal::Step(*step)));
-            }
+            on_click(&ui.button(text).on_hover_text("Go to that step"), Command::Go(Goal::Step(*step)), commands);
         }
     });
 }

@@ -1,9 +1,8 @@
 //! The panel for figures: what they show, their look and their size.
 
-use eframe::egui::{
-    self, Align2, ComboBox, Context, DragValue, Grid, RichText, TextEdit, Ui, Vec2, WidgetInfo, Window,
-};
+use eframe::egui::{self, Align2, Context, DragValue, Grid, RichText, TextEdit, Ui, Vec2, WidgetInfo, Window};
 
+use super::{choice, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::figures::{Content, Formats};
 use crate::app::window::state::State;
@@ -37,53 +36,41 @@ fn field(ui: &mut Ui, text: &mut String, name: &str, hint: &str) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, name));
 }
 
+fn radios<T: PartialEq>(ui: &mut Ui, value: &mut T, both: [(T, &str); 2]) {
+    ui.horizontal(|ui| {
+        for (one, text) in both {
+            ui.radio_value(value, one, text);
+        }
+    });
+}
+
 fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let mut figure = state.workspace().figure.clone();
-    let head = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).color(ink(palette.weak)));
     Grid::new("figure").num_columns(2).spacing(Vec2::new(12.0, 6.0)).show(ui, |ui| {
-        head(ui, "shows");
-        let chosen = ComboBox::from_id_salt("content").selected_text(figure.content.name()).width(196.0);
-        let shown = chosen.show_ui(ui, |ui| {
-            for content in Content::ALL {
-                ui.selectable_value(&mut figure.content, content, content.name());
-            }
-        });
-        shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::ComboBox, true, "What the figure shows"));
-        ui.end_row();
-        if figure.content == Content::Stops {
-            head(ui, "NQ");
-            field(ui, &mut figure.stops, "NQ of the strip", "50,100,150,end");
+        let mut row = |name: &str, widgets: &mut dyn FnMut(&mut Ui)| {
+            ui.label(RichText::new(name).color(ink(palette.weak)));
+            widgets(ui);
             ui.end_row();
+        };
+        let all = Content::ALL.map(|content| (content, content.name()));
+        row("shows", &mut |ui| {
+            choice(ui, "What the figure shows", 196.0, figure.content.name(), &mut figure.content, all);
+        });
+        if figure.content == Content::Stops {
+            row("NQ", &mut |ui| field(ui, &mut figure.stops, "NQ of the strip", "50,100,150,end"));
         }
-        head(ui, "size");
         let usual = if figure.is_strip() { "174mm" } else { "84mm" };
-        field(ui, &mut figure.size, "Size of the figure", &format!("{usual}, or 1920x1080"));
-        ui.end_row();
-        head(ui, "dots per inch");
-        let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
-        dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Dots per inch"));
-        ui.end_row();
-        head(ui, "ink");
-        ui.horizontal(|ui| {
-            ui.radio_value(&mut figure.ink, Ink::Colour, "colour");
-            ui.radio_value(&mut figure.ink, Ink::Grey, "grey");
+        let hint = format!("{usual}, or 1920x1080");
+        row("size", &mut |ui| field(ui, &mut figure.size, "Size of the figure", &hint));
+        row("dots per inch", &mut |ui| {
+            let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
+            dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Dots per inch"));
         });
-        ui.end_row();
-        head(ui, "ground");
-        ui.horizontal(|ui| {
-            ui.radio_value(&mut figure.transparent, false, "white");
-            ui.radio_value(&mut figure.transparent, true, "transparent");
-        });
-        ui.end_row();
-        head(ui, "part");
-        ui.horizontal(|ui| {
-            ui.radio_value(&mut figure.in_view, false, "the whole mesh");
-            ui.radio_value(&mut figure.in_view, true, "what is in view");
-        });
-        ui.end_row();
-        head(ui, "name");
-        field(ui, &mut figure.name, "Name of the figure", "from case and step");
-        ui.end_row();
+        row("ink", &mut |ui| radios(ui, &mut figure.ink, [(Ink::Colour, "colour"), (Ink::Grey, "grey")]));
+        row("ground", &mut |ui| radios(ui, &mut figure.transparent, [(false, "white"), (true, "transparent")]));
+        let parts = [(false, "the whole mesh"), (true, "what is in view")];
+        row("part", &mut |ui| radios(ui, &mut figure.in_view, parts));
+        row("name", &mut |ui| field(ui, &mut figure.name, "Name of the figure", "from case and step"));
     });
     if !matches!(figure.content, Content::Lengths | Content::Angles) {
         ui.add_space(6.0);
@@ -110,11 +97,8 @@ fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palet
     }
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        for formats in [Formats::Svg, Formats::Png, Formats::Both] {
-            let text = format!("Save {}", formats.name());
-            if ui.button(text).clicked() {
-                commands.push(Command::SaveFigure(formats));
-            }
+        for formats in Formats::ALL {
+            on_click(&ui.button(format!("Save {}", formats.name())), Command::SaveFigure(formats), commands);
         }
         if state.run().is_making_figure() {
             ui.spinner();

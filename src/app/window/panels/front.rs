@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
 use egui_extras::{Column, TableBuilder};
 
-use super::inspector;
+use super::{inspector, line};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::Moment;
@@ -228,8 +228,7 @@ fn table(
                         (_, true) => palette.strong,
                         _ => palette.text,
                     };
-                    let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
-                    ui.add(egui::Label::new(text).selectable(false));
+                    ui.add(egui::Label::new(line(text, colour)).selectable(false));
                 });
             }
             row.col(|ui| {
@@ -240,17 +239,15 @@ fn table(
             let response = row.response();
             let name = format!("Segment {}", words::segment(segment.a, segment.b));
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_picked, name.clone()));
-            let ends = [segment.a, segment.b];
+            let what = Outlined::Edge([segment.a, segment.b]);
             if response.hovered() {
-                commands.push(Command::Hover(Outlined::Edge(ends)));
+                commands.push(Command::Hover(what));
             }
-            response.context_menu(|ui| {
-                inspector::past::actions(ui, state, Outlined::Edge(ends), commands);
-            });
+            response.context_menu(|ui| inspector::past::actions(ui, state, what, commands));
             if response.double_clicked() {
-                commands.push(Command::Show(Outlined::Edge(ends)));
+                commands.push(Command::Show(what));
             } else if response.clicked() {
-                commands.push(Command::Pick(Some(Outlined::Edge(ends))));
+                commands.push(Command::Pick(Some(what)));
             }
         });
     });
@@ -280,8 +277,7 @@ fn accent_row(ui: &Ui, first: bool, palette: &Palette) {
 }
 
 fn class(ui: &mut Ui, class: u8, palette: &Palette) {
-    let text = RichText::new(class.to_string()).font(theme::regular(theme::TABLE)).color(ink(palette.text));
-    ui.add(egui::Label::new(text).selectable(false));
+    ui.add(egui::Label::new(line(class.to_string(), palette.text)).selectable(false));
     let (rect, _) = ui.allocate_exact_size(Vec2::new(12.0, 3.0), Sense::hover());
     ui.painter().rect_filled(rect, 1.5, ink(palette.front[usize::from(class) - 1]));
 }

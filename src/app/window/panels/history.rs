@@ -1,12 +1,11 @@
 //! The steps around the current one, and the changes of the user.
 
-use eframe::egui::{RichText, ScrollArea, Ui};
+use eframe::egui::{ScrollArea, Ui};
 
-use super::{heading, inset, note};
+use super::{heading, inset, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
-use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::run::EditKind;
 use crate::render::palette::Palette;
@@ -25,9 +24,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                     EditKind::Parameter { key, value } => format!("{key} = {value}"),
                     EditKind::Base { a, b } => format!("base {}", words::segment(*a, *b)),
                 };
-                if ui.button(format!("from step {}: {what}", words::grouped(edit.step))).clicked() {
-                    commands.push(Command::Go(Goal::Step(edit.step)));
-                }
+                let button = ui.button(format!("from step {}: {what}", words::grouped(edit.step)));
+                on_click(&button, Command::Go(Goal::Step(edit.step)), commands);
             }
             heading(ui, "Steps around this one", "", palette);
             let now = moment.step as usize;
@@ -41,10 +39,11 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                 } else {
                     palette.hint
                 };
-                let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
-                if ui.selectable_label(false, text).clicked() {
-                    commands.push(Command::Go(Goal::Step(k as u64 + 1)));
-                }
+                on_click(
+                    &ui.selectable_label(false, line(text, colour)),
+                    Command::Go(Goal::Step(k as u64 + 1)),
+                    commands,
+                );
             }
         });
     });

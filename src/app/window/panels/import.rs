@@ -1,11 +1,11 @@
 //! The import of a mesh file: the options of the command line as a form, what the mesh is like, and what was repaired.
 
 use eframe::egui::{
-    self, Align, Button, ComboBox, DragValue, Frame, Grid, Layout, Panel, ProgressBar, Response, RichText, Role,
-    ScrollArea, Sense, Slider, Ui, Vec2, WidgetInfo,
+    self, Align, Button, DragValue, Frame, Grid, Layout, Panel, ProgressBar, Response, RichText, Role, ScrollArea,
+    Sense, Slider, Ui, Vec2, WidgetInfo,
 };
 
-use super::{heading, inset, note};
+use super::{choice, heading, inset, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, UNITS};
@@ -132,7 +132,7 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
     ui.spacing_mut().item_spacing.y = 5.0;
     unit(ui, &mut options, &taking, &mut dragging, palette);
     used(ui, &mut options, import, palette);
-    sizes(ui, &mut options, import, &taking, &mut dragging, palette);
+    sizes(ui, &mut options, import, &mut dragging, palette);
     let charted = import.has_charts();
     ui.add_enabled_ui(charted, |ui| {
         let defaults = Taking::default();
@@ -156,14 +156,12 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
         });
     });
     if !charted && import.loaded.is_some() {
-        ui.label(note(
-            "Triangles in the plane are converted as they are: features and charts are not needed.",
-            palette,
-        ));
+        let text = "Triangles in the plane are converted as they are: features and charts are not needed.";
+        ui.label(note(text, palette));
     }
     // The end of a drag is reported too.
     let gesture = if dragging { Gesture::Dragging } else { Gesture::Done };
-    if options != import.options || import.gesture() != gesture {
+    if options != import.options || import.gesture != gesture {
         commands.push(Command::SetImport(Box::new(options), gesture));
     }
 }
@@ -191,18 +189,13 @@ fn unit(ui: &mut Ui, options: &mut ImportOptions, taking: &Taking, dragging: &mu
     let mut scale = taking.scale;
     row(ui, "unit", "The unit of lengths after scaling (--scale)", palette, |ui| {
         // The conversions that users think of; some have the same scale.
-        let mut known: Vec<(String, f64)> = vec![("as in the file".to_owned(), 1.0)];
+        let mut known: Vec<(f64, String)> = vec![(1.0, "as in the file".to_owned())];
         for (to, metres) in [UNITS[2], UNITS[0]] {
             let others = UNITS.iter().filter(|unit| unit.0 != to);
-            known.extend(others.map(|&(from, own)| (format!("{from} to {to}"), rounded(own / metres))));
+            known.extend(others.map(|&(from, own)| (rounded(own / metres), format!("{from} to {to}"))));
         }
-        let now = known.iter().find(|unit| unit.1 == scale).map_or("other", |unit| unit.0.as_str()).to_owned();
-        let shown = ComboBox::from_id_salt("unit").selected_text(now).width(112.0).show_ui(ui, |ui| {
-            for (name, factor) in &known {
-                ui.selectable_value(&mut scale, *factor, name);
-            }
-        });
-        shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Unit"));
+        let now = known.iter().find(|unit| unit.0 == scale).map_or("other", |unit| unit.1.as_str()).to_owned();
+        choice(ui, "Unit", 112.0, now, &mut scale, known);
         ui.label(note("×", palette));
         let speed = 0.01 * scale;
         *dragging |= number(ui, &mut scale, Taking::SCALES, speed, "", "Scale").dragged();
@@ -238,14 +231,7 @@ fn used(ui: &mut Ui, options: &mut ImportOptions, import: &Import, palette: &Pal
     }
 }
 
-fn sizes(
-    ui: &mut Ui,
-    options: &mut ImportOptions,
-    import: &Import,
-    taking: &Taking,
-    dragging: &mut bool,
-    palette: &Palette,
-) {
+fn sizes(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragging: &mut bool, palette: &Palette) {
     let Some(loaded) = &import.loaded else { return };
     let before = match (options.mesh_size, options.curvature) {
         (None, _) => Sizing::OfMesh,
@@ -260,16 +246,12 @@ fn sizes(
             Sizing::Uniform => "the same everywhere",
             Sizing::ByCurvature => "finer where it is curved",
         };
-        let shown = ComboBox::from_id_salt("size").selected_text(name(before)).width(180.0).show_ui(ui, |ui| {
-            for sizing in [Sizing::OfMesh, Sizing::Uniform, Sizing::ByCurvature] {
-                ui.selectable_value(&mut wanted, sizing, name(sizing));
-            }
-        });
-        shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Size of elements"));
+        let all = [Sizing::OfMesh, Sizing::Uniform, Sizing::ByCurvature].map(|sizing| (sizing, name(sizing)));
+        choice(ui, "Size of elements", 180.0, name(before), &mut wanted, all);
     });
     if wanted != before {
         // Two digits are enough to start from.
-        let mean = loaded.mean_edge * taking.scale;
+        let mean = loaded.mean_edge * import.taking().scale;
         let plain: f64 = format!("{mean:.1e}").parse().unwrap_or(mean);
         options.mesh_size = (wanted != Sizing::OfMesh).then(|| options.mesh_size.unwrap_or(plain));
         options.curvature = (wanted == Sizing::ByCurvature).then_some(CHORD);
@@ -295,25 +277,22 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     let census = loaded.census;
     let extent = loaded.extent * import.taking().scale;
     let named = |n: usize, one: &str, several: &str| format!("{} {}", grouped(n), if n == 1 { one } else { several });
-    Grid::new("counts").num_columns(2).striped(false).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES).show(
-        ui,
-        |ui| {
-            let mut line = |name: &str, value: String| {
-                ui.label(note(name, palette));
-                let text = RichText::new(value).font(theme::regular(theme::TABLE)).color(ink(palette.text));
-                ui.add(egui::Label::new(text).wrap());
-                ui.end_row();
-            };
-            line("extent", [extent.x, extent.y, extent.z].map(three_digits).join(" × "));
-            line("nodes", grouped(census.nodes));
-            line("triangles", grouped(census.triangles));
-            line("components", grouped(census.components));
-            line("boundary loops", grouped(census.border_loops));
-            if loaded.regions > 1 {
-                line("regions", grouped(loaded.regions));
-            }
-        },
-    );
+    let grid = Grid::new("counts").num_columns(2).striped(false).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES);
+    grid.show(ui, |ui| {
+        let mut row = |name: &str, value: String| {
+            ui.label(note(name, palette));
+            ui.add(egui::Label::new(line(value, palette.text)).wrap());
+            ui.end_row();
+        };
+        row("extent", extent.to_array().map(three_digits).join(" × "));
+        row("nodes", grouped(census.nodes));
+        row("triangles", grouped(census.triangles));
+        row("components", grouped(census.components));
+        row("boundary loops", grouped(census.border_loops));
+        if loaded.regions > 1 {
+            row("regions", grouped(loaded.regions));
+        }
+    });
     let Some(shown) = &import.shown else { return };
     ui.add_space(6.0);
     for (kind, count) in KINDS.into_iter().zip(shown.counts) {
@@ -333,12 +312,8 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
         Some(division) => {
             let seams = division.seams.len();
             if seams > 0 {
-                swatch(
-                    ui,
-                    seam_line(palette),
-                    named(seams, "edge cut for the plane", "edges cut for the plane"),
-                    palette,
-                );
+                let text = named(seams, "edge cut for the plane", "edges cut for the plane");
+                swatch(ui, seam_line(palette), text, palette);
             }
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(Vec2::new(30.0, 16.0), Sense::hover());
@@ -349,7 +324,7 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
                         egui::Rect::from_min_size(rect.min + Vec2::new(k as f32 * width, 2.0), Vec2::new(width, 12.0));
                     ui.painter().rect_filled(part, 0.0, ink(*colour));
                 }
-                ui.label(line_text(named(division.charts, "chart", "charts"), palette));
+                ui.label(line(named(division.charts, "chart", "charts"), palette.text));
             });
         }
         None if import.has_charts() && import.refused.is_none() => {
@@ -362,14 +337,10 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
         for repair in &loaded.repairs {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK).font(theme::regular(theme::TABLE)).color(ink(palette.holds)));
-                ui.add(egui::Label::new(line_text(repair.clone(), palette)).wrap());
+                ui.add(egui::Label::new(line(repair.clone(), palette.text)).wrap());
             });
         }
     }
-}
-
-fn line_text(text: String, palette: &Palette) -> RichText {
-    RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text))
 }
 
 /// A line as the view draws it, with its meaning.
@@ -377,7 +348,7 @@ fn swatch(ui: &mut Ui, (colour, width): (Rgba, f32), text: String, palette: &Pal
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::new(30.0, 16.0), Sense::hover());
         ui.painter().hline(rect.x_range(), rect.center().y, (width, ink(colour)));
-        ui.label(line_text(text, palette));
+        ui.label(line(text, palette.text));
     });
 }
 
@@ -409,14 +380,10 @@ fn buttons(ui: &mut Ui, import: &Import, is_opening: bool, commands: &mut Vec<Co
     ui.horizontal(|ui| {
         let ready = import.is_ready() && !is_opening;
         let convert = Button::new(RichText::new("Convert").font(theme::semibold(theme::BODY)));
-        if ui.add_enabled(ready, convert.min_size(Vec2::new(120.0, 28.0))).clicked() {
-            commands.push(Command::Convert);
-        }
+        on_click(&ui.add_enabled(ready, convert.min_size(Vec2::new(120.0, 28.0))), Command::Convert, commands);
         let cancel = Button::new("Cancel").min_size(Vec2::new(84.0, 28.0));
         let tip = if is_opening { "Back to the import" } else { "Do not import this mesh  (Esc)" };
-        if ui.add(cancel).on_hover_text(tip).clicked() {
-            commands.push(Command::CancelImport);
-        }
+        on_click(&ui.add(cancel).on_hover_text(tip), Command::CancelImport, commands);
     });
     ui.add_space(4.0);
 }

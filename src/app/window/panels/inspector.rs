@@ -9,7 +9,7 @@ pub mod past;
 
 use eframe::egui::{Align, Label, Layout, Rect, Response, RichText, ScrollArea, Sense, Ui, UiBuilder, Vec2};
 
-use super::{heading, inset, note};
+use super::{heading, inset, line, note, on_click, stands_for};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -99,8 +99,7 @@ fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground
         let first = k == 0 || (is_last && left_last);
         let layout = if first { Layout::left_to_right(Align::Center) } else { Layout::right_to_left(Align::Center) };
         ui.scope_builder(UiBuilder::new().max_rect(cell).layout(layout), |ui| {
-            let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
-            ui.add(Label::new(text).selectable(false).truncate());
+            ui.add(Label::new(line(text, colour)).selectable(false).truncate());
         });
         x += width + GAP;
     }
@@ -115,15 +114,15 @@ fn table_head(ui: &mut Ui, widths: &[f32], texts: &[&str], palette: &Palette) {
 
 /// A link that selects something.
 fn link(ui: &mut Ui, text: String, what: Outlined, commands: &mut Vec<Command>, palette: &Palette) {
-    let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text));
-    let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false));
-    let response = response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand);
-    if response.hovered() {
-        commands.push(Command::Hover(what));
-    }
-    if response.clicked() {
-        commands.push(Command::Pick(Some(what)));
-    }
+    let response = ui.add(Label::new(line(text, palette.text)).sense(Sense::click()).selectable(false));
+    stands_for(&response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand), what, commands);
+}
+
+/// The length of an edge, in the metric and in space.
+fn length(ui: &mut Ui, metric: f64, physical: f64, palette: &Palette) {
+    heading(ui, "Length", "eqs. 4, 5", palette);
+    let text = format!("**{}** metric,  {} in space", words::fixed(metric, 2), words::size(physical));
+    formula(ui, &text, palette).on_hover_text("In a plane case the parametric length is the length in space.");
 }
 
 /// Elements as links.
@@ -155,9 +154,6 @@ fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut V
         ];
         let ground = (k % 2 == 0).then_some(palette.stripe);
         let response = table_row(ui, &widths, &texts, palette.text, ground);
-        if response.hovered() {
-            commands.push(Command::Hover(Outlined::Node(*node)));
-        }
         let tip = format!(
             "node {}: h\u{2081} runs along the axis; M = ({}, {}, {}), \u{3bb} = {} and {}; click to select it",
             node.0,
@@ -167,9 +163,7 @@ fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut V
             words::size(told.lambda[1]),
             words::size(told.lambda[0]),
         );
-        if response.on_hover_text(tip).clicked() {
-            commands.push(Command::Pick(Some(Outlined::Node(*node))));
-        }
+        stands_for(&response.on_hover_text(tip), Outlined::Node(*node), commands);
     }
     if moment.mesh.embedding().is_none() {
         ui.label(note("Plane case: u = x, v = y, z = 0.", palette));

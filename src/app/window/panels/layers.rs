@@ -2,7 +2,7 @@
 
 use eframe::egui::{ScrollArea, Ui};
 
-use super::{heading, inset, note};
+use super::{heading, inset, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::state::State;
 use crate::app::window::view_layer::ViewLayer;
@@ -30,8 +30,6 @@ pub fn list(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     }
     heading(ui, "Colour by", "", palette);
     for by in ColourBy::ALL {
-        if ui.radio(state.document().colour_by == by, by.name()).clicked() {
-            commands.push(Command::ColourBy(by));
-        }
+        on_click(&ui.radio(state.document().colour_by == by, by.name()), Command::ColourBy(by), commands);
     }
 }

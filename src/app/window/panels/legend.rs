@@ -13,9 +13,7 @@ use crate::render::palette::{Palette, Rgba};
 pub fn show(ui: &mut Ui, kept: f32, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 4.0;
     for (icon, command) in [(icons::CORNERS_OUT, Command::Fit), (icons::CROSSHAIR, Command::ShowDecision)] {
-        if icon_button(ui, icon, theme::ICON, &command, state.run().moment.is_some()).clicked() {
-            commands.push(command);
-        }
+        icon_button(ui, icon, theme::ICON, command, state.run().moment.is_some(), commands);
     }
     layers(ui, state, commands, palette);
     ui.add_space(4.0);

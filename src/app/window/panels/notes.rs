@@ -10,7 +10,7 @@ use crate::render::palette::Palette;
 /// Shows the notes, if they are open.
 pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let opened = state.run().opened.as_ref().filter(|_| state.view().notes);
-    let Some(case) = opened.map(|opened| &opened.case) else { return };
+    let Some(case) = opened.map(|opened| &opened.run.case) else { return };
     let mut open = true;
     Window::new("Notes")
         .open(&mut open)

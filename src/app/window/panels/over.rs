@@ -1,8 +1,6 @@
 //! What opens over the window: all commands by name, all keys, and fields for a step or a path.
 
-use eframe::egui::{
-    self, Align2, Area, Button, Context, Frame, Key, Label, Margin, Order, RichText, ScrollArea, TextEdit, Ui, Vec2,
-};
+use eframe::egui::{self, Align2, Area, Button, Context, Key, Label, Order, RichText, ScrollArea, TextEdit, Ui, Vec2};
 
 use crate::app::window::command::{Command, keys};
 use crate::app::window::mesh_out;
@@ -33,12 +31,8 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
     if over == Overlay::Nothing {
         return;
     }
-    let frame = Frame::NONE
-        .fill(ink(palette.panel))
-        .stroke((1.0, ink(palette.hint)))
-        .corner_radius(4.0)
-        .inner_margin(Margin::same(12))
-        .shadow(egui::Shadow { offset: [0, 6], blur: 18, spread: 0, color: egui::Color32::from_black_alpha(80) });
+    let shadow = egui::Shadow { offset: [0, 6], blur: 18, spread: 0, color: egui::Color32::from_black_alpha(80) };
+    let frame = super::floating(palette).shadow(shadow);
     let area =
         Area::new(egui::Id::unique("over")).order(Order::Foreground).anchor(Align2::CENTER_TOP, Vec2::new(0.0, 60.0));
     let shown = area.show(context, |ui| {

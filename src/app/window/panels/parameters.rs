@@ -1,8 +1,8 @@
 //! The parameters at the current step: a change takes effect from this step on.
 
-use eframe::egui::{self, Align, ComboBox, Layout, RichText, Role, ScrollArea, Slider, Ui, Vec2, WidgetInfo};
+use eframe::egui::{self, Align, Layout, RichText, Role, ScrollArea, Slider, Ui, Vec2, WidgetInfo};
 
-use super::{icon_button, inset};
+use super::{choice, icon_button, inset, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::state::State;
@@ -11,81 +11,52 @@ use crate::core::case::Parameters;
 use crate::core::run::EditKind;
 use crate::render::palette::Palette;
 
-/// A number: key, name, range, decimals, unit, the paper's value, and its effect.
+/// A number: key, name, range, decimals, and unit.
 struct Number {
     key: &'static str,
     name: &'static str,
     range: [f64; 2],
     decimals: usize,
     unit: &'static str,
-    paper: &'static str,
-    tip: &'static str,
 }
 
-const NUMBERS: [Number; 7] = [
-    Number {
-        key: "theta_rect",
-        name: "θ rect",
-        range: [90.0, 180.0],
-        decimals: 1,
-        unit: "°",
-        paper: "paper 135",
-        tip: "Below this frontal angle the neighbouring front segment is the side edge (table 1).",
-    },
-    Number {
-        key: "c",
-        name: "c",
-        range: [0.5, 4.0],
-        decimals: 2,
-        unit: "",
-        paper: "1.5–2.0",
-        tip: "A segment is within reach if its H-value is below c times the smallest one (section 4.3.3).",
-    },
-    Number {
-        key: "theta_seam",
-        name: "θ seam",
-        range: [0.0, 90.0],
-        decimals: 1,
-        unit: "°",
-        paper: "30, fig. 12: 45",
-        tip: "At or below this frontal angle a front corner is closed by a seam (section 4.3.6).",
-    },
-    Number {
-        key: "side_deviation",
-        name: "side dev.",
-        range: [0.0, 90.0],
-        decimals: 1,
-        unit: "°",
-        paper: "paper 30",
-        tip: "The greatest deviation of a side edge from its target direction (eq. 8).",
-    },
-    Number {
-        key: "side_split",
-        name: "side split",
-        range: [1.0, 4.0],
-        decimals: 2,
-        unit: "×",
-        paper: "paper 1.5",
-        tip: "A live side edge longer than this times the base is divided (section 4.3.4).",
-    },
-    Number {
-        key: "layers",
-        name: "layers",
-        range: [0.0, 20.0],
-        decimals: 0,
-        unit: "",
-        paper: "none",
-        tip: "Rows that are offset from the boundary before the front starts.",
-    },
-    Number {
-        key: "theta_revr",
-        name: "θ revr",
-        range: [180.0, 360.0],
-        decimals: 1,
-        unit: "°",
-        paper: "225; classifies only",
-        tip: "Angles above this count as reversals (fig. 12). For display only: the mesh does not change.",
-    },
+/// The numbers with the paper's values and their effects.
+const NUMBERS: [(Number, &str, &str); 7] = [
+    (
+        Number { key: "theta_rect", name: "θ rect", range: [90.0, 180.0], decimals: 1, unit: "°" },
+        "paper 135",
+        "Below this frontal angle the neighbouring front segment is the side edge (table 1).",
+    ),
+    (
+        Number { key: "c", name: "c", range: [0.5, 4.0], decimals: 2, unit: "" },
+        "1.5–2.0",
+        "A segment is within reach if its H-value is below c times the smallest one (section 4.3.3).",
+    ),
+    (
+        Number { key: "theta_seam", name: "θ seam", range: [0.0, 90.0], decimals: 1, unit: "°" },
+        "30, fig. 12: 45",
+        "At or below this frontal angle a front corner is closed by a seam (section 4.3.6).",
+    ),
+    (
+        Number { key: "side_deviation", name: "side dev.", range: [0.0, 90.0], decimals: 1, unit: "°" },
+        "paper 30",
+        "The greatest deviation of a side edge from its target direction (eq. 8).",
+    ),
+    (
+        Number { key: "side_split", name: "side split", range: [1.0, 4.0], decimals: 2, unit: "×" },
+        "paper 1.5",
+        "A live side edge longer than this times the base is divided (section 4.3.4).",
+    ),
+    (
+        Number { key: "layers", name: "layers", range: [0.0, 20.0], decimals: 0, unit: "" },
+        "none",
+        "Rows that are offset from the boundary before the front starts.",
+    ),
+    (
+        Number { key: "theta_revr", name: "θ revr", range: [180.0, 360.0], decimals: 1, unit: "°" },
+        "225; classifies only",
+        "Angles above this count as reversals (fig. 12). For display only: the mesh does not change.",
+    ),
 ];
 
 const SWITCHES: [(&str, &str, &str); 7] = [
@@ -134,11 +105,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut ParametersState, commands: &
 
 /// The button in the panel's bar.
 pub fn reset(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let command = Command::ResetParameters;
     let changed = state.document().edits.iter().any(|edit| matches!(edit.kind, EditKind::Parameter { .. }));
-    if icon_button(ui, icons::RESET, theme::ICON, &command, changed).clicked() {
-        commands.push(command);
-    }
+    icon_button(ui, icons::RESET, theme::ICON, Command::ResetParameters, changed, commands);
 }
 
 fn row(
@@ -146,7 +114,7 @@ fn row(
     state: &State,
     local: &mut ParametersState,
     parameters: &Parameters,
-    number: &Number,
+    (number, paper, tip): &(Number, &str, &str),
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
@@ -158,7 +126,7 @@ fn row(
         let label = RichText::new(number.name).color(ink(palette.text));
         ui.allocate_ui_with_layout(Vec2::new(58.0, 24.0), Layout::left_to_right(Align::Center), |ui| {
             ui.set_width(58.0);
-            ui.label(label).on_hover_text(number.tip);
+            ui.label(label).on_hover_text(*tip);
         });
         ui.spacing_mut().slider_width = 84.0;
         let [low, high] = number.range;
@@ -189,7 +157,7 @@ fn row(
         if changed {
             back(ui, state, number.key, commands);
         } else {
-            let paper = RichText::new(number.paper).font(theme::regular(theme::HEAD)).color(ink(palette.weak));
+            let paper = RichText::new(*paper).font(theme::regular(theme::HEAD)).color(ink(palette.weak));
             ui.add(egui::Label::new(paper).truncate());
         }
     });
@@ -200,9 +168,8 @@ fn back(ui: &mut Ui, state: &State, key: &'static str, commands: &mut Vec<Comman
     let Some(value) = state.parameters_of_case().and_then(|case| case.text_of(key)) else { return };
     let response = ui.add(egui::Button::new(format!("{} {value}", icons::RESET)).small());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {key}")));
-    if response.on_hover_text("Reset to the value of the case, from this step on").clicked() {
-        commands.push(Command::Set(key, value));
-    }
+    let response = response.on_hover_text("Reset to the value of the case, from this step on");
+    on_click(&response, Command::Set(key, value), commands);
 }
 
 fn rounded(value: f64, decimals: usize) -> f64 {
@@ -214,15 +181,11 @@ fn selection(ui: &mut Ui, parameters: &Parameters, commands: &mut Vec<Command>, 
     let now = parameters.text_of("selection").unwrap_or_default();
     ui.horizontal(|ui| {
         ui.label(RichText::new("select by").color(ink(palette.text)));
-        let text = SELECTION.iter().find(|s| s.0 == now).map_or(now.as_str(), |s| s.1).to_owned();
-        let combo = ComboBox::from_id_salt("selection").selected_text(text).width(170.0);
-        let shown = combo.show_ui(ui, |ui| {
-            for (word, name) in SELECTION {
-                if ui.selectable_label(word == now, name).clicked() {
-                    commands.push(Command::Set("selection", word.to_owned()));
-                }
-            }
-        });
-        shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "selection"));
+        let text = SELECTION.iter().find(|s| s.0 == now).map_or(now.as_str(), |s| s.1);
+        let mut word = now.as_str();
+        choice(ui, "selection", 170.0, text, &mut word, SELECTION);
+        if word != now {
+            commands.push(Command::Set("selection", word.to_owned()));
+        }
     });
 }

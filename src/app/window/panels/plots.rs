@@ -3,6 +3,7 @@
 use eframe::egui::{RichText, Ui, Vec2b};
 use egui_plot::{Bar, BarChart, Legend, Plot};
 
+use super::line;
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -32,11 +33,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         light(commands, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
     }
     let (least, greatest, worst) = corner_angles(moment);
-    let note = match worst {
-        Some((e, angle)) => format!("smallest {}°, of element {}", words::degrees(angle), e.0),
-        None => String::new(),
-    };
-    if head(ui, "Smallest and largest angle of each quad, degrees (fig. 24)", note, palette)
+    let note = worst.map(|(e, angle)| format!("smallest {}°, of element {}", words::degrees(angle), e.0));
+    if head(ui, "Smallest and largest angle of each quad, degrees (fig. 24)", note.unwrap_or_default(), palette)
         && let Some((e, _)) = worst
     {
         commands.push(Command::Pick(Some(Outlined::Element(e))));
@@ -47,11 +45,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         let fits = |angle: f64| (low..high).contains(&angle.to_degrees());
         let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && angles(mesh, *e).into_iter().any(fits));
         let lit = quads.map(Outlined::Element).collect();
-        light(
-            commands,
-            lit,
-            &format!("quads with an angle from {}° to {}°", words::fixed(low, 0), words::fixed(high, 0)),
-        );
+        let what = format!("quads with an angle from {}° to {}°", words::fixed(low, 0), words::fixed(high, 0));
+        light(commands, lit, &what);
     }
 }
 
@@ -69,8 +64,7 @@ fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
         ui.add_space(12.0);
         ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
         if !note.is_empty() {
-            let note = RichText::new(note).font(theme::regular(theme::TABLE)).color(ink(palette.weak));
-            clicked = ui.link(note).clicked();
+            clicked = ui.link(line(note, palette.weak)).clicked();
         }
     });
     clicked

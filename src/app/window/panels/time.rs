@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
 
-use super::{icon_button, timeline};
+use super::{icon_button, on_click, timeline};
 use crate::app::window::command::{Command, KINDS};
 use crate::app::window::icons;
 use crate::app::window::measure::Times;
@@ -55,18 +55,13 @@ fn transport(ui: &mut Ui, state: &State, times: &Times, commands: &mut Vec<Comma
         (icons::CARET_DOUBLE_RIGHT, Command::Go(Goal::Quads(1)), on),
         (icons::SKIP_FORWARD, Command::Go(Goal::End), on),
     ] {
-        if icon_button(ui, icon, theme::TRANSPORT_ICON, &command, enabled).clicked() {
-            commands.push(command);
-        }
+        icon_button(ui, icon, theme::TRANSPORT_ICON, command, enabled, commands);
     }
     rule(ui, palette);
     for (icon, direction, enabled) in
         [(icons::ARROW_LINE_LEFT, Direction::Back, back), (icons::ARROW_LINE_RIGHT, Direction::Forward, on)]
     {
-        let command = Command::ToBreakpoint(direction);
-        if icon_button(ui, icon, theme::TRANSPORT_ICON, &command, enabled).clicked() {
-            commands.push(command);
-        }
+        icon_button(ui, icon, theme::TRANSPORT_ICON, Command::ToBreakpoint(direction), enabled, commands);
     }
     let roomy = ui.available_width() > 900.0;
     if roomy {
@@ -79,14 +74,9 @@ fn transport(ui: &mut Ui, state: &State, times: &Times, commands: &mut Vec<Comma
     }
     ui.add_space(10.0);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let command = Command::Bookmark;
-        if icon_button(ui, icons::BOOKMARK, theme::TRANSPORT_ICON, &command, open).clicked() {
-            commands.push(command);
-        }
+        icon_button(ui, icons::BOOKMARK, theme::TRANSPORT_ICON, Command::Bookmark, open, commands);
         if state.run().is_busy() && state.run().since.is_some_and(|since| since.elapsed().as_millis() > 150) {
-            if ui.button("Stop").clicked() {
-                commands.push(Command::Stop);
-            }
+            on_click(&ui.button("Stop"), Command::Stop, commands);
         } else {
             verdict(ui, state, times, palette);
         }
@@ -106,9 +96,8 @@ fn speed(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let combo = ComboBox::from_id_salt("speed").selected_text(text(state.workspace().speed)).width(92.0);
     let shown = combo.show_ui(ui, |ui| {
         for speed in SPEEDS {
-            if ui.selectable_label(state.workspace().speed == speed, text(speed)).clicked() {
-                commands.push(Command::Speed(speed));
-            }
+            let label = ui.selectable_label(state.workspace().speed == speed, text(speed));
+            on_click(&label, Command::Speed(speed), commands);
         }
     });
     shown.response.on_hover_text("How fast to play");
@@ -127,10 +116,7 @@ fn kinds(ui: &mut Ui, commands: &mut Vec<Command>, open: bool) {
                     for (icon, direction) in
                         [(icons::CARET_LEFT, Direction::Back), (icons::CARET_RIGHT, Direction::Forward)]
                     {
-                        let command = Command::Go(Goal::Kind(kind, direction));
-                        if icon_button(ui, icon, theme::ICON, &command, true).clicked() {
-                            commands.push(command);
-                        }
+                        icon_button(ui, icon, theme::ICON, Command::Go(Goal::Kind(kind, direction)), true, commands);
                     }
                     ui.label(words::kind(kind));
                 });

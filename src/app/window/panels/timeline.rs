@@ -7,7 +7,7 @@ use eframe::egui::{self, Align2, Pos2, Rect, Response, Role, Sense, Shape, Strok
 
 use crate::app::window::command::Command;
 use crate::app::window::icons;
-use crate::app::window::session::{Goal, Moment, Verdict};
+use crate::app::window::session::{Goal, Verdict};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -55,7 +55,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut TimelineState, commands: &mu
     let spoken = format!("Timeline: step {} of {}", moment.step, state.run().track.len());
     response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, spoken.clone()));
     let axis = Axis { plot, span: turn(ui, &response, plot, state, local) };
-    seek(&response, &axis, state, local, moment, commands);
+    let step = seek(&response, &axis, state, &mut local.seeking, moment.step);
+    commands.extend(step.map(|step| Command::Go(Goal::Step(step))));
     let TimelineState { columns, open_row, .. } = local;
     columns.update(state, *open_row, axis.span, plot.width());
     let painter = ui.painter_at(rect);
@@ -112,19 +113,12 @@ fn turn(ui: &Ui, response: &Response, plot: Rect, state: &State, local: &mut Tim
     span
 }
 
-/// A click or a drag goes to the step under the pointer; a click near a bookmark goes to the bookmark.
-fn seek(
-    response: &Response,
-    axis: &Axis,
-    state: &State,
-    local: &mut TimelineState,
-    moment: &Moment,
-    commands: &mut Vec<Command>,
-) {
-    let pointer = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked());
-    let Some(at) = pointer else {
-        local.seeking = None;
-        return;
+/// The step to go to: a click or a drag goes to the step under the pointer; a click near a bookmark goes to the
+/// bookmark.
+fn seek(response: &Response, axis: &Axis, state: &State, seeking: &mut Option<u64>, now: u64) -> Option<u64> {
+    let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) else {
+        *seeking = None;
+        return None;
     };
     let mut step = axis.step(at.x).round().clamp(0.0, state.run().track.len() as f64) as u64;
     if at.y < axis.plot.top() + 24.0 {
@@ -132,10 +126,7 @@ fn seek(
         let nearest = state.document().bookmarks.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)));
         step = nearest.filter(|mark| away(mark) < NEAR).unwrap_or(step);
     }
-    if step != moment.step && local.seeking != Some(step) {
-        local.seeking = Some(step);
-        commands.push(Command::Go(Goal::Step(step)));
-    }
+    (step != now && seeking.replace(step) != Some(step)).then_some(step)
 }
 
 /// The text for the step under the pointer.

@@ -4,6 +4,7 @@ use eframe::egui::{
     self, Align, Align2, Button, Layout, MenuBar, RichText, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo,
 };
 
+use super::on_click;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::{Goal, Source};
@@ -37,10 +38,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     });
     // The panel of an import shows its name.
     if let Some(opened) = state.run().opened.as_ref().filter(|_| state.run().import.is_none()) {
-        let painter = ui.painter_at(bar);
-        let name = painter.layout_no_wrap(opened.case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
+        let (case, painter) = (&opened.run.case, ui.painter_at(bar));
+        let name = painter.layout_no_wrap(case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
         let room = (bar.width() - 720.0).max(0.0);
-        let title = title(&opened.case.title, &opened.case.name);
+        let title = title(&case.title, &case.name);
         let mut job = egui::text::LayoutJob::simple_singleline(title, theme::regular(theme::BODY), ink(palette.weak));
         job.wrap = egui::text::TextWrapping::truncate_at_width((room - name.size().x - 8.0).max(0.0));
         let title = painter.layout_job(job);
@@ -69,74 +70,54 @@ fn item(ui: &mut Ui, command: Command, commands: &mut Vec<Command>) {
     }
 }
 
+fn items<const N: usize>(ui: &mut Ui, all: [Command; N], commands: &mut Vec<Command>) {
+    all.into_iter().for_each(|command| item(ui, command, commands));
+}
+
 fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     ui.menu_button("Case", |ui| {
-        item(ui, Command::OpenDialog, commands);
-        item(ui, Command::OpenPath, commands);
-        item(ui, Command::Reopen, commands);
-        item(ui, Command::Import, commands);
-        item(ui, Command::SaveRun, commands);
-        item(ui, Command::SaveMesh, commands);
-        item(ui, Command::Notes, commands);
+        items(ui, [Command::OpenDialog, Command::OpenPath, Command::Reopen, Command::Import], commands);
+        items(ui, [Command::SaveRun, Command::SaveMesh, Command::Notes], commands);
         ui.separator();
-        let open = |name: &str| Command::Open(Source::BuiltIn(name.to_owned()));
+        let mut open = |ui: &mut Ui, cases: &[(&str, &str)]| {
+            for (name, _) in cases {
+                item(ui, Command::Open(Source::BuiltIn((*name).to_owned())), commands);
+            }
+        };
         ui.menu_button("Built-in cases", |ui| {
             // A small window has no room for all of them.
             let height = ui.ctx().content_rect().height() - ROOM;
             ui.set_min_width(NAMES);
-            ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                for (name, _) in built_in::CASES {
-                    item(ui, open(name), commands);
-                }
-            });
+            ScrollArea::vertical().max_height(height).show(ui, |ui| open(ui, built_in::CASES));
         });
-        ui.menu_button("Figures of the paper", |ui| {
-            for (name, _) in built_in::FIGURES {
-                item(ui, open(name), commands);
-            }
-        });
+        ui.menu_button("Figures of the paper", |ui| open(ui, built_in::FIGURES));
     });
     ui.menu_button("Parameters", |ui| {
-        item(ui, Command::ResetParameters, commands);
-        item(ui, Command::Undo, commands);
-        item(ui, Command::Redo, commands);
+        items(ui, [Command::ResetParameters, Command::Undo, Command::Redo], commands);
     });
     ui.menu_button("View", |ui| {
-        item(ui, Command::Fit, commands);
-        item(ui, Command::ShowDecision, commands);
-        item(ui, Command::ToggleTheme, commands);
-        item(ui, Command::ResetLayout, commands);
+        let view = [Command::Fit, Command::ShowDecision, Command::ToggleTheme, Command::ResetLayout];
+        items(ui, view, commands);
         ui.separator();
         ui.menu_button("Surfaces", |ui| {
-            SurfaceView::ALL.into_iter().for_each(|place| item(ui, Command::SurfaceView(place), commands));
+            items(ui, SurfaceView::ALL.map(Command::SurfaceView), commands);
             ui.separator();
-            for bearing in [Bearing::Iso, Bearing::X, Bearing::Y, Bearing::Z] {
-                item(ui, Command::LookFrom(bearing), commands);
-            }
+            items(ui, [Bearing::Iso, Bearing::X, Bearing::Y, Bearing::Z].map(Command::LookFrom), commands);
             ui.separator();
-            item(ui, Command::HiddenLines, commands);
-            item(ui, Command::ToggleCurved, commands);
+            items(ui, [Command::HiddenLines, Command::ToggleCurved], commands);
         });
         ui.separator();
-        for layer in ViewLayer::ALL {
-            item(ui, Command::Layer(layer), commands);
-        }
+        items(ui, ViewLayer::ALL.map(Command::Layer), commands);
         ui.separator();
-        for by in ColourBy::ALL {
-            item(ui, Command::ColourBy(by), commands);
-        }
+        items(ui, ColourBy::ALL.map(Command::ColourBy), commands);
     });
     ui.menu_button("Figure", |ui| {
         ui.add_enabled_ui(state.run().moment.is_some(), |ui| {
-            item(ui, Command::Figures, commands);
-            item(ui, Command::Export, commands);
-            item(ui, Command::Screenshot, commands);
+            items(ui, [Command::Figures, Command::Export, Command::Screenshot], commands);
         });
     });
     ui.menu_button("Help", |ui| {
-        item(ui, Command::Help, commands);
-        item(ui, Command::Palette, commands);
-        item(ui, Command::Go(Goal::Step(0)), commands);
+        items(ui, [Command::Help, Command::Palette, Command::Go(Goal::Step(0))], commands);
     });
 }
 
@@ -157,7 +138,5 @@ fn field(ui: &mut Ui, room: f32, commands: &mut Vec<Command>, palette: &Palette)
         let right = rect.right_center() - Vec2::new(9.0, 0.0);
         painter.text(right, Align2::RIGHT_CENTER, "Ctrl+P", theme::regular(theme::HEAD), ink(palette.hint));
     }
-    if response.on_hover_text(Command::Palette.tip()).clicked() {
-        commands.push(Command::Palette);
-    }
+    on_click(&response.on_hover_text(Command::Palette.tip()), Command::Palette, commands);
 }

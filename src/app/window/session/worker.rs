@@ -35,14 +35,12 @@ pub struct Stops {
 }
 
 /// Where to go.
-#[derive(Clone)]
 enum Aim {
     Goal(Goal),
     Break(Stops, Direction),
 }
 
 /// An aim that is not reached yet.
-#[derive(Clone)]
 struct Pending {
     aim: Aim,
     /// How many requests it answers.
@@ -95,11 +93,7 @@ impl Worker {
             Err(fault) => return Err((voice, Box::new(fault))),
         };
         let triangles = background.mesh.element_count() as u64;
-        voice.say(SessionNews::Opened(Arc::new(Opened {
-            case: history.run().case.clone(),
-            run: history.run().clone(),
-            background,
-        })));
+        voice.say(SessionNews::Opened(Arc::new(Opened { run: history.run().clone(), background })));
         let cancel = Arc::new(AtomicBool::new(false));
         let even = history.log().front(0).odd == 0;
         Ok(Worker {
@@ -140,13 +134,9 @@ impl Worker {
                 Ask::Go(goal, since) => self.go(Aim::Goal(goal), since),
                 Ask::Break(stops, direction) => self.go(Aim::Break(stops, direction), Instant::now()),
                 Ask::Touch(watched) => {
-                    let found = self.history.last_touch(watched);
-                    self.go_back(found, "Nothing has touched it before this step.");
+                    self.go_back(self.history.last_touch(watched), "Nothing has touched it before this step.");
                 }
-                Ask::Made(element) => {
-                    let found = self.history.made(element);
-                    self.go_back(found, "It exists from the beginning.");
-                }
+                Ask::Made(element) => self.go_back(self.history.made(element), "It exists from the beginning."),
                 Ask::Past(watched) => self.past(watched),
                 Ask::Count(conditions) => {
                     self.conditions = conditions;
@@ -204,10 +194,12 @@ impl Worker {
             }
             Ok(Past { step: history.step(), watched, touches, more, made, killed })
         };
-        match told() {
-            Ok(past) => self.voice.say(SessionNews::Past(Arc::new(past))),
-            Err(fault) => self.voice.say(SessionNews::Fault(fault, 0)),
-        }
+        self.report(told().map(|past| SessionNews::Past(Arc::new(past))), 0);
+    }
+
+    /// Reports an answer, or the fault instead, to so many requests.
+    fn report(&self, answer: Result<SessionNews, Fault>, asks: usize) {
+        self.voice.say(answer.unwrap_or_else(|fault| SessionNews::Fault(fault, asks)));
     }
 
     fn explain(&self, a: NodeId, b: NodeId) {
@@ -317,31 +309,25 @@ impl Worker {
 
     /// Goes to the requested step, if it is known by now.
     fn arrive(&mut self) {
-        let Some(Pending { aim, asks, since }) = self.pending.clone() else { return };
+        let Some(Pending { aim, asks, since }) = self.pending.take() else { return };
         let end = self.history.end();
         let found = match &aim {
             Aim::Goal(goal) => goal.resolve(self.history.log(), self.history.step(), end),
             Aim::Break(stops, direction) => match self.stop_at(stops, *direction) {
                 Ok(None) if end.is_some() || *direction == Direction::Back => {
-                    self.pending = None;
                     return self.voice.say(SessionNews::Nothing("No breakpoint is hit in that direction.", asks));
                 }
                 Ok(found) => found,
-                Err(fault) => {
-                    self.pending = None;
-                    return self.voice.say(SessionNews::Fault(fault, asks));
-                }
+                Err(fault) => return self.voice.say(SessionNews::Fault(fault, asks)),
             },
         };
         let Some(step) = found else {
+            self.pending = Some(Pending { aim, asks, since });
             let words = "Converting: quad";
             return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
         };
-        self.pending = None;
-        match self.moment(step, since) {
-            Ok(moment) => self.voice.say(SessionNews::Moment(Arc::new(moment), asks)),
-            Err(fault) => self.voice.say(SessionNews::Fault(fault, asks)),
-        }
+        let moment = self.moment(step, since);
+        self.report(moment.map(|moment| SessionNews::Moment(Arc::new(moment), asks)), asks);
     }
 
     /// The nearest step at which a breakpoint is met or something that is watched is touched.

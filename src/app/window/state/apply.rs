@@ -10,7 +10,7 @@ use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
 use crate::app::window::measure::Measuring;
-use crate::app::window::session::{Direction, Goal, Session, Source};
+use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
@@ -24,7 +24,7 @@ impl State {
             return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
         }
         match command {
-            Command::Go(goal) => self.ask(|session| session.go(goal)),
+            Command::Go(goal) => self.go(goal),
             Command::GoToText(text) => self.go_to_text(&text),
             Command::ToBreakpoint(direction) => self.seek_breakpoint(direction),
             Command::Play => self.run.playing = if self.run.playing.is_some() { None } else { Some(Instant::now()) },
@@ -38,16 +38,16 @@ impl State {
                 self.view.lit = what;
                 self.view.over_epoch += 1;
             }
-            Command::LastTouch(what) => self.ask(|session| session.go_to_touch(watched(what))),
-            Command::Made(element) => self.ask(|session| session.go_to_making(element)),
-            Command::Explain(ends) => self.explain(ends),
-            Command::TellPast(watched) => self.tell_past(watched),
+            Command::LastTouch(what) => self.ask(Ask::Touch(watched(what))),
+            Command::Made(element) => self.ask(Ask::Made(element)),
+            Command::Explain(ends) => self.run.asked = self.inquire(Ask::Explain(ends)).map(|step| (step, ends)),
+            Command::TellPast(watched) => {
+                self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
+            }
             Command::Watch(what) => self.watch(watched(what)),
-            Command::SwitchWatch(k) => self.change(|document| {
-                if let Some(watch) = document.watches.get_mut(k) {
-                    watch.is_on = !watch.is_on;
-                }
-            }),
+            Command::SwitchWatch(k) => {
+                self.change(|document| flip(document.watches.get_mut(k).map(|watch| &mut watch.is_on)));
+            }
             Command::Measure => self.run.measuring = Some(Measuring::default()),
             Command::ShowTimes => self.view.times = !self.view.times,
             Command::Fit => self.view.look.ask(Look::Fit),
@@ -67,17 +67,12 @@ impl State {
             Command::ResetParameters => {
                 self.change(|document| document.edits.retain(|edit| !matches!(edit.kind, EditKind::Parameter { .. })));
             }
-            Command::Layer(layer) => self.change(|document| {
-                let on = layer.switch(&mut document.layers);
-                *on = !*on;
-            }),
+            Command::Layer(layer) => self.change(|document| flip(Some(layer.switch(&mut document.layers)))),
             Command::ColourBy(by) => self.change(|document| document.colour_by = by),
             Command::AddBreakpoint(text) => self.add_breakpoint(text),
-            Command::SwitchBreakpoint(k) => self.change(|document| {
-                if let Some(breakpoint) = document.breakpoints.get_mut(k) {
-                    breakpoint.is_on = !breakpoint.is_on;
-                }
-            }),
+            Command::SwitchBreakpoint(k) => {
+                self.change(|document| flip(document.breakpoints.get_mut(k).map(|breakpoint| &mut breakpoint.is_on)));
+            }
             Command::RemoveBreakpoint(k) => self.change(|document| {
                 if k < document.breakpoints.len() {
                     document.breakpoints.remove(k);
@@ -170,7 +165,7 @@ impl State {
         let left = period.checked_sub(last.elapsed()).filter(|left| !left.is_zero());
         if left.is_none() {
             self.run.playing = Some(Instant::now());
-            self.ask(|session| session.go(Goal::Quads(1)));
+            self.go(Goal::Quads(1));
         }
         left
     }
@@ -182,7 +177,7 @@ impl State {
         let end = self.run.track.len() as u64;
         let Some(measuring) = &mut self.run.measuring else { return };
         if let Some(goal) = measuring.next(is_there, took, end) {
-            self.ask(|session| session.go(goal));
+            self.go(goal);
         } else if let Some(told) = measuring.told() {
             println!("{told}");
             self.run.measuring = None;
@@ -203,15 +198,15 @@ impl State {
         self.view.notice = Some((text, Instant::now()));
     }
 
-    /// Asks the session for another state; it owes an answer to that.
-    fn ask(&mut self, ask: impl FnOnce(&Session)) {
-        let Some(session) = &self.run.session else { return };
-        ask(session);
-        self.wait();
+    /// Asks the session to go somewhere.
+    pub(super) fn go(&mut self, goal: Goal) {
+        self.ask(Ask::Go(goal, Instant::now()));
     }
 
-    /// The session owes one more answer.
-    pub(super) fn wait(&mut self) {
+    /// Asks the session for another state; it owes an answer to that.
+    fn ask(&mut self, ask: Ask) {
+        let Some(session) = &self.run.session else { return };
+        session.ask(ask);
         self.run.waiting += 1;
         self.run.since.get_or_insert_with(Instant::now);
     }
@@ -246,7 +241,7 @@ impl State {
         {
             // Switched off, a breakpoint keeps its count.
             let all = document.breakpoints.iter().filter_map(|b| Condition::parse(&b.condition).ok());
-            session.count(all.collect());
+            session.ask(Ask::Count(all.collect()));
         }
         if document.picked != before.picked {
             self.view.scroll.ask(document.picked);
@@ -254,8 +249,7 @@ impl State {
         self.view.over_epoch += 1;
         if document.edits != before.edits {
             self.run.recorded = false;
-            let edits = document.edits.clone();
-            self.ask(|session| session.set_edits(edits));
+            self.ask(Ask::Edits(document.edits.clone()));
         }
     }
 
@@ -304,7 +298,7 @@ impl State {
         if stops.conditions.is_empty() && stops.watched.is_empty() {
             return self.notice("No breakpoint is on: add a condition in the Breakpoints panel.".to_owned());
         }
-        self.ask(|session| session.go_to_break(stops, direction));
+        self.ask(Ask::Break(stops, direction));
     }
 
     /// Watches something, or stops watching it.
@@ -324,16 +318,11 @@ impl State {
         });
     }
 
-    fn explain(&mut self, ends: [NodeId; 2]) {
-        let (Some(moment), Some(session)) = (&self.run.moment, &self.run.session) else { return };
-        self.run.asked = Some((moment.step, ends));
-        session.explain(ends);
-    }
-
-    fn tell_past(&mut self, watched: Watched) {
-        let (Some(moment), Some(session)) = (&self.run.moment, &self.run.session) else { return };
-        self.run.asked_past = Some((moment.step, watched));
-        session.past(watched);
+    /// Asks the session about the current state. Returns its step.
+    fn inquire(&self, ask: Ask) -> Option<u64> {
+        let (moment, session) = (self.run.moment.as_ref()?, self.run.session.as_ref()?);
+        session.ask(ask);
+        Some(moment.step)
     }
 
     fn move_camera(&mut self, view: ViewKind, camera: ViewCamera) {
@@ -384,12 +373,18 @@ impl State {
         match goal {
             Ok(goal) => {
                 self.view.overlay = Overlay::Nothing;
-                self.ask(|session| session.go(goal));
+                self.go(goal);
             }
             Err(_) => {
                 let fault = Fault::new(format!("\"{text}\" is not a step"));
                 self.complain(&fault.remedy("Write a step such as 812, or nq=100"));
             }
         }
+    }
+}
+
+fn flip(switch: Option<&mut bool>) {
+    if let Some(on) = switch {
+        *on = !*on;
     }
 }

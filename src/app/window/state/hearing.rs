@@ -6,7 +6,7 @@ mod opening;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::{Progress, State};
+use super::State;
 use crate::app::figure::another_state;
 use crate::app::window::session::{Moment, SessionNews, Source};
 use crate::core::convert::Phase;
@@ -46,7 +46,7 @@ impl State {
     fn take(&mut self, told: SessionNews) {
         let run = &mut self.run;
         match told {
-            SessionNews::Progress { words, done, total } => run.progress = Some(Progress { words, done, total }),
+            SessionNews::Progress(progress) => run.progress = Some(progress),
             SessionNews::Opened(opened) => run.opened = Some(opened),
             SessionNews::Moment(moment, asks) => self.arrive(moment, asks),
             SessionNews::Track { from, steps, samples, end } => {

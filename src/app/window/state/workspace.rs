@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::app::window::figures::FigureForm;
+use crate::app::window::named::named;
 use crate::app::window::session::Direction;
 use crate::core::run::{Edit, Watched};
 use crate::render::look::HiddenLines;
@@ -75,32 +76,22 @@ impl SurfaceStyle {
     }
 }
 
-/// Where the main view shows a mesh on surfaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SurfaceView {
-    /// In space.
-    #[default]
-    Space,
-    /// In its parametric plane.
-    Plane,
-    /// In space, with the plane beside it.
-    Both,
+named! {
+    /// Where the main view shows a mesh on surfaces.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum SurfaceView {
+        /// In space.
+        #[default]
+        Space = "Show in space",
+        /// In space, with the plane beside it.
+        Both = "Show in space and in the plane",
+        /// In its parametric plane.
+        Plane = "Show in the parametric plane",
+    }
 }
 
 impl SurfaceView {
-    /// All of them.
-    pub const ALL: [SurfaceView; 3] = [SurfaceView::Space, SurfaceView::Both, SurfaceView::Plane];
-
-    /// What it does, for menus.
-    pub fn name(self) -> &'static str {
-        match self {
-            SurfaceView::Space => "Show in space",
-            SurfaceView::Plane => "Show in the parametric plane",
-            SurfaceView::Both => "Show in space and in the plane",
-        }
-    }
-
     /// From the plane to space, and from anything else to the plane.
     pub fn toggled(self) -> SurfaceView {
         if self == SurfaceView::Plane { SurfaceView::Space } else { SurfaceView::Plane }

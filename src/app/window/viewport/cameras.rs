@@ -81,11 +81,15 @@ pub(super) fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera, rec
     } else if response.dragged_by(PointerButton::Secondary) {
         camera.orbit(by);
     }
+    zoom(ui, response, camera, &ViewFrame { camera: *camera, rect });
+}
+
+/// Zooms to the pointer by the wheel or two fingers.
+pub(super) fn zoom(ui: &Ui, response: &egui::Response, camera: &mut Camera, frame: &ViewFrame) {
     let Some(at) = response.hover_pos() else { return };
     let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
     let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
     if factor != 1.0 {
-        let frame = ViewFrame { camera: *camera, rect };
         camera.zoom(factor, frame.inside(at), frame.size());
     }
 }

@@ -41,7 +41,7 @@ pub(super) fn show(ui: &Ui, frame: &ViewFrame, state: &State, moment: &Moment, p
         let room = DVec2::splat(0.02 * (high - low).max_element());
         let (low, high) = (low - room, high + room);
         let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
-        let corners: Vec<Pos2> = corners.map(|p| frame.place(p)).to_vec();
+        let corners: Vec<Pos2> = corners.map(|p| frame.place(p.extend(0.0))).to_vec();
         if k == active {
             painter.add(Shape::closed_line(corners, Stroke::new(1.25, ink(palette.selection.faded(0.7)))));
         } else {

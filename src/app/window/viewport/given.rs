@@ -1,17 +1,16 @@
 //! The view of a mesh that is about to be converted: its features and charts.
 
-use eframe::egui::{self, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
-use eframe::egui_wgpu::Callback;
+use eframe::egui::{Role, Sense, Ui, WidgetInfo};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::space::{MARGIN, orbit};
-use super::{Picture, ViewFrame, Views, moved, tools, whole_pixels};
+use super::space::{MARGIN, middle_of, orbit};
+use super::{ViewFrame, Views, instead, moved, paint, tools, whole_pixels};
 use crate::app::window::command::Command;
 use crate::app::window::import::Loaded;
 use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
 use crate::app::window::theme::ink;
 use crate::render::camera::{Bearing, Camera};
-use crate::render::gpu::{Light, View};
+use crate::render::gpu::Light;
 use crate::render::palette::Palette;
 use crate::render::pick;
 
@@ -41,10 +40,10 @@ impl Views {
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, spoken.as_str()));
         ui.painter().rect_filled(rect, 0.0, ink(palette.ground));
         let Some(loaded) = import.loaded.clone() else {
-            return words(ui, rect, "The mesh is being read.", palette);
+            return instead(ui, rect, 40.0, "The mesh is being read.", palette);
         };
         let Some(shown) = import.shown.clone() else {
-            return words(ui, rect, "Its features and charts are being computed.", palette);
+            return instead(ui, rect, 40.0, "Its features and charts are being computed.", palette);
         };
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         let mut is_fitted = import.view.is_fitted;
@@ -75,16 +74,8 @@ impl Views {
             is_fitted = false;
         }
         moved(import.view, ViewKind::Import, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
-        let view = View {
-            camera,
-            size,
-            pixels: ui.pixels_per_point(),
-            ground: palette.ground,
-            light: if loaded.is_plane { Light::NONE } else { Light::on_surfaces(palette.dark) },
-            hidden,
-        };
-        let picture = Picture { scene: shown.scene.clone(), view, index: INDEX };
-        ui.painter().add(Callback::new_paint_callback(rect, picture));
+        let light = if loaded.is_plane { Light::NONE } else { Light::on_surfaces(palette.dark) };
+        paint(ui, INDEX, &ViewFrame { camera, rect }, &shown.scene, palette, light, hidden);
         tools::show_sides(ui, rect, state, commands, palette);
     }
 }
@@ -95,13 +86,8 @@ fn fit(loaded: &Loaded, turn: DQuat, size: DVec2) -> Camera {
 
 /// The side from which marked elements are seen: the usual one, unless they are at the back.
 fn side_of(marks: &[Vec<DVec3>], loaded: &Loaded) -> Bearing {
-    let middle = |points: &mut dyn Iterator<Item = DVec3>| {
-        let ends = points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-        ends.map(|[low, high]| 0.5 * (low + high))
-    };
-    let of_marks = middle(&mut marks.iter().flatten().copied());
     let corners = loaded.mesh.triangles.as_flattened().iter().map(|&k| loaded.mesh.points[k as usize]);
-    let out = match (of_marks, middle(&mut { corners })) {
+    let out = match (middle_of(marks.iter().flatten().copied()), middle_of(corners)) {
         (Some(marks), Some(all)) if marks.distance(all) > 0.1 * loaded.extent.max_element() => marks - all,
         _ => return Bearing::Iso,
     };
@@ -126,11 +112,4 @@ fn look_at(marks: &[Vec<DVec3>], mean_edge: f64, all: Camera, size: DVec2) -> Ca
     let near = Camera::fit_in_space(around, all.turn, size, MARGIN);
     // It never looks from farther away than for the whole mesh.
     if near.scale > all.scale { near.come_from(&all) } else { all }
-}
-
-fn words(ui: &mut Ui, rect: Rect, text: &str, palette: &Palette) {
-    let inner = Rect::from_center_size(rect.center(), Vec2::new((rect.width() - 40.0).max(1.0), 40.0));
-    ui.scope_builder(egui::UiBuilder::new().max_rect(inner), |ui| {
-        ui.vertical_centered(|ui| ui.label(crate::app::window::panels::note(text, palette)));
-    });
 }

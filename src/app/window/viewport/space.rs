@@ -3,13 +3,15 @@
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::{ViewFrame, Views, moved};
+use super::cameras::zoom;
+use super::{ViewFrame, Views, moved, paint};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
 use crate::app::window::session::Moment;
 use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
 use crate::core::mesh::NodeId;
 use crate::render::camera::{Bearing, Camera};
+use crate::render::gpu::Light;
 use crate::render::palette::Palette;
 use crate::render::pick::{self, Cover};
 use crate::render::scene::{Decision, Outlined};
@@ -45,11 +47,12 @@ impl Views {
         let pointer = response.hover_pos().filter(|_| !response.dragged());
         // Picking needs the elements of the current state.
         let form = state.workspace().surfaces.form();
-        self.update(state, moment, palette, &frame, form, true);
+        self.space.update(state, moment, palette, &frame, form, true, &mut self.shading);
         let hovered = pointer
             .and_then(|at| pick::pick_in_space(&self.space.scene, &moment.mesh, &camera, size, frame.inside(at)));
         self.point(ui, &response, state, hovered, commands);
-        self.paint(ui, 0, &frame, palette, state.workspace().surfaces.hidden.share(), form);
+        let hidden = state.workspace().surfaces.hidden.share();
+        paint(ui, 0, &frame, &self.space.scene, palette, Light::on_surfaces(palette.dark), hidden);
         let of = Some((self.space.scene.shape(), camera, size));
         if self.cover.of != of {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
@@ -67,7 +70,8 @@ impl Views {
             // The point that is grabbed stays under the pointer; beside the mesh, the drag turns about its middle.
             let press = ui.input(|input| input.pointer.press_origin());
             let hit = press.and_then(|at| pick::hit(&self.space.scene, camera, frame.size(), frame.inside(at)));
-            self.pivot = hit.map(|hit| hit.place).or_else(|| middle_of(moment));
+            self.pivot =
+                hit.map(|hit| hit.place).or_else(|| middle_of(moment.mesh.nodes().map(|n| moment.mesh.xyz(n))));
         }
         orbit(ui, response, camera, frame, self.pivot)
     }
@@ -90,13 +94,7 @@ pub(super) fn orbit(
     } else if response.dragged() {
         camera.pan(by);
     }
-    if let Some(at) = response.hover_pos() {
-        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        let factor = f64::from(pinch) * libm::exp(f64::from(scroll) * 0.004);
-        if factor != 1.0 {
-            camera.zoom(factor, frame.inside(at), frame.size());
-        }
-    }
+    zoom(ui, response, camera, &frame);
     *camera != before
 }
 
@@ -104,8 +102,9 @@ fn fit(moment: &Moment, turn: DQuat, size: DVec2) -> Camera {
     Camera::fit_in_space(moment.mesh.nodes().map(|n| moment.mesh.xyz(n)), turn, size, MARGIN)
 }
 
-fn middle_of(moment: &Moment) -> Option<DVec3> {
-    let ends = moment.mesh.nodes().map(|n| moment.mesh.xyz(n)).map(|p| [p, p]);
+/// The middle of the least box around some points.
+pub(super) fn middle_of(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
+    let ends = points.map(|p| [p, p]);
     ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).map(|[low, high]| 0.5 * (low + high))
 }
 

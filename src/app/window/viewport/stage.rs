@@ -42,7 +42,8 @@ impl Stage {
         self.changes.note(changes, slots);
     }
 
-    /// Brings the scene up to date.
+    /// Brings the scene up to date with the state, by the differences if possible. `leads`: the scene is laid out for
+    /// this view.
     pub fn update(
         &mut self,
         state: &State,

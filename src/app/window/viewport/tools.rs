@@ -3,6 +3,7 @@
 use eframe::egui::{Align, Frame, Layout, Margin, Rect, RichText, Role, Ui, UiBuilder, Vec2, WidgetInfo};
 
 use crate::app::window::command::Command;
+use crate::app::window::panels::on_click;
 use crate::app::window::state::{State, SurfaceView};
 use crate::app::window::theme::{self, ink};
 use crate::render::camera::Bearing;
@@ -55,9 +56,7 @@ fn corner(ui: &mut Ui, rect: Rect, palette: &Palette, buttons: impl FnOnce(&mut 
 fn button(ui: &mut Ui, on: bool, text: &str, command: Command, commands: &mut Vec<Command>) {
     let response = ui.selectable_label(on, RichText::new(text).font(theme::regular(theme::HEAD)));
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, on, command.name()));
-    if response.on_hover_text(command.tip()).clicked() {
-        commands.push(command);
-    }
+    on_click(&response.on_hover_text(command.tip()), command, commands);
 }
 
 fn hidden(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{actions, elements, ends, formula, gone, heading, note, title};
+use super::{actions, elements, ends, gone, heading, length, note, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -33,10 +33,7 @@ pub fn show(
     let boundary = if told.is_boundary && told.kind != EdgeKind::Boundary { "  ·  on the boundary" } else { "" };
     ui.label(note(format!("{kind}{boundary}"), palette));
     actions(ui, state, Outlined::Edge(between), commands);
-    heading(ui, "Length", "eqs. 4, 5", palette);
-    let text =
-        format!("**{}** metric,  {} in space", words::fixed(told.length_metric, 2), words::size(told.length_physical));
-    formula(ui, &text, palette).on_hover_text("In a plane case the parametric length is that in space.");
+    length(ui, told.length_metric, told.length_physical, palette);
     heading(ui, "Elements beside it", "", palette);
     let sides = [mesh.half_edge_between(a, b), mesh.half_edge_between(b, a)];
     let beside: Vec<ElementId> = sides.into_iter().flatten().map(|h| h.element()).collect();

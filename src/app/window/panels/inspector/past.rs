@@ -1,13 +1,12 @@
 //! The history of something: the step that made it or ended it, the triangles that it was made of, every step that
 //! touched it; and what can be done with it.
 
-use eframe::egui::{Label, RichText, Sense, Ui};
+use eframe::egui::{Label, Sense, Ui};
 
-use super::{elements, heading, note};
+use super::{elements, heading, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::{Lookup, State, watched};
-use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
@@ -47,23 +46,20 @@ pub fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Co
         offered.push((Command::Made(e), "Go to the step that made this quadrilateral"));
     }
     for (command, tip) in offered {
-        if ui.button(command.name()).on_hover_text(tip).clicked() {
-            commands.push(command);
-        }
+        on_click(&ui.button(command.name()).on_hover_text(tip), command, commands);
     }
     let is_watched = state.document().watches.iter().any(|watch| watch.watched == watched(what));
     let name = if is_watched { "Stop watching" } else { "Watch" };
     let tip = "F5 and Alt+F5 stop where it is touched";
-    if ui.button(name).on_hover_text(tip).clicked() {
-        commands.push(Command::Watch(what));
-    }
+    on_click(&ui.button(name).on_hover_text(tip), Command::Watch(what), commands);
 }
 
 fn step_link(ui: &mut Ui, step: u64, what: &str, commands: &mut Vec<Command>, palette: &Palette) {
     let text = format!("step {}  {what}", words::grouped(step));
-    let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(palette.text));
-    let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false).truncate());
-    if response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand).clicked() {
-        commands.push(Command::Go(Goal::Step(step)));
-    }
+    let response = ui.add(Label::new(line(text, palette.text)).sense(Sense::click()).selectable(false).truncate());
+    on_click(
+        &response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand),
+        Command::Go(Goal::Step(step)),
+        commands,
+    );
 }

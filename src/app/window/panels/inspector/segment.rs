@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{ends, formula, heading, note, table_head, table_row, title, why};
+use super::{ends, formula, heading, length, note, stands_for, table_head, table_row, title, why};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -58,10 +58,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         }
         None => {}
     }
-    heading(ui, "Length", "eqs. 4, 5", palette);
-    let length =
-        format!("**{}** metric,  {} in space", words::fixed(s.length_metric, 2), words::size(s.length_physical));
-    formula(ui, &length, palette).on_hover_text("In a plane case the parametric length is the length in space.");
+    length(ui, s.length_metric, s.length_physical, palette);
     heading(ui, "Ends", "sizes of their metrics", palette);
     ends(ui, moment, &[("A", s.a), ("B", s.b)], commands, palette);
 }
@@ -165,11 +162,6 @@ fn candidates(
         let response = table_row(ui, &widths, &texts, colour, ground);
         let there = moment.mesh.has_node(candidate.node) && moment.mesh.are_joined(from, candidate.node);
         let what = if there { Outlined::Edge(ends) } else { Outlined::Node(candidate.node) };
-        if response.hovered() {
-            commands.push(Command::Hover(what));
-        }
-        if response.on_hover_text(&texts[4]).clicked() {
-            commands.push(Command::Pick(Some(what)));
-        }
+        stands_for(&response.on_hover_text(&texts[4]), what, commands);
     }
 }

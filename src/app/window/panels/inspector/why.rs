@@ -120,32 +120,25 @@ fn why_not(moment: &Moment, told: &SegmentFacts, place: usize) -> Vec<String> {
         None => String::new(),
     };
     let has_least = smallest(moment).is_some_and(|least| least.h == row.h);
-    let but = if has_least { "It has H_{min}, but " } else { "" };
+    let but = |what: &str| if has_least { "It has H_{min}, but ".to_owned() + what } else { capital_of(what) };
     text += &match &told.verdict {
         Verdict::BetterClass { class } => {
             let what = format!(
                 "class {class} has a segment within c·H_{{min}} = {}.",
                 words::size(moment.parameters.c * told.h_min)
             );
-            if has_least { format!("{but}{what}") } else { capital_of(&what) }
+            but(&what)
         }
         Verdict::OutOfReach { .. } => {
             format!("Out of reach: {} is not below {}.", window(moment, row), reach(moment, told.h_min))
         }
-        Verdict::ClassFour => format!("{but}{}", {
-            let what = "class 4 is considered only when no segment of classes 1 to 3 is within reach.";
-            if has_least { what.to_owned() } else { capital_of(what) }
-        }),
+        Verdict::ClassFour => but("class 4 is considered only when no segment of classes 1 to 3 is within reach."),
         Verdict::First => "It will be selected next.".to_owned(),
         _ => capital(&told.reason()),
     };
     let mut sentences = vec![text];
     if let Some([low, high]) = told.chosen_for_c {
-        let range = match high.is_finite() {
-            true => format!("{} < c \u{2264} {}", up(low, 3), down(high, 3)),
-            false => format!("c > {}", up(low, 3)),
-        };
-        sentences.push(format!("It would be next for {range}."));
+        sentences.push(format!("It would be next for {}.", range_of_c(low, high)));
     }
     sentences
 }
@@ -153,15 +146,19 @@ fn why_not(moment: &Moment, told: &SegmentFacts, place: usize) -> Vec<String> {
 fn same_choice(told: &SegmentFacts) -> String {
     let mut bounds = Vec::new();
     if let Some([low, high]) = told.margin_of_c {
-        bounds.push(match high.is_finite() {
-            true => format!("{} < c \u{2264} {}", up(low, 3), down(high, 3)),
-            false => format!("c > {}", up(low, 3)),
-        });
+        bounds.push(range_of_c(low, high));
     }
     if let Some([low, high]) = told.margin_of_theta_rect {
         bounds.push(format!("{}° < \u{3b8}_{{rect}} \u{2264} {}°", up(low, 1), down(high, 1)));
     }
     if bounds.is_empty() { String::new() } else { format!("Same choice for {}.", bounds.join(" and ")) }
+}
+
+fn range_of_c(low: f64, high: f64) -> String {
+    match high.is_finite() {
+        true => format!("{} < c \u{2264} {}", up(low, 3), down(high, 3)),
+        false => format!("c > {}", up(low, 3)),
+    }
 }
 
 /// Bounds are rounded inwards, so that they stay true.

@@ -1,5 +1,6 @@
 //! The contents of the timeline by columns of pixels, computed again only when the run, the span or the width changes.
 
+use crate::app::window::named::named;
 use crate::app::window::session::Tracked;
 use crate::app::window::state::State;
 use crate::app::window::words;
@@ -41,30 +42,20 @@ pub struct Lane {
     /// The row of kinds that it belongs to, if there are several.
     pub group: Option<usize>,
     pub is_open: bool,
+    kinds: &'static [EventKind],
 }
 
-/// The quantity of a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CurveKind {
-    Front,
-    Quality,
-    Live,
-    Loops,
+named! {
+    /// The quantity of a curve, in the order in which they are shown as far as there is room.
+    pub enum CurveKind {
+        Front = "front length",
+        Quality = "quality, worst",
+        Live = "live triangles",
+        Loops = "loops",
+    }
 }
 
 impl CurveKind {
-    /// All of them, in the order in which they are shown as far as there is room.
-    const ALL: [CurveKind; 4] = [CurveKind::Front, CurveKind::Quality, CurveKind::Live, CurveKind::Loops];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            CurveKind::Front => "front length",
-            CurveKind::Quality => "quality, worst",
-            CurveKind::Live => "live triangles",
-            CurveKind::Loops => "loops",
-        }
-    }
-
     fn of(self, tracked: &Tracked) -> f32 {
         match self {
             CurveKind::Front => tracked.front as f32,
@@ -177,33 +168,23 @@ impl Columns {
         for (k, (name, kinds)) in ROWS.iter().enumerate() {
             let is_open = open_row == Some(k);
             let group = (kinds.len() > 1).then_some(k);
-            let lane = |name: String| Lane {
+            let lane = |name: String, kinds| Lane {
                 name,
                 total: 0,
                 bins: vec![0; columns + 1],
                 is_failure: k == FAILURES,
                 group,
                 is_open,
+                kinds,
             };
             if is_open {
-                self.lanes.extend(kinds.iter().map(|&kind| lane(words::kind(kind))));
+                self.lanes.extend(kinds.chunks(1).map(|kind| lane(words::kind(kind[0]), kind)));
             } else {
-                self.lanes.push(lane((*name).to_owned()));
+                self.lanes.push(lane((*name).to_owned(), kinds));
             }
         }
-        let lane_of = |kind: EventKind| {
-            let mut first = 0;
-            for (k, (_, kinds)) in ROWS.iter().enumerate() {
-                let at = kinds.iter().position(|&known| known == kind);
-                let is_open = open_row == Some(k);
-                if let Some(at) = at {
-                    return Some(first + if is_open { at } else { 0 });
-                }
-                first += if is_open { kinds.len() } else { 1 };
-            }
-            None
-        };
-        let lanes: Vec<Option<usize>> = EventKind::ALL.iter().map(|&kind| lane_of(kind)).collect();
+        let lane_of = |kind| self.lanes.iter().position(|lane| lane.kinds.contains(kind));
+        let lanes: Vec<Option<usize>> = EventKind::ALL.iter().map(lane_of).collect();
         for (k, tracked) in state.run().track.iter().enumerate() {
             let Some(lane) = lanes[tracked.kind as usize] else { continue };
             self.lanes[lane].total += 1;
@@ -256,22 +237,17 @@ impl Columns {
 
     /// The value of a curve at a step.
     pub fn value(&self, of: CurveKind, step: u64) -> String {
-        let Some(k) = step.checked_sub(1).map(|k| k as usize) else {
-            let Some(first) = self.first else { return words::UNDEFINED.to_owned() };
-            return match of {
-                CurveKind::Front => words::grouped(first.front.segments.into()),
-                CurveKind::Live => words::grouped(first.front.live.into()),
-                CurveKind::Loops => words::grouped(first.front.loops.into()),
-                CurveKind::Quality => words::UNDEFINED.to_owned(),
-            };
+        let k = step.checked_sub(1).map(|k| k as usize);
+        let figures = match k {
+            None => self.first.map(|first| [first.front.segments, first.front.live, first.front.loops]),
+            Some(k) => self.figures.get(k).copied(),
         };
-        let figure =
-            |at: usize| self.figures.get(k).map_or(words::UNDEFINED.to_owned(), |f| words::grouped(f[at].into()));
+        let figure = |at: usize| figures.map_or(words::UNDEFINED.to_owned(), |f| words::grouped(f[at].into()));
         match of {
             CurveKind::Front => figure(0),
             CurveKind::Live => figure(1),
             CurveKind::Loops => figure(2),
-            CurveKind::Quality => words::fixed(f64::from(self.worst.get(k).copied().unwrap_or(f32::NAN)), 2),
+            CurveKind::Quality => words::fixed(k.and_then(|k| self.worst.get(k)).map_or(f64::NAN, |w| (*w).into()), 2),
         }
     }
 }

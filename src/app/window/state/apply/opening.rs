@@ -51,7 +51,7 @@ impl State {
     /// Gives up the mesh that is about to be converted.
     pub(in crate::app::window::state) fn give_up_import(&mut self) {
         if let Some(import) = self.run.import.take() {
-            self.run.pictures = import.generation();
+            self.run.pictures = import.generation;
         }
     }
 

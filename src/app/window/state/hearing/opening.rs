@@ -4,16 +4,15 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::app::window::files::Watcher;
-use crate::app::window::import::News;
 use crate::app::window::session::{Goal, Opened, Session, SessionNews, Source};
-use crate::app::window::state::{Look, Progress, RunState, State, ViewCamera};
+use crate::app::window::state::{Look, RunState, State, ViewCamera};
 use crate::core::case::built_in;
 
 impl State {
     /// Takes in what the preview of an import reports; a mesh that cannot be read is given up.
     pub(in crate::app::window) fn hear_import(&mut self, dark: bool) {
         let Some(import) = &mut self.run.import else { return };
-        if let News::Refused(fault) = import.look(dark) {
+        if let Some(fault) = import.look(dark) {
             self.complain(&fault);
             self.give_up_import();
             self.say_what_stays();
@@ -23,16 +22,14 @@ impl State {
     /// Says that the run that is open stays, if there is one.
     fn say_what_stays(&mut self) {
         if let Some(opened) = &self.run.opened {
-            self.notice(format!("{} stays open.", opened.case.name));
+            self.notice(format!("{} stays open.", opened.run.case.name));
         }
     }
 
     pub(super) fn hear_opening(&mut self) {
         while let Some(told) = self.run.opening.as_ref().and_then(|(_, session)| session.hear().next()) {
             match told {
-                SessionNews::Progress { words, done, total } => {
-                    self.run.progress = Some(Progress { words, done, total })
-                }
+                SessionNews::Progress(progress) => self.run.progress = Some(progress),
                 SessionNews::Opened(opened) => {
                     if let Some((source, session)) = self.run.opening.take() {
                         self.begin(source, session, opened);
@@ -102,9 +99,8 @@ impl State {
         self.view.look.ask(opened.run.camera.map_or(Look::Fit, Look::Kept));
         self.frame.hovered = None;
         self.run.awaited = opened.run.shown.as_ref().and_then(|shown| shown.state()).copied();
-        if let (Some(shown), Some(session)) = (self.run.awaited, &self.run.session) {
-            session.go(if shown.at.is_some() { Goal::Step(shown.step) } else { Goal::End });
-            self.run.waiting += 1;
+        if let Some(shown) = self.run.awaited {
+            self.go(if shown.at.is_some() { Goal::Step(shown.step) } else { Goal::End });
         }
         self.run.opened = Some(opened);
     }
