@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use super::files::{self, Writing, free_path};
-use super::named::named;
 use super::session::{Moment, Opened, Wake};
 use super::state::{State, ViewCamera};
+use crate::core::kernel::worded::worded;
 
 use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Size, Wanted};
 use crate::app::work::{self, FigureFrame};
@@ -23,8 +23,9 @@ use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers};
 use crate::render::orthographic::View;
 use crate::render::picture::{Picture, Seen};
 
-named! {
+worded! {
     /// The formats of a figure.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Formats {
         /// Vectors.
         Svg = "SVG",
@@ -33,11 +34,16 @@ named! {
         /// Both.
         Both = "SVG and PNG",
     }
+    /// All of them, in order.
+    const ALL;
+    /// Its name in menus and panels.
+    fn name;
 }
 
-named! {
+worded! {
     /// What a figure shows.
     #[derive(Default)]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Content {
         /// The current state.
         #[default]
@@ -51,6 +57,10 @@ named! {
         /// Angles of the current state.
         Angles = "angles (fig. 24)",
     }
+    /// All of them, in order.
+    const ALL;
+    /// Its name in menus and panels.
+    fn name;
 }
 
 /// How figures are made, as the user has set it.

@@ -10,7 +10,7 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde_json::Value;
 
 use super::command::Command;
-use super::named::named;
+use crate::core::kernel::worded::worded;
 pub use docks::Docks;
 
 /// Widths in points: front, lens, inspector; and the least width of the view.
@@ -19,9 +19,10 @@ const LENS: f32 = 263.0;
 const RIGHT: f32 = 332.0;
 const VIEW: f32 = 480.0;
 
-named! {
+worded! {
     /// A panel.
     #[derive(PartialOrd, Ord)]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Pane {
         Front = "Front",
         Breakpoints = "Breakpoints",
@@ -35,6 +36,10 @@ named! {
         Parameters = "Parameters",
         Layers = "Layers",
     }
+    /// All of them, in order.
+    const ALL;
+    /// Its name in menus and panels.
+    fn name;
 }
 
 /// How many columns there is room for.

@@ -3,7 +3,6 @@
 //! What the user does becomes a [`Command`]. The panels read the `state` and return commands; only `state::apply` and
 //! `state::hearing` change it. The run works on threads of its own (`session`), so that the window never waits.
 
-mod named;
 mod words;
 mod icons;
 mod theme;

@@ -1,10 +1,11 @@
 //! The layers of the views, which the digit keys switch.
 
-use super::named::named;
+use crate::core::kernel::worded::worded;
 use crate::render::scene::Layers;
 
-named! {
+worded! {
     /// A layer of the views, in the order of their digits from 1.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum ViewLayer {
         /// Triangles that are still to be converted.
         LiveTriangles = "live triangles",
@@ -25,6 +26,10 @@ named! {
         /// The mesh from which the conversion started.
         BackgroundMesh = "background mesh",
     }
+    /// All of them, in order.
+    const ALL;
+    /// Its name in menus and panels.
+    fn name;
 }
 
 impl ViewLayer {

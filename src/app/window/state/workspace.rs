@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::app::window::figures::FigureForm;
-use crate::app::window::named::named;
 use crate::app::window::session::Direction;
+use crate::core::kernel::worded::worded;
 use crate::core::run::{Edit, Watched};
 use crate::render::look::HiddenLines;
 use crate::render::scene::{ColourBy, Form, Layers, Outlined};
@@ -76,10 +76,11 @@ impl SurfaceStyle {
     }
 }
 
-named! {
+worded! {
     /// Where the main view shows a mesh on surfaces.
     #[derive(Default, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum SurfaceView {
         /// In space.
         #[default]
@@ -89,6 +90,10 @@ named! {
         /// In its parametric plane.
         Plane = "Show in the parametric plane",
     }
+    /// All of them, in order.
+    const ALL;
+    /// Its name in menus and panels.
+    fn name;
 }
 
 impl SurfaceView {

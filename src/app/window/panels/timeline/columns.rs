@@ -1,10 +1,10 @@
 //! The contents of the timeline by columns of pixels, computed again only when the run, the span or the width changes.
 
-use crate::app::window::named::named;
 use crate::app::window::session::Tracked;
 use crate::app::window::state::State;
 use crate::app::window::words;
 use crate::core::convert::EventKind;
+use crate::core::kernel::worded::worded;
 use crate::core::run::Sample;
 
 /// The rows: each with the kinds that share it.
@@ -45,14 +45,19 @@ pub struct Lane {
     kinds: &'static [EventKind],
 }
 
-named! {
+worded! {
     /// The quantity of a curve, in the order in which they are shown as far as there is room.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum CurveKind {
         Front = "front length",
         Quality = "quality, worst",
         Live = "live triangles",
         Loops = "loops",
     }
+    /// All of them, in order.
+    const ALL;
+    /// Its name in menus and panels.
+    fn name;
 }
 
 impl CurveKind {
