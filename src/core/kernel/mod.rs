@@ -1,5 +1,6 @@
 //! Small algorithms and values that know nothing of meshes: exact predicates, metric tensors and their spectra, box
-//! trees, point location, disjoint sets, parity over GF(2), fingerprints, numbers as text, spelling suggestions, enumerations with words.
+//! trees, point location, disjoint sets, parity over GF(2), fingerprints, numbers as text, spelling suggestions,
+//! enumerations with words.
 
 pub mod predicates;
 pub mod tensor;
