@@ -16,7 +16,8 @@ run:
 	cargo build --locked --release
 	@tools/run
 
-# One build serves the tests, the examples and the end-to-end test; the library alone is compiled once more for its bytes.
+# One build serves the tests, the examples and the end-to-end test; the library alone is compiled once more for its
+# bytes.
 test:
 	@tools/setup build run test
 	@mkdir -p out

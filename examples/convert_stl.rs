@@ -1,11 +1,11 @@
-//! Meshes the shape of an STL file anew, with quadrilaterals of one size. Its folds are kept.
+//! Remeshes an STL file with quadrilaterals of one size; its sharp edges are preserved.
 //!
 //! ```text
 //! cargo run --example convert_stl [STL] [SIZE]
 //! ```
 //!
-//! STL is a file in STL, or in another format that is read; a small wedge where it is left out. SIZE is the length of
-//! the sides of quadrilaterals, in the units of the file, 0.1 where it is left out.
+//! STL is a file in STL, or in another format that is read; by default a small wedge. SIZE is the length of the sides of
+//! quadrilaterals, in the units of the file; by default 0.1.
 
 use std::process::ExitCode;
 
