@@ -4,8 +4,8 @@
 //! cargo run --example convert_stl [STL] [SIZE]
 //! ```
 //!
-//! STL is a file in STL, or in another format that is read; by default a small wedge. SIZE is the length of the sides of
-//! quadrilaterals, in the units of the file; by default 0.1.
+//! STL is a file in STL, or in another format that is read; by default a small wedge. SIZE is the length of the sides
+//! of quadrilaterals, in the units of the file; by default 0.1.
 
 use std::process::ExitCode;
 
