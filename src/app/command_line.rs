@@ -57,8 +57,8 @@ pub(super) struct Source {
     /// Convert only this face (repeatable)
     #[arg(long = "face", value_name = "NAME")]
     pub faces: Vec<String>,
-    /// Use the paper's parameters instead of the case's; size, layers, faces and limit stay, and --set applies
-    /// afterwards
+    /// Use the paper's rules and values instead of the case's; size, layers, faces and limit stay, and --set applies
+    /// afterwards. Not the paper's: the guarantee with its gates, small loops and the last resort; the clean-up
     #[arg(long)]
     pub paper: bool,
     /// Print no progress and no summary

@@ -76,6 +76,7 @@ pub fn event(event: &Event) -> String {
             format!("{} side divided at new node {}; it was {} long", side(s), node.0, fixed(length, 2))
         }
         Event::TopSwapped { across, new } => format!("top: {} swapped for {}", edge(across), edge(new)),
+        Event::TopSmoothed { nodes } => format!("{nodes} nodes smoothed around the left top"),
         Event::TopFound { ends, swaps } => match swaps {
             0 => format!("top edge found: {}", edge(ends)),
             1 => format!("top edge found: {}, after 1 swap", edge(ends)),

@@ -18,7 +18,9 @@ use std::sync::Arc;
 use glam::DVec2;
 
 pub use import_options::ImportOptions;
-pub use parameters::{Parameters, Selection, SelectionWindow};
+pub use parameters::{
+    DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Parameters, Selection, SelectionWindow, SmoothingWeights,
+};
 use table::{Source, Table};
 pub use taking::{MeshSource, MeshUse, Taking};
 

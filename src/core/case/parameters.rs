@@ -31,6 +31,51 @@ pub enum SelectionWindow {
     PhysicalLength,
 }
 
+/// Over which front segments Hmin is taken (4.3.3, step i; docs/algorithm.md, "Selection of the base segment").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HMinOver {
+    /// All that stand, as the paper says; deferred ones are only not chosen.
+    Front,
+    /// Those that are not deferred.
+    Waiting,
+}
+
+/// The order of the two operations of the local structural enhancement (4.3.6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnhancementOrder {
+    /// Swaps, and the removal of a node where there is none left.
+    SwapFirst,
+    /// As the paper says: nodes are removed before each swap.
+    DeleteFirst,
+}
+
+/// The areas that weigh the elements around a node when it is smoothed (eq. 10).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SmoothingWeights {
+    /// The area in the plane times the mean of `sqrt(det M)` over the nodes.
+    Determinant,
+    /// As printed: by lengths in the metric and angles at the node (eqs. 10a, 10b).
+    Printed,
+}
+
+/// Where an edge is divided (4.2.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DivisionAt {
+    /// Where its metric length is halved.
+    MetricMiddle,
+    /// At its midpoint in the plane, as the paper says.
+    Midpoint,
+}
+
+/// What is tried first when a quadrilateral cannot be formed (4.3.4; docs/algorithm.md, "Rescue").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FirstRescue {
+    /// The sides are divided.
+    Division,
+    /// As the paper says: the right side is replaced by its left-hand neighbour, and that by its own.
+    LeftNeighbour,
+}
+
 /// All settings besides geometry and metric. Angles in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameters {
@@ -42,10 +87,16 @@ pub struct Parameters {
     pub theta_rect: f64,
     /// At or below this frontal angle a front corner is closed by a seam (section 4.3.6).
     pub theta_seam: f64,
+    /// Where a corner is crowded or its segments are short, it is closed by a seam up to `theta_seam` times this
+    /// (docs/algorithm.md, "Seaming"); 1 in the paper.
+    pub seam_widening: f64,
     /// Above this frontal angle a corner is a reversal (fig. 12).
     pub theta_revr: f64,
     /// A live side edge longer than this times the base is split (section 4.3.4, vi).
     pub side_split: f64,
+    /// A side edge shorter than this in the metric stays whole: its halves would be less than half a unit long
+    /// (docs/algorithm.md, "Sides over 1.5 l_AB"). The paper divides it.
+    pub whole_below: f64,
     /// Largest deviation of a side edge from its target direction (eq. 8).
     pub side_deviation: f64,
     /// Metric area below which the front is split at a triangle (section 4.3.6, ii b).
@@ -62,16 +113,31 @@ pub struct Parameters {
     pub selection: Selection,
     /// What is compared with `c` times the smallest H-value.
     pub selection_window: SelectionWindow,
+    /// Over which segments the smallest H-value is taken.
+    pub h_min_over: HMinOver,
     /// Aim a side edge at the bisector of a frontal angle up to 225 degrees, and at the right angle beyond; off: always
     /// at the right angle, as the paper says.
     pub bisector: bool,
     /// Place the new top nodes of each quadrilateral (docs/algorithm.md, "Placement of new top nodes"); off: the
     /// paper's eq. (9) on front nodes.
     pub placement: bool,
+    /// Where a side edge is divided.
+    pub division_at: DivisionAt,
+    /// What is tried first when a quadrilateral cannot be formed.
+    pub first_rescue: FirstRescue,
+    /// Smooth around the left top after each swap for the top edge (4.3.4, top edge v).
+    pub top_smoothing: bool,
     /// Smooth around each new quadrilateral (4.3.6).
     pub smoothing: bool,
+    /// Smooth also the nodes that only dead elements join to the new quadrilateral: the second of the paper's three
+    /// groups (4.3.6).
+    pub smooth_joined: bool,
+    /// The weights of the smoothing.
+    pub smoothing_weights: SmoothingWeights,
     /// Local structural enhancement (4.3.6).
     pub enhancement: bool,
+    /// The order of its operations.
+    pub enhancement_order: EnhancementOrder,
     /// Seam small frontal angles (4.3.6).
     pub seaming: bool,
     /// Split the front at slender elements (4.3.6).
@@ -89,8 +155,10 @@ impl Default for Parameters {
             c: 2.0,
             theta_rect: 135_f64.to_radians(),
             theta_seam: 30_f64.to_radians(),
+            seam_widening: 1.5,
             theta_revr: 225_f64.to_radians(),
             side_split: 1.5,
+            whole_below: 1.0,
             side_deviation: 30_f64.to_radians(),
             eps1: 0.1,
             eps2: 5.0,
@@ -99,10 +167,17 @@ impl Default for Parameters {
             faces: Vec::new(),
             selection: Selection::Table1,
             selection_window: SelectionWindow::MetricLengthTimesH,
+            h_min_over: HMinOver::Front,
             bisector: true,
             placement: true,
+            division_at: DivisionAt::MetricMiddle,
+            first_rescue: FirstRescue::Division,
+            top_smoothing: false,
             smoothing: true,
+            smooth_joined: false,
+            smoothing_weights: SmoothingWeights::Determinant,
             enhancement: true,
+            enhancement_order: EnhancementOrder::SwapFirst,
             seaming: true,
             splitting: true,
             post_processing: true,
@@ -111,37 +186,46 @@ impl Default for Parameters {
     }
 }
 
-impl Selection {
-    /// The words in files and for `--set`, in the order of the variants.
-    const WORDS: [(&'static str, Selection); 4] = [
-        ("table1", Selection::Table1),
-        ("shortest", Selection::Shortest),
-        ("smallest_angle", Selection::SmallestAngle),
-        ("level", Selection::Level),
-    ];
+/// The words of enumerations in files and for `--set`, in the order of the variants.
+macro_rules! words {
+    ($($name:ident: $($word:literal = $variant:ident),+;)+) => {
+        $(impl $name {
+            /// Its words in files and for `--set`.
+            pub const WORDS: [(&'static str, $name); [$($word),+].len()] = [$(($word, $name::$variant)),+];
+        })+
+    };
 }
 
-impl SelectionWindow {
-    const WORDS: [(&'static str, SelectionWindow); 3] = [
-        ("metric_length_times_h", SelectionWindow::MetricLengthTimesH),
-        ("h_value", SelectionWindow::HValue),
-        ("physical_length", SelectionWindow::PhysicalLength),
-    ];
+words! {
+    Selection: "table1" = Table1, "shortest" = Shortest, "smallest_angle" = SmallestAngle, "level" = Level;
+    SelectionWindow: "metric_length_times_h" = MetricLengthTimesH, "h_value" = HValue, "physical_length" = PhysicalLength;
+    HMinOver: "front" = Front, "waiting" = Waiting;
+    EnhancementOrder: "swap_first" = SwapFirst, "delete_first" = DeleteFirst;
+    SmoothingWeights: "determinant" = Determinant, "printed" = Printed;
+    DivisionAt: "metric_middle" = MetricMiddle, "midpoint" = Midpoint;
+    FirstRescue: "division" = Division, "left_neighbour" = LeftNeighbour;
 }
 
 impl Parameters {
-    /// The paper's own reading of everything (docs/algorithm.md, "Departures from the paper"): its words where ours
-    /// differ, the values that it used where it gives a range. Front segments are chosen by physical length, side edges
-    /// stand at right angles, nodes are moved by eq. (9) and not placed.
+    /// The paper as printed (docs/algorithm.md, "Departures from the paper"): its words where ours differ, the values
+    /// that it used where it gives a range.
     pub fn paper() -> Parameters {
         Parameters {
             c: 2.0,
             theta_rect: 135_f64.to_radians(),
             theta_seam: 30_f64.to_radians(),
             selection: Selection::Table1,
+            seam_widening: 1.0,
+            whole_below: 0.0,
             selection_window: SelectionWindow::PhysicalLength,
             bisector: false,
             placement: false,
+            division_at: DivisionAt::Midpoint,
+            first_rescue: FirstRescue::LeftNeighbour,
+            top_smoothing: true,
+            smooth_joined: true,
+            smoothing_weights: SmoothingWeights::Printed,
+            enhancement_order: EnhancementOrder::DeleteFirst,
             ..Parameters::default()
         }
     }
@@ -174,7 +258,7 @@ macro_rules! parameters {
     ($($key:ident = $read:ident($($limit:expr),*), |$value:ident| $text:expr;)*) => {
         impl Parameters {
             /// The keys in files and for `--set`, in the documented order.
-            pub const KEYS: [&'static str; 22] = [$(stringify!($key)),*];
+            pub const KEYS: [&'static str; [$(stringify!($key)),*].len()] = [$(stringify!($key)),*];
 
             fn take(&mut self, key: &str, value: &str) -> Result<(), Fault> {
                 let value = value.trim();
@@ -201,8 +285,10 @@ parameters! {
     c = number(0.5, 10.0), |value| value.to_string();
     theta_rect = angle(90.0, 180.0, 135.0), |value| degrees(*value);
     theta_seam = angle(0.0, 90.0, 30.0), |value| degrees(*value);
+    seam_widening = number(1.0, 3.0), |value| value.to_string();
     theta_revr = angle(180.0, 360.0, 225.0), |value| degrees(*value);
     side_split = number(1.0, 10.0), |value| value.to_string();
+    whole_below = number(0.0, 2.0), |value| value.to_string();
     side_deviation = angle(0.0, 90.0, 30.0), |value| degrees(*value);
     eps1 = number(0.0, 1.0), |value| value.to_string();
     eps2 = number(1.0, 1000.0), |value| value.to_string();
@@ -211,10 +297,17 @@ parameters! {
     faces = names(';'), |value| value.join("; ");
     selection = word(&Selection::WORDS), |value| word_of(*value, &Selection::WORDS);
     selection_window = word(&SelectionWindow::WORDS), |value| word_of(*value, &SelectionWindow::WORDS);
+    h_min_over = word(&HMinOver::WORDS), |value| word_of(*value, &HMinOver::WORDS);
     bisector = flag(), |value| value.to_string();
     placement = flag(), |value| value.to_string();
+    division_at = word(&DivisionAt::WORDS), |value| word_of(*value, &DivisionAt::WORDS);
+    first_rescue = word(&FirstRescue::WORDS), |value| word_of(*value, &FirstRescue::WORDS);
+    top_smoothing = flag(), |value| value.to_string();
     smoothing = flag(), |value| value.to_string();
+    smooth_joined = flag(), |value| value.to_string();
+    smoothing_weights = word(&SmoothingWeights::WORDS), |value| word_of(*value, &SmoothingWeights::WORDS);
     enhancement = flag(), |value| value.to_string();
+    enhancement_order = word(&EnhancementOrder::WORDS), |value| word_of(*value, &EnhancementOrder::WORDS);
     seaming = flag(), |value| value.to_string();
     splitting = flag(), |value| value.to_string();
     post_processing = flag(), |value| value.to_string();

@@ -99,8 +99,10 @@ pub enum Event {
         b: NodeId,
         /// Its H-value (eq. 6).
         h_value: f64,
-        /// The smallest one on the front.
+        /// The smallest one on the front (4.3.3, step i).
         h_min: f64,
+        /// Number of deferred segments, which cannot be chosen.
+        deferred: u32,
         /// Its class of table 1.
         class: u8,
         /// Frontal angles at A and B.
@@ -154,6 +156,11 @@ pub enum Event {
         node: NodeId,
         /// Metric length before.
         length: f64,
+    },
+    /// Nodes around the left top were moved, after a swap for the top edge (top edge v).
+    TopSmoothed {
+        /// Number of nodes.
+        nodes: u8,
     },
     /// An edge across the top edge was swapped (top edge iv).
     TopSwapped {

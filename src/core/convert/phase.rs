@@ -107,6 +107,8 @@ pub enum Phase {
         tops: [NodeId; 2],
         /// Swaps done so far.
         swaps: u8,
+        /// Whether the nodes around C are to be smoothed first (top edge v).
+        smooths: bool,
     },
     /// The quadrilateral is to be formed.
     Form {

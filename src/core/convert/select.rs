@@ -22,7 +22,7 @@ pub(super) fn select(front: &mut Front<'_>, picked: Option<[NodeId; 2]>) -> Done
     let (queue, mesh) = front.queue();
     let by_rule = queue.select(mesh, parameters);
     let choice = picked.map_or(by_rule, |segment| Some(BaseChoice::of_person(segment, by_rule, parameters)));
-    let Some(BaseChoice { segment, h_min, within_reach }) = choice else {
+    let Some(BaseChoice { segment, h_min, deferred, within_reach }) = choice else {
         return all_deferred(front);
     };
     let Segment { a, b, h_value, length_metric, length_physical, theta, class, level, .. } = segment;
@@ -33,6 +33,7 @@ pub(super) fn select(front: &mut Front<'_>, picked: Option<[NodeId; 2]>) -> Done
         b,
         h_value,
         h_min,
+        deferred,
         class,
         theta,
         length_metric,

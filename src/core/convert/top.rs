@@ -3,6 +3,7 @@
 
 use super::event::{Event, Purpose, Why};
 use super::front::{Done, Front};
+use super::local::smooth::around_top as smooth_around;
 use super::phase::{Attempt, Base, Phase};
 use crate::core::kernel::predicates::orient;
 use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
@@ -20,7 +21,7 @@ pub(super) enum Recovery {
     Changed(Event),
 }
 
-/// One step of the recovery of the top edge (top edge i to vi).
+/// One step of the recovery of the top edge (top edge i to iv and vi).
 pub(super) fn recover(
     front: &mut Front<'_>,
     base: Base,
@@ -32,8 +33,18 @@ pub(super) fn recover(
     match recover_step(front.mesh, c, d, &[base.a, base.b, c, d])? {
         Recovery::Found => Ok((Phase::Form { base, attempt, tops }, Some(Event::TopFound { ends: tops, swaps }))),
         Recovery::Changed(_) if swaps == MOST_SWAPS => Err(Why::TopTooLong),
-        Recovery::Changed(event) => Ok((Phase::RecoverTop { base, attempt, tops, swaps: swaps + 1 }, Some(event))),
+        Recovery::Changed(event) => {
+            let smooths = front.parameters.top_smoothing && matches!(event, Event::TopSwapped { .. });
+            Ok((Phase::RecoverTop { base, attempt, tops, swaps: swaps + 1, smooths }, Some(event)))
+        }
     }
+}
+
+/// Local smoothing around C after a swap (top edge v): of the nodes that live triangles join to it.
+pub(super) fn smooth(front: &mut Front<'_>, base: Base, attempt: Attempt, tops: [NodeId; 2], swaps: u8) -> Done {
+    let nodes = smooth_around(front, tops);
+    let event = (nodes > 0).then_some(Event::TopSmoothed { nodes });
+    (Phase::RecoverTop { base, attempt, tops, swaps, smooths: false }, event)
 }
 
 /// One step of the recovery of the edge from C to D; nodes in `keep` are not removed.

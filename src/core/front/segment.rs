@@ -48,7 +48,7 @@ impl Segment {
             h,
             a,
             b,
-            h_value: 0.5 * (mesh.smallest_size(a) + mesh.smallest_size(b)),
+            h_value: h_value(mesh, [a, b]),
             length_metric: mesh.distance(a, b),
             length_physical: mesh.physical_distance(a, b),
             theta,
@@ -97,6 +97,11 @@ impl Segment {
         };
         Key([first, self.theta_sum(), 0.0])
     }
+}
+
+/// The H-value of a segment between two nodes (eq. 6).
+pub fn h_value(mesh: &Mesh, ends: [NodeId; 2]) -> f64 {
+    0.5 * (mesh.smallest_size(ends[0]) + mesh.smallest_size(ends[1]))
 }
 
 /// See [`Segment::layer`].

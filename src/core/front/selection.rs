@@ -9,8 +9,8 @@ use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
-use super::segment::{Key, Segment};
-use crate::core::case::{Parameters, Selection};
+use super::segment::{Key, Segment, h_value};
+use crate::core::case::{HMinOver, Parameters, Selection};
 use crate::core::mesh::journal::Entry;
 use crate::core::mesh::{HalfEdgeId, Mark, Mesh, NodeId};
 
@@ -27,8 +27,11 @@ struct Waiting {
 pub struct BaseChoice {
     /// The base segment.
     pub segment: Segment,
-    /// Smallest H-value on the front (step i); on surfaces, on the front of the current face.
+    /// Smallest H-value on the front (step i), over the segments that the parameters say; on surfaces, on the front of
+    /// the current face. With other criteria than table 1, that of the segment itself.
     pub h_min: f64,
+    /// The number of deferred segments on the front, or on that of the current face.
+    pub deferred: u32,
     /// Whether the segment is within c Hmin; otherwise it is the one with the smallest H-value (step iii).
     pub within_reach: bool,
 }
@@ -36,9 +39,9 @@ pub struct BaseChoice {
 impl BaseChoice {
     /// The choice of a segment that a person picked instead of the one that the rules select.
     pub fn of_person(segment: Segment, by_rule: Option<BaseChoice>, parameters: &Parameters) -> BaseChoice {
-        let h_min = by_rule.map_or(segment.h_value, |choice| choice.h_min);
+        let (h_min, deferred) = by_rule.map_or((segment.h_value, 0), |choice| (choice.h_min, choice.deferred));
         let within_reach = segment.class < 4 && segment.window(parameters.selection_window) < parameters.c * h_min;
-        BaseChoice { segment, h_min, within_reach }
+        BaseChoice { segment, h_min, deferred, within_reach }
     }
 }
 
@@ -47,6 +50,8 @@ impl BaseChoice {
 pub struct Queue {
     /// Classes 1 to 3 by the selection window, and all segments by H-value; other criteria use only the last heap.
     heaps: [BinaryHeap<Reverse<Waiting>>; 4],
+    /// The deferred segments with their H-values: they are not chosen, but stand on the front.
+    deferred: Vec<(HalfEdgeId, u32, f64)>,
     stamp: Vec<u32>,
     node_epoch: Vec<u32>,
     epoch: u32,
@@ -61,8 +66,8 @@ impl Queue {
         queue.grow(mesh);
         for e in mesh.elements_of(face) {
             for h in mesh.half_edges(e) {
-                if mesh.is_front(h) && !mesh.is_deferred(h) {
-                    queue.push(mesh, h, parameters);
+                if mesh.is_front(h) {
+                    if mesh.is_deferred(h) { queue.note_deferred(mesh, h) } else { queue.push(mesh, h, parameters) }
                 }
             }
         }
@@ -110,26 +115,40 @@ impl Queue {
     /// queue until it is deferred or changed by its quadrilateral. `None` if every segment is deferred.
     pub fn select(&mut self, mesh: &Mesh, parameters: &Parameters) -> Option<BaseChoice> {
         let smallest = self.top(3, mesh)?;
+        let (deferred, least) = self.deferred();
         let measured = |waiting: Waiting| Segment::measure(mesh, waiting.h, parameters);
         if parameters.selection != Selection::Table1 {
             let segment = measured(smallest);
-            return Some(BaseChoice { segment, h_min: segment.h_value, within_reach: true });
+            return Some(BaseChoice { segment, h_min: segment.h_value, deferred, within_reach: true });
         }
-        let Key([layer, h_min, _]) = smallest.key;
+        let Key([layer, h, _]) = smallest.key;
+        let h_min = if parameters.h_min_over == HMinOver::Front { h.min(least) } else { h };
         for class in 0..3 {
             let Some(waiting) = self.top(class, mesh) else { continue };
             let Key([its_layer, window, _]) = waiting.key;
             if its_layer == layer && window < parameters.c * h_min {
-                return Some(BaseChoice { segment: measured(waiting), h_min, within_reach: true });
+                return Some(BaseChoice { segment: measured(waiting), h_min, deferred, within_reach: true });
             }
         }
-        Some(BaseChoice { segment: measured(smallest), h_min, within_reach: false })
+        Some(BaseChoice { segment: measured(smallest), h_min, deferred, within_reach: false })
+    }
+
+    /// The number of deferred segments and their smallest H-value.
+    fn deferred(&mut self) -> (u32, f64) {
+        let stamp = &self.stamp;
+        self.deferred.retain(|(h, stamped, _)| stamp[h.index()] == *stamped);
+        (self.deferred.len() as u32, self.deferred.iter().fold(f64::INFINITY, |least, deferred| least.min(deferred.2)))
+    }
+
+    fn note_deferred(&mut self, mesh: &Mesh, h: HalfEdgeId) {
+        self.deferred.push((h, self.stamp[h.index()], h_value(mesh, mesh.ends(h))));
     }
 
     /// Defers a segment until something near it changes.
     pub fn defer(&mut self, mesh: &mut Mesh, h: HalfEdgeId) {
         mesh.set_deferred(h, true);
         self.stamp[h.index()] = self.stamp[h.index()].wrapping_add(1);
+        self.note_deferred(mesh, h);
     }
 
     /// Updates the queue after the changes in the journal since the mark: segments at nodes that moved or whose
@@ -218,6 +237,7 @@ impl Queue {
         let deferred: Vec<HalfEdgeId> = mesh.front().filter(|&h| mesh.is_deferred(h)).collect();
         for &h in &deferred {
             mesh.set_deferred(h, false);
+            self.stamp[h.index()] = self.stamp[h.index()].wrapping_add(1);
             self.push(mesh, h, parameters);
         }
         !deferred.is_empty()

@@ -151,6 +151,7 @@ pub(super) fn changes_front(event: &Event) -> bool {
             | Event::SideSwapped { .. }
             | Event::SideDivided { .. }
             | Event::TopSwapped { .. }
+            | Event::TopSmoothed { .. }
             | Event::TopFound { .. }
             | Event::NodeRemoved { .. }
             | Event::RolledBack { .. }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde::{Serialize, Serializer};
 
-use crate::core::case::{Parameters, Selection};
+use crate::core::case::{HMinOver, Parameters, Selection};
 use crate::core::convert::Converter;
 use crate::core::front::Segment;
 use crate::core::front::segment::{Key, layer};
@@ -66,7 +66,7 @@ pub struct FrontTable {
     pub rows: Vec<Row>,
     /// The loops.
     pub loops: Vec<Loop>,
-    /// The smallest H-value of the waiting segments (4.3.3, step i); infinite where none waits.
+    /// The smallest H-value (4.3.3, step i) over the segments that the parameters say; infinite where none waits.
     pub h_min: f64,
     /// The smallest layer of the waiting segments, where rows are offset first.
     pub(super) layer: u32,
@@ -103,10 +103,12 @@ impl FrontTable {
         }
         let waiting = || rows.iter().filter(|row| !row.is_deferred);
         let layer = waiting().map(|row| row.layer(&parameters)).min().unwrap_or(0);
-        let h_min = waiting()
-            .filter(|row| row.layer(&parameters) == layer)
-            .map(|row| row.h_value)
-            .fold(f64::INFINITY, f64::min);
+        let face = converter.face();
+        let counts = |row: &&Row| match parameters.h_min_over {
+            HMinOver::Front if row.is_deferred => face.is_none_or(|face| row.face == face),
+            _ => !row.is_deferred && row.layer(&parameters) == layer,
+        };
+        let h_min = rows.iter().filter(counts).map(|row| row.h_value).fold(f64::INFINITY, f64::min);
         FrontTable { rows, loops, h_min, layer, parameters }
     }
 

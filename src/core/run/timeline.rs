@@ -53,7 +53,7 @@ impl Lane {
             EventKind::SideIsFront | EventKind::SideChosen | EventKind::SideSwapped | EventKind::SideDivided => {
                 Lane::Sides
             }
-            EventKind::TopSwapped | EventKind::TopFound => Lane::Top,
+            EventKind::TopSwapped | EventKind::TopSmoothed | EventKind::TopFound => Lane::Top,
             EventKind::Formed => Lane::Formed,
             EventKind::RolledBack | EventKind::Deferred | EventKind::SecondPass => Lane::Failed,
             EventKind::Enhanced | EventKind::Smoothed | EventKind::NodeRemoved => Lane::Local,

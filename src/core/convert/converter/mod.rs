@@ -255,8 +255,13 @@ impl<'a> Converter<'a> {
                 .unwrap_or_else(|why| self.take_attempt_back(base, attempt, why)),
             Phase::DivideSide { base, attempt, side, tops } => side::divide(front, base, attempt, side, tops)
                 .unwrap_or_else(|why| self.take_attempt_back(base, attempt, why)),
-            Phase::RecoverTop { base, attempt, tops, swaps } => top::recover(front, base, attempt, tops, swaps)
-                .unwrap_or_else(|why| self.take_attempt_back(base, attempt, why)),
+            Phase::RecoverTop { base, attempt, tops, swaps, smooths: true } => {
+                top::smooth(front, base, attempt, tops, swaps)
+            }
+            Phase::RecoverTop { base, attempt, tops, swaps, smooths: false } => {
+                top::recover(front, base, attempt, tops, swaps)
+                    .unwrap_or_else(|why| self.take_attempt_back(base, attempt, why))
+            }
             Phase::Form { base, attempt, tops } => {
                 form::form(front, base, attempt, tops).unwrap_or_else(|why| self.take_attempt_back(base, attempt, why))
             }

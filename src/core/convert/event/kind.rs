@@ -62,6 +62,7 @@ kinds! {
         SideSwapped "side_swapped",
         SideDivided "side_divided",
         TopSwapped "top_swapped",
+        TopSmoothed "top_smoothed",
         TopFound "top_found",
         NodeRemoved "node_removed",
         Formed "formed",

@@ -1,55 +1,75 @@
 //! The next way to try a quadrilateral whose formation was taken back (docs/algorithm.md, "Rescue").
 
-use crate::core::case::Parameters;
+use smallvec::SmallVec;
+
+use crate::core::case::{FirstRescue, Parameters};
 use crate::core::convert::phase::{Attempt, Base};
+use crate::core::convert::side::choice::BaseSide;
 use crate::core::front::Side;
 use crate::core::mesh::{Mark, Mesh};
 
-/// The first attempt that lays tops down: every other edge at B, then at A; the two Lee-Lo pairs come after.
+/// The number of the first attempt that lays tops down.
 const ALTERNATIVES: u8 = 4;
 
-/// The next attempt: forced divisions, then every other edge at B, then at A, then the base triangle's Lee-Lo pairs.
+/// The attempt after a failed one.
 pub fn next(mesh: &Mesh, parameters: &Parameters, base: &Base, failed: &Attempt) -> Option<Attempt> {
-    let mut number = failed.number;
-    loop {
-        number = number.saturating_add(1);
-        if let Some(next) = attempt(mesh, parameters, base, number, failed.mark)? {
-            return Some(next);
-        }
-    }
+    let all = attempts(mesh, parameters, base, failed.mark);
+    let after = all.iter().position(|attempt| attempt.number == failed.number).map_or(0, |at| at + 1);
+    all.get(after).copied()
 }
 
-/// The attempt of a number: `None` past the last, `Some(None)` where it would be no different from another.
-fn attempt(mesh: &Mesh, parameters: &Parameters, base: &Base, number: u8, mark: Mark) -> Option<Option<Attempt>> {
-    let plain = Attempt { number, divide: [false; 2], tops: [None; 2], mark };
-    if number < ALTERNATIVES {
-        let is_front = base.theta.map(|t| t < parameters.theta_rect);
-        let divide = [[false, true], [true, false], [true, true]][usize::from(number) - 1];
-        let possible = !(divide[0] && is_front[0] || divide[1] && is_front[1]);
-        return Some(possible.then_some(Attempt { divide, ..plain }));
+/// All attempts after the first one, in order: forced divisions, then every edge at B, then at A, then the base
+/// triangle's Lee-Lo pairs. As the paper says, the left-hand neighbours of the right side come before them all.
+fn attempts(mesh: &Mesh, parameters: &Parameters, base: &Base, mark: Mark) -> SmallVec<[Attempt; 24]> {
+    let mut all = SmallVec::new();
+    let plain = Attempt { number: 0, divide: [false; 2], tops: [None; 2], mark };
+    let is_front = base.theta.map(|t| t < parameters.theta_rect);
+    for (number, divide) in (1..).zip([[false, true], [true, false], [true, true]]) {
+        if !(divide[0] && is_front[0] || divide[1] && is_front[1]) {
+            all.push(Attempt { number, divide, ..plain });
+        }
     }
-    let h = base.half_edge(mesh)?;
-    let mut k = usize::from(number - ALTERNATIVES);
+    let Some(h) = base.half_edge(mesh) else { return all };
+    let mut numbers = ALTERNATIVES..;
+    let mut lay_down = |tops, all: &mut SmallVec<[Attempt; 24]>| {
+        if let Some(number) = numbers.next() {
+            all.push(Attempt { number, tops, ..plain });
+        }
+    };
     for side in [Side::Right, Side::Left] {
-        let spokes = mesh.spokes(h, side);
-        if let Some(spoke) = spokes.get(k) {
+        let first = all.len();
+        for spoke in mesh.spokes(h, side) {
             let mut tops = [None; 2];
             tops[side.index()] = Some(spoke.node);
-            return Some(Some(Attempt { tops, ..plain }));
+            lay_down(tops, &mut all);
         }
-        k -= spokes.len();
+        if side == Side::Right && parameters.first_rescue == FirstRescue::LeftNeighbour {
+            // Edges are met from the base on: those before the right side are to its left, the last of them beside it.
+            let to_its_left = left_of_the_right_side(mesh, parameters, base, &plain);
+            all[first..first + to_its_left].reverse();
+            all[..first + to_its_left].rotate_left(first);
+        }
     }
     // The base triangle with its neighbour beyond the right edge, then the left one.
     let apex = mesh.apex(h);
-    let (edge, beyond_right) = match k {
-        0 => (mesh.next(h), true),
-        1 => (mesh.previous(h), false),
-        _ => return None,
-    };
-    let pair = mesh.live_twin(edge).map(|t| {
-        let far = mesh.apex(t);
-        let tops = if beyond_right { [Some(apex), Some(far)] } else { [Some(far), Some(apex)] };
-        Attempt { tops, ..plain }
-    });
-    Some(pair)
+    for (edge, beyond_right) in [(mesh.next(h), true), (mesh.previous(h), false)] {
+        let far = mesh.live_twin(edge).map(|t| mesh.apex(t));
+        match far {
+            Some(far) if beyond_right => lay_down([Some(apex), Some(far)], &mut all),
+            Some(far) => lay_down([Some(far), Some(apex)], &mut all),
+            None => {}
+        }
+    }
+    all
+}
+
+/// The number of edges at B to the left of the right side of the first attempt.
+fn left_of_the_right_side(mesh: &Mesh, parameters: &Parameters, base: &Base, first: &Attempt) -> usize {
+    let side = |side| BaseSide { mesh, parameters, base, side };
+    let left = side(Side::Left).choose(first, None).ok().map(|choice| choice.edge.node);
+    let right = side(Side::Right);
+    let Ok(chosen) = right.choose(first, left) else { return 0 };
+    let spokes = base.half_edge(mesh).map(|h| mesh.spokes(h, Side::Right)).unwrap_or_default();
+    let is_left = |node| node != chosen.edge.node && right.edge(node).angle < chosen.edge.angle;
+    spokes.iter().take_while(|spoke| is_left(spoke.node)).count()
 }

@@ -1,13 +1,14 @@
 //! Local post-processing around a new quadrilateral (paper 4.3.6): structural enhancement, then smoothing. Seaming and
 //! splitting follow, in modules of their own.
 
-mod smooth;
+pub(super) mod smooth;
 
 use smallvec::SmallVec;
 
 use super::event::{Event, Purpose};
 use super::front::{Done, Front};
 use super::phase::Phase;
+use crate::core::case::EnhancementOrder;
 use crate::core::kernel::Metric2;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mark, Mesh, NodeId};
 
@@ -24,7 +25,8 @@ pub(super) fn begin(front: &Front<'_>, element: ElementId, mark: Mark) -> Phase 
     }
 }
 
-/// One structural enhancement (4.3.6): a swap (ii), or where there is none the removal of a node (i).
+/// One structural enhancement (4.3.6): the removal of a node (i), or a swap (ii). Which is tried first, the parameters
+/// say.
 pub(super) fn enhance(
     front: &mut Front<'_>,
     element: ElementId,
@@ -37,13 +39,17 @@ pub(super) fn enhance(
         budget => Phase::Enhance { element, mark, edges, budget },
     };
     if front.parameters.enhancement {
+        let deletes_first = front.parameters.enhancement_order == EnhancementOrder::DeleteFirst;
+        if deletes_first && let Some(event) = remove_a_node(front.mesh, element) {
+            return (next(edges_around(front.mesh, element)), Some(event));
+        }
         while let Some(h) = edges.pop() {
             if let Some((event, around)) = enhance_edge(front.mesh, h) {
                 edges.extend(around);
                 return (next(edges), Some(event));
             }
         }
-        if let Some(event) = remove_a_node(front.mesh, element) {
+        if !deletes_first && let Some(event) = remove_a_node(front.mesh, element) {
             return (next(edges_around(front.mesh, element)), Some(event));
         }
     }

@@ -3,16 +3,18 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use crate::core::case::SmoothingWeights;
 use crate::core::convert::front::Front;
 use crate::core::convert::relax::energy;
 use crate::core::mesh::{ElementId, Mesh, NodeId};
+use crate::core::metric::measure::angle;
 
 /// A smoothed node must not let the worst quality around fall below this share of what it was.
 const KEPT_QUALITY: f64 = 0.9;
 
-/// Smooths around the quadrilateral in the paper's order: nodes of the triangles around it, then its own. With
-/// placement on, nodes of the front stay, and nodes that the quadrilateral buried are relaxed by the energy. Returns
-/// how many nodes moved.
+/// Smooths around the quadrilateral in the paper's order: nodes of the triangles around it, then, where the parameters
+/// say so, other nodes that an edge joins to it, then its own. With placement on, nodes of the front stay, and nodes
+/// that the quadrilateral buried are relaxed by the energy. Returns how many nodes moved.
 pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
     let corners = front.mesh.quad(element);
     let mut around: SmallVec<[NodeId; 24]> = SmallVec::new();
@@ -25,10 +27,20 @@ pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
             }
         }
     }
+    if front.parameters.smooth_joined {
+        for corner in corners {
+            for node in front.mesh.neighbours(corner) {
+                if !around.contains(&node) && !corners.contains(&node) {
+                    around.push(node);
+                }
+            }
+        }
+    }
     let placement = front.parameters.placement;
     let mut moved = 0;
     for node in around {
-        if !front.mesh.is_on_front(node) || (!placement && !front.mesh.is_fixed(node)) {
+        let stays = placement && front.mesh.is_on_front(node) && !front.mesh.is_buried(node);
+        if !front.mesh.is_fixed(node) && !stays {
             moved += u8::from(by_area(front, node));
         }
     }
@@ -45,19 +57,25 @@ pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
     moved
 }
 
+/// Smooths around the top C of a quadrilateral that is to be formed (4.3.4, top edge v): the nodes that live triangles
+/// join to it, but for those of the front and the other top. Returns how many moved.
+pub fn around_top(front: &mut Front<'_>, tops: [NodeId; 2]) -> u8 {
+    let nodes: SmallVec<[NodeId; 12]> = front.mesh.live_fan(tops[0]).map(|h| front.mesh.target(h)).collect();
+    let is_free = |front: &Front<'_>, n| !tops.contains(&n) && !front.mesh.is_on_front(n) && !front.mesh.is_fixed(n);
+    nodes.into_iter().map(|node| u8::from(is_free(front, node) && by_area(front, node))).sum()
+}
+
 /// Moves a node to the weighted centroid of its elements (eq. 9), in steps 1, 1/2, 1/4, 1/8 until the guard holds.
 fn by_area(front: &mut Front<'_>, node: NodeId) -> bool {
     let mesh = &*front.mesh;
     let (mut sum, mut weight, mut before) = (DVec2::ZERO, 0.0, f64::INFINITY);
     for e in mesh.elements_at(node) {
-        let (mut centroid, mut root) = (DVec2::ZERO, 0.0);
-        let sides = mesh.sides(e) as f64;
-        for n in mesh.corners(e) {
-            centroid += mesh.uv(n);
-            root += mesh.metric_ref(n).det().sqrt();
-        }
-        let area = root / sides * element_area(mesh, e);
-        sum += centroid / sides * area;
+        let centroid = mesh.corners(e).fold(DVec2::ZERO, |sum, n| sum + mesh.uv(n)) / mesh.sides(e) as f64;
+        let area = match front.parameters.smoothing_weights {
+            SmoothingWeights::Determinant => area_by_determinant(mesh, e),
+            SmoothingWeights::Printed => printed_area(mesh, e, node),
+        };
+        sum += centroid * area;
         weight += area;
         before = before.min(mesh.quality(e));
     }
@@ -85,13 +103,31 @@ fn by_area(front: &mut Front<'_>, node: NodeId) -> bool {
     false
 }
 
-/// Area of an element in the parametric plane.
-fn element_area(mesh: &Mesh, e: ElementId) -> f64 {
-    if mesh.is_triangle(e) {
+/// Area of an element: in the parametric plane, times the mean of `sqrt(det M)` over its nodes.
+fn area_by_determinant(mesh: &Mesh, e: ElementId) -> f64 {
+    let roots: f64 = mesh.corners(e).map(|n| mesh.metric_ref(n).det().sqrt()).sum();
+    let area = if mesh.is_triangle(e) {
         let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
         0.5 * (b - a).perp_dot(c - a)
     } else {
         let [a, b, c, d] = mesh.quad(e).map(|n| mesh.uv(n));
         0.5 * (c - a).perp_dot(d - b)
-    }
+    };
+    roots / mesh.sides(e) as f64 * area
+}
+
+/// Area of an element at a node as printed (eqs. 10a, 10b): by the metric lengths of the edges, and of the diagonal,
+/// that leave the node, and the angles between them in its metric.
+fn printed_area(mesh: &Mesh, e: ElementId, node: NodeId) -> f64 {
+    let corners: SmallVec<[NodeId; 4]> = mesh.corners(e).collect();
+    let at = corners.iter().position(|&n| n == node).expect("the element is at the node");
+    // The other corners, anticlockwise.
+    let others = (1..corners.len()).map(|k| corners[(at + k) % corners.len()]);
+    let spokes: SmallVec<[(f64, DVec2); 3]> =
+        others.map(|n| (mesh.distance(node, n), mesh.uv(n) - mesh.uv(node))).collect();
+    let between = |pair: &[(f64, DVec2)]| {
+        let [(l, p), (next, q)] = [pair[0], pair[1]];
+        0.5 * l * next * libm::sin(angle(mesh.metric_ref(node), p, q))
+    };
+    spokes.windows(2).map(between).sum()
 }

@@ -6,24 +6,25 @@
 pub(super) mod merge;
 mod transition;
 
+use std::f64::consts::FRAC_PI_2;
+
 use smallvec::SmallVec;
 
 use super::event::{Event, Unmerged};
 use super::front::{Done, Front};
 use super::phase::Phase;
 use super::top::{MOST_SWAPS, Recovery, recover_step};
+use crate::core::case::Parameters;
 use crate::core::front::Side;
 use crate::core::mesh::{ElementId, HalfEdgeId, NodeId};
 
 /// Segments whose lengths differ by more than this factor need a transition seam.
 const MOST_UNLIKE: f64 = 2.5;
-/// With this many dead elements at the node, angles up to `WIDE` are seamed too (after Levik; docs/algorithm.md,
-/// "Seaming").
+/// With this many dead elements at the node, wider angles are seamed too (after Levik; docs/algorithm.md, "Seaming").
 const CROWDED: usize = 5;
 /// So they are where the segments are shorter than this on average, in the metric: where sizes grow ahead of the front,
 /// columns must end, and this is where they do (docs/experiments.md).
 const SHORT: f64 = 0.85;
-const WIDE: f64 = std::f64::consts::FRAC_PI_4;
 
 /// One seam (4.3.6) at a node of the new quadrilateral, or why one is refused.
 pub(super) fn step(front: &mut Front<'_>, element: ElementId, mut nodes: SmallVec<[NodeId; 8]>) -> Done {
@@ -81,12 +82,13 @@ fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
     refused
 }
 
-/// The widest frontal angle at a node that is seamed, where the mean metric length of the segments is `length`. The
-/// wider bound is ours: the paper's own reading has neither it nor placement.
+/// The widest frontal angle at a node that is seamed, where the mean metric length of the segments is `length`.
 fn widest(front: &Front<'_>, at: NodeId, length: f64) -> f64 {
-    let bound = front.parameters.theta_seam;
+    let Parameters { theta_seam, seam_widening, .. } = *front.parameters;
     let is_crowded = || front.mesh.elements_at(at).filter(|&e| front.mesh.is_quad(e)).count() >= CROWDED;
-    if front.parameters.placement && (length < SHORT || is_crowded()) { bound.max(WIDE) } else { bound }
+    // A right angle is a corner of a row.
+    let wide = (theta_seam * seam_widening).min(FRAC_PI_2);
+    if wide > theta_seam && (length < SHORT || is_crowded()) { wide } else { theta_seam }
 }
 
 /// Recovers the edge between the far ends, empties the triangle, and merges the ends. Returns the merged node.

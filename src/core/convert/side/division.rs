@@ -3,21 +3,23 @@
 use glam::DVec2;
 
 use super::choice::BaseSide;
+use crate::core::case::DivisionAt;
 use crate::core::convert::event::Why;
 use crate::core::convert::phase::Attempt;
 use crate::core::kernel::Metric2;
 use crate::core::mesh::{HalfEdgeId, NodeId};
 use crate::core::metric::MetricSource;
 
-/// Half a divided side must be at least this long in the metric.
-const LEAST_HALF: f64 = 0.5;
+/// No side shorter than this in the metric is divided, so that divisions end (docs/algorithm.md, "When the front
+/// ends").
+const LEAST: f64 = 0.1;
 
 /// A division of a side edge that was judged possible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Division {
     /// The edge.
     pub h: HalfEdgeId,
-    /// The place that halves its metric length, and the metric there.
+    /// The place where it is divided, and the metric there.
     pub middle: DVec2,
     pub metric: Metric2,
     /// Its metric length before.
@@ -40,10 +42,13 @@ impl BaseSide<'_> {
         if !forced && length <= parameters.side_split * base.length {
             return Ok(None);
         }
-        if length < 2.0 * LEAST_HALF {
+        if length < parameters.whole_below.max(LEAST) {
             return whole;
         }
-        let middle = mesh.metric_middle(at, top);
+        let middle = match parameters.division_at {
+            DivisionAt::MetricMiddle => mesh.metric_middle(at, top),
+            DivisionAt::Midpoint => 0.5 * (mesh.uv(at) + mesh.uv(top)),
+        };
         let metric = source.metric(middle).map_err(|_| Why::NoMetric)?;
         if mesh.can_divide(h, middle).is_err() { whole } else { Ok(Some(Division { h, middle, metric, length })) }
     }

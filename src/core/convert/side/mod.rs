@@ -66,7 +66,9 @@ pub(super) fn divide(
 /// The right side comes after the left one, and the top after both (side edges vii).
 fn after(base: Base, attempt: Attempt, side: Side, tops: [Option<NodeId>; 2]) -> Phase {
     match (side, tops) {
-        (Side::Right, [Some(c), Some(d)]) => Phase::RecoverTop { base, attempt, tops: [c, d], swaps: 0 },
+        (Side::Right, [Some(c), Some(d)]) => {
+            Phase::RecoverTop { base, attempt, tops: [c, d], swaps: 0, smooths: false }
+        }
         _ => Phase::PrepareSide { base, attempt, side: Side::Right, left: tops[0] },
     }
 }
