@@ -172,3 +172,24 @@ fn the_explanations_put_the_numbers_into_the_formulas() {
     });
     insta::assert_snapshot!(texts.join("\n"));
 }
+
+#[test]
+fn on_surfaces_the_terms_of_an_h_value_add_up_to_that_of_the_selection() {
+    let run = Run::of(built_in::named("wing").unwrap().unwrap());
+    let mut converter = run.start(&run.background(&mut Nobody).unwrap()).unwrap();
+    let (mut seen, mut unlike) = (0, 0);
+    while seen < 200 {
+        let Event::BaseSelected { a, b, h_value, length_physical, .. } = converter.step().unwrap() else { continue };
+        let told = SegmentFacts::of(&converter, a, b).unwrap();
+        let [h_a, h_b] = told.smallest_sizes;
+        assert!((0.5 * (h_a + h_b) - h_value).abs() <= 1e-15 * h_value);
+        // The tensor of the chart has other eigenvalues than the sizes in space.
+        unlike += usize::from((told.metric[0].sizes[1] / h_a - 1.0).abs() > 0.01);
+        let edge = EdgeFacts::of(&converter.mesh, a, b).unwrap();
+        let [p, q] = [a, b].map(|n| glam::DVec3::from(NodeFacts::of(&converter.mesh, n).unwrap().xyz));
+        assert_eq!(edge.length_physical, length_physical);
+        assert!((p.distance(q) - length_physical).abs() <= 1e-14 * length_physical);
+        seen += 1;
+    }
+    assert!(unlike > 50, "{unlike}");
+}

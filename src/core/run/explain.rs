@@ -104,6 +104,8 @@ pub struct SegmentFacts {
     pub row: Row,
     /// The metrics of A and B.
     pub metric: [MetricFacts; 2],
+    /// The smallest sizes at A and B, whose mean is the H-value (eq. 6): on surfaces those in space.
+    pub smallest_sizes: [f64; 2],
     /// Length in the parametric plane; that in space is `row.length_physical`.
     pub length_parametric: f64,
     /// The classes of its frontal angles.
@@ -141,6 +143,7 @@ impl SegmentFacts {
         Some(SegmentFacts {
             row,
             metric: [a, b].map(|n| MetricFacts::of(mesh.metric_ref(n))),
+            smallest_sizes: [a, b].map(|n| mesh.smallest_size(n)),
             length_parametric: mesh.uv(a).distance(mesh.uv(b)),
             corners: row.theta.map(|theta| Corner::of(theta, parameters)),
             front_loop: table.loops[row.front_loop as usize],
@@ -213,7 +216,7 @@ impl NodeFacts {
         Some(NodeFacts {
             node,
             uv: [uv.x, uv.y],
-            xyz: [uv.x, uv.y, 0.0],
+            xyz: mesh.xyz(node).to_array(),
             metric: MetricFacts::of(mesh.metric_ref(node)),
             is_fixed: mesh.is_fixed(node),
             live,
@@ -272,7 +275,7 @@ impl EdgeFacts {
             kind,
             is_boundary: mesh.twin(h).is_none(),
             length_metric: mesh.distance(a, b),
-            length_physical: mesh.uv(a).distance(mesh.uv(b)),
+            length_physical: mesh.physical_distance(a, b),
         })
     }
 }

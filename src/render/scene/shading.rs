@@ -68,7 +68,7 @@ impl Shading {
             ColourBy::State => f64::NAN,
             ColourBy::HValue => {
                 let nodes: Vec<_> = mesh.corners(e).collect();
-                nodes.iter().map(|n| mesh.metric_ref(*n).min_size()).sum::<f64>() / nodes.len() as f64
+                nodes.iter().map(|n| mesh.smallest_size(*n)).sum::<f64>() / nodes.len() as f64
             }
             ColourBy::Angle => angles(mesh, e)[0].to_degrees(),
             ColourBy::Level if mesh.is_quad(e) => f64::from(mesh.level(e)),

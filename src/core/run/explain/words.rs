@@ -53,7 +53,7 @@ impl fmt::Display for SegmentFacts {
         for (name, metric) in ["A", "B"].iter().zip(&self.metric) {
             writeln!(f, "  M{name}: {metric}")?;
         }
-        let largest = self.metric.map(|metric| metric.lambda[0].max(metric.lambda[1]).sqrt());
+        let largest = self.smallest_sizes.map(|size| 1.0 / size);
         writeln!(
             f,
             "  H = 1/2 (1/{} + 1/{}) = {} (eq. 6); Hmin = {}",

@@ -65,16 +65,10 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
 
 fn h_value(ui: &mut Ui, moment: &Moment, s: &Segment, palette: &Palette) {
     heading(ui, "H-value", "eq. 6", palette);
-    let metrics = [s.a, s.b].map(|n| moment.mesh.metric(n));
-    let h = metrics.map(|metric| metric.min_size());
-    let lambda = metrics.map(|metric| metric.eigen().0);
-    let told = ["A", "B"].iter().zip(lambda).map(|(name, [small, large])| {
-        format!(
-            "\u{3bb}{name} = max({}, {}), \u{221a}\u{3bb}{name} = {}",
-            words::size(large),
-            words::size(small),
-            words::size(large.sqrt())
-        )
+    let h = [s.a, s.b].map(|n| moment.mesh.smallest_size(n));
+    let told = ["A", "B"].iter().zip(h).map(|(name, h)| {
+        let lambda = 1.0 / (h * h);
+        format!("\u{3bb}{name} = {}, \u{221a}\u{3bb}{name} = {}", words::size(lambda), words::size(1.0 / h))
     });
     let tip = told.collect::<Vec<_>>().join("\n");
     formula(ui, "H_{AB} = ½ ( 1/\u{221a}\u{3bb}_{A} + 1/\u{221a}\u{3bb}_{B} )", palette).on_hover_text(&tip);
