@@ -64,6 +64,19 @@ fn example_1_becomes_a_mesh_a_report_and_a_picture() {
 }
 
 #[test]
+fn the_readme_shows_the_summary_and_the_picture_of_today() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, out, _) = said(&run(&["convert", "example1", "-o", "a.msh", "--picture", "a.svg"], folder.path()));
+    assert_eq!(code, 0);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
+    let summary: Vec<&str> = out.lines().filter(|line| !line.starts_with("  time ")).collect();
+    assert!(readme.contains(&summary.join("\n")), "{out}");
+    let read = |path: &Path| std::fs::read_to_string(path).unwrap();
+    assert!(read(&folder.path().join("a.svg")) == read(&root.join("docs/example1.svg")), "docs/example1.svg is old");
+}
+
+#[test]
 fn two_runs_give_the_same_bytes_but_for_the_timing() {
     let folder = tempfile::tempdir().unwrap();
     let files = ["msh", "mesh", "vtu", "obj", "inp"];

@@ -183,12 +183,21 @@ fn on_surfaces_the_terms_of_an_h_value_add_up_to_that_of_the_selection() {
         let told = SegmentFacts::of(&converter, a, b).unwrap();
         let [h_a, h_b] = told.smallest_sizes;
         assert!((0.5 * (h_a + h_b) - h_value).abs() <= 1e-15 * h_value);
-        // The tensor of the chart has other eigenvalues than the sizes in space.
-        unlike += usize::from((told.metric[0].sizes[1] / h_a - 1.0).abs() > 0.01);
+        // The tensor of the chart has other eigenvalues than the sizes in space that are told.
+        assert!((told.metric[0].sizes[1] / h_a - 1.0).abs() < 1e-7);
+        unlike += usize::from((converter.mesh.metric(a).min_size() / h_a - 1.0).abs() > 0.01);
         let edge = EdgeFacts::of(&converter.mesh, a, b).unwrap();
         let [p, q] = [a, b].map(|n| glam::DVec3::from(NodeFacts::of(&converter.mesh, n).unwrap().xyz));
         assert_eq!(edge.length_physical, length_physical);
         assert!((p.distance(q) - length_physical).abs() <= 1e-14 * length_physical);
+        let e = converter.mesh.front_between(a, b).unwrap().element();
+        let triangle = ElementFacts::of(&converter.mesh, e).unwrap();
+        assert!((triangle.angles_physical.iter().sum::<f64>() - 180.0).abs() < 1e-9);
+        // Heron's formula on the sides in space.
+        let [x, y, z] = converter.mesh.triangle(e).map(|n| converter.mesh.xyz(n));
+        let [i, j, k] = [x.distance(y), y.distance(z), z.distance(x)];
+        let s = 0.5 * (i + j + k);
+        assert!((triangle.area / (s * (s - i) * (s - j) * (s - k)).sqrt() - 1.0).abs() < 1e-6);
         seen += 1;
     }
     assert!(unlike > 50, "{unlike}");

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use glam::DVec2;
 use quadfront::core::case::{HMinOver, built_in};
@@ -204,7 +204,6 @@ fn examine(state: &Converter<'_>, event: &Event) {
         }
     }
     assert_eq!(told.layer, layer);
-    assert!(told.theta.iter().all(|t| *t > 0.0 && *t <= TAU) && told.theta[0] < TAU + PI);
 }
 
 /// Holds every selection of a case, or one of so many, against the oracle. Returns how many, and in how many of them a
@@ -248,7 +247,7 @@ fn every_selection_of_examples_1_and_2_is_the_one_of_the_formulas() {
 fn one_of_ten_selections_of_the_other_cases_is_the_one_of_the_formulas() {
     for (name, _) in built_in::CASES {
         for paper in [false, true] {
-            selections(name, paper, 10);
+            assert!(selections(name, paper, 10)[0] > 5, "{name}");
         }
     }
 }

@@ -3,6 +3,7 @@
 //! (`metric::formula`).
 
 mod parameters;
+mod rules;
 pub(in crate::core) mod table;
 mod geometry;
 mod surfaces;
@@ -18,9 +19,8 @@ use std::sync::Arc;
 use glam::DVec2;
 
 pub use import_options::ImportOptions;
-pub use parameters::{
-    DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Parameters, Selection, SelectionWindow, SmoothingWeights,
-};
+pub use parameters::Parameters;
+pub use rules::{DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Selection, SelectionWindow, SmoothingWeights};
 use table::{Source, Table};
 pub use taking::{MeshSource, MeshUse, Taking};
 

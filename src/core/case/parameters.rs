@@ -4,77 +4,9 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
+use super::rules::{DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Selection, SelectionWindow, SmoothingWeights};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::spelling::nearest;
-
-/// Which front segment the next quadrilateral grows from (docs/algorithm.md, "Selection of the base segment").
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Selection {
-    /// The paper's table 1: classes by frontal angles, within reach of the smallest H-value.
-    Table1,
-    /// The shortest physical length.
-    Shortest,
-    /// The smallest frontal angle.
-    SmallestAngle,
-    /// Q-Morph's order: state, level, metric length.
-    Level,
-}
-
-/// What is compared with `c` times the smallest H-value (docs/algorithm.md, "The selection window").
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SelectionWindow {
-    /// Metric length times H: about H for unit edges, larger for long ones.
-    MetricLengthTimesH,
-    /// The H-value of eq. (6).
-    HValue,
-    /// The physical length, as the paper says.
-    PhysicalLength,
-}
-
-/// Over which front segments Hmin is taken (4.3.3, step i; docs/algorithm.md, "Selection of the base segment").
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HMinOver {
-    /// All that stand, as the paper says; deferred ones are only not chosen.
-    Front,
-    /// Those that are not deferred.
-    Waiting,
-}
-
-/// The order of the two operations of the local structural enhancement (4.3.6).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EnhancementOrder {
-    /// Swaps, and the removal of a node where there is none left.
-    SwapFirst,
-    /// As the paper says: nodes are removed before each swap.
-    DeleteFirst,
-}
-
-/// The areas that weigh the elements around a node when it is smoothed (eq. 10).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SmoothingWeights {
-    /// The area in the plane times the mean of `sqrt(det M)` over the nodes.
-    Determinant,
-    /// As printed: by lengths in the metric and angles at the node (eqs. 10a, 10b).
-    Printed,
-}
-
-/// Where an edge is divided (4.2.3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DivisionAt {
-    /// Where its metric length is halved.
-    MetricMiddle,
-    /// At its midpoint in the plane, as the paper says.
-    Midpoint,
-}
-
-/// What is tried first when a quadrilateral cannot be formed (4.3.4; docs/algorithm.md, "Rescue").
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FirstRescue {
-    /// The sides are divided.
-    Division,
-    /// As the paper says: the right side is replaced by its left-hand neighbour, and that by its own.
-    LeftNeighbour,
-}
 
 /// All settings besides geometry and metric. Angles in radians.
 #[derive(Clone, Debug, PartialEq)]
@@ -186,26 +118,6 @@ impl Default for Parameters {
     }
 }
 
-/// The words of enumerations in files and for `--set`, in the order of the variants.
-macro_rules! words {
-    ($($name:ident: $($word:literal = $variant:ident),+;)+) => {
-        $(impl $name {
-            /// Its words in files and for `--set`.
-            pub const WORDS: [(&'static str, $name); [$($word),+].len()] = [$(($word, $name::$variant)),+];
-        })+
-    };
-}
-
-words! {
-    Selection: "table1" = Table1, "shortest" = Shortest, "smallest_angle" = SmallestAngle, "level" = Level;
-    SelectionWindow: "metric_length_times_h" = MetricLengthTimesH, "h_value" = HValue, "physical_length" = PhysicalLength;
-    HMinOver: "front" = Front, "waiting" = Waiting;
-    EnhancementOrder: "swap_first" = SwapFirst, "delete_first" = DeleteFirst;
-    SmoothingWeights: "determinant" = Determinant, "printed" = Printed;
-    DivisionAt: "metric_middle" = MetricMiddle, "midpoint" = Midpoint;
-    FirstRescue: "division" = Division, "left_neighbour" = LeftNeighbour;
-}
-
 impl Parameters {
     /// The paper as printed (docs/algorithm.md, "Departures from the paper"): its words where ours differ, the values
     /// that it used where it gives a range.
@@ -218,6 +130,7 @@ impl Parameters {
             seam_widening: 1.0,
             whole_below: 0.0,
             selection_window: SelectionWindow::PhysicalLength,
+            h_min_over: HMinOver::Front,
             bisector: false,
             placement: false,
             division_at: DivisionAt::Midpoint,
@@ -295,19 +208,19 @@ parameters! {
     layers = count(0, 1000), |value| value.to_string();
     layered_loops = names(','), |value| value.join(", ");
     faces = names(';'), |value| value.join("; ");
-    selection = word(&Selection::WORDS), |value| word_of(*value, &Selection::WORDS);
-    selection_window = word(&SelectionWindow::WORDS), |value| word_of(*value, &SelectionWindow::WORDS);
-    h_min_over = word(&HMinOver::WORDS), |value| word_of(*value, &HMinOver::WORDS);
+    selection = word(&Selection::ALL, Selection::word), |value| value.word().to_owned();
+    selection_window = word(&SelectionWindow::ALL, SelectionWindow::word), |value| value.word().to_owned();
+    h_min_over = word(&HMinOver::ALL, HMinOver::word), |value| value.word().to_owned();
     bisector = flag(), |value| value.to_string();
     placement = flag(), |value| value.to_string();
-    division_at = word(&DivisionAt::WORDS), |value| word_of(*value, &DivisionAt::WORDS);
-    first_rescue = word(&FirstRescue::WORDS), |value| word_of(*value, &FirstRescue::WORDS);
+    division_at = word(&DivisionAt::ALL, DivisionAt::word), |value| value.word().to_owned();
+    first_rescue = word(&FirstRescue::ALL, FirstRescue::word), |value| value.word().to_owned();
     top_smoothing = flag(), |value| value.to_string();
     smoothing = flag(), |value| value.to_string();
     smooth_joined = flag(), |value| value.to_string();
-    smoothing_weights = word(&SmoothingWeights::WORDS), |value| word_of(*value, &SmoothingWeights::WORDS);
+    smoothing_weights = word(&SmoothingWeights::ALL, SmoothingWeights::word), |value| value.word().to_owned();
     enhancement = flag(), |value| value.to_string();
-    enhancement_order = word(&EnhancementOrder::WORDS), |value| word_of(*value, &EnhancementOrder::WORDS);
+    enhancement_order = word(&EnhancementOrder::ALL, EnhancementOrder::word), |value| value.word().to_owned();
     seaming = flag(), |value| value.to_string();
     splitting = flag(), |value| value.to_string();
     post_processing = flag(), |value| value.to_string();
@@ -373,9 +286,9 @@ fn flag(key: &str, value: &str) -> Result<bool, Fault> {
     })
 }
 
-fn word<T: Copy>(key: &str, value: &str, words: &[(&str, T)]) -> Result<T, Fault> {
-    words.iter().find(|w| w.0 == value).map(|w| w.1).ok_or_else(|| {
-        let known: Vec<_> = words.iter().map(|w| format!("\"{}\"", w.0)).collect();
+fn word<T: Copy>(key: &str, value: &str, all: &[T], word: fn(T) -> &'static str) -> Result<T, Fault> {
+    all.iter().copied().find(|&one| word(one) == value).ok_or_else(|| {
+        let known: Vec<_> = all.iter().map(|&one| format!("\"{}\"", word(one))).collect();
         Fault::new(format!("{key} = {} is not known", quoted(value))).remedy(format!("Known: {}", known.join(", ")))
     })
 }
@@ -383,10 +296,6 @@ fn word<T: Copy>(key: &str, value: &str, words: &[(&str, T)]) -> Result<T, Fault
 /// Splits a list of names; the separator is not a comma where names may contain one.
 fn names(_: &str, value: &str, separator: char) -> Result<Vec<String>, Fault> {
     Ok(value.split(separator).map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect())
-}
-
-fn word_of<T: PartialEq>(value: T, words: &[(&'static str, T)]) -> String {
-    words.iter().find(|w| w.1 == value).expect("every variant has its word").0.to_owned()
 }
 
 /// Degrees rounded to remove the rounding errors of the conversion to radians and back.
@@ -439,6 +348,10 @@ mod tests {
         assert_eq!(["size_scale", "layers", "max_quads"].map(text), ["0.5", "2", "1000"]);
         assert_eq!(["c", "theta_rect", "theta_seam"].map(text), ["2", "135", "30"]);
         assert_eq!(["selection_window", "bisector", "placement"].map(text), ["physical_length", "false", "false"]);
+        let rules = ["h_min_over", "division_at", "first_rescue", "smoothing_weights", "enhancement_order"];
+        assert_eq!(rules.map(text), ["front", "midpoint", "left_neighbour", "printed", "delete_first"]);
+        let numbers = ["seam_widening", "whole_below", "top_smoothing", "smooth_joined"];
+        assert_eq!(numbers.map(text), ["1", "0", "true", "true"]);
         assert_eq!(text("seaming"), "true");
     }
 

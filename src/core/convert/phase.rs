@@ -42,7 +42,7 @@ impl Base {
 /// One way to try to form the quadrilateral of a base segment (docs/algorithm.md, "Rescue").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attempt {
-    /// 0 is the paper's; then divisions that are forced; then every other edge at B, at A; last the Lee-Lo pairs.
+    /// Its place in the order of attempts, from 0.
     pub number: u8,
     /// Sides to be divided whatever their length.
     pub divide: [bool; 2],

@@ -135,6 +135,29 @@ impl Metric2 {
         (values, g)
     }
 
+    /// Eigenvalues of the pair (M, g) in ascending order: `1/h^2` of the sizes in space on a surface with the first
+    /// fundamental form `g`; and the directions of these sizes in its parameters, of unit length in space.
+    pub fn eigen_against(&self, g: &Metric2) -> ([f64; 2], [DVec2; 2]) {
+        let p = g.unit_basis();
+        let (values, q) = self.eigen_in(p);
+        (values, q.map(|q| p[0] * q.x + p[1] * q.y))
+    }
+
+    /// An orthonormal basis of this metric: the columns of `L^-T`, where `L L^T` is this tensor.
+    #[inline]
+    fn unit_basis(&self) -> [DVec2; 2] {
+        let l_uu = self.uu.sqrt();
+        let l_vv = self.det().sqrt() / l_uu;
+        [DVec2::new(1.0 / l_uu, 0.0), DVec2::new(-(self.uv / l_uu) / (l_uu * l_vv), 1.0 / l_vv)]
+    }
+
+    /// Eigenvalues and eigenvectors of this tensor in a basis.
+    #[inline]
+    fn eigen_in(&self, p: [DVec2; 2]) -> ([f64; 2], [DVec2; 2]) {
+        let m_p1 = self.times(p[1]);
+        eigen2(self.norm2(p[0]), p[0].dot(m_p1), p[1].dot(m_p1))
+    }
+
     /// The smallest size in any direction: `1 / sqrt(largest eigenvalue)`, as in eq. (6).
     #[inline]
     pub fn min_size(&self) -> f64 {
@@ -187,10 +210,7 @@ impl Metric2 {
         let l_uu = a.uu.sqrt();
         let l_vu = a.uv / l_uu;
         let l_vv = det.sqrt() / l_uu;
-        // Columns of L^-T.
-        let p = [DVec2::new(1.0 / l_uu, 0.0), DVec2::new(-l_vu / (l_uu * l_vv), 1.0 / l_vv)];
-        let b_p1 = b.times(p[1]);
-        let (s, q) = eigen2(b.norm2(p[0]), p[0].dot(b_p1), p[1].dot(b_p1));
+        let (s, q) = b.eigen_in(a.unit_basis());
         if s[1] <= 1.0 {
             return *a;
         }
@@ -365,6 +385,13 @@ mod tests {
         let pulled = Metric2 { uu: m.norm2(a), uv: m.inner(a, b), vv: m.norm2(b) };
         let form = Metric2 { uu: a.dot(a), uv: a.dot(b), vv: b.dot(b) };
         assert!((pulled.min_size_against(&form) - 0.02).abs() < 1e-12);
+        let (values, directions) = pulled.eigen_against(&form);
+        let sizes = values.map(|value| 1.0 / value.sqrt());
+        assert!((sizes[0] - 0.5).abs() < 1e-12 && (sizes[1] - 0.02).abs() < 1e-12, "{sizes:?}");
+        // In space the smaller size runs along (0.3, 1).
+        let small = a * directions[1].x + b * directions[1].y;
+        assert!((small.length() - 1.0).abs() < 1e-12);
+        assert!(small.perp_dot(DVec2::new(0.3, 1.0).normalize()).abs() < 1e-12);
         assert!((m.min_size_against(&Metric2::isotropic(1.0)) - m.min_size()).abs() < 1e-15);
     }
 

@@ -3,34 +3,37 @@
 
 mod words;
 
-use glam::DVec2;
+use glam::DVec3;
 use serde::Serialize;
 
 use super::front_table::{FrontTable, Loop, Row};
 use crate::core::case::{Parameters, Selection};
 use crate::core::convert::Converter;
 use crate::core::front::Side;
-use crate::core::kernel::Metric2;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 use crate::core::metric::measure::angle;
 
-/// A metric with its eigenpairs: sizes h = 1 / sqrt(lambda) along orthonormal directions.
+/// A metric with its eigenpairs: sizes h = 1 / sqrt(lambda). On surfaces they are the sizes in space, as in eq. (6).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MetricFacts {
     /// The tensor (eq. 3): uu, uv, vv.
     pub tensor: [f64; 3],
     /// Eigenvalues.
     pub lambda: [f64; 2],
-    /// The sizes h, in units of the case.
+    /// The sizes h in space, in units of the case.
     pub sizes: [f64; 2],
-    /// The corresponding unit directions: the axes of the ellipse of unit length.
+    /// The corresponding directions in the parameters, of unit length in space: the axes of the ellipse of unit length.
     pub directions: [[f64; 2]; 2],
 }
 
 impl MetricFacts {
-    /// Computes the eigenpairs of a metric.
-    pub fn of(metric: &Metric2) -> MetricFacts {
-        let (lambda, directions) = metric.eigen();
+    /// Computes the eigenpairs of the metric of a node.
+    pub fn of(mesh: &Mesh, node: NodeId) -> MetricFacts {
+        let metric = mesh.metric_ref(node);
+        let (lambda, directions) = match mesh.embedding() {
+            None => metric.eigen(),
+            Some(embedding) => metric.eigen_against(&embedding.atlas.at(mesh.uv(node)).first_form()),
+        };
         MetricFacts {
             tensor: [metric.uu, metric.uv, metric.vv],
             lambda,
@@ -142,7 +145,7 @@ impl SegmentFacts {
         let row = *table.find(a, b)?;
         Some(SegmentFacts {
             row,
-            metric: [a, b].map(|n| MetricFacts::of(mesh.metric_ref(n))),
+            metric: [a, b].map(|n| MetricFacts::of(mesh, n)),
             smallest_sizes: [a, b].map(|n| mesh.smallest_size(n)),
             length_parametric: mesh.uv(a).distance(mesh.uv(b)),
             corners: row.theta.map(|theta| Corner::of(theta, parameters)),
@@ -217,7 +220,7 @@ impl NodeFacts {
             node,
             uv: [uv.x, uv.y],
             xyz: mesh.xyz(node).to_array(),
-            metric: MetricFacts::of(mesh.metric_ref(node)),
+            metric: MetricFacts::of(mesh, node),
             is_fixed: mesh.is_fixed(node),
             live,
             dead,
@@ -295,7 +298,7 @@ pub struct ElementFacts {
     pub angles_metric: Vec<f64>,
     /// Angles at its nodes in space, in degrees.
     pub angles_physical: Vec<f64>,
-    /// Area in space.
+    /// Area in space, between straight sides.
     pub area: f64,
     /// Area in the metric.
     pub area_metric: f64,
@@ -313,25 +316,29 @@ impl ElementFacts {
         }
         let nodes: Vec<NodeId> = mesh.corners(element).collect();
         let count = nodes.len();
-        let angles = |metric: &dyn Fn(NodeId) -> Metric2| {
-            let corner = |k: usize| {
-                let p = mesh.uv(nodes[k]);
-                let (next, last) = (mesh.uv(nodes[(k + 1) % count]), mesh.uv(nodes[(k + count - 1) % count]));
-                angle(&metric(nodes[k]), next - p, last - p).to_degrees()
-            };
-            (0..count).map(corner).collect::<Vec<f64>>()
+        let around = |k: usize| [nodes[k], nodes[(k + 1) % count], nodes[(k + count - 1) % count]];
+        let in_metric = |k: usize| {
+            let [p, next, last] = around(k).map(|n| mesh.uv(n));
+            angle(mesh.metric_ref(nodes[k]), next - p, last - p).to_degrees()
         };
-        let p: Vec<DVec2> = nodes.iter().map(|&n| mesh.uv(n)).collect();
-        let area = 0.5 * (0..count).map(|k| (p[k] - p[0]).perp_dot(p[(k + 1) % count] - p[0])).sum::<f64>();
+        let in_space = |k: usize| {
+            let [p, next, last] = around(k).map(|n| mesh.xyz(n));
+            let (out, back) = (next - p, last - p);
+            libm::atan2(out.cross(back).length(), out.dot(back)).to_degrees()
+        };
+        let (p, q) = (mesh.uv(nodes[0]), mesh.xyz(nodes[0]));
+        let pairs = || nodes.windows(2).skip(1);
+        let area_uv = 0.5 * pairs().map(|n| (mesh.uv(n[0]) - p).perp_dot(mesh.uv(n[1]) - p)).sum::<f64>();
+        let area = 0.5 * pairs().map(|n| (mesh.xyz(n[0]) - q).cross(mesh.xyz(n[1]) - q)).sum::<DVec3>().length();
         let root = nodes.iter().map(|&n| mesh.metric_ref(n).det().sqrt()).sum::<f64>() / count as f64;
         Some(ElementFacts {
             element,
             is_live: mesh.is_triangle(element),
             quality: mesh.quality(element),
-            angles_metric: angles(&|n| mesh.metric(n)),
-            angles_physical: angles(&|_| Metric2::isotropic(1.0)),
+            angles_metric: (0..count).map(in_metric).collect(),
+            angles_physical: (0..count).map(in_space).collect(),
             area,
-            area_metric: root * area,
+            area_metric: root * area_uv,
             level: mesh.level(element),
             region: mesh.region(element),
             nodes,

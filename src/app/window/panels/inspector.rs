@@ -143,7 +143,7 @@ fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut V
     table_head(ui, &widths, &["", axes[0], axes[1], "h\u{2081}", "h\u{2082}", "axis °"], palette);
     for (k, (name, node)) in nodes.iter().enumerate() {
         let p = moment.mesh.uv(*node);
-        let told = MetricFacts::of(moment.mesh.metric_ref(*node));
+        let told = MetricFacts::of(&moment.mesh, *node);
         let texts = [
             format!("{name} {}", node.0).trim().to_owned(),
             words::size(p.x),

@@ -24,8 +24,9 @@ pub enum Goal {
     Step(u64),
     /// A number of steps forward, or back if it is negative.
     Steps(i64),
-    /// To where this many quadrilaterals more are complete with their local post-processing, or back if it is negative.
-    /// From within a quadrilateral, the first one is its end, or its beginning.
+    /// This many times to where the next quadrilateral is complete with its local post-processing, or back if it is
+    /// negative. From within a quadrilateral, the first time is to its end, or its beginning; a loop that is closed by
+    /// several at once counts once.
     Quads(i64),
     /// To the step at which this many quadrilaterals stand.
     ToQuads(u64),

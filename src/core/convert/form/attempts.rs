@@ -8,40 +8,32 @@ use crate::core::convert::side::choice::BaseSide;
 use crate::core::front::Side;
 use crate::core::mesh::{Mark, Mesh};
 
-/// The number of the first attempt that lays tops down.
-const ALTERNATIVES: u8 = 4;
-
 /// The attempt after a failed one.
 pub fn next(mesh: &Mesh, parameters: &Parameters, base: &Base, failed: &Attempt) -> Option<Attempt> {
-    let all = attempts(mesh, parameters, base, failed.mark);
-    let after = all.iter().position(|attempt| attempt.number == failed.number).map_or(0, |at| at + 1);
-    all.get(after).copied()
+    let attempts = attempts(mesh, parameters, base, failed.mark);
+    let next = attempts.get(usize::from(failed.number))?;
+    Some(Attempt { number: failed.number.checked_add(1)?, ..*next })
 }
 
-/// All attempts after the first one, in order: forced divisions, then every edge at B, then at A, then the base
-/// triangle's Lee-Lo pairs. As the paper says, the left-hand neighbours of the right side come before them all.
+/// All attempts after the first one, in order (their numbers follow from that): forced divisions, then every edge at B,
+/// then at A, then the base triangle's Lee-Lo pairs. With `FirstRescue::LeftNeighbour`, the left-hand neighbours of the
+/// right side come before them all.
 fn attempts(mesh: &Mesh, parameters: &Parameters, base: &Base, mark: Mark) -> SmallVec<[Attempt; 24]> {
     let mut all = SmallVec::new();
     let plain = Attempt { number: 0, divide: [false; 2], tops: [None; 2], mark };
     let is_front = base.theta.map(|t| t < parameters.theta_rect);
-    for (number, divide) in (1..).zip([[false, true], [true, false], [true, true]]) {
+    for divide in [[false, true], [true, false], [true, true]] {
         if !(divide[0] && is_front[0] || divide[1] && is_front[1]) {
-            all.push(Attempt { number, divide, ..plain });
+            all.push(Attempt { divide, ..plain });
         }
     }
     let Some(h) = base.half_edge(mesh) else { return all };
-    let mut numbers = ALTERNATIVES..;
-    let mut lay_down = |tops, all: &mut SmallVec<[Attempt; 24]>| {
-        if let Some(number) = numbers.next() {
-            all.push(Attempt { number, tops, ..plain });
-        }
-    };
     for side in [Side::Right, Side::Left] {
         let first = all.len();
         for spoke in mesh.spokes(h, side) {
             let mut tops = [None; 2];
             tops[side.index()] = Some(spoke.node);
-            lay_down(tops, &mut all);
+            all.push(Attempt { tops, ..plain });
         }
         if side == Side::Right && parameters.first_rescue == FirstRescue::LeftNeighbour {
             // Edges are met from the base on: those before the right side are to its left, the last of them beside it.
@@ -53,11 +45,9 @@ fn attempts(mesh: &Mesh, parameters: &Parameters, base: &Base, mark: Mark) -> Sm
     // The base triangle with its neighbour beyond the right edge, then the left one.
     let apex = mesh.apex(h);
     for (edge, beyond_right) in [(mesh.next(h), true), (mesh.previous(h), false)] {
-        let far = mesh.live_twin(edge).map(|t| mesh.apex(t));
-        match far {
-            Some(far) if beyond_right => lay_down([Some(apex), Some(far)], &mut all),
-            Some(far) => lay_down([Some(far), Some(apex)], &mut all),
-            None => {}
+        if let Some(far) = mesh.live_twin(edge).map(|t| mesh.apex(t)) {
+            let tops = if beyond_right { [Some(apex), Some(far)] } else { [Some(far), Some(apex)] };
+            all.push(Attempt { tops, ..plain });
         }
     }
     all
