@@ -1,7 +1,7 @@
 //! What one conversion comes to.
 
 use quadfront::core::case::Parameters;
-use quadfront::core::convert::{Converter, Counts, Phase};
+use quadfront::core::convert::{Converter, Counts};
 use quadfront::core::mesh::Mesh;
 use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
@@ -30,14 +30,15 @@ impl Measured {
 
 /// Converts a background, checks the mesh and measures it as the front leaves it and at the end.
 pub fn convert(background: &Background, parameters: &Parameters) -> Outcome {
-    let mut converter = Converter::new(background.mesh.clone(), &background.sizing, parameters.clone());
-    while !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::Done) {
-        converter.step().map_err(|fault| fault.to_string())?;
-    }
-    let before = measure(&converter.mesh, background)?;
-    converter.run(&mut Nobody).map_err(|fault| fault.to_string())?;
-    let mesh = measure(&converter.mesh, background)?;
-    Ok(Measured { mesh, before, counts: converter.counts, last_resort: converter.last_resort.quads() as u64 })
+    let run = |parameters: Parameters| -> Result<_, String> {
+        let mut converter = Converter::new(background.mesh.clone(), &background.sizing, parameters);
+        converter.run(&mut Nobody).map_err(|fault| fault.to_string())?;
+        Ok((measure(&converter.mesh, background)?, converter.counts, converter.last_resort.quads() as u64))
+    };
+    // Faces are post-processed one after another: no state has all of them as the front leaves them.
+    let (before, ..) = run(Parameters { post_processing: false, ..parameters.clone() })?;
+    let (mesh, counts, last_resort) = run(parameters.clone())?;
+    Ok(Measured { mesh, before, counts, last_resort })
 }
 
 fn measure(mesh: &Mesh, background: &Background) -> Result<Statistics, String> {
