@@ -258,7 +258,7 @@ fn how_a_mesh_was_taken_is_kept_and_offered_again() {
     until(&mut harness, "it is offered", |window| {
         window.state().state.run().autosave.as_ref().is_some_and(|kept| kept.offer().is_some())
     });
-    harness.get_by_label("Open it").click();
+    harness.get_by_label("Recover").click();
     settle(&mut harness);
     assert_eq!(harness.state().state.current_run().unwrap().case.text, text);
     assert!(text.contains("feature_angle = 60.0"), "{text}");

@@ -75,7 +75,7 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
     let mut other = window(example(), folder.path());
     std::thread::sleep(Duration::from_millis(200));
     other.run_steps(3);
-    assert!(other.query_by_label("Open it").is_none());
+    assert!(other.query_by_label("Recover").is_none());
     drop(other);
     assert_eq!(runs(folder.path()), 1, "a window without changes keeps nothing");
     // On Unix this is kill -9.
@@ -83,14 +83,14 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
     child.wait().unwrap();
 
     let mut harness = window(example(), folder.path());
-    until(&mut harness, "the run is offered", |harness| harness.query_by_label("Open it").is_some());
+    until(&mut harness, "the run is offered", |harness| harness.query_by_label("Recover").is_some());
     harness.get_by_label("An unsaved run of example1 with 2 edits from a moment ago can be recovered.");
-    harness.get_by_label("Open it").click();
+    harness.get_by_label("Recover").click();
     until(&mut harness, "the run is opened", |harness| harness.state().state.document().edits.len() == 2);
     settle(&mut harness);
     let kept = &harness.state().state.document();
     assert_eq!(kept.bookmarks, [90]);
-    assert!(harness.query_by_label("Open it").is_none());
+    assert!(harness.query_by_label("Recover").is_none());
     // It goes on being kept, and is still there when the window is closed without saving.
     apply(&mut harness, Command::Go(Goal::Step(200)));
     apply(&mut harness, Command::Set("c", "1.7".to_owned()));
@@ -121,7 +121,7 @@ fn what_is_taken_back_leaves_nothing_to_be_kept() {
     until(&mut harness, "the file is there", |_| runs(folder.path()) == 1);
     // Another case takes the place of this one: the run that was not saved is offered at once.
     apply(&mut harness, Command::Open(Source::BuiltIn("uniform".to_owned())));
-    until(&mut harness, "the run is offered", |harness| harness.query_by_label("Open it").is_some());
+    until(&mut harness, "the run is offered", |harness| harness.query_by_label("Recover").is_some());
     drop(harness);
     assert_eq!(runs(folder.path()), 1);
 }

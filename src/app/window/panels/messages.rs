@@ -38,7 +38,7 @@ pub fn offer(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(icons::RESET).font(theme::regular(theme::ICON)).color(ink(palette.accent)));
             ui.label(RichText::new(&offer.text).color(ink(palette.strong)));
-            if offer.opens && ui.button("Open it").clicked() {
+            if offer.opens && ui.button("Recover").clicked() {
                 commands.push(Command::OpenKept);
             }
             on_click(&ui.button("Discard"), Command::DiscardKept, commands);

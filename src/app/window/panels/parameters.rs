@@ -11,52 +11,99 @@ use crate::core::case::Parameters;
 use crate::core::run::EditKind;
 use crate::render::palette::Palette;
 
-/// A number: key, name, range, decimals, and unit.
+/// A number: key, name, range, decimals, unit, the paper's value, and its effect.
 struct Number {
     key: &'static str,
     name: &'static str,
     range: [f64; 2],
     decimals: usize,
     unit: &'static str,
+    paper: &'static str,
+    tip: &'static str,
 }
 
-/// The numbers with the paper's values and their effects.
-const NUMBERS: [(Number, &str, &str); 7] = [
-    (
-        Number { key: "theta_rect", name: "θ rect", range: [90.0, 180.0], decimals: 1, unit: "°" },
-        "paper 135",
-        "Below this frontal angle the neighbouring front segment is the side edge (table 1).",
-    ),
-    (
-        Number { key: "c", name: "c", range: [0.5, 4.0], decimals: 2, unit: "" },
-        "1.5–2.0",
-        "A segment is within reach if its H-value is below c times the smallest one (section 4.3.3).",
-    ),
-    (
-        Number { key: "theta_seam", name: "θ seam", range: [0.0, 90.0], decimals: 1, unit: "°" },
-        "30, fig. 12: 45",
-        "At or below this frontal angle a front corner is closed by a seam (section 4.3.6).",
-    ),
-    (
-        Number { key: "side_deviation", name: "side dev.", range: [0.0, 90.0], decimals: 1, unit: "°" },
-        "paper 30",
-        "The greatest deviation of a side edge from its target direction (eq. 8).",
-    ),
-    (
-        Number { key: "side_split", name: "side split", range: [1.0, 4.0], decimals: 2, unit: "×" },
-        "paper 1.5",
-        "A live side edge longer than this times the base is divided (section 4.3.4).",
-    ),
-    (
-        Number { key: "layers", name: "layers", range: [0.0, 20.0], decimals: 0, unit: "" },
-        "none",
-        "Rows that are offset from the boundary before the front starts.",
-    ),
-    (
-        Number { key: "theta_revr", name: "θ revr", range: [180.0, 360.0], decimals: 1, unit: "°" },
-        "225; classifies only",
-        "Angles above this count as reversals (fig. 12). For display only: the mesh does not change.",
-    ),
+const NUMBERS: [Number; 9] = [
+    Number {
+        key: "theta_rect",
+        name: "θ rect",
+        range: [90.0, 180.0],
+        decimals: 1,
+        unit: "°",
+        paper: "paper 135",
+        tip: "Below this frontal angle the neighbouring front segment is the side edge (table 1).",
+    },
+    Number {
+        key: "c",
+        name: "c",
+        range: [0.5, 4.0],
+        decimals: 2,
+        unit: "",
+        paper: "1.5–2.0",
+        tip: "A segment is within reach if what the selection window compares is below c times the smallest H-value (4.3.3).",
+    },
+    Number {
+        key: "theta_seam",
+        name: "θ seam",
+        range: [0.0, 90.0],
+        decimals: 1,
+        unit: "°",
+        paper: "30, fig. 12: 45",
+        tip: "At or below this frontal angle a front corner is closed by a seam (4.3.6).",
+    },
+    Number {
+        key: "seam_widening",
+        name: "widening",
+        range: [1.0, 3.0],
+        decimals: 2,
+        unit: "×",
+        paper: "paper 1",
+        tip: "Where a corner is crowded or its segments are short, it is closed up to θ seam times this, at most 90°.",
+    },
+    Number {
+        key: "side_deviation",
+        name: "side dev.",
+        range: [0.0, 90.0],
+        decimals: 1,
+        unit: "°",
+        paper: "paper 30",
+        tip: "The greatest deviation of a side edge from its target direction (eq. 8).",
+    },
+    Number {
+        key: "side_split",
+        name: "side split",
+        range: [1.0, 4.0],
+        decimals: 2,
+        unit: "×",
+        paper: "paper 1.5",
+        tip: "A live side edge longer than this times the base is divided (4.3.4).",
+    },
+    Number {
+        key: "whole_below",
+        name: "whole",
+        range: [0.0, 2.0],
+        decimals: 2,
+        unit: "",
+        paper: "paper 0",
+        tip: "A side edge shorter than this in the metric is not divided.",
+    },
+    Number {
+        key: "layers",
+        name: "layers",
+        range: [0.0, 20.0],
+        decimals: 0,
+        unit: "",
+        paper: "none",
+        tip: "Rows that are offset from the boundary before the front starts.",
+    },
+    Number {
+        key: "theta_revr",
+        name: "θ revr",
+        range: [180.0, 360.0],
+        decimals: 1,
+        unit: "°",
+        paper: "225; classifies only",
+        tip: "Angles above this count as reversals (fig. 12). For display only: the mesh does not change.",
+    },
 ];
 
 const SWITCHES: [(&str, &str, &str); 7] = [
@@ -114,7 +161,7 @@ fn row(
     state: &State,
     local: &mut ParametersState,
     parameters: &Parameters,
-    (number, paper, tip): &(Number, &str, &str),
+    number: &Number,
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
@@ -126,7 +173,7 @@ fn row(
         let label = RichText::new(number.name).color(ink(palette.text));
         ui.allocate_ui_with_layout(Vec2::new(58.0, 24.0), Layout::left_to_right(Align::Center), |ui| {
             ui.set_width(58.0);
-            ui.label(label).on_hover_text(*tip);
+            ui.label(label).on_hover_text(number.tip);
         });
         ui.spacing_mut().slider_width = 84.0;
         let [low, high] = number.range;
@@ -157,7 +204,7 @@ fn row(
         if changed {
             back(ui, state, number.key, commands);
         } else {
-            let paper = RichText::new(*paper).font(theme::regular(theme::HEAD)).color(ink(palette.weak));
+            let paper = RichText::new(number.paper).font(theme::regular(theme::HEAD)).color(ink(palette.weak));
             ui.add(egui::Label::new(paper).truncate());
         }
     });
