@@ -6,7 +6,7 @@ use crate::core::kernel::worded::worded;
 worded! {
     /// A colour map.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum ColourMap {
+    pub enum ColourMap by name {
         /// Purple over green to yellow: sizes, areas, births.
         Viridis = "viridis",
         /// Blue to yellow: angles and qualities.
@@ -14,10 +14,6 @@ worded! {
         /// Blue over green and orange to pink: levels.
         Batlow = "batlow",
     }
-    /// All maps.
-    const ALL;
-    /// Its name, for legends.
-    fn name;
 }
 
 /// Nine equidistant colours of each map, in the order of [`ColourMap::ALL`]; between them, linear interpolation is

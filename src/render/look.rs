@@ -20,7 +20,7 @@ pub enum Ink {
 worded! {
     /// A layer of the drawing of a state.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-    pub enum Layer {
+    pub enum Layer by name {
         /// Live triangles.
         Live = "live",
         /// Dead quadrilaterals.
@@ -49,10 +49,6 @@ worded! {
         /// A scale bar.
         Scale = "scale",
     }
-    /// All layers.
-    const ALL;
-    /// Its name.
-    fn name;
 }
 
 impl Layer {
@@ -103,7 +99,7 @@ worded! {
     /// How hidden lines are drawn.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
-    pub enum HiddenLines {
+    pub enum HiddenLines by name {
         /// Not drawn.
         #[default]
         Off = "off",
@@ -112,10 +108,6 @@ worded! {
         /// Drawn almost like visible lines.
         Shown = "shown",
     }
-    /// All styles.
-    const ALL;
-    /// Its name.
-    fn name;
 }
 
 impl HiddenLines {

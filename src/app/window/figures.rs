@@ -26,7 +26,7 @@ use crate::render::picture::{Picture, Seen};
 worded! {
     /// The formats of a figure.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Formats {
+    pub enum Formats by name {
         /// Vectors.
         Svg = "SVG",
         /// Pixels drawn from them.
@@ -34,17 +34,13 @@ worded! {
         /// Both.
         Both = "SVG and PNG",
     }
-    /// All of them, in order.
-    const ALL;
-    /// Its name in menus and panels.
-    fn name;
 }
 
 worded! {
     /// What a figure shows.
     #[derive(Default)]
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Content {
+    pub enum Content by name {
         /// The current state.
         #[default]
         State = "this state",
@@ -57,10 +53,6 @@ worded! {
         /// Angles of the current state.
         Angles = "angles (fig. 24)",
     }
-    /// All of them, in order.
-    const ALL;
-    /// Its name in menus and panels.
-    fn name;
 }
 
 /// How figures are made, as the user has set it.

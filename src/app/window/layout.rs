@@ -23,7 +23,7 @@ worded! {
     /// A panel.
     #[derive(PartialOrd, Ord)]
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Pane {
+    pub enum Pane by name {
         Front = "Front",
         Breakpoints = "Breakpoints",
         Bookmarks = "Bookmarks",
@@ -36,10 +36,6 @@ worded! {
         Parameters = "Parameters",
         Layers = "Layers",
     }
-    /// All of them, in order.
-    const ALL;
-    /// Its name in menus and panels.
-    fn name;
 }
 
 /// How many columns there is room for.

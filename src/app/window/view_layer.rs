@@ -6,7 +6,7 @@ use crate::render::scene::Layers;
 worded! {
     /// A layer of the views, in the order of their digits from 1.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum ViewLayer {
+    pub enum ViewLayer by name {
         /// Triangles that are still to be converted.
         LiveTriangles = "live triangles",
         /// Finished quadrilaterals.
@@ -26,10 +26,6 @@ worded! {
         /// The mesh from which the conversion started.
         BackgroundMesh = "background mesh",
     }
-    /// All of them, in order.
-    const ALL;
-    /// Its name in menus and panels.
-    fn name;
 }
 
 impl ViewLayer {

@@ -18,10 +18,10 @@ use crate::core::progress::{Nobody, Pace, Reading, Watch};
 use crate::core::soup::MeshFile;
 
 worded! {
-    /// A mesh format.
+    /// A mesh format, with the extension of its files, without the dot. The writable ones come first.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     #[non_exhaustive]
-    pub enum Format {
+    pub enum Format by extension {
         /// Gmsh, `.msh`.
         Msh = "msh",
         /// Medit, `.mesh`, with the metric in a `.sol` file of the same name.
@@ -41,10 +41,6 @@ worded! {
         /// Binary glTF, `.glb`; read only.
         Glb = "glb",
     }
-    /// All formats; the writable ones come first.
-    const ALL;
-    /// The extension of its files, without the dot.
-    fn extension;
 }
 
 /// Options for writing.

@@ -1,23 +1,19 @@
 //! Enumerations whose variants have one word each.
 
-/// Defines an enumeration with the list of all its variants, `ALL`, and a method that gives the word of each.
+/// Defines an enumeration with the list of all its variants, `ALL`, and a method of the given name for the word of each.
 macro_rules! worded {
     (
         $(#[$meta:meta])*
-        pub enum $name:ident { $( $(#[$of_variant:meta])* $variant:ident = $word:literal, )+ }
-        $(#[$of_all:meta])*
-        const ALL;
-        $(#[$of_method:meta])*
-        fn $method:ident;
+        pub enum $name:ident by $method:ident { $( $(#[$of_variant:meta])* $variant:ident = $word:literal, )+ }
     ) => {
         $(#[$meta])*
         pub enum $name { $( $(#[$of_variant])* $variant, )+ }
 
         impl $name {
-            $(#[$of_all])*
+            /// All of them, in the order of menus and messages.
             pub const ALL: [$name; [$($word),+].len()] = [$($name::$variant),+];
 
-            $(#[$of_method])*
+            /// The word of the variant.
             pub fn $method(self) -> &'static str {
                 [$($word),+][self as usize]
             }

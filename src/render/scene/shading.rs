@@ -9,7 +9,7 @@ use crate::render::palette::Rgba;
 worded! {
     /// The quantity that elements are coloured by.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-    pub enum ColourBy {
+    pub enum ColourBy by name {
         /// Live and dead.
         #[default]
         State = "live and dead",
@@ -26,10 +26,6 @@ worded! {
         /// Area in the metric.
         Area = "metric area",
     }
-    /// All quantities, in the order of menus.
-    const ALL;
-    /// Its name.
-    fn name;
 }
 
 impl ColourBy {

@@ -81,7 +81,7 @@ worded! {
     #[derive(Default, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum SurfaceView {
+    pub enum SurfaceView by name {
         /// In space.
         #[default]
         Space = "Show in space",
@@ -90,10 +90,6 @@ worded! {
         /// In its parametric plane.
         Plane = "Show in the parametric plane",
     }
-    /// All of them, in order.
-    const ALL;
-    /// Its name in menus and panels.
-    fn name;
 }
 
 impl SurfaceView {

@@ -48,16 +48,12 @@ pub struct Lane {
 worded! {
     /// The quantity of a curve, in the order in which they are shown as far as there is room.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum CurveKind {
+    pub enum CurveKind by name {
         Front = "front length",
         Quality = "quality, worst",
         Live = "live triangles",
         Loops = "loops",
     }
-    /// All of them, in order.
-    const ALL;
-    /// Its name in menus and panels.
-    fn name;
 }
 
 impl CurveKind {
