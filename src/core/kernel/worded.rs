@@ -1,6 +1,6 @@
 //! Enumerations whose variants have one word each.
 
-/// Defines an enumeration with the list of all its variants, `ALL`, and a method of the given name for the word of each.
+/// Defines an enumeration with the list of all its variants, `ALL`, and a method of the given name for their words.
 macro_rules! worded {
     (
         $(#[$meta:meta])*
