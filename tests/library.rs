@@ -170,7 +170,7 @@ fn every_kind_of_fault_comes_out() {
         (FaultKind::Metric, plate().with_sizes([0.0]).unwrap_err()),
         (FaultKind::Mesh, fault_of(&Case::of_mesh_in_memory("doubled", doubled))),
         (FaultKind::Mesh, write_run(&file, &Run::of(in_memory)).unwrap_err()),
-        (FaultKind::Parameter, Parameters::default().set("c", "99").unwrap_err()),
+        (FaultKind::Parameter, Parameters::default().set("c", "9999").unwrap_err()),
         (FaultKind::Parameter, Parameters::default().set("see", "1").unwrap_err()),
         (FaultKind::Parameter, fault_of(&unnamed)),
         (FaultKind::Limit, fault_of(&endless)),

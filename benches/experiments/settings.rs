@@ -24,7 +24,7 @@ pub struct Question {
 }
 
 /// All of them, in the order of the paper's sections.
-pub const QUESTIONS: [Question; 8] = [
+pub const QUESTIONS: [Question; 10] = [
     Question {
         asks: "Which order of base segments? (4.3.3)",
         defaults: "table1, metric_length_times_h",
@@ -50,12 +50,22 @@ pub const QUESTIONS: [Question; 8] = [
     },
     Question {
         asks: "Where do side edges aim, and which are taken? (4.3.4)",
-        defaults: "bisector, side_deviation 30, side_split 1.5",
+        defaults: "right angle, side_deviation 30, side_split 1.5",
         others: &[
-            Setting::With(&[("bisector", "false")]),
+            Setting::With(&[("bisector", "true")]),
             Setting::With(&[("side_deviation", "40")]),
             Setting::With(&[("side_split", "1.25")]),
             Setting::With(&[("side_split", "2")]),
+        ],
+        of_the_front: true,
+    },
+    Question {
+        asks: "Which sides are divided, and where, and what is tried first on failure? (4.3.4, vi)",
+        defaults: "whole_below 1, midpoint, left_neighbour",
+        others: &[
+            Setting::With(&[("whole_below", "0")]),
+            Setting::With(&[("division_at", "metric_middle")]),
+            Setting::With(&[("first_rescue", "division")]),
         ],
         of_the_front: true,
     },
@@ -76,9 +86,21 @@ pub const QUESTIONS: [Question; 8] = [
         of_the_front: true,
     },
     Question {
-        asks: "What do seams and front splitting give? (4.3.6)",
-        defaults: "both, theta_seam 30",
+        asks: "In which order, over which nodes and by which weights? (4.3.4 top v, 4.3.6, eqs. 10)",
+        defaults: "delete_first, all three groups, printed, top_smoothing",
         others: &[
+            Setting::With(&[("enhancement_order", "swap_first")]),
+            Setting::With(&[("smooth_joined", "false")]),
+            Setting::With(&[("smoothing_weights", "determinant")]),
+            Setting::With(&[("top_smoothing", "false")]),
+        ],
+        of_the_front: true,
+    },
+    Question {
+        asks: "What do seams and front splitting give? (4.3.6)",
+        defaults: "both, theta_seam 30, seam_widening 1",
+        others: &[
+            Setting::With(&[("seam_widening", "1.5")]),
             Setting::With(&[("theta_seam", "45")]),
             Setting::With(&[("seaming", "false")]),
             Setting::With(&[("splitting", "false")]),
@@ -89,7 +111,7 @@ pub const QUESTIONS: [Question; 8] = [
     Question {
         asks: "What does the post-processing of the whole mesh give? (4.3.7)",
         defaults: "clean-up and smoothing",
-        others: &[Setting::With(&[("post_processing", "false")])],
+        others: &[Setting::With(&[("clean_up", "traditional")]), Setting::With(&[("post_processing", "false")])],
         of_the_front: false,
     },
     Question {
@@ -97,8 +119,8 @@ pub const QUESTIONS: [Question; 8] = [
         defaults: "defaults",
         others: &[
             Setting::Paper,
-            Setting::With(&[("selection_window", "physical_length"), ("bisector", "false")]),
-            Setting::With(&[("placement", "false"), ("bisector", "false")]),
+            Setting::With(&[("selection_window", "physical_length"), ("clean_up", "traditional")]),
+            Setting::With(&[("placement", "false"), ("clean_up", "traditional")]),
         ],
         of_the_front: true,
     },

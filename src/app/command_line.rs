@@ -58,7 +58,9 @@ pub(super) struct Source {
     #[arg(long = "face", value_name = "NAME")]
     pub faces: Vec<String>,
     /// Use the paper's rules and values instead of the case's; size, layers, faces and limit stay, and --set applies
-    /// afterwards. Not the paper's: the guarantee with its gates, small loops and the last resort; the clean-up
+    /// afterwards. Not the paper's: lengths over the metrics of both ends; exact and firm convexity; the gates of a
+    /// formation; parity counted after it; attempts after the left-hand neighbour; small loops, the last resort and
+    /// unfolding; the energy by which clean-up smooths (docs/algorithm.md, "Departures from the paper")
     #[arg(long)]
     pub paper: bool,
     /// Print no progress and no summary

@@ -20,7 +20,9 @@ use glam::DVec2;
 
 pub use import_options::ImportOptions;
 pub use parameters::Parameters;
-pub use rules::{DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Selection, SelectionWindow, SmoothingWeights};
+pub use rules::{
+    CleanUpBy, DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Selection, SelectionWindow, SmoothingWeights,
+};
 use table::{Source, Table};
 pub use taking::{MeshSource, MeshUse, Taking};
 

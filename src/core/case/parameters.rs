@@ -4,7 +4,9 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
-use super::rules::{DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Selection, SelectionWindow, SmoothingWeights};
+use super::rules::{
+    CleanUpBy, DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Selection, SelectionWindow, SmoothingWeights,
+};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::spelling::nearest;
 
@@ -13,14 +15,15 @@ use crate::core::kernel::spelling::nearest;
 pub struct Parameters {
     /// Factor for all target sizes.
     pub size_scale: f64,
-    /// The selection factor c of section 4.3.3: 1.5 to 2.0 in the paper, which used 2.0.
+    /// The selection factor c of section 4.3.3: 1.5 to 2.0 in the paper, which used 2.0. So large that every segment is
+    /// within reach, the classes of table 1 alone decide.
     pub c: f64,
     /// Below this frontal angle the neighbouring front segment is the side edge (table 1).
     pub theta_rect: f64,
     /// At or below this frontal angle a front corner is closed by a seam (section 4.3.6).
     pub theta_seam: f64,
     /// Where a corner is crowded or its segments are short, it is closed by a seam up to `theta_seam` times this
-    /// (docs/algorithm.md, "Seaming"); 1 in the paper.
+    /// (docs/algorithm.md, "Seaming"); 1, as in the paper, widens nothing.
     pub seam_widening: f64,
     /// Above this frontal angle a corner is a reversal (fig. 12).
     pub theta_revr: f64,
@@ -48,7 +51,7 @@ pub struct Parameters {
     /// Over which segments the smallest H-value is taken.
     pub h_min_over: HMinOver,
     /// Aim a side edge at the bisector of a frontal angle up to 225 degrees, and at the right angle beyond; off: always
-    /// at the right angle, as the paper says.
+    /// at the right angle (4.3.4, iii).
     pub bisector: bool,
     /// Place the new top nodes of each quadrilateral (docs/algorithm.md, "Placement of new top nodes"); off: the
     /// paper's eq. (9) on front nodes.
@@ -76,6 +79,8 @@ pub struct Parameters {
     pub splitting: bool,
     /// Clean-up and smoothing of the whole mesh at the end (4.3.7).
     pub post_processing: bool,
+    /// How that cleans up the structure.
+    pub clean_up: CleanUpBy,
     /// A mesh that would need more quadrilaterals is rejected before memory is allocated for it.
     pub max_quads: u64,
 }
@@ -87,7 +92,7 @@ impl Default for Parameters {
             c: 2.0,
             theta_rect: 135_f64.to_radians(),
             theta_seam: 30_f64.to_radians(),
-            seam_widening: 1.5,
+            seam_widening: 1.0,
             theta_revr: 225_f64.to_radians(),
             side_split: 1.5,
             whole_below: 1.0,
@@ -100,45 +105,34 @@ impl Default for Parameters {
             selection: Selection::Table1,
             selection_window: SelectionWindow::MetricLengthTimesH,
             h_min_over: HMinOver::Front,
-            bisector: true,
+            bisector: false,
             placement: true,
-            division_at: DivisionAt::MetricMiddle,
-            first_rescue: FirstRescue::Division,
-            top_smoothing: false,
+            division_at: DivisionAt::Midpoint,
+            first_rescue: FirstRescue::LeftNeighbour,
+            top_smoothing: true,
             smoothing: true,
-            smooth_joined: false,
-            smoothing_weights: SmoothingWeights::Determinant,
+            smooth_joined: true,
+            smoothing_weights: SmoothingWeights::Printed,
             enhancement: true,
-            enhancement_order: EnhancementOrder::SwapFirst,
+            enhancement_order: EnhancementOrder::DeleteFirst,
             seaming: true,
             splitting: true,
             post_processing: true,
+            clean_up: CleanUpBy::Search,
             max_quads: 20_000_000,
         }
     }
 }
 
 impl Parameters {
-    /// The paper as printed (docs/algorithm.md, "Departures from the paper"): its words where ours differ, the values
-    /// that it used where it gives a range.
+    /// The paper as printed: the defaults but for the rules of ours that are better (docs/algorithm.md, "Departures
+    /// from the paper").
     pub fn paper() -> Parameters {
         Parameters {
-            c: 2.0,
-            theta_rect: 135_f64.to_radians(),
-            theta_seam: 30_f64.to_radians(),
-            selection: Selection::Table1,
-            seam_widening: 1.0,
-            whole_below: 0.0,
             selection_window: SelectionWindow::PhysicalLength,
-            h_min_over: HMinOver::Front,
-            bisector: false,
+            whole_below: 0.0,
             placement: false,
-            division_at: DivisionAt::Midpoint,
-            first_rescue: FirstRescue::LeftNeighbour,
-            top_smoothing: true,
-            smooth_joined: true,
-            smoothing_weights: SmoothingWeights::Printed,
-            enhancement_order: EnhancementOrder::DeleteFirst,
+            clean_up: CleanUpBy::Traditional,
             ..Parameters::default()
         }
     }
@@ -195,7 +189,7 @@ macro_rules! parameters {
 
 parameters! {
     size_scale = number(1e-9, 1e9), |value| value.to_string();
-    c = number(0.5, 10.0), |value| value.to_string();
+    c = number(0.5, 1000.0), |value| value.to_string();
     theta_rect = angle(90.0, 180.0, 135.0), |value| degrees(*value);
     theta_seam = angle(0.0, 90.0, 30.0), |value| degrees(*value);
     seam_widening = number(1.0, 3.0), |value| value.to_string();
@@ -224,6 +218,7 @@ parameters! {
     seaming = flag(), |value| value.to_string();
     splitting = flag(), |value| value.to_string();
     post_processing = flag(), |value| value.to_string();
+    clean_up = word(&CleanUpBy::ALL, CleanUpBy::word), |value| value.word().to_owned();
     max_quads = count(1, 200_000_000), |value| value.to_string();
 }
 
@@ -377,7 +372,7 @@ mod tests {
         let mut parameters = Parameters::default();
         for (key, value) in [
             ("c", "0.4"),
-            ("c", "11"),
+            ("c", "1001"),
             ("size_scale", "0"),
             ("size_scale", "-1"),
             ("size_scale", "NaN"),

@@ -53,6 +53,17 @@ worded! {
 }
 
 worded! {
+    /// How the structure of the whole mesh is cleaned up (4.3.7; docs/algorithm.md, "Clean-up").
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum CleanUpBy by word {
+        /// Single changes, then a search for sequences of them, judged by an energy.
+        Search = "search",
+        /// The traditional operations that the paper names, one at a time, judged by the valences.
+        Traditional = "traditional",
+    }
+}
+
+worded! {
     /// The areas that weigh the elements around a node when it is smoothed (eq. 10).
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum SmoothingWeights by word {

@@ -1,6 +1,6 @@
 //! The notes of a case: open from the start for the small cases that show a figure of the paper.
 
-use eframe::egui::{Align2, Context, RichText, ScrollArea, Vec2, Window};
+use eframe::egui::{Align2, Context, Grid, RichText, ScrollArea, Ui, Vec2, Window};
 
 use crate::app::window::command::Command;
 use crate::app::window::state::State;
@@ -26,8 +26,12 @@ pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palet
             ui.label(RichText::new(&case.title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
             ui.add_space(4.0);
             ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
-                // Lines are broken anew.
-                for paragraph in case.notes.split("\n\n") {
+                for (number, paragraph) in case.notes.split("\n\n").enumerate() {
+                    if paragraph.starts_with('|') {
+                        table(ui, number, paragraph);
+                        continue;
+                    }
+                    // Lines are broken anew.
                     let text = paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
                     ui.label(RichText::new(if text.is_empty() { "This case has no notes." } else { &text }));
                 }
@@ -36,4 +40,16 @@ pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palet
     if !open {
         commands.push(Command::Notes);
     }
+}
+
+/// A table, whose cells stand between bars.
+fn table(ui: &mut Ui, number: usize, text: &str) {
+    Grid::new(("table of the notes", number)).num_columns(4).striped(true).show(ui, |ui| {
+        for line in text.lines() {
+            for cell in line.trim_matches('|').split('|') {
+                ui.label(cell.trim());
+            }
+            ui.end_row();
+        }
+    });
 }

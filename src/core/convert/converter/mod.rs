@@ -283,6 +283,7 @@ impl<'a> Converter<'a> {
         PostProcessing {
             face: self.face(),
             share: self.share(),
+            by: self.parameters.clean_up,
             keeps_history: self.keeps_history(),
             keeps_journal: self.keeps_journal(),
             mesh: &mut self.mesh,

@@ -19,6 +19,7 @@ use super::event::{Event, Mending};
 use super::front::Done;
 use super::phase::{FinishPart, Phase};
 use super::relax::energy;
+use crate::core::case::CleanUpBy;
 use crate::core::mesh::Mesh;
 use crate::core::metric::MetricSource;
 
@@ -39,6 +40,8 @@ pub(super) struct PostProcessing<'f, 'a> {
     pub parts: &'f mut Finishing<'a>,
     /// What was done.
     pub finished: &'f mut Finished,
+    /// How the structure is cleaned up.
+    pub by: CleanUpBy,
     /// Whether the parts write down what they need to be taken back.
     pub keeps_history: bool,
     /// Whether the journal stays; else it is forgotten on the way.
@@ -50,6 +53,7 @@ impl PostProcessing<'_, '_> {
     pub fn step(&mut self, part: FinishPart) -> Done {
         let event = match part {
             FinishPart::FirstSmoothing | FinishPart::LastSmoothing => self.sweep(part),
+            FinishPart::CleanUp if self.by == CleanUpBy::Traditional => self.clean_up(Reach::Traditional),
             FinishPart::CleanUp => self.clean_up(Reach::Singles),
             FinishPart::CleanUpByPairs => self.clean_up(Reach::Pairs),
             FinishPart::CleanUpBySequences => self.clean_up(Reach::Longer),
@@ -60,6 +64,7 @@ impl PostProcessing<'_, '_> {
         }
         let next = match part {
             FinishPart::FirstSmoothing => FinishPart::CleanUp,
+            FinishPart::CleanUp if self.by == CleanUpBy::Traditional => FinishPart::LastSmoothing,
             FinishPart::CleanUp => FinishPart::CleanUpByPairs,
             FinishPart::CleanUpByPairs if !self.parts.pairs_are_cut_short() => FinishPart::CleanUpBySequences,
             FinishPart::CleanUpByPairs | FinishPart::CleanUpBySequences => FinishPart::LastSmoothing,
@@ -72,7 +77,7 @@ impl PostProcessing<'_, '_> {
     /// The next change of structure within reach.
     fn clean_up(&mut self, reach: Reach) -> Option<Event> {
         let (mesh, done) = (&mut *self.mesh, self.finished.cleaned_up);
-        let part = self.parts.clean_up[reach as usize].get_or_insert_with(|| {
+        let part = self.parts.clean_up[reach.place()].get_or_insert_with(|| {
             CleanUp::begin(mesh, (self.face, self.share), Arc::clone(self.source), reach, done, self.keeps_history)
         });
         let event = part.step(mesh, self.keeps_journal);

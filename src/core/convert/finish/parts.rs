@@ -45,7 +45,7 @@ impl Finishing<'_> {
 
     /// Whether the budget of the pairs has ended before every node was looked at.
     pub fn pairs_are_cut_short(&self) -> bool {
-        self.clean_up[Reach::Pairs as usize].as_ref().is_some_and(|part| part.list.len() > 0)
+        self.clean_up[Reach::Pairs.place()].as_ref().is_some_and(|part| part.list.len() > 0)
     }
 
     /// Bytes that the parts take.

@@ -130,6 +130,17 @@ impl Valences {
         found.truncate(most);
         found
     }
+
+    /// Whether a change is one of the traditional operations: the elimination of a node with two elements, that of an
+    /// element between two opposite nodes with three, or the rotation of an edge.
+    pub fn is_traditional(&self, mesh: &Mesh, candidate: Candidate) -> bool {
+        let lacks_one = |n| !mesh.is_fixed(n) && self.excess(mesh, n) == -1;
+        match candidate {
+            Candidate::Doublet(_) | Candidate::Rotate(..) => true,
+            Candidate::Collapse(h) => lacks_one(mesh.origin(h)) && lacks_one(mesh.target(mesh.next(h))),
+            Candidate::Open(..) => false,
+        }
+    }
 }
 
 impl Candidate {

@@ -1,5 +1,6 @@
 //! Clean-up of the structure around irregular nodes (docs/algorithm.md, "Clean-up"): diamond collapse, edge rotation,
-//! vertex opening and the removal of doublets, each a transaction, kept when the energy of all that it moves falls.
+//! vertex opening and the removal of doublets, each a transaction, kept when the energy of all that it moves falls. Or
+//! the traditional operations alone, judged by the valences.
 //!
 //! A worklist, not sweeps: the nodes whose valence is not ideal, and again the neighbours of whatever changed. Single
 //! changes come first, everywhere. Most irregular nodes that are then left are ends of columns that no single change
@@ -71,6 +72,8 @@ pub struct CleanedUp {
 /// How far a clean-up looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reach {
+    /// The traditional operations, at every irregular node.
+    Traditional,
     /// Single changes, at every irregular node.
     Singles,
     /// Pairs of changes too, at the worst nodes first.
@@ -80,10 +83,19 @@ pub(super) enum Reach {
 }
 
 impl Reach {
+    /// Its place among the clean-ups of a mesh: one of the first two is done, by the parameters.
+    pub fn place(self) -> usize {
+        match self {
+            Reach::Traditional | Reach::Singles => 0,
+            Reach::Pairs => 1,
+            Reach::Longer => 2,
+        }
+    }
+
     /// Changes of the longest sequence that is tried.
     fn longest(self) -> usize {
         match self {
-            Reach::Singles => 1,
+            Reach::Traditional | Reach::Singles => 1,
             Reach::Pairs => 2,
             Reach::Longer => 4,
         }
@@ -188,7 +200,7 @@ impl<'a> CleanUp<'a> {
         let of_all = |trials: usize| (trials as f64 * (2.0 * share).min(1.0)).ceil() as usize;
         let elements = mesh.elements_of(face).count();
         let most_trials = match reach {
-            Reach::Singles => usize::MAX,
+            Reach::Traditional | Reach::Singles => usize::MAX,
             Reach::Pairs => done.trials + of_all(PAIR_TRIALS) + elements / ELEMENTS_A_PAIR_TRIAL,
             Reach::Longer => done.trials + of_all(LONGER_TRIALS),
         };
@@ -205,7 +217,7 @@ impl<'a> CleanUp<'a> {
             done,
         };
         match reach {
-            Reach::Singles => mesh.nodes_of(face).for_each(|node| work.enqueue(mesh, node)),
+            Reach::Traditional | Reach::Singles => mesh.nodes_of(face).for_each(|node| work.enqueue(mesh, node)),
             Reach::Pairs | Reach::Longer => work.enqueue_worst_first(mesh, face),
         }
         work
@@ -220,6 +232,7 @@ impl<'a> CleanUp<'a> {
                 continue;
             }
             let kept = match self.reach {
+                Reach::Traditional => self.traditional(mesh, node),
                 Reach::Singles => self.single(mesh, node),
                 Reach::Pairs | Reach::Longer => self.sequence(mesh, node),
             };
@@ -271,6 +284,24 @@ impl<'a> CleanUp<'a> {
         {
             let mark = mesh.mark();
             if let Some(trial) = self.attempt(mesh, candidate, HOPELESS).filter(Trial::is_good) {
+                return Some(self.keep(trial));
+            }
+            self.done.refused += 1;
+            mesh.take_back(mark);
+        }
+        None
+    }
+
+    /// Tries the traditional operations at one irregular node, best valence gain first, and keeps the first that leaves
+    /// no element around too poor.
+    fn traditional(&mut self, mesh: &mut Mesh, node: NodeId) -> Option<Kept> {
+        for (_, candidate) in self.valences.candidates(mesh, node, -1, usize::MAX) {
+            if !self.valences.is_traditional(mesh, candidate) {
+                continue;
+            }
+            let mark = mesh.mark();
+            let trial = self.attempt(mesh, candidate, f64::INFINITY);
+            if let Some(trial) = trial.filter(|trial| trial.quality[1] >= trial.quality[0].min(LEAST_QUALITY)) {
                 return Some(self.keep(trial));
             }
             self.done.refused += 1;
