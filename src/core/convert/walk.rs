@@ -90,7 +90,8 @@ pub type Tell<'t> = &'t mut dyn FnMut(&StepReport<'_>);
 
 /// Steps until `stop` is reached, or to the end where there is none; the same states as
 /// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What
-/// an event leaves out (candidates, crossings, loops, narrow regions, qualities) is only computed where somebody listens.
+/// an event leaves out (candidates, crossings, loops, narrow regions, qualities) is only computed where somebody
+/// listens.
 ///
 /// # Errors
 /// As [`Converter::step`](super::converter::Converter::step); and where the conversion ends before the stop.

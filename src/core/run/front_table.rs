@@ -134,6 +134,11 @@ impl FrontTable {
         self.face.is_none_or(|face| row.face == face)
     }
 
+    /// Whether no front is left on the face that is being converted.
+    pub fn is_closed(&self) -> bool {
+        !self.rows.iter().any(|row| self.is_of_face(row))
+    }
+
     /// Whether a segment waits, on the current face and in the row that is offset first, if rows are.
     pub fn competes(&self, row: &Row) -> bool {
         !row.is_deferred && self.is_of_face(row) && row.layer(&self.parameters) == self.layer

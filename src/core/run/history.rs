@@ -146,8 +146,8 @@ impl History {
         &self.log
     }
 
-    /// What the selection of the base under way looked at, or what the next one does where no quadrilateral is under way.
-    /// The current state is the same afterwards, though it may be visited anew.
+    /// What the selection of the base under way looked at, or what the next one does where no quadrilateral is under
+    /// way. The current state is the same afterwards, though it may be visited anew.
     ///
     /// # Errors
     /// A step of the replay failed.

@@ -18,7 +18,7 @@ pub enum Why {
     TopBlocked([NodeId; 2]),
     /// A node lies on the top edge.
     TopThroughNode(NodeId),
-    /// The recovery of the top edge reached its limit of swaps.
+    /// No swap and no removal of a node recovers the top edge, or too many would be needed.
     TopTooLong,
     /// A new side or the top is longer than the gate allows, in the metric.
     TooLong(f64),

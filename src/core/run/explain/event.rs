@@ -70,6 +70,10 @@ pub fn event(event: &Event) -> String {
             let why = why.map_or("no side leaves two even loops".to_owned(), why_unmerged);
             format!("front not split at {triangles}: {why}")
         }
+        Event::Closed { segments, quads: 0, quality } => format!(
+            "loop of {segments} segments closed without a new quadrilateral, worst quality {}",
+            fixed(quality, 2)
+        ),
         Event::Closed { segments, quads, quality } => format!(
             "loop of {segments} segments closed by {}, worst quality {}",
             count(quads.into(), "quadrilateral"),
@@ -99,7 +103,7 @@ pub fn event(event: &Event) -> String {
         }
         Event::FaceConverted { region } => format!("face {} is converted", region + 1),
         Event::Swept { looked, moved } => {
-            format!("{moved} of {} smoothed by the energy", count(looked as usize, "node"))
+            format!("{moved} of {} moved to lower the energy", count(looked as usize, "node"))
         }
         Event::LastResort(outcome) if outcome.triangles == 0 => "the front has left no triangle over".to_owned(),
         Event::LastResort(outcome) => {
@@ -117,7 +121,7 @@ pub fn why_rolled_back(why: Why) -> String {
         Why::NoDivision(side) => format!("the {} side cannot be divided at the required point", name(side)),
         Why::TopBlocked(ends) => format!("dead edge {} lies across the top", edge(ends)),
         Why::TopThroughNode(node) => format!("node {} lies on the top edge", node.0),
-        Why::TopTooLong => "the top edge needs too many swaps".to_owned(),
+        Why::TopTooLong => "swaps and removals of nodes do not recover the top edge".to_owned(),
         Why::TooLong(length) => format!("a new side or the top is too long: {}", fixed(length, 2)),
         Why::NotDisc => "the four sides do not enclose a disc of live triangles".to_owned(),
         Why::NotConvex => "it would not be strictly convex".to_owned(),
@@ -195,10 +199,10 @@ fn regions(narrow: &Narrow) -> Vec<String> {
             format!("width / height {ratio} {sign} \u{3b5}_{{2}} = {bound}")
         };
         let why = match passed {
-            Some(NotSlender::Adjacent) => "two sides on the front (condition a)".to_owned(),
-            Some(NotSlender::NoBase) => "no side on the front".to_owned(),
-            Some(NotSlender::Large) => format!("{} (b)", area("\u{2265}")),
-            Some(NotSlender::Wide) => format!("{}, {} (c)", area("<"), ratio("\u{2264}")),
+            Some(NotSlender::Adjacent) => "not slender, two sides are adjacent front segments (condition a)".to_owned(),
+            Some(NotSlender::NoBase) => "not slender, it has no side on the front".to_owned(),
+            Some(NotSlender::Large) => format!("not slender, {} (condition b)", area("\u{2265}")),
+            Some(NotSlender::Wide) => format!("not slender, {}, but {} (condition c)", area("<"), ratio("\u{2264}")),
             None => format!("slender: {}, {}", area("<"), ratio(">")),
         };
         sentences.push(format!("Triangle {}: {why}.", element.0));
@@ -218,13 +222,13 @@ fn side_to_collapse(side: &SideToCollapse) -> String {
     match side.segments {
         None => format!("the ends of {ends} lie on two loops"),
         Some([first, second]) => {
-            let parts = format!("{ends} leaves loops of {first} and {second} segments");
+            let parts = format!("{ends} would leave loops of {first} and {second} segments");
             if side.splits() {
                 format!("{parts}, both even")
             } else if first % 2 == 1 || second % 2 == 1 {
                 format!("{parts}, not both even")
             } else {
-                format!("{parts}, fewer than {LEAST_PART}")
+                format!("{parts}, one with fewer than {LEAST_PART}")
             }
         }
     }

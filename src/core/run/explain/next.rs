@@ -13,6 +13,9 @@ pub fn next(state: &Converter<'_>, selecting: &Selecting) -> String {
     let parameters = state.parameters();
     match state.phase() {
         Phase::Select => select(state, selecting),
+        Phase::PrepareSide { side, attempt, .. } if attempt.number > 0 => {
+            format!("Attempt {}: {}", u32::from(attempt.number) + 1, prepare(state, *side))
+        }
         Phase::PrepareSide { side, .. } => prepare(state, *side),
         Phase::DivideSide { base, attempt, side, tops } => divide(state, base, attempt, *side, *tops),
         Phase::RecoverTop { tops, smooths: true, .. } => format!(
@@ -23,7 +26,7 @@ pub fn next(state: &Converter<'_>, selecting: &Selecting) -> String {
         ),
         Phase::RecoverTop { tops: [c, d], .. } => recover(state, *c, *d),
         Phase::Form { base, tops: [c, d], .. } => format!(
-            "The triangles between {}, {}, {} and {} are merged; shape, lengths and loops are checked (4.3.4).",
+            "The triangles between nodes {}, {}, {} and {} are merged; shape, lengths and loops are checked (4.3.4).",
             base.a.0, base.b.0, d.0, c.0
         ),
         Phase::Defer { .. } => {
@@ -41,10 +44,16 @@ pub fn next(state: &Converter<'_>, selecting: &Selecting) -> String {
         Phase::Enhance { element, .. } | Phase::Smooth { element, .. } | Phase::Seam { element, .. }
             if parameters.seaming =>
         {
-            let then = if parameters.splitting { "; then slender triangles" } else { "" };
-            format!("Corners of the front at quadrilateral {} are examined for seams{then} (4.3.6).", element.0)
+            let split = if parameters.splitting { ", then its triangles for a split" } else { "" };
+            format!(
+                "The frontal angles at quadrilateral {} are examined for seams{split} (4.3.6); where there is none, {}.",
+                element.0,
+                after_it(selecting)
+            )
         }
-        Phase::Enhance { .. } | Phase::Smooth { .. } | Phase::Seam { .. } | Phase::Split { .. } => split(state),
+        Phase::Enhance { .. } | Phase::Smooth { .. } | Phase::Seam { .. } | Phase::Split { .. } => {
+            split(state, selecting)
+        }
         Phase::Close { waiting, .. } => {
             format!("The front has ended: {} left over, closed if they are small.", count(waiting.len(), "part"))
         }
@@ -75,7 +84,7 @@ fn select(state: &Converter<'_>, selecting: &Selecting) -> String {
     }
     match selecting.table.choice() {
         Some(row) => format!("{} becomes the base (4.3.3).", segment([row.a, row.b])),
-        None if selecting.table.rows.is_empty() => "The front is closed: the conversion of triangles ends.".to_owned(),
+        None if selecting.table.is_closed() => "The front is closed: the conversion of triangles ends.".to_owned(),
         None => "Every segment is deferred: all are tried once more with wider tolerances, or closed.".to_owned(),
     }
 }
@@ -105,7 +114,7 @@ fn divide(state: &Converter<'_>, base: &Base, attempt: &Attempt, side: Side, top
     }
     let split = state.parameters().side_split;
     let [length, bound] = apart(state.mesh.distance(ends[0], top), split * base.length);
-    let (split, of_base) = (fixed(split, 2), fixed(base.length, 3));
+    let of_base = fixed(base.length, 3);
     format!(
         "The {which} side, {}, is to be divided: its metric length {length} is above {split} l_{{AB}} = {split} \u{d7} {of_base} \
          = {bound} (4.3.4, vi).",
@@ -131,20 +140,25 @@ fn recover(state: &Converter<'_>, c: NodeId, d: NodeId) -> String {
     }
 }
 
-fn split(state: &Converter<'_>) -> String {
+/// What follows the local post-processing.
+fn after_it(selecting: &Selecting) -> &'static str {
+    if selecting.table.is_closed() { "the front is closed" } else { "the next base is selected (4.3.3)" }
+}
+
+fn split(state: &Converter<'_>, selecting: &Selecting) -> String {
     let narrow = state.narrow().filter(|_| state.parameters().splitting);
     match narrow {
         Some(narrow) if !narrow.slender.is_empty() => {
             let triangles = count(narrow.slender.len(), "slender triangle");
             format!("The front is to be split at {triangles} beside the new quadrilateral (4.3.6, fig. 19).")
         }
-        _ => "The next base is selected (4.3.3).".to_owned(),
+        _ => format!("{}.", capital(after_it(selecting))),
     }
 }
 
 fn finish(part: FinishPart) -> &'static str {
     match part {
-        FinishPart::FirstSmoothing => "All that the front has left is smoothed (4.3.7).",
+        FinishPart::FirstSmoothing => "The mesh is smoothed as the front has left it (4.3.7).",
         FinishPart::CleanUp => "The structure is cleaned up by single changes, then by pairs and sequences (4.3.7).",
         FinishPart::CleanUpByPairs => "The structure is cleaned up by pairs of changes, then by sequences (4.3.7).",
         FinishPart::CleanUpBySequences => "The structure is cleaned up by sequences of up to four changes (4.3.7).",

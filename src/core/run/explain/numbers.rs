@@ -54,11 +54,18 @@ fn longer(values: [f64; 2], short: [String; 2], first: usize) -> [String; 2] {
     texts.find(|texts| texts[0] != texts[1]).unwrap_or(short)
 }
 
-/// An interval of c, its lower end excluded.
+/// That one number is smaller than another, from their texts: those of numbers that differ by rounding only are equal.
+pub(super) fn smaller([less, more]: [String; 2]) -> String {
+    if less == more { format!("both are {less} but for rounding") } else { format!("{less} < {more}") }
+}
+
+/// An interval of c, which is positive; its lower end is excluded.
 pub(super) fn range_of_c(low: f64, high: f64) -> String {
-    match high.is_finite() {
-        true => format!("{} < c \u{2264} {}", up(low, 3), down(high, 3)),
-        false => format!("c > {}", up(low, 3)),
+    match (low > 0.0, high.is_finite()) {
+        (true, true) => format!("{} < c \u{2264} {}", up(low, 3), down(high, 3)),
+        (true, false) => format!("c > {}", up(low, 3)),
+        (false, true) => format!("c \u{2264} {}", down(high, 3)),
+        (false, false) => "every c".to_owned(),
     }
 }
 
@@ -95,6 +102,8 @@ mod tests {
         assert_eq!(apart(0.5, 0.25), ["0.5000", "0.2500"]);
         assert_eq!(apart(0.022_500_1, 0.022_5), ["0.0225001", "0.0225000"]);
         assert_eq!(apart(0.5, 0.5), ["0.5000", "0.5000"]);
+        assert_eq!(smaller(apart(0.25, 0.5)), "0.2500 < 0.5000");
+        assert_eq!(smaller(apart(0.3, 0.1 + 0.2)), "both are 0.3000 but for rounding");
         assert_eq!(angles_apart(134.99_f64.to_radians(), 135_f64.to_radians()), ["134.99", "135.00"]);
     }
 

@@ -34,8 +34,8 @@ impl Selecting {
         Some(Selecting { table: FrontTable::of(before), base: Some(base) })
     }
 
-    /// The next selection, from a state in which no quadrilateral is under way; `None` in others: what they have to
-    /// say about their base is no longer in them.
+    /// The next selection, from a state in which no quadrilateral is under way; `None` in others: what they have to say
+    /// about their base is no longer in them.
     pub fn next(state: &Converter<'_>) -> Option<Selecting> {
         state.phase().base().is_none().then(|| Selecting { table: FrontTable::of(state), base: None })
     }

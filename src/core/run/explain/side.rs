@@ -2,6 +2,8 @@
 //! other candidate was not.
 
 use super::Corner;
+use std::f64::consts::FRAC_PI_2;
+
 use super::numbers::{angles_apart, edge};
 use crate::core::case::Parameters;
 use crate::core::convert::{Candidate, Candidates, Passed, Phase, SideRule};
@@ -84,6 +86,7 @@ fn decided(phase: &Phase) -> ([Option<NodeId>; 2], Option<[Option<NodeId>; 2]>) 
 pub fn side_rule(tried: &Candidates) -> String {
     let Candidates { side, theta, theta_rect, rule, target, limit, .. } = tried;
     let (which, at) = (name(*side), letter(*side));
+    let direction = if *target == FRAC_PI_2 { "right angle" } else { "bisector" };
     let [target, bound] = [target, limit].map(|angle| degrees(*angle));
     let [theta, rect] = angles_apart(*theta, *theta_rect);
     let chosen = tried.edges.iter().find(|candidate| candidate.passed.is_none());
@@ -98,24 +101,27 @@ pub fn side_rule(tried: &Candidates) -> String {
              {which} side (4.3.4, ii)."
         ),
         SideRule::Near => format!(
-            "{not_front} The nearest edge to the target of {target}\u{b0} is {off}\u{b0} off, within {limit}\u{b0} (iii)."
+            "{not_front} The edge nearest to the target of {target}\u{b0}, the {direction}, is {off}\u{b0} off, within {limit}\u{b0} (iii)."
         ),
         SideRule::Swap => {
             let best = match nearest {
                 Some(best) => {
                     format!("The best edge is {}\u{b0} off, more than {limit}\u{b0}", degrees(best.deviation))
                 }
-                None => "There is no edge".to_owned(),
+                None => "No edge is there".to_owned(),
             };
             format!(
-                "{not_front} {best}; a swap makes one that is {off}\u{b0} off the target of {target}\u{b0} (iv, v)."
+                "{not_front} {best}; a swap makes one that is {off}\u{b0} off the target of {target}\u{b0}, the {direction} (iv, v)."
             )
         }
         SideRule::Nearest => format!(
-            "{not_front} No edge is within {limit}\u{b0} of the target of {target}\u{b0}, and no swap makes a nearer one than \
+            "{not_front} No edge is within {limit}\u{b0} of the target of {target}\u{b0}, the {direction}, and no swap makes a nearer one than \
              the best edge, {off}\u{b0} off (v)."
         ),
-        SideRule::Attempt => format!("This attempt takes an edge by its turn as the {which} side, whatever its angle."),
+        SideRule::Attempt => {
+            let node = chosen.map_or(0, |chosen| chosen.node.0);
+            format!("This attempt takes the edge to node {node} as the {which} side, whatever its angle.")
+        }
         SideRule::Nothing if tried.edges.iter().any(|c| c.passed == Some(Passed::LaidDown)) => {
             format!("The edge that this attempt takes cannot be the {which} side.")
         }

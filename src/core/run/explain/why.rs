@@ -1,13 +1,13 @@
 //! Why a segment was or was not selected as the base (paper 4.3.3, table 1), in sentences. Those about the base under
 //! way speak of the front at its selection, in the past; the others of the next selection.
 
-use super::numbers::{apart, count, down, range_of_c, segment, up};
+use super::numbers::{angles_apart, apart, capital, count, down, range_of_c, segment, smaller, up};
 use super::segment::{SegmentFacts, Verdict};
 use super::selecting::{SelectedBase, Selecting};
 use crate::core::case::{Parameters, Selection, SelectionWindow};
 use crate::core::convert::{Converter, Phase};
 use crate::core::front::segment::Key;
-use crate::core::kernel::number::{degrees, fixed, grouped, size};
+use crate::core::kernel::number::{fixed, grouped, size};
 use crate::core::mesh::NodeId;
 use crate::core::run::front_table::{FrontTable, Row};
 
@@ -19,7 +19,7 @@ const OF_SELECTION: [&str; 6] = ["c", "selection", "selection_window", "h_min_ov
 pub fn key_name(parameters: &Parameters) -> [&'static str; 2] {
     match (parameters.selection, parameters.selection_window) {
         (Selection::SmallestAngle, _) => ["\u{3b8}A+\u{3b8}B \u{b0}", "sum of frontal angles"],
-        (Selection::Level, _) => ["key", "state, level and metric length"],
+        (Selection::Level, _) => ["key", "state \u{b7} level \u{b7} metric length"],
         (Selection::Shortest, _) | (Selection::Table1, SelectionWindow::PhysicalLength) => {
             ["len xyz", "length in space"]
         }
@@ -30,17 +30,27 @@ pub fn key_name(parameters: &Parameters) -> [&'static str; 2] {
 
 /// The key of a segment.
 pub fn key_text(row: &Row, parameters: &Parameters) -> String {
-    let Key([first, second, third]) = row.primary_key(parameters);
+    let [text, _] = keys_apart(row, row, parameters);
+    text
+}
+
+/// The keys of two segments, with as many digits as it takes to see a difference.
+fn keys_apart(one: &Row, other: &Row, parameters: &Parameters) -> [String; 2] {
+    let [Key(one), Key(other)] = [one, other].map(|row| row.primary_key(parameters));
     match parameters.selection {
-        Selection::Table1 | Selection::Shortest => size(first),
-        Selection::SmallestAngle => degrees(first),
-        Selection::Level => format!("{first:.0} \u{b7} {second:.0} \u{b7} {}", fixed(third, 2)),
+        Selection::Table1 | Selection::Shortest => apart(one[0], other[0]),
+        Selection::SmallestAngle => angles_apart(one[0], other[0]),
+        Selection::Level => {
+            let [length, its] = apart(one[2], other[2]);
+            [(one, length), (other, its)]
+                .map(|([state, level, _], length)| format!("{state:.0}\u{b7}{level:.0}\u{b7}{length}"))
+        }
     }
 }
 
 impl Selecting {
-    /// Why the front segment from A to B was or was not selected, or would or would not be selected now; `None` where it
-    /// is not on that front. The state is the one in which the question is asked.
+    /// Why the front segment from A to B was or was not selected, or would or would not be selected now; `None` where
+    /// it is not on that front. The state is the one in which the question is asked.
     pub fn explain(&self, state: &Converter<'_>, a: NodeId, b: NodeId) -> Option<SegmentFacts> {
         let is_base = self.base.is_some_and(|base| [base.a, base.b] == [a, b]);
         // While a quadrilateral is under way, the front and its metrics do not change.
@@ -165,6 +175,14 @@ impl Tense {
     fn has(self) -> &'static str {
         if self == Tense::Past { "had" } else { "has" }
     }
+
+    fn comes(self) -> &'static str {
+        if self == Tense::Past { "came" } else { "comes" }
+    }
+
+    fn decides(self) -> &'static str {
+        if self == Tense::Past { "decided" } else { "decides" }
+    }
 }
 
 /// What puts a segment at its place in the order, and for which parameters it would come first.
@@ -195,7 +213,7 @@ fn reasons(table: &FrontTable, told: &SegmentFacts, tense: Tense) -> Vec<String>
 
 /// c Hmin with its factors.
 fn reach(table: &FrontTable, text: &str) -> String {
-    format!("c\u{b7}H_{{min}} = {} \u{d7} {} = {text}", fixed(table.parameters.c, 2), size(table.h_min))
+    format!("c\u{b7}H_{{min}} = {} \u{d7} {} = {text}", table.parameters.c, size(table.h_min))
 }
 
 /// Why the first one comes first.
@@ -205,16 +223,20 @@ fn first(table: &FrontTable, row: &Row, tense: Tense) -> Vec<String> {
     let [_, name] = key_name(parameters);
     let competing = || table.rows.iter().filter(|other| table.competes(other));
     if parameters.selection != Selection::Table1 {
-        let all = count(competing().count(), "segment");
-        let key = key_text(row, parameters);
+        let (all, key) = (count(competing().count(), "segment"), key_text(row, parameters));
+        let equal = || {
+            competing().filter(|other| other.h != row.h && other.primary_key(parameters) == row.primary_key(parameters))
+        };
         let unit = if parameters.selection == Selection::SmallestAngle { "\u{b0}" } else { "" };
-        return vec![format!("Of {all} it {has} the smallest {name}: {key}{unit}.")];
+        let text = format!("Of {all} it {} first by {name}: {key}{unit}.", tense.comes());
+        return [text].into_iter().chain(tie(row, equal(), name, tense)).collect();
     }
     if !table.is_within_reach(row) {
         let text = format!(
-            "No segment of classes 1 to 3 {} within reach ({name} below {}), so the smallest H decides (4.3.3, iii): {}.",
+            "No segment of classes 1 to 3 {} within reach ({name} below {}), so the smallest H {} (4.3.3, iii): {}.",
             tense.is(),
             reach(table, &size(table.reach())),
+            tense.decides(),
             size(row.h_value)
         );
         let equal = competing().filter(|other| other.h != row.h && other.h_value == row.h_value);
@@ -225,6 +247,7 @@ fn first(table: &FrontTable, row: &Row, tense: Tense) -> Vec<String> {
         let text = match competing().filter(|other| other.class == class).count() {
             0 => format!("Class {class} {} empty.", tense.is()),
             1 => format!("The only segment of class {class} {} out of reach.", tense.is()),
+            2 => format!("Both segments of class {class} {} out of reach.", plural(tense)),
             n => format!("All {n} segments of class {class} {} out of reach.", plural(tense)),
         };
         sentences.push(text);
@@ -233,7 +256,7 @@ fn first(table: &FrontTable, row: &Row, tense: Tense) -> Vec<String> {
     let [key, bound] = apart(row.window, table.reach());
     let of = match rivals().count() {
         1 => format!("It {} the only segment of class {} within reach", tense.is(), row.class),
-        n => format!("Of {n} segments of class {} within reach it {has} the smallest {name}", row.class),
+        n => format!("Of {n} segments of class {} within reach it {has} the smallest key", row.class),
     };
     let step = if row.class == 1 { "ii" } else { "iii" };
     sentences.push(format!("{of}: {name} = {key} < {} (4.3.3, {step}).", reach(table, &bound)));
@@ -251,13 +274,12 @@ fn tie<'a>(row: &Row, equal: impl Iterator<Item = &'a Row>, name: &str, tense: T
     let equal: Vec<&Row> = equal.collect();
     let others = count(equal.len(), "other segment");
     let has = if equal.len() > 1 && tense == Tense::Present { "have" } else { tense.has() };
-    let same_sum = equal.iter().any(|other| other.theta_sum() == row.theta_sum());
-    let by = if same_sum {
-        "the same sum of frontal angles too; the number of the half-edge decides"
+    let by = if equal.iter().any(|other| other.theta_sum() == row.theta_sum()) {
+        format!("and the same sum of frontal angles: the lower half-edge number {}", tense.decides())
     } else {
-        "a larger sum of frontal angles"
+        "but a larger sum of frontal angles".to_owned()
     };
-    (!equal.is_empty()).then(|| format!("{} {has} the same {name} and {by}.", super::numbers::capital(&others)))
+    (!equal.is_empty()).then(|| format!("{} {has} the same {name} {by}.", capital(&others)))
 }
 
 /// Which segment has Hmin, where it is not this one.
@@ -295,7 +317,7 @@ fn not_first(table: &FrontTable, told: &SegmentFacts, tense: Tense) -> Vec<Strin
     let [_, name] = key_name(parameters);
     let choice = table.choice();
     let its = choice.map_or(String::new(), |choice| segment([choice.a, choice.b]));
-    let (is, has) = (tense.is(), tense.has());
+    let (is, has, comes) = (tense.is(), tense.has(), tense.comes());
     let text = match told.verdict {
         Verdict::First => return Vec::new(),
         Verdict::Deferred => "Deferred: every attempt has failed; it waits until something near it changes.".to_owned(),
@@ -315,21 +337,21 @@ fn not_first(table: &FrontTable, told: &SegmentFacts, tense: Tense) -> Vec<Strin
         ),
         Verdict::BetterClass { class } => {
             format!(
-                "It {is} of class {}; {its}, of class {class}, {is} within reach and comes before it (table 1).",
+                "It {is} of class {}; {its}, of class {class}, {is} within reach and {comes} before it (table 1).",
                 row.class
             )
         }
         Verdict::LargerKey if parameters.selection == Selection::Table1 => {
-            let [own, less] = apart(row.window, choice.map_or(f64::NAN, |choice| choice.window));
-            format!("It {is} within reach, but {its} of the same class {has} a smaller {name}: {less} < {own}.")
+            let less = smaller(apart(choice.map_or(f64::NAN, |choice| choice.window), row.window));
+            format!("It {is} within reach, but {its} of the same class {has} a smaller {name}: {less}.")
         }
         Verdict::LargerKey => {
-            let [own, less] = [Some(row), choice].map(|row| row.map_or(String::new(), |row| key_text(row, parameters)));
-            format!("{its} {has} a smaller {name}: {less}, against {own}.")
+            let less = smaller(keys_apart(choice.unwrap_or(row), row, parameters));
+            format!("{its} {comes} before it by {name}: {less}.")
         }
         Verdict::LargerH => {
-            let [own, less] = apart(row.h_value, choice.map_or(f64::NAN, |choice| choice.h_value));
-            format!("No segment {is} within reach, and {its} {has} a smaller H: {less} < {own} (4.3.3, iii).")
+            let less = smaller(apart(choice.map_or(f64::NAN, |choice| choice.h_value), row.h_value));
+            format!("No segment {is} within reach, and {its} {has} a smaller H: {less} (4.3.3, iii).")
         }
         Verdict::Tied => {
             let name = if choice.is_some_and(|c| parameters.selection != Selection::Table1 || table.is_within_reach(c))
@@ -340,7 +362,7 @@ fn not_first(table: &FrontTable, told: &SegmentFacts, tense: Tense) -> Vec<Strin
             };
             let smaller = choice.is_some_and(|choice| choice.theta_sum() < row.theta_sum());
             let by = if smaller { "a smaller sum of frontal angles" } else { "a half-edge with a lower number" };
-            format!("{its} {has} the same {name}, and {by}.")
+            format!("{its} {has} the same {name} and {by}.")
         }
     };
     vec![text]
