@@ -52,6 +52,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                 Some(Outlined::Node(n)) => node::show(ui, state, moment, n, commands, palette),
                 Some(Outlined::Element(e)) => element::show(ui, state, moment, e, commands, palette),
             }
+            if shown.is_some() && moment.base.is_none() {
+                step::show(ui, moment, palette);
+                step::next(ui, moment, palette);
+            }
             if let Some(what) = shown {
                 past::show(ui, state, what, commands, palette);
             }

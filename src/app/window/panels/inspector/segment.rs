@@ -51,6 +51,9 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         }
         super::past::actions(ui, state, Outlined::Edge(what), commands);
     });
+    if is_base {
+        step::next(ui, moment, palette);
+    }
     h_value(ui, moment, s, palette);
     key(ui, moment, place, palette);
     heading(ui, "Frontal angles", "metric of the node", palette);
@@ -63,7 +66,6 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
     }
     if is_base {
         step::so_far(ui, moment, commands, palette);
-        step::next(ui, moment, palette);
     }
     length(ui, s.length_metric, s.length_physical, palette);
     heading(ui, "Ends", "sizes of their metrics", palette);

@@ -41,7 +41,5 @@ pub fn show(
         sentence(ui, &text, palette.text, palette);
         return;
     }
-    for (k, text) in told.why.iter().enumerate() {
-        sentence(ui, text, if k == 0 { palette.text } else { palette.weak }, palette);
-    }
+    told.why.iter().for_each(|text| drop(sentence(ui, text, palette.text, palette)));
 }
