@@ -10,7 +10,7 @@ use quadfront::core::mesh::{Mesh, PointId, TriangleSet};
 use quadfront::core::metric::{Field, FieldSpec, Sizing};
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::history::BUDGET;
-use quadfront::core::run::{FrontTable, History, Run, SegmentFacts};
+use quadfront::core::run::{FrontTable, History, Run, Selecting};
 
 mod meter;
 
@@ -100,7 +100,8 @@ fn front_table() {
     let converter = Converter::new(mesh, Sizing::new(vec![field], 1.0), Parameters::default());
     let (table, seconds) = meter::median_of(5, || FrontTable::of(&converter));
     let row = *table.choice().unwrap();
-    let (_, told) = meter::median_of(5, || SegmentFacts::in_table(&converter, &table, row.a, row.b).unwrap());
+    let selecting = Selecting::next(&converter).unwrap();
+    let (_, told) = meter::median_of(5, || selecting.explain(&converter, row.a, row.b).unwrap());
     println!(
         "Front table of {} rows: {:.1} ms; one segment explained in it: {:.1} ms",
         table.rows.len(),

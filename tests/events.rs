@@ -106,6 +106,7 @@ fn every_operation_of_the_paper_is_done_on_some_built_in_case() {
         "transition_seamed",
         "seam_refused",
         "split", // fig. 19
+        "split_refused",
         "closed",
         "second_pass",
         "last_resort",

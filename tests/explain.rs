@@ -7,7 +7,7 @@ use quadfront::core::convert::{Converter, Event, Phase};
 use quadfront::core::mesh::NodeId;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::{
-    Corner, EdgeFacts, EdgeKind, ElementFacts, FrontTable, NodeFacts, Run, SegmentFacts, Verdict,
+    Corner, EdgeFacts, EdgeKind, ElementFacts, FrontTable, NodeFacts, Run, SegmentFacts, Selecting, Verdict,
 };
 
 /// Calls `look` with each state before a selection and the base that was selected.
@@ -24,6 +24,11 @@ fn selections(name: &str, settings: &[(&str, &str)], mut look: impl FnMut(u64, &
             look(converter.counts.steps, &before, [a, b]);
         }
     }
+}
+
+/// A segment at the next selection.
+fn at_the_next(state: &Converter<'_>, [a, b]: [NodeId; 2]) -> SegmentFacts {
+    Selecting::next(state).unwrap().explain(state, a, b).unwrap()
 }
 
 /// What is selected from a state with other parameters.
@@ -69,7 +74,7 @@ fn within_its_margins_a_choice_stays_and_beyond_them_it_does_not() {
         if !step.is_multiple_of(3) {
             return;
         }
-        let told = SegmentFacts::of(state, base[0], base[1]).unwrap();
+        let told = at_the_next(state, base);
         assert_eq!(told.verdict, Verdict::First);
         let [low, high] = told.margin_of_c.unwrap();
         let with_c = |c: f64| selected(state, |p| p.c = c);
@@ -113,17 +118,18 @@ fn every_segment_has_its_reason_in_words() {
         if !step.is_multiple_of(40) {
             return;
         }
-        let table = FrontTable::of(state);
-        for row in &table.rows {
-            let told = SegmentFacts::in_table(state, &table, row.a, row.b).unwrap();
+        let selecting = Selecting::next(state).unwrap();
+        for row in &selecting.table.rows {
+            let told = selecting.explain(state, row.a, row.b).unwrap();
             assert_eq!(told.verdict == Verdict::First, [row.a, row.b] == base);
             assert_eq!(told.rank.is_none(), told.verdict == Verdict::Deferred);
             let text = told.to_string();
-            assert!(text.contains("eq. 6") && text.contains("hosen") || text.contains("deferred"), "{text}");
+            assert!(text.contains("eq. 6"), "{text}");
+            assert!(!told.why.is_empty() && told.why.iter().all(|sentence| sentence.ends_with('.')), "{text}");
             seen.insert(format!("{:?}", told.verdict).split([' ', '{']).next().unwrap().to_owned());
         }
     });
-    for verdict in ["First", "LaterLayer", "OutOfReach", "BetterClass", "Larger"] {
+    for verdict in ["First", "LaterRow", "OutOfReach", "BetterClass", "LargerKey"] {
         assert!(seen.contains(verdict), "{verdict} is not among {seen:?}");
     }
 }
@@ -133,8 +139,8 @@ fn an_order_of_selection_is_named_whatever_the_window() {
     let settings = [("selection", "smallest_angle"), ("selection_window", "physical_length")];
     let mut seen = 0;
     selections("figure-14", &settings, |_, state, [a, b]| {
-        let text = SegmentFacts::of(state, a, b).unwrap().to_string();
-        assert!(text.contains("the smallest angle sum of all segments"), "{text}");
+        let text = at_the_next(state, [a, b]).to_string();
+        assert!(text.contains("it comes first by sum of frontal angles"), "{text}");
         seen += 1;
     });
     assert!(seen > 0);
@@ -147,7 +153,7 @@ fn the_explanations_put_the_numbers_into_the_formulas() {
     selections("figure-19", &[("selection", "table1")], |_, state, [a, b]| {
         if texts.is_empty() {
             let mesh = &state.mesh;
-            let told = SegmentFacts::of(state, a, b).unwrap();
+            let told = at_the_next(state, [a, b]);
             let by_equation = 0.5 * told.metric.map(|m| 1.0 / m.lambda[1].sqrt()).iter().sum::<f64>();
             assert!((told.row.h_value / by_equation - 1.0).abs() < 1e-12, "eq. (6)");
             assert_eq!(told.corners[0] == Corner::Rectangle, told.row.theta[0] < 135_f64.to_radians());
@@ -179,8 +185,9 @@ fn on_surfaces_the_terms_of_an_h_value_add_up_to_that_of_the_selection() {
     let mut converter = run.start(&run.background(&mut Nobody).unwrap()).unwrap();
     let (mut seen, mut unlike) = (0, 0);
     while seen < 200 {
+        let next = Selecting::next(&converter);
         let Event::BaseSelected { a, b, h_value, length_physical, .. } = converter.step().unwrap() else { continue };
-        let told = SegmentFacts::of(&converter, a, b).unwrap();
+        let told = next.unwrap().explain(&converter, a, b).unwrap();
         let [h_a, h_b] = told.smallest_sizes;
         assert!((0.5 * (h_a + h_b) - h_value).abs() <= 1e-15 * h_value);
         // The tensor of the chart has other eigenvalues than the sizes in space that are told.

@@ -205,9 +205,9 @@ fn figure_18_seaming_recovers_the_edge_between_the_far_ends_and_collapses_it() {
         step_until(&mut converter, |e| matches!(e, Event::Formed { .. }));
         assert!(joined(&converter.mesh, 1, 8) && !joined(&converter.mesh, 9, 10));
         let events = step_until(&mut converter, |e| matches!(e, Event::Seamed { .. }));
-        let [Event::Seamed { at, node, angle }] = events[..] else { panic!("{events:?}") };
+        let [Event::Seamed { at, node, corner }] = events[..] else { panic!("{events:?}") };
         assert_eq!((at, node), (NodeId(1), NodeId(10)));
-        assert!((20.0..20.5).contains(&angle.to_degrees()));
+        assert!((20.0..20.5).contains(&corner.angle.to_degrees()));
         let mesh = &converter.mesh;
         mesh.check().unwrap();
         assert!(!mesh.has_node(NodeId(9)) && mesh.uv(node).distance(DVec2::new(0.0, 0.9)) < 1e-12);
@@ -227,9 +227,9 @@ fn a_transition_seam_divides_the_longer_segment_and_frees_a_triangle_of_the_quad
         let live = |mesh: &Mesh| mesh.elements().filter(|&e| mesh.is_triangle(e)).count();
         let before = live(&converter.mesh);
         let events = step_until(&mut converter, |e| matches!(e, Event::TransitionSeamed { .. }));
-        let [Event::TransitionSeamed { at, node, angle, ratio }] = events[..] else { panic!("{events:?}") };
+        let [Event::TransitionSeamed { at, node, corner }] = events[..] else { panic!("{events:?}") };
         assert_eq!((at, node), (NodeId(1), NodeId(8)));
-        assert!(angle.to_degrees() < 30.0 && (2.5..2.7).contains(&ratio));
+        assert!(corner.angle.to_degrees() < 30.0 && (2.5..2.7).contains(&corner.ratio));
         let mesh = &converter.mesh;
         mesh.check().unwrap();
         // Two more by the division, two fewer by the seam; the quadrilateral is the same one with its corner elsewhere.
@@ -250,14 +250,13 @@ fn figure_19_the_front_is_split_at_the_edge_that_leaves_two_even_loops() {
     with_figure("figure-19", |mut converter| {
         const LETTERS: [&str; 6] = ["A", "B", "C", "D", "E", "F"];
         step_until(&mut converter, |e| matches!(e, Event::Formed { .. }));
-        let element = converter.phase().last_formed().unwrap();
         let letters = |mesh: &Mesh, e| {
             let mut letters: Vec<&str> = mesh.triangle(e).iter().map(|n| LETTERS[n.index()]).collect();
             letters.sort_unstable();
             letters.concat()
         };
-        let narrow = converter.narrow(element);
-        let mut t: Vec<String> = narrow.on_front.iter().map(|&e| letters(&converter.mesh, e)).collect();
+        let narrow = converter.narrow().unwrap();
+        let mut t: Vec<String> = narrow.on_front.iter().map(|t| letters(&converter.mesh, t.element)).collect();
         t.sort_unstable();
         assert_eq!(t, ["ABC", "ABE", "ACF", "ADE"]);
         let v: Vec<String> = narrow.slender.iter().map(|s| letters(&converter.mesh, s.element)).collect();

@@ -318,6 +318,29 @@ fn the_inspector_says_why_with_the_numbers_of_the_paper() {
 }
 
 #[test]
+fn the_base_under_way_is_told_as_it_was_selected_with_what_is_done_and_what_comes_next() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::Go(Goal::ToQuads(60)));
+    apply(&mut harness, Command::Go(Goal::Kind(EventKind::BaseSelected, Direction::Forward)));
+    let why =
+        |harness: &Window| harness.state().state.run().moment.as_ref().unwrap().base.as_ref().unwrap().why.clone();
+    let selected = why(&harness);
+    for _ in 0..3 {
+        harness.get_by_label("Why this segment");
+        harness.get_by_label("This quadrilateral so far");
+        harness.get_by_label("Next step");
+        assert_eq!(why(&harness), selected);
+        press(&mut harness, Modifiers::COMMAND, Key::ArrowRight);
+    }
+    apply(&mut harness, Command::Set("c", "1.2".to_owned()));
+    harness.get_by_label("Why this segment");
+    assert!(harness.query_by_label("c was 2 at this selection; 1.2 counts from the next base on.").is_some());
+    assert_eq!(why(&harness)[..selected.len()], selected);
+    press(&mut harness, Modifiers::COMMAND, Key::ArrowLeft);
+    assert_eq!(why(&harness), selected);
+}
+
+#[test]
 fn the_timeline_gives_each_kind_a_row_of_its_own_and_its_state_is_spoken() {
     let Some(mut harness) = window() else { return };
     assert!(harness.query_by_label_contains("Timeline: step 0 of").is_some());

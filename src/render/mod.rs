@@ -1,6 +1,5 @@
 //! Turns a state of `core` into a picture, and a picture into vectors or pixels. Never changes a state.
 
-pub mod number;
 pub mod palette;
 pub mod colour_map;
 pub mod camera;

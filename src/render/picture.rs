@@ -6,11 +6,11 @@ use glam::{DVec2, DVec3};
 use super::orthographic::{self, Cover, View};
 
 use super::look::{Layer, Layers, Look};
-use super::number;
 use super::scene::Decision;
 use crate::core::case::Parameters;
 use crate::core::convert::Phase;
 use crate::core::front::{Segment, Side};
+use crate::core::kernel::number;
 use crate::core::mesh::{ElementId, Mesh, Names, NodeId};
 use crate::core::record::Export;
 use crate::core::soup::MeshFile;

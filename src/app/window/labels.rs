@@ -17,6 +17,7 @@ use super::viewport::{ViewFrame, class_colour};
 use super::words;
 use crate::core::front::Segment;
 use crate::core::mesh::NodeId;
+use crate::core::run::explain;
 use crate::render::palette::Palette;
 use crate::render::pick::Cover;
 use crate::render::scene::{Decision, Outlined, Scene};
@@ -241,7 +242,7 @@ impl Labels<'_> {
             let text = match what {
                 Outlined::Node(node) => format!("node {}", node.0),
                 Outlined::Edge(ends) => match self.segment(ends) {
-                    Some(s) => format!("{}  ·  {}  ·  H {}", words::segment(s.a, s.b), s.class, words::size(s.h_value)),
+                    Some(s) => self.about_segment(s),
                     None => words::edge(ends),
                 },
                 Outlined::Element(e) if self.moment.mesh.is_quad(e) => format!("quadrilateral {}", e.0),
@@ -252,6 +253,15 @@ impl Labels<'_> {
             let at = at + Vec2::new(0.0, -16.0);
             self.label(at, Align2::CENTER_BOTTOM, &text, font, ink(self.palette.label), true);
         }
+    }
+
+    /// A front segment with its class, H, and the key by which it is ordered.
+    fn about_segment(&self, s: &Segment) -> String {
+        let table = &self.moment.selecting.table;
+        let [key, _] = explain::key_name(table.parameters());
+        let row = table.rows.iter().find(|row| [row.a, row.b] == [s.a, s.b]);
+        let key = row.map_or(String::new(), |row| format!("  ·  {key} {}", explain::key_text(row, table.parameters())));
+        format!("{}  ·  class {}  ·  H {}{key}", words::segment(s.a, s.b), s.class, words::size(s.h_value))
     }
 
     fn segment(&self, ends: [NodeId; 2]) -> Option<&Segment> {

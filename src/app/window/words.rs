@@ -1,15 +1,15 @@
-//! Numbers and events in words, as everywhere in the window: integers grouped by thin spaces, a true minus, an en dash
-//! for what is not defined.
+//! Names, numbers and events in words, as everywhere in the window: integers grouped by thin spaces, a true minus, an en
+//! dash for what is not defined.
 
 use super::session::words_of;
 use super::state::Progress;
-use crate::core::convert::{Candidate, Candidates, Event, EventKind, Mending, Passed, Purpose, Why};
-use crate::core::front::Side;
+use crate::core::convert::EventKind;
 use crate::core::mesh::NodeId;
 use crate::core::progress::Stage;
 use crate::render::scene::Outlined;
 
-pub use crate::render::number::{UNDEFINED, decimals, degrees, fixed, grouped, size};
+pub use crate::core::kernel::number::{UNDEFINED, decimals, degrees, fixed, grouped, size};
+pub use crate::core::run::explain::{capital, event, passed, why_rolled_back as why};
 
 /// The progress of some work.
 pub fn progress(progress: &Progress) -> String {
@@ -43,133 +43,9 @@ pub fn thing(what: Outlined) -> String {
     }
 }
 
-/// A side.
-pub fn side(side: Side) -> &'static str {
-    match side {
-        Side::Left => "left",
-        Side::Right => "right",
-    }
-}
-
 /// The name of a kind of event.
 pub fn kind(kind: EventKind) -> String {
     kind.name().replace('_', " ")
-}
-
-/// What a step did, in one line.
-pub fn event(event: &Event) -> String {
-    match *event {
-        Event::BaseSelected { a, b, class, h_value, .. } => {
-            format!("base selected: {}, class {class}, H {}", segment(a, b), size(h_value))
-        }
-        Event::PickLost { a, b } => format!("{} was chosen as base, but is no longer on the front", segment(a, b)),
-        Event::SideIsFront { side: s, node } => format!("{} side is the front, to node {}", side(s), node.0),
-        Event::SideChosen { edge } => {
-            let off = degrees(edge.deviation);
-            format!("{} side chosen: node {}, {off}° off the target direction", side(edge.side), edge.node.0)
-        }
-        Event::SideSwapped { edge, .. } => {
-            let off = degrees(edge.deviation);
-            format!("{} side made by a swap: node {}, {off}° off the target direction", side(edge.side), edge.node.0)
-        }
-        Event::SideDivided { side: s, node, length } => {
-            format!("{} side divided at new node {}; it was {} long", side(s), node.0, fixed(length, 2))
-        }
-        Event::TopSwapped { across, new } => format!("top: {} swapped for {}", edge(across), edge(new)),
-        Event::TopSmoothed { nodes } => format!("{nodes} nodes smoothed around the left top"),
-        Event::TopFound { ends, swaps } => match swaps {
-            0 => format!("top edge found: {}", edge(ends)),
-            1 => format!("top edge found: {}, after 1 swap", edge(ends)),
-            _ => format!("top edge found: {}, after {swaps} swaps", edge(ends)),
-        },
-        Event::NodeRemoved { node, purpose: Purpose::Recovery } => {
-            format!("node {} removed to clear the way for the top", node.0)
-        }
-        Event::NodeRemoved { node, purpose: Purpose::Enhancement } => format!("node {} of low valence removed", node.0),
-        Event::Formed { element, quality, merged, .. } => {
-            format!("quadrilateral {} formed: quality {}, {merged} triangles merged", element.0, fixed(quality, 2))
-        }
-        Event::RolledBack { attempt, why: reason } => {
-            format!("attempt {} rolled back: {}", u32::from(attempt) + 1, why(reason))
-        }
-        Event::Deferred { a, b } => format!("segment {} deferred", segment(a, b)),
-        Event::Enhanced { new } => format!("edge {} made by a swap beside the new quadrilateral", edge(new)),
-        Event::Smoothed { nodes } => format!("{nodes} nodes smoothed"),
-        Event::Seamed { at, node, angle } => {
-            format!("seam at node {}: {}° closed, ends joined in node {}", at.0, degrees(angle), node.0)
-        }
-        Event::TransitionSeamed { at, node, angle, ratio } => format!(
-            "transition seam at node {}: {}° closed, one side {} times the other, joined in node {}",
-            at.0,
-            degrees(angle),
-            fixed(ratio, 1),
-            node.0
-        ),
-        Event::SeamRefused { at, angle, .. } => {
-            format!("no seam at node {} of {}°: its ends cannot be joined", at.0, degrees(angle))
-        }
-        Event::Split { node, .. } => format!("front split at node {}", node.0),
-        Event::Closed { segments, quads, quality } => {
-            format!("loop of {segments} segments closed by {quads} quadrilaterals, worst quality {}", fixed(quality, 2))
-        }
-        Event::SecondPass => "all segments are deferred: second pass with wider tolerances".to_owned(),
-        Event::Matched { triangles, unmatched, .. } => format!(
-            "last resort: {} triangles paired, {} without a partner",
-            grouped(triangles as u64),
-            grouped(unmatched as u64)
-        ),
-        Event::Patched { triangles, quads, element, .. } => {
-            format!("last resort: {quads} quadrilaterals of {triangles} triangles, from element {}", element.0)
-        }
-        Event::Cleaned { energy: [before, after], .. } => {
-            format!("mesh structure cleaned up locally: energy {} to {}", size(before), size(after))
-        }
-        Event::Unfolded { element, how, .. } => {
-            let how = match how {
-                Mending::Moved => "its corners were moved",
-                Mending::Rotated { .. } => "an edge was rotated",
-                Mending::Collapsed { .. } => "two of its corners were merged",
-                Mending::Pillowed { .. } => "a smaller quadrilateral was inserted",
-            };
-            format!("element {} folded over the surface: {how}", element.0)
-        }
-        Event::FaceConverted { region } => format!("face {} is converted", region + 1),
-        Event::Swept { looked, moved } => format!("{moved} of {looked} nodes smoothed by the energy"),
-        Event::LastResort(outcome) => format!("last resort: {} triangles left", grouped(outcome.triangles as u64)),
-        Event::PostProcessed => "whole mesh cleaned up and smoothed".to_owned(),
-        Event::Finished => "done".to_owned(),
-    }
-}
-
-/// Why an edge is not the side.
-pub fn passed(passed: Passed, candidate: &Candidate, tried: &Candidates) -> String {
-    match passed {
-        Passed::Taken => "ends at a corner in use".to_owned(),
-        Passed::WideAngle => "front, but not below \u{3b8}rect".to_owned(),
-        Passed::SmallAngle => "the front is the side".to_owned(),
-        Passed::LaidDown => "not used in this attempt".to_owned(),
-        Passed::Farther if candidate.deviation > tried.limit => format!("more than {}°", degrees(tried.limit)),
-        Passed::Farther => "another is nearer".to_owned(),
-        Passed::NotNeeded => "no swap is needed".to_owned(),
-        Passed::NotPositive => "it would fold over".to_owned(),
-    }
-}
-
-/// Why an attempt was taken back.
-pub fn why(why: Why) -> String {
-    match why {
-        Why::NoSide(s) => format!("no edge fits the {} side", side(s)),
-        Why::NoDivision(s) => format!("the {} side cannot be divided at the required point", side(s)),
-        Why::TopBlocked(ends) => format!("dead edge {} lies across the top", edge(ends)),
-        Why::TopThroughNode(node) => format!("node {} lies on the top edge", node.0),
-        Why::TopTooLong => "the top edge needs too many swaps".to_owned(),
-        Why::TooLong(length) => format!("a new side or the top is too long: {}", fixed(length, 2)),
-        Why::NotDisc => "the four sides do not enclose a disc of live triangles".to_owned(),
-        Why::NotConvex => "it would not be strictly convex".to_owned(),
-        Why::Poor(quality) => format!("its quality would be only {}", fixed(quality, 2)),
-        Why::OddLoop(segments) => format!("a loop would become odd, with {segments} segments"),
-        Why::NoMetric => "the field gives no metric at a new node".to_owned(),
-    }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ mod reason;
 use serde::{Serialize, Serializer};
 
 pub use self::kind::{EventKind, WhyKind};
-pub use self::reason::{Purpose, Unmerged, Why};
+pub use self::reason::{Purpose, SeamCorner, Unmerged, Why};
 use super::last_resort::{Means, Outcome};
 use crate::core::front::Side;
 use crate::core::mesh::{ElementId, NodeId};
@@ -103,6 +103,10 @@ pub enum Event {
         h_min: f64,
         /// Number of deferred segments, which cannot be chosen.
         deferred: u32,
+        /// Its key: what is held against the reach (docs/algorithm.md, "The selection window").
+        key: f64,
+        /// The reach, c Hmin.
+        reach: f64,
         /// Its class of table 1.
         class: u8,
         /// Frontal angles at A and B.
@@ -228,9 +232,9 @@ pub enum Event {
         at: NodeId,
         /// The node into which the two other ends were merged.
         node: NodeId,
-        /// The frontal angle before.
-        #[serde(serialize_with = "degrees")]
-        angle: f64,
+        /// What was looked at.
+        #[serde(flatten)]
+        corner: SeamCorner,
     },
     /// Two front segments of unequal length were seamed: the longer one was divided first (4.3.6).
     TransitionSeamed {
@@ -238,11 +242,9 @@ pub enum Event {
         at: NodeId,
         /// The node into which the other end of the shorter one and the midpoint of the longer one were merged.
         node: NodeId,
-        /// The frontal angle before.
-        #[serde(serialize_with = "degrees")]
-        angle: f64,
-        /// Length of the longer one divided by that of the shorter one.
-        ratio: f64,
+        /// What was looked at.
+        #[serde(flatten)]
+        corner: SeamCorner,
     },
     /// Two front segments with a small angle were not seamed.
     SeamRefused {
@@ -250,11 +252,9 @@ pub enum Event {
         at: NodeId,
         /// Their other ends.
         ends: [NodeId; 2],
-        /// The frontal angle.
-        #[serde(serialize_with = "degrees")]
-        angle: f64,
-        /// Length of the longer one divided by that of the shorter one.
-        ratio: f64,
+        /// What was looked at.
+        #[serde(flatten)]
+        corner: SeamCorner,
         /// Why.
         why: Unmerged,
     },
@@ -270,6 +270,17 @@ pub enum Event {
         ratio: f64,
         /// Segments of the two loops that the split alone makes of one.
         segments: [u32; 2],
+    },
+    /// There are slender triangles around the new quadrilateral, and the front was not split at any of them.
+    SplitRefused {
+        /// The quadrilateral.
+        element: ElementId,
+        /// Number of triangles around it with all nodes on the front: the paper's T.
+        on_front: u8,
+        /// Number of slender ones among them: the paper's V.
+        slender: u8,
+        /// Why the collapse of the first edge that leaves two even loops was refused; none where no edge does.
+        why: Option<Unmerged>,
     },
     /// A small loop was closed (docs/algorithm.md, "Small loops").
     Closed {
@@ -358,6 +369,12 @@ impl Event {
                 | Event::TransitionSeamed { .. }
                 | Event::Split { .. }
         )
+    }
+
+    /// Whether it says what became of slender triangles on the front (4.3.6). The mesh was then judged as it was before
+    /// the step: what the step found nothing to do about comes before that in the same step.
+    pub fn is_about_a_split(&self) -> bool {
+        matches!(self, Event::Split { .. } | Event::SplitRefused { .. })
     }
 }
 

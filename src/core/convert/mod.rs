@@ -30,17 +30,19 @@ mod converter;
 pub mod walk;
 pub mod conversion;
 
-pub use candidates::{Candidate, Candidates, Passed};
+pub use candidates::{Candidate, Candidates, Passed, SideRule};
 pub use conversion::Converted;
 pub use converter::{Converter, Counts};
-pub use event::{Cleaning, Event, EventKind, Mending, Purpose, SideEdge, Unmerged, Why, WhyKind};
+pub use event::{Cleaning, Event, EventKind, Mending, Purpose, SeamCorner, SideEdge, Unmerged, Why, WhyKind};
 pub use finish::Finished;
 pub use finish::clean_up::CleanedUp;
 pub use finish::unfold::Unfolded;
 pub use last_resort::component::Component;
 pub use last_resort::{Means, Outcome, Plan, Stuck};
 pub use phase::{Attempt, Base, FinishPart, Phase};
-pub use split::{Narrow, Slender};
+pub(in crate::core) use seam::{CROWDED, MOST_UNLIKE, SHORT};
+pub(in crate::core) use split::LEAST_PART;
+pub use split::{Narrow, NotSlender, OnFront, SideToCollapse, Slender};
 pub use walk::{StepReport, Stop, Tell};
 
 pub use side::candidates;

@@ -34,6 +34,8 @@ pub(super) fn select(front: &mut Front<'_>, picked: Option<[NodeId; 2]>) -> Done
         h_value,
         h_min,
         deferred,
+        key: segment.window(parameters.selection_window),
+        reach: parameters.c * h_min,
         class,
         theta,
         length_metric,

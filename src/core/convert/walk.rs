@@ -9,6 +9,7 @@ use super::converter::Converter;
 use super::event::Event;
 use super::phase::{FinishPart, Phase};
 use super::side::candidates::Candidates;
+use super::split::Narrow;
 use crate::core::fault::Fault;
 use crate::core::mesh::NodeId;
 use crate::core::progress::{Stage, Watch};
@@ -76,6 +77,9 @@ pub struct StepReport<'e> {
     /// an even number each (docs/algorithm.md, "The parity invariant").
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loops: Option<&'e [u32]>,
+    /// The sets T and V of 4.3.6, where the front was split, or was not in spite of slender triangles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub narrow: Option<&'e Narrow>,
     /// Worst quality around the last quadrilateral before and after, where its neighbourhood was improved (4.3.6).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<[f64; 2]>,
@@ -86,7 +90,8 @@ pub type Tell<'t> = &'t mut dyn FnMut(&StepReport<'_>);
 
 /// Steps until `stop` is reached, or to the end where there is none; the same states as
 /// [`Converter::run`](super::converter::Converter::run) meets. Where no history is kept, what was done stays done. What
-/// an event leaves out (candidates, crossings, loops, qualities) is only computed where somebody listens.
+/// an event leaves out (candidates, crossings, loops, narrow regions, qualities) is only computed where somebody
+/// listens.
 ///
 /// # Errors
 /// As [`Converter::step`](super::converter::Converter::step); and where the conversion ends before the stop.
@@ -120,12 +125,12 @@ pub fn walk_editing(
             _ => {}
         }
         let crossings = tell.as_ref().and_then(|_| converter.top_crossings());
-        let (candidates, element, before) = match &tell {
+        let (candidates, element, before, narrow) = match &tell {
             Some(_) => {
                 let element = converter.phase().last_formed();
-                (converter.candidates(), element, element.map(|e| converter.quality_around(e)))
+                (converter.candidates(), element, element.map(|e| converter.quality_around(e)), converter.narrow())
             }
-            None => (None, None, None),
+            None => (None, None, None, None),
         };
         let event = converter.step()?;
         let nq = converter.standing();
@@ -139,7 +144,8 @@ pub fn walk_editing(
             let step = converter.counts.steps;
             let (crossings, loops) = (crossings.as_deref(), converter.loops_after(&event));
             let (candidates, loops) = (candidates.as_ref(), loops.as_deref());
-            tell(&StepReport { step, nq, event: &event, candidates, crossings, loops, quality });
+            let narrow = narrow.as_ref().filter(|_| event.is_about_a_split());
+            tell(&StepReport { step, nq, event: &event, candidates, crossings, loops, narrow, quality });
         }
         edit(converter)?;
         if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::NextFace | Phase::Done)

@@ -11,6 +11,7 @@ mod disjoint_sets;
 pub(crate) mod parity;
 mod fingerprint;
 pub(crate) mod decimal;
+pub mod number;
 pub(crate) mod spelling;
 pub(crate) mod worded;
 

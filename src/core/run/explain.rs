@@ -1,14 +1,30 @@
-//! Explanations: a segment of the front, a node, an edge or an element with its numbers in the paper's formulas, and
-//! why a segment was or was not chosen. Each is computed on request and has a text form.
+//! Explanations: a segment of the front, a node, an edge or an element with its numbers in the paper's formulas; why a
+//! segment was or was not chosen; what a step did, by which rule, and what comes next. Each is computed on request and
+//! has a text form.
+//!
+//! Sentences have a little markup, `_{x}` for a subscript; [`plain`] takes it out.
 
+mod numbers;
+mod segment;
 mod words;
+mod selecting;
+mod why;
+mod side;
+mod event;
+mod next;
+
+pub use event::{about, event, why_rolled_back};
+pub use next::next;
+pub use numbers::{capital, plain};
+pub use segment::{SegmentFacts, Verdict};
+pub use selecting::{SelectedBase, Selecting};
+pub use side::{corner, passed, side_rule};
+pub use why::{key_name, key_text};
 
 use glam::DVec3;
 use serde::Serialize;
 
-use super::front_table::{FrontTable, Loop, Row};
-use crate::core::case::{Parameters, Selection};
-use crate::core::convert::Converter;
+use crate::core::case::Parameters;
 use crate::core::front::Side;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 use crate::core::metric::measure::angle;
@@ -70,118 +86,6 @@ impl Corner {
             Corner::Reversal
         }
     }
-}
-
-/// Why the rules would or would not choose a segment if the base were selected now.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub enum Verdict {
-    /// It comes first.
-    First,
-    /// It is deferred until something near it changes.
-    Deferred,
-    /// Rows nearer to the boundary come first.
-    LaterLayer,
-    /// Its window value is not below c Hmin (4.3.3, step ii): segments within reach come first, then smaller H-values.
-    OutOfReach {
-        /// The value compared with c Hmin.
-        window: f64,
-        /// c Hmin.
-        reach: f64,
-    },
-    /// It is of class 4: such a segment is chosen, by its H-value, only where no other is within reach (step iii).
-    ClassFour,
-    /// A segment of a better class is within reach.
-    BetterClass {
-        /// That class.
-        class: u8,
-    },
-    /// Another segment of its class has a smaller value of the ordering criterion.
-    Larger,
-}
-
-/// A segment of the front, explained.
-#[derive(Clone, Debug, Serialize)]
-pub struct SegmentFacts {
-    /// Its numbers.
-    pub row: Row,
-    /// The metrics of A and B.
-    pub metric: [MetricFacts; 2],
-    /// The smallest sizes at A and B, whose mean is the H-value (eq. 6): on surfaces those in space.
-    pub smallest_sizes: [f64; 2],
-    /// Length in the parametric plane; that in space is `row.length_physical`.
-    pub length_parametric: f64,
-    /// The classes of its frontal angles.
-    pub corners: [Corner; 2],
-    /// Its loop.
-    pub front_loop: Loop,
-    /// The smallest H-value of the waiting segments (step i).
-    pub h_min: f64,
-    /// How many waiting segments come before it, and how many there are; `None` where it is deferred.
-    pub rank: Option<(usize, usize)>,
-    /// Why it is, or is not, the first.
-    pub verdict: Verdict,
-    /// Whether it is the base of the current quadrilateral.
-    pub is_base: bool,
-    /// Where it comes first: the interval of c in which it stays first.
-    pub margin_of_c: Option<[f64; 2]>,
-    /// Where it does not come first: an interval of c in which it would.
-    pub chosen_for_c: Option<[f64; 2]>,
-    /// Where it comes first: the interval of theta_rect in which it stays first, in degrees.
-    pub margin_of_theta_rect: Option<[f64; 2]>,
-    #[serde(skip)]
-    parameters: Parameters,
-}
-
-impl SegmentFacts {
-    /// Explains the front segment from A to B; `None` where it does not exist.
-    pub fn of(converter: &Converter<'_>, a: NodeId, b: NodeId) -> Option<SegmentFacts> {
-        SegmentFacts::in_table(converter, &FrontTable::of(converter), a, b)
-    }
-
-    /// The same, from the front table of the state.
-    pub fn in_table(converter: &Converter<'_>, table: &FrontTable, a: NodeId, b: NodeId) -> Option<SegmentFacts> {
-        let (mesh, parameters) = (&converter.mesh, converter.parameters());
-        let row = *table.find(a, b)?;
-        Some(SegmentFacts {
-            row,
-            metric: [a, b].map(|n| MetricFacts::of(mesh, n)),
-            smallest_sizes: [a, b].map(|n| mesh.smallest_size(n)),
-            length_parametric: mesh.uv(a).distance(mesh.uv(b)),
-            corners: row.theta.map(|theta| Corner::of(theta, parameters)),
-            front_loop: table.loops[row.front_loop as usize],
-            h_min: table.h_min,
-            rank: table.rank(&row).map(|rank| (rank, table.waiting_count())),
-            verdict: verdict(table, &row),
-            is_base: converter.phase().base().is_some_and(|base| base.a == a && base.b == b),
-            margin_of_c: table.margin_of_c(&row),
-            chosen_for_c: table.chosen_for_c(&row),
-            margin_of_theta_rect: table.margin_of_theta_rect(&row).map(|margin| margin.map(f64::to_degrees)),
-            parameters: parameters.clone(),
-        })
-    }
-}
-
-fn verdict(table: &FrontTable, row: &Row) -> Verdict {
-    let Some(choice) = table.choice().filter(|_| !row.is_deferred) else { return Verdict::Deferred };
-    if choice.h == row.h {
-        return Verdict::First;
-    }
-    if row.layer(&table.parameters) > table.layer {
-        return Verdict::LaterLayer;
-    }
-    if table.parameters.selection == Selection::Table1 {
-        if table.is_within_reach(row) {
-            if choice.class < row.class {
-                return Verdict::BetterClass { class: choice.class };
-            }
-        } else if row.class == 4 && table.is_within_reach(choice) {
-            return Verdict::ClassFour;
-        } else if row.class < 4 {
-            return Verdict::OutOfReach { window: row.window, reach: table.parameters.c * table.h_min };
-        }
-    }
-    Verdict::Larger
 }
 
 /// A node, explained.

@@ -159,6 +159,7 @@ pub(super) fn changes_front(event: &Event) -> bool {
             | Event::Enhanced { .. }
             | Event::Smoothed { .. }
             | Event::SeamRefused { .. }
+            | Event::SplitRefused { .. }
             | Event::SecondPass
             | Event::Matched { .. }
             | Event::Cleaned { .. }

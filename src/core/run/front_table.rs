@@ -70,6 +70,8 @@ pub struct FrontTable {
     pub h_min: f64,
     /// The smallest layer of the waiting segments, where rows are offset first.
     pub(super) layer: u32,
+    /// The face that is being converted; none where all is converted together.
+    face: Option<u32>,
     pub(super) parameters: Parameters,
 }
 
@@ -101,15 +103,45 @@ impl FrontTable {
             }
             loops.push(met);
         }
-        let waiting = || rows.iter().filter(|row| !row.is_deferred);
-        let layer = waiting().map(|row| row.layer(&parameters)).min().unwrap_or(0);
         let face = converter.face();
-        let counts = |row: &&Row| match parameters.h_min_over {
-            HMinOver::Front if row.is_deferred => face.is_none_or(|face| row.face == face),
-            _ => !row.is_deferred && row.layer(&parameters) == layer,
+        let mut table = FrontTable { rows, loops, h_min: f64::INFINITY, layer: 0, face, parameters };
+        table.layer = table.waiting().map(|row| row.layer(&table.parameters)).min().unwrap_or(0);
+        table.h_min = table.least().map_or(f64::INFINITY, |row| row.h_value);
+        table
+    }
+
+    /// The parameters by which it is ordered.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// The value below which a key is within reach: c Hmin (4.3.3, step ii).
+    pub fn reach(&self) -> f64 {
+        self.parameters.c * self.h_min
+    }
+
+    /// The segment that has Hmin (4.3.3, step i); `None` where none counts.
+    pub fn least(&self) -> Option<&Row> {
+        let counts = |row: &&Row| match self.parameters.h_min_over {
+            HMinOver::Front if row.is_deferred => self.is_of_face(row),
+            _ => self.competes(row),
         };
-        let h_min = rows.iter().filter(counts).map(|row| row.h_value).fold(f64::INFINITY, f64::min);
-        FrontTable { rows, loops, h_min, layer, parameters }
+        self.rows.iter().filter(counts).min_by(|a, b| a.h_value.total_cmp(&b.h_value).then(a.h.cmp(&b.h)))
+    }
+
+    /// Whether a segment is on the face that is being converted.
+    pub fn is_of_face(&self, row: &Row) -> bool {
+        self.face.is_none_or(|face| row.face == face)
+    }
+
+    /// Whether no front is left on the face that is being converted.
+    pub fn is_closed(&self) -> bool {
+        !self.rows.iter().any(|row| self.is_of_face(row))
+    }
+
+    /// Whether a segment waits, on the current face and in the row that is offset first, if rows are.
+    pub fn competes(&self, row: &Row) -> bool {
+        !row.is_deferred && self.is_of_face(row) && row.layer(&self.parameters) == self.layer
     }
 
     /// The segment from A to B.
@@ -117,14 +149,15 @@ impl FrontTable {
         self.rows.iter().find(|row| row.a == a && row.b == b)
     }
 
-    /// The segment that the rules would choose; `None` where every segment is deferred.
+    /// The segment that the rules would choose; `None` where every segment of the current face is deferred.
     pub fn choice(&self) -> Option<&Row> {
         self.waiting().min_by_key(|row| self.order(row))
     }
 
-    /// The number of waiting segments that come before this one: 0 for the choice itself. `None` where it is deferred.
+    /// The number of waiting segments that come before this one: 0 for the choice itself. `None` where it is deferred,
+    /// or on a face that is converted later.
     pub fn rank(&self, row: &Row) -> Option<usize> {
-        if row.is_deferred {
+        if row.is_deferred || !self.is_of_face(row) {
             return None;
         }
         let order = self.order(row);
@@ -138,18 +171,18 @@ impl FrontTable {
         places
     }
 
-    /// The number of waiting segments.
+    /// The number of waiting segments, on the current face.
     pub fn waiting_count(&self) -> usize {
         self.waiting().count()
     }
 
     pub(super) fn waiting(&self) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(|row| !row.is_deferred)
+        self.rows.iter().filter(|row| !row.is_deferred && self.is_of_face(row))
     }
 
     /// Whether the segment is within c Hmin and of class 1, 2 or 3 (4.3.3, step ii).
     pub fn is_within_reach(&self, row: &Row) -> bool {
-        row.class < 4 && row.layer(&self.parameters) == self.layer && row.window < self.parameters.c * self.h_min
+        row.class < 4 && row.layer(&self.parameters) == self.layer && row.window < self.reach()
     }
 
     /// The sort key of a segment.
@@ -194,7 +227,8 @@ impl FrontTable {
     /// The first interval of c, from (excluded) to (included), in which a segment that is not the choice would be it,
     /// all else unchanged. `None` where there is none, or where the selection does not depend on c.
     pub fn chosen_for_c(&self, row: &Row) -> Option<[f64; 2]> {
-        if self.parameters.selection != Selection::Table1 || row.is_deferred || self.choice()?.h == row.h {
+        let is_waiting = !row.is_deferred && self.is_of_face(row);
+        if self.parameters.selection != Selection::Table1 || !is_waiting || self.choice()?.h == row.h {
             return None;
         }
         let best = BestOfClass::of(self);
@@ -217,7 +251,7 @@ impl FrontTable {
         let limits = [std::f64::consts::FRAC_PI_2, std::f64::consts::PI];
         // The classes change only where theta_rect crosses a frontal angle.
         let mut turns: Vec<(f64, usize)> = Vec::new();
-        for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| !row.is_deferred) {
+        for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| self.competes(row)) {
             turns.extend(row.theta.iter().filter(|t| (limits[0]..=limits[1]).contains(*t)).map(|&t| (t, i)));
         }
         turns.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -269,7 +303,13 @@ impl Row {
         Segment { h, a, b, class, h_value, length_metric, length_physical, theta, level, face }.key(parameters)
     }
 
-    fn theta_sum(&self) -> f64 {
+    /// The key by which it is ordered, without what decides where keys are equal.
+    pub fn primary_key(&self, parameters: &Parameters) -> Key {
+        let Key(key) = self.key(parameters);
+        if parameters.selection == Selection::Level { Key(key) } else { Key([key[0], 0.0, 0.0]) }
+    }
+
+    pub(super) fn theta_sum(&self) -> f64 {
         self.theta[0] + self.theta[1]
     }
 
@@ -301,7 +341,7 @@ struct BestOfClass {
 
 impl BestOfClass {
     fn of(table: &FrontTable) -> BestOfClass {
-        let of_layer = || table.waiting().filter(|row| row.layer(&table.parameters) == table.layer);
+        let of_layer = || table.rows.iter().filter(|row| table.competes(row));
         let smallest = of_layer().min_by_key(|row| (Key([0.0, row.h_value, row.theta_sum()]), row.h));
         let mut best = BestOfClass { classes: Default::default(), smallest: smallest.map(|row| row.h) };
         for row in of_layer() {

@@ -9,6 +9,7 @@ mod editing;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use super::explain::Selecting;
 use super::keyframes::{Keyframe, Keyframes};
 use super::log::Log;
 use super::recorder::{Recorder, SPACING, Stretch};
@@ -52,6 +53,8 @@ pub struct History {
     /// Why the conversion cannot continue after the last known step.
     stuck: Option<Fault>,
     now: Cursor,
+    /// What the selection of a base looked at that was asked for last.
+    selecting: Option<Arc<Selecting>>,
     /// A cursor on its way from a keyframe to the beginning of the journal of `now`.
     behind: Option<Cursor>,
     /// A mesh whose memory can be reused.
@@ -115,6 +118,7 @@ impl History {
             ended: false,
             stuck: None,
             now,
+            selecting: None,
             behind: None,
             spare: Mesh::default(),
             changed: Touched::default(),
@@ -140,6 +144,30 @@ impl History {
     /// What the steps did, as far as they are known.
     pub fn log(&self) -> &Log {
         &self.log
+    }
+
+    /// What the selection of the base under way looked at, or what the next one does where no quadrilateral is under
+    /// way. The current state is the same afterwards, though it may be visited anew.
+    ///
+    /// # Errors
+    /// A step of the replay failed.
+    pub fn selecting(&mut self) -> Result<Arc<Selecting>, Fault> {
+        let step = self.now.step;
+        let Some(selected) = self.log.selection(step) else {
+            let selecting = Selecting::next(&self.now.converter).expect("no quadrilateral is under way");
+            return Ok(Arc::new(selecting));
+        };
+        if let Some(known) =
+            self.selecting.as_ref().filter(|known| known.base.is_some_and(|base| base.step == selected))
+        {
+            return Ok(Arc::clone(known));
+        }
+        let event = self.event(selected)?.expect("the step is known");
+        self.seek(selected - 1)?;
+        let made = Selecting::of_base(&self.now.converter, &event).map(Arc::new).expect("the step selects a base");
+        self.seek(step)?;
+        self.selecting = Some(Arc::clone(&made));
+        Ok(made)
     }
 
     /// The last step of the run, once it is known.

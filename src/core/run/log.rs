@@ -215,6 +215,12 @@ impl Log {
         Some(found as u64 + 1)
     }
 
+    /// The step that selected the base of the quadrilateral that is under way after a step; `None` where none is.
+    pub fn selection(&self, step: u64) -> Option<u64> {
+        let last = self.last_of(step, |kind| !is_of_an_attempt(kind))?;
+        (self.kind(last) == Some(EventKind::BaseSelected)).then_some(last)
+    }
+
     /// The first step after `after` that leaves at least `nq` quadrilaterals and no local post-processing under way.
     pub fn first_with(&self, nq: u64, after: u64) -> Option<u64> {
         let first = usize::try_from(after).ok()?;
@@ -251,6 +257,22 @@ impl Log {
 /// Whether a step of this kind makes quadrilaterals; clean-up does not count.
 fn makes_quads(kind: EventKind) -> bool {
     matches!(kind, EventKind::Formed | EventKind::Closed | EventKind::Patched)
+}
+
+/// Whether a step of this kind leaves the quadrilateral under way that was under way before.
+fn is_of_an_attempt(kind: EventKind) -> bool {
+    matches!(
+        kind,
+        EventKind::SideIsFront
+            | EventKind::SideChosen
+            | EventKind::SideSwapped
+            | EventKind::SideDivided
+            | EventKind::TopSwapped
+            | EventKind::TopSmoothed
+            | EventKind::TopFound
+            | EventKind::NodeRemoved
+            | EventKind::RolledBack
+    )
 }
 
 fn kind_of(stored: u8) -> EventKind {

@@ -12,7 +12,8 @@
 //! | invariants and statistics along a run, lanes of its work | [`Sample`], [`timeline`] |
 //! | the step that made each quadrilateral, without a history | [`Births`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`Watched`] |
-//! | why a segment is chosen, what a node is | [`SegmentFacts`], [`NodeFacts`], [`FrontTable`] |
+//! | why a segment is chosen, what a node is | [`Selecting`], [`SegmentFacts`], [`NodeFacts`], [`FrontTable`] |
+//! | what a step did and looked at, by which rule, and what comes next, in words | [`explain`] |
 //!
 //! The state at step k is the state after k steps, with the edits of step k applied: an edit at step k changes what
 //! follows and nothing before.
@@ -32,12 +33,14 @@ mod births;
 pub mod breakpoint;
 mod watch;
 pub mod front_table;
-mod explain;
+pub mod explain;
 
 pub use births::Births;
 pub use breakpoint::Condition;
 pub use copies::Copies;
-pub use explain::{Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, Verdict};
+pub use explain::{
+    Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, SelectedBase, Selecting, Verdict,
+};
 pub use front_count::FrontCount;
 pub use front_table::FrontTable;
 pub use history::{Changes, History};

@@ -58,7 +58,7 @@ impl Lane {
             EventKind::RolledBack | EventKind::Deferred | EventKind::SecondPass => Lane::Failed,
             EventKind::Enhanced | EventKind::Smoothed | EventKind::NodeRemoved => Lane::Local,
             EventKind::Seamed | EventKind::TransitionSeamed | EventKind::SeamRefused => Lane::Seams,
-            EventKind::Split => Lane::Splits,
+            EventKind::Split | EventKind::SplitRefused => Lane::Splits,
             EventKind::Closed | EventKind::Matched | EventKind::Patched | EventKind::LastResort => Lane::Closing,
             EventKind::Cleaned
             | EventKind::Swept

@@ -4,9 +4,9 @@ use glam::DVec2;
 
 use super::svg::page::{Page, Path, width};
 use super::svg::{LABEL, NOTE, Sheet};
+use crate::core::kernel::number::{fixed, grouped};
 use crate::core::record::Statistics;
 use crate::core::record::statistics::{ANGLE_CLASSES, LENGTH_CLASSES};
-use crate::render::number::{fixed, grouped};
 use crate::render::palette::{LETTER, bars};
 
 /// Margins around the axes in points, for the numbers of the vertical and of the horizontal axis.

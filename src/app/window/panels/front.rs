@@ -12,7 +12,10 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
+use crate::core::case::Selection;
 use crate::core::front::Segment;
+use crate::core::run::front_table::Row;
+use crate::core::run::{FrontTable, explain};
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
@@ -26,6 +29,7 @@ enum FrontColumn {
     Class,
     HValue,
     Length,
+    Key,
     ThetaA,
     ThetaB,
     Level,
@@ -54,12 +58,13 @@ impl Default for FrontState {
 }
 
 /// Columns with their heads, widths and tooltips.
-const COLUMNS: [(FrontColumn, &str, f32, &str); 9] = [
-    (FrontColumn::Rank, "#", 28.0, "Rank: the order of selection by table 1"),
+const COLUMNS: [(FrontColumn, &str, f32, &str); 10] = [
+    (FrontColumn::Rank, "#", 28.0, "Rank: the order in which the rules choose"),
     (FrontColumn::Nodes, "A → B", 71.0, "Nodes of the segment; live triangles lie to its left"),
     (FrontColumn::Class, "cl", 26.0, "Class of table 1"),
     (FrontColumn::HValue, "H", 53.0, "H-value, eq. 6, in units of the case"),
     (FrontColumn::Length, "len", 31.0, "Length in the metric"),
+    (FrontColumn::Key, "key", 58.0, "Key by which segments of a class are ordered"),
     (FrontColumn::ThetaA, "θA °", 39.0, "Frontal angle at A, degrees, in the metric of A"),
     (FrontColumn::ThetaB, "θB °", 39.0, "Frontal angle at B, degrees, in the metric of B"),
     (FrontColumn::Level, "lv", 19.0, "Level: rows from the boundary"),
@@ -129,11 +134,15 @@ fn rows(local: &FrontState, moment: &Moment) -> Vec<(usize, usize)> {
         FrontColumn::Class => a.class.cmp(&b.class),
         FrontColumn::HValue => a.h_value.total_cmp(&b.h_value),
         FrontColumn::Length => a.length_metric.total_cmp(&b.length_metric),
+        FrontColumn::Key => Ordering::Equal,
         FrontColumn::ThetaA => a.theta[0].total_cmp(&b.theta[0]),
         FrontColumn::ThetaB => a.theta[1].total_cmp(&b.theta[1]),
         FrontColumn::Level | FrontColumn::Loop => a.level.cmp(&b.level),
     };
-    if column == FrontColumn::Loop {
+    if column == FrontColumn::Key {
+        let parameters = moment.selecting.table.parameters();
+        rows.sort_by_key(|row| (moment.rows[row.0].primary_key(parameters), row.1));
+    } else if column == FrontColumn::Loop {
         rows.sort_by_key(|row| (moment.rows[row.0].front_loop, row.1));
     } else if column != FrontColumn::Rank {
         rows.sort_by(|a, b| by(&moment.front[a.0], &moment.front[b.0]).then(a.1.cmp(&b.1)));
@@ -187,10 +196,15 @@ fn table(
     if let Some(row) = wanted.and_then(|ends| rows.iter().position(|r| is(&moment.front[r.0], ends))) {
         builder = builder.scroll_to_row(row, None);
     }
+    let selection = &moment.selecting.table;
+    let [key_name, key_words] = explain::key_name(selection.parameters());
+    let key_tip = key_tip(selection, key_words);
     let table = builder.header(22.0, |mut header| {
         for (column, name, _, tip) in COLUMNS {
             header.col(|ui| {
-                if !(one_loop && column == FrontColumn::Loop) {
+                if column == FrontColumn::Key {
+                    head(ui, local, column, key_name, &key_tip, palette);
+                } else if !(one_loop && column == FrontColumn::Loop) {
                     head(ui, local, column, name, tip, palette);
                 }
             });
@@ -204,12 +218,15 @@ fn table(
             let (is_base, is_picked) = (base.is_some_and(|e| is(segment, e)), picked.is_some_and(|e| is(segment, e)));
             row.set_selected(is_picked);
             row.set_hovered(hovered.is_some_and(|e| is(segment, e)));
+            let its_row = &moment.rows[place];
+            let is_ranked = !its_row.is_deferred && selection.is_of_face(its_row);
             let texts = [
-                if moment.rows[place].is_deferred { words::UNDEFINED.to_owned() } else { rank.to_string() },
+                if is_ranked { rank.to_string() } else { words::UNDEFINED.to_owned() },
                 words::segment(segment.a, segment.b),
                 String::new(),
                 words::fixed(segment.h_value, decimals),
                 words::fixed(segment.length_metric, 2),
+                explain::key_text(its_row, selection.parameters()),
                 words::degrees(segment.theta[0]),
                 words::degrees(segment.theta[1]),
                 segment.level.to_string(),
@@ -225,6 +242,7 @@ fn table(
                     }
                     let colour = match (k, is_base) {
                         (0, _) => palette.weak,
+                        _ if COLUMNS[k].0 == FrontColumn::Key && !is_in_reach(selection, its_row) => palette.weak,
                         (_, true) => palette.strong,
                         _ => palette.text,
                     };
@@ -251,6 +269,22 @@ fn table(
             }
         });
     });
+}
+
+/// What the key is, and what it is held against.
+fn key_tip(table: &FrontTable, key: &str) -> String {
+    match table.parameters().selection {
+        Selection::Table1 => format!(
+            "Key: {key}. Keys below c Hmin = {} are within reach; others, and class 4, are weak and come after them, by H",
+            words::size(table.reach())
+        ),
+        _ => format!("Key: {key}; the smallest comes first"),
+    }
+}
+
+/// Whether its key counts: with table 1, only within reach.
+fn is_in_reach(table: &FrontTable, row: &Row) -> bool {
+    table.parameters().selection != Selection::Table1 || table.is_within_reach(row)
 }
 
 fn head(ui: &mut Ui, local: &mut FrontState, column: FrontColumn, name: &str, tip: &str, palette: &Palette) {

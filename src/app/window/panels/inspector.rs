@@ -5,6 +5,7 @@ mod why;
 mod edge;
 mod node;
 mod element;
+mod step;
 pub mod past;
 
 use eframe::egui::{Align, Label, Layout, Rect, Response, RichText, ScrollArea, Sense, Ui, UiBuilder, Vec2};
@@ -30,6 +31,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             let shown = state.document().picked.or(decision).or(state.frame().hovered);
             match shown {
                 None => {
+                    step::show(ui, moment, palette);
+                    step::next(ui, moment, palette);
+                    ui.add_space(6.0);
                     ui.label(note("Point at anything to inspect it; click to select it.", palette));
                     if moment.step == 0 {
                         let text = "Right goes forward by one quadrilateral, Ctrl+Right by one operation; Left and \
@@ -47,6 +51,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                 }
                 Some(Outlined::Node(n)) => node::show(ui, state, moment, n, commands, palette),
                 Some(Outlined::Element(e)) => element::show(ui, state, moment, e, commands, palette),
+            }
+            if shown.is_some() && moment.base.is_none() {
+                step::show(ui, moment, palette);
+                step::next(ui, moment, palette);
             }
             if let Some(what) = shown {
                 past::show(ui, state, what, commands, palette);

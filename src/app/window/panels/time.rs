@@ -160,8 +160,11 @@ fn status(ui: &mut Ui, state: &State, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 5.0;
     ui.label(strong(format!("step {}", words::grouped(moment.step))));
     ui.label(weak(format!("/ {}{more}", words::grouped(state.run().track.len() as u64))));
-    ui.label(strong(format!("  quad {quads}")));
-    ui.label(weak(format!("/ {}{more}", words::grouped(all.unwrap_or(0)))));
+    ui.label(strong(format!("  {quads} quads")));
+    // Clean-up removes some: the number at the end is no total.
+    if let Some(all) = all.filter(|_| state.run().recorded) {
+        ui.label(weak(format!("({} at the end)", words::grouped(all))));
+    }
     let text = match &moment.event {
         None => "the front is the boundary; the first step selects a base".to_owned(),
         Some(event) => words::event(event),

@@ -4,11 +4,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::core::case::Parameters;
-use crate::core::convert::{Candidates, Event, Phase};
+use crate::core::convert::{Candidates, Event, Narrow, Phase};
 use crate::core::front::Segment;
 use crate::core::mesh::{ElementId, Mesh};
 use crate::core::run::front_table::{Loop, Row};
-use crate::core::run::{Changes, SegmentFacts};
+use crate::core::run::{Changes, SegmentFacts, Selecting};
 
 /// Whether the invariants hold.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,7 +36,9 @@ pub struct Moment {
     pub changed: [Arc<[ElementId]>; 3],
     /// The changes of the very last step.
     pub just_changed: Arc<[ElementId]>,
-    /// The front in the order of selection.
+    /// What the selection of the base under way looked at, or what the next one looks at.
+    pub selecting: Arc<Selecting>,
+    /// The front in the order of that selection.
     pub front: Vec<Segment>,
     /// The same segments with their loops, and whether they are deferred.
     pub rows: Vec<Row>,
@@ -44,8 +46,14 @@ pub struct Moment {
     pub loops: Vec<Loop>,
     /// The candidates for a side edge of the last step.
     pub candidates: Option<Candidates>,
+    /// The triangles that the last step looked at to split the front.
+    pub narrow: Option<Narrow>,
     /// Why the base is the base.
     pub base: Option<SegmentFacts>,
+    /// The steps since the selection of the base under way, this one included.
+    pub so_far: Vec<(u64, Event)>,
+    /// What comes next.
+    pub next: String,
     /// Whether the invariants hold.
     pub verdict: Verdict,
     /// The time from the request to the report.

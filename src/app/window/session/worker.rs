@@ -15,9 +15,7 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
 use crate::core::run::history::BUDGET;
-use crate::core::run::{
-    Condition, Copies, Edit, History, Recorder, Run, Sample, SegmentFacts, Stretch, Watched, breakpoint,
-};
+use crate::core::run::{Condition, Copies, Edit, History, Recorder, Run, Sample, Stretch, Watched, breakpoint};
 
 /// How many steps the recorder does before it hands them over, least and most: few at first, since the window may be
 /// waiting.
@@ -202,8 +200,13 @@ impl Worker {
         self.voice.say(answer.unwrap_or_else(|fault| SessionNews::Fault(fault, asks)));
     }
 
-    fn explain(&self, a: NodeId, b: NodeId) {
-        let Some(told) = SegmentFacts::of(self.history.state(), a, b) else { return };
+    fn explain(&mut self, a: NodeId, b: NodeId) {
+        // Known from the report of the current state, unless no quadrilateral is under way.
+        let selecting = match self.history.selecting() {
+            Ok(selecting) => selecting,
+            Err(fault) => return self.voice.say(SessionNews::Fault(fault, 0)),
+        };
+        let Some(told) = selecting.explain(self.history.state(), a, b) else { return };
         let deferred = if told.row.is_deferred { self.deferred(a, b) } else { None };
         self.voice.say(SessionNews::Explained(self.history.step(), Arc::new(Explained { told, deferred })));
     }

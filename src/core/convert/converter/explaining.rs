@@ -35,9 +35,10 @@ impl Converter<'_> {
         self.mesh.corners(element).map(|n| self.mesh.worst_quality_at(n)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Slender triangles around a quadrilateral, at which the front may be split (4.3.6, splitting i and ii).
-    pub fn narrow(&self, quad: ElementId) -> Narrow {
-        split::narrow(&self.mesh, &self.parameters, quad)
+    /// Slender triangles around the last quadrilateral, at which the front may be split (4.3.6, splitting i and ii);
+    /// `None` where no local post-processing is under way.
+    pub fn narrow(&self) -> Option<Narrow> {
+        self.phase.last_formed().map(|quad| split::narrow(&self.mesh, &self.parameters, quad))
     }
 
     /// The segments of each loop of the front that runs through the nodes at which an event, the last step's, has

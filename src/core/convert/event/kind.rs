@@ -74,6 +74,7 @@ kinds! {
         TransitionSeamed "transition_seamed",
         SeamRefused "seam_refused",
         Split "split",
+        SplitRefused "split_refused",
         Closed "closed",
         SecondPass "second_pass",
         Matched "matched",

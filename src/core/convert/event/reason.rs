@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::degrees;
 use crate::core::front::Side;
 use crate::core::mesh::NodeId;
 
@@ -17,7 +18,7 @@ pub enum Why {
     TopBlocked([NodeId; 2]),
     /// A node lies on the top edge.
     TopThroughNode(NodeId),
-    /// The recovery of the top edge reached its limit of swaps.
+    /// No swap and no removal of a node recovers the top edge, or too many would be needed.
     TopTooLong,
     /// A new side or the top is longer than the gate allows, in the metric.
     TooLong(f64),
@@ -49,8 +50,33 @@ pub enum Unmerged {
     NotEmpty,
     /// An element would not be positive, or separate parts would be glued together.
     NotPositive,
-    /// An element would have this quality, too far below the quality before.
-    Poor(f64),
+    /// An element would be too poor.
+    Poor {
+        /// Its quality.
+        quality: f64,
+        /// The least quality that is allowed there.
+        least: f64,
+    },
+}
+
+/// Two adjacent front segments as seaming looks at them (4.3.6; docs/algorithm.md, "Seaming").
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SeamCorner {
+    /// The frontal angle between them, radians.
+    #[serde(serialize_with = "degrees")]
+    pub angle: f64,
+    /// The bound `theta_seam`.
+    #[serde(serialize_with = "degrees")]
+    pub theta_seam: f64,
+    /// The widest angle that is seamed there: `theta_seam`, or `seam_widening` times that.
+    #[serde(serialize_with = "degrees")]
+    pub widest: f64,
+    /// Their mean length in the metric.
+    pub length: f64,
+    /// Number of quadrilaterals at the node between them.
+    pub quads: u8,
+    /// Length of the longer one divided by that of the shorter one.
+    pub ratio: f64,
 }
 
 /// Why a node was removed.

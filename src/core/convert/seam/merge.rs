@@ -25,7 +25,7 @@ pub fn merge(
     }
     let (from, to) = (front.mesh.uv(kept), front.mesh.uv(gone));
     let shares: &[f64] = if front.mesh.is_fixed(kept) { &[0.0] } else { &[0.5, 0.35, 0.65, 0.2, 0.8, 0.0, 1.0] };
-    let worst = worst_quality(front.mesh, [gone, kept]).min(0.3);
+    let least = 0.7 * worst_quality(front.mesh, [gone, kept]).min(0.3);
     let mut why = Unmerged::NotPositive;
     for &share in shares {
         let place = from + (to - from) * share;
@@ -37,11 +37,11 @@ pub fn merge(
         front.mesh.collapse(h, place, metric);
         let mesh = &*front.mesh;
         let around = mesh.elements_at(kept).filter(|&e| judged(mesh, e));
-        let after = around.map(|e| mesh.quality(e)).fold(f64::INFINITY, f64::min);
-        if after >= 0.7 * worst {
+        let quality = around.map(|e| mesh.quality(e)).fold(f64::INFINITY, f64::min);
+        if quality >= least {
             return Ok(kept);
         }
-        why = Unmerged::Poor(after);
+        why = Unmerged::Poor { quality, least };
         front.mesh.take_back(mark);
     }
     Err(why)

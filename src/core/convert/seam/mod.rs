@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use smallvec::SmallVec;
 
-use super::event::{Event, Unmerged};
+use super::event::{Event, SeamCorner, Unmerged};
 use super::front::{Done, Front};
 use super::phase::Phase;
 use super::top::{MOST_SWAPS, Recovery, recover_step};
@@ -19,12 +19,12 @@ use crate::core::front::Side;
 use crate::core::mesh::{ElementId, HalfEdgeId, NodeId};
 
 /// Segments whose lengths differ by more than this factor need a transition seam.
-const MOST_UNLIKE: f64 = 2.5;
+pub(in crate::core) const MOST_UNLIKE: f64 = 2.5;
 /// With this many dead elements at the node, wider angles are seamed too (after Levik; docs/algorithm.md, "Seaming").
-const CROWDED: usize = 5;
+pub(in crate::core) const CROWDED: usize = 5;
 /// So they are where the segments are shorter than this on average, in the metric: where sizes grow ahead of the front,
 /// columns must end, and this is where they do (docs/experiments.md).
-const SHORT: f64 = 0.85;
+pub(in crate::core) const SHORT: f64 = 0.85;
 
 /// One seam (4.3.6) at a node of the new quadrilateral, or why one is refused.
 pub(super) fn step(front: &mut Front<'_>, element: ElementId, mut nodes: SmallVec<[NodeId; 8]>) -> Done {
@@ -55,40 +55,50 @@ fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
         let mesh = &*front.mesh;
         let before = mesh.front_before(h);
         let [l_b, l_c] = [h, before].map(|h| mesh.length(h));
-        let angle = mesh.frontal_angle(h, Side::Left);
-        if angle > widest(front, at, 0.5 * (l_b + l_c)) {
+        let corner = corner(front, h, [l_b, l_c]);
+        if corner.angle > corner.widest {
             continue;
         }
         let (b, c) = (mesh.target(h), mesh.origin(before));
-        let ratio = l_b.max(l_c) / l_b.min(l_c);
         let mark = mesh.mark();
-        let seamed = if ratio > MOST_UNLIKE {
+        let seamed = if corner.ratio > MOST_UNLIKE {
             let long = if l_b > l_c { h } else { before };
             transition::divide_segment(front, at, long).and_then(|middle| {
                 let (b, c) = if l_b > l_c { (middle, c) } else { (b, middle) };
-                Ok(Event::TransitionSeamed { at, node: seam(front, at, b, c)?, angle, ratio })
+                Ok(Event::TransitionSeamed { at, node: seam(front, at, b, c)?, corner })
             })
         } else {
-            seam(front, at, b, c).map(|node| Event::Seamed { at, node, angle })
+            seam(front, at, b, c).map(|node| Event::Seamed { at, node, corner })
         };
         match seamed {
             Ok(event) => return Some(event),
             Err(why) => {
                 front.mesh.take_back(mark);
-                refused = refused.or(Some(Event::SeamRefused { at, ends: [b, c], angle, ratio, why }));
+                refused = refused.or(Some(Event::SeamRefused { at, ends: [b, c], corner, why }));
             }
         }
     }
     refused
 }
 
-/// The widest frontal angle at a node that is seamed, where the mean metric length of the segments is `length`.
-fn widest(front: &Front<'_>, at: NodeId, length: f64) -> f64 {
+/// Looks at the corner between a front segment, whose half-edge leaves the node, and the one before it, with these
+/// metric lengths.
+fn corner(front: &Front<'_>, h: HalfEdgeId, [l_b, l_c]: [f64; 2]) -> SeamCorner {
+    let mesh = &*front.mesh;
     let Parameters { theta_seam, seam_widening, .. } = *front.parameters;
-    let is_crowded = || front.mesh.elements_at(at).filter(|&e| front.mesh.is_quad(e)).count() >= CROWDED;
+    let quads = mesh.elements_at(mesh.origin(h)).filter(|&e| mesh.is_quad(e)).count();
+    let length = 0.5 * (l_b + l_c);
     // A right angle is a corner of a row.
     let wide = (theta_seam * seam_widening).min(FRAC_PI_2);
-    if wide > theta_seam && (length < SHORT || is_crowded()) { wide } else { theta_seam }
+    let widest = if wide > theta_seam && (length < SHORT || quads >= CROWDED) { wide } else { theta_seam };
+    SeamCorner {
+        angle: mesh.frontal_angle(h, Side::Left),
+        theta_seam,
+        widest,
+        length,
+        quads: u8::try_from(quads).unwrap_or(u8::MAX),
+        ratio: l_b.max(l_c) / l_b.min(l_c),
+    }
 }
 
 /// Recovers the edge between the far ends, empties the triangle, and merges the ends. Returns the merged node.

@@ -56,6 +56,6 @@ pub fn divide_segment(front: &mut Front<'_>, a: NodeId, h_pq: HalfEdgeId) -> Res
     let made = front.mesh.replace(&[live, quad], &new);
     debug_assert_eq!(made[0], quad, "the quadrilateral keeps its id");
     front.mesh.set_level(quad, level);
-    let quality = front.mesh.quality(quad);
-    if quality < front.gates().quality { Err(Unmerged::Poor(quality)) } else { Ok(m) }
+    let (quality, least) = (front.mesh.quality(quad), front.gates().quality);
+    if quality < least { Err(Unmerged::Poor { quality, least }) } else { Ok(m) }
 }

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::choice::{BaseSide, Way};
+use super::choice::{BaseSide, SideChoice, Way};
 use crate::core::convert::event::{SideEdge, degrees};
 use crate::core::convert::phase::Attempt;
 use crate::core::front::Side;
@@ -27,6 +27,24 @@ pub enum Passed {
     NotNeeded,
     /// The swap would not give two positive triangles.
     NotPositive,
+}
+
+/// The rule by which a side is chosen (paper 4.3.4, side edges).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SideRule {
+    /// The frontal angle is below theta_rect: the neighbouring front segment is the side (ii).
+    Front,
+    /// The nearest edge is within the limit (iii).
+    Near,
+    /// No edge is within the limit, and a swap makes one that is nearer than all (iv, v).
+    Swap,
+    /// No edge is within the limit, and no swap makes a nearer one: the nearest edge is the side (v).
+    Nearest,
+    /// The attempt says which edge it is (docs/algorithm.md, "Rescue").
+    Attempt,
+    /// Nothing can be the side.
+    Nothing,
 }
 
 /// An edge that could be a side, or that a swap would make one.
@@ -58,6 +76,11 @@ pub struct Candidates {
     /// The frontal angle there, radians.
     #[serde(serialize_with = "degrees")]
     pub theta: f64,
+    /// The bound below which the neighbouring front segment is the side.
+    #[serde(serialize_with = "degrees")]
+    pub theta_rect: f64,
+    /// The rule that decides.
+    pub rule: SideRule,
     /// The angle that is aimed at.
     #[serde(serialize_with = "degrees")]
     pub target: f64,
@@ -74,6 +97,15 @@ pub(in crate::core::convert) fn of(here: &BaseSide<'_>, attempt: &Attempt, left:
     let theta = base.theta[side.index()];
     let limit = parameters.side_deviation;
     let chosen = here.choose(attempt, left).ok();
+    let given = attempt.tops[side.index()];
+    let rule = match chosen {
+        None => SideRule::Nothing,
+        Some(_) if given.is_some() => SideRule::Attempt,
+        Some(SideChoice { way: Way::Front, .. }) => SideRule::Front,
+        Some(SideChoice { way: Way::Swap(..), .. }) => SideRule::Swap,
+        Some(SideChoice { way: Way::Edge, edge }) if edge.deviation <= limit => SideRule::Near,
+        Some(SideChoice { way: Way::Edge, .. }) => SideRule::Nearest,
+    };
     let swapped = match chosen.map(|choice| choice.way) {
         Some(Way::Swap(h, _)) => Some(mesh.ends(h)),
         _ => None,
@@ -86,7 +118,7 @@ pub(in crate::core::convert) fn of(here: &BaseSide<'_>, attempt: &Attempt, left:
         .map(|s| here.edge(s.node).deviation)
         .fold(f64::INFINITY, f64::min);
     // What holds against every candidate of this side but the chosen one.
-    let settled = if attempt.tops[side.index()].is_some() {
+    let settled = if given.is_some() {
         Some(Passed::LaidDown)
     } else {
         (theta < parameters.theta_rect).then_some(Passed::SmallAngle)
@@ -125,5 +157,6 @@ pub(in crate::core::convert) fn of(here: &BaseSide<'_>, attempt: &Attempt, left:
         };
         edges.push(candidate(far, Some(mesh.ends(opposite)), passed));
     }
-    Candidates { side, theta, target: here.target_angle(), limit, edges }
+    let theta_rect = parameters.theta_rect;
+    Candidates { side, theta, theta_rect, rule, target: here.target_angle(), limit, edges }
 }

@@ -122,6 +122,10 @@ fields! {
         of_event!(Event::BaseSelected { class, .. } => number(class));
     "base.h_value": Number, "H-value (eq. 6) of the base segment" =>
         of_event!(Event::BaseSelected { h_value, .. } => number(h_value));
+    "base.key": Number, "key of the base segment, held against the reach" =>
+        of_event!(Event::BaseSelected { key, .. } => number(key));
+    "base.reach": Number, "reach at the selection, c Hmin" =>
+        of_event!(Event::BaseSelected { reach, .. } => number(reach));
     "base.length": Number, "length of the base segment in the metric" =>
         of_event!(Event::BaseSelected { length_metric, .. } => number(length_metric));
     "base.level": Number, "rows between the base segment and the boundary" =>
@@ -142,7 +146,7 @@ fields! {
         of_event!(Event::TopFound { swaps, .. } => number(swaps));
     "rollback.why": Why, "why the attempt was rolled back" => |m| rolled_back(m).map(Value::Why);
     "seam.angle": Degrees, "frontal angle that the seam closed" =>
-        of_event!(Event::Seamed { angle, .. } | Event::TransitionSeamed { angle, .. } => degrees(angle));
+        of_event!(Event::Seamed { corner, .. } | Event::TransitionSeamed { corner, .. } => degrees(corner.angle));
     "split.ratio": Number, "width divided by height of the slender triangle at which the front was split" =>
         of_event!(Event::Split { ratio, .. } => number(ratio));
     "fallback": Flag, "a second pass or the last resort is at work" => fallback;

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use super::{Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, Verdict};
-use crate::core::case::{Parameters, Selection, SelectionWindow};
+use super::{Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, plain};
+use crate::core::case::Parameters;
 use crate::core::mesh::ElementId;
 use crate::core::run::front_table::Row;
 
@@ -78,59 +78,7 @@ impl fmt::Display for SegmentFacts {
             "  class {class} of table 1 (4.3.3), level {level}, loop {} of {} segments ({parity})",
             self.row.front_loop, self.front_loop.segments
         )?;
-        if let Some((rank, count)) = self.rank {
-            writeln!(f, "  rank {} of {count}", rank + 1)?;
-        }
-        writeln!(f, "  {}", self.reason())?;
-        if let Some([low, high]) = self.margin_of_c {
-            let high = if high.is_finite() { format!("to {}", five(high)) } else { "upwards".to_owned() };
-            writeln!(f, "  it stays the choice for c from {} {high}", five(low))?;
-        }
-        if let Some([low, high]) = self.margin_of_theta_rect {
-            writeln!(f, "  it stays the choice for theta_rect from {low:.1} to {high:.1} deg")?;
-        }
-        Ok(())
-    }
-}
-
-impl SegmentFacts {
-    /// Why it does or does not come first, as a sentence.
-    pub fn reason(&self) -> String {
-        let what = match (self.parameters.selection, self.parameters.selection_window) {
-            (Selection::SmallestAngle, _) => "angle sum",
-            (Selection::Level, _) => "state, level and length",
-            (Selection::Shortest, _) | (Selection::Table1, SelectionWindow::PhysicalLength) => "length",
-            (Selection::Table1, SelectionWindow::HValue) => "H-value",
-            (Selection::Table1, SelectionWindow::MetricLengthTimesH) => "metric length times H",
-        };
-        let reason = match self.verdict {
-            Verdict::First if self.parameters.selection != Selection::Table1 => {
-                format!("chosen: the smallest {what} of all segments")
-            }
-            Verdict::First if self.row.class < 4 && self.row.window < self.parameters.c * self.h_min => {
-                format!("chosen: the smallest {what} of the best class within c Hmin (4.3.3, ii)")
-            }
-            Verdict::First => "chosen: the smallest H-value, since no segment is within c Hmin (4.3.3, iii)".to_owned(),
-            Verdict::Deferred => "deferred until something near it changes: every attempt failed".to_owned(),
-            Verdict::LaterLayer => "not chosen: rows nearer to the boundary are offset first".to_owned(),
-            Verdict::OutOfReach { window, reach } => {
-                format!("not chosen: {what} {} is not below c Hmin = {} (4.3.3, ii)", five(window), five(reach))
-            }
-            Verdict::ClassFour => {
-                "not chosen: neither angle is below theta_rect, and others are within reach (table 1)".to_owned()
-            }
-            Verdict::BetterClass { class } => {
-                format!("not chosen: a segment of class {class} is within reach (table 1)")
-            }
-            Verdict::Larger if self.parameters.selection != Selection::Table1 => {
-                format!("not chosen: another has a smaller {what}")
-            }
-            Verdict::Larger if self.row.class == 4 => {
-                "not chosen: another has a smaller H-value (4.3.3, iii)".to_owned()
-            }
-            Verdict::Larger => format!("not chosen: another of its class has a smaller {what}"),
-        };
-        if self.is_base { format!("{reason}; it is the base of the current quadrilateral") } else { reason }
+        self.why.iter().try_for_each(|sentence| writeln!(f, "  {}", plain(sentence)))
     }
 }
 

@@ -54,6 +54,7 @@ impl History {
     fn change(&mut self, run: Run, first: u64) -> Result<(), Fault> {
         let step = self.now.step;
         self.run = Arc::new(run);
+        self.selecting = None;
         self.log.truncate(first);
         self.keyframes.truncate(self.log.known());
         self.resume_recorder()?;

@@ -54,9 +54,9 @@ pub fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Co
     on_click(&ui.button(name).on_hover_text(tip), Command::Watch(what), commands);
 }
 
-fn step_link(ui: &mut Ui, step: u64, what: &str, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn step_link(ui: &mut Ui, step: u64, what: &str, commands: &mut Vec<Command>, palette: &Palette) {
     let text = format!("step {}  {what}", words::grouped(step));
-    let response = ui.add(Label::new(line(text, palette.text)).sense(Sense::click()).selectable(false).truncate());
+    let response = ui.add(Label::new(line(text, palette.text)).sense(Sense::click()).selectable(false).wrap());
     on_click(
         &response.on_hover_cursor(eframe::egui::CursorIcon::PointingHand),
         Command::Go(Goal::Step(step)),

@@ -2,15 +2,16 @@
 
 use eframe::egui::Ui;
 
-use super::{ends, formula, heading, length, note, stands_for, table_head, table_row, title, why};
+use super::{ends, formula, heading, length, note, sentence, stands_for, step, table_head, table_row, title, why};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::{icons, words};
+use crate::core::case::{Selection, SelectionWindow};
 use crate::core::convert::Candidates;
 use crate::core::front::{Segment, Side};
-use crate::core::run::Corner;
+use crate::core::run::explain;
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
@@ -24,7 +25,14 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         let parity = if ring.segments.is_multiple_of(2) { "even" } else { "odd" };
         about += &format!("  ·  loop {} of {}, {parity} ({})", row.front_loop + 1, moment.loops.len(), ring.segments);
     }
-    let rank = if row.is_deferred { "deferred".to_owned() } else { format!("rank {}", place + 1) };
+    let rank = match moment.selecting.table.rank(row) {
+        None if row.is_deferred => "deferred".to_owned(),
+        None => "later face".to_owned(),
+        Some(before) => {
+            let of = moment.selecting.table.waiting_count() as u64;
+            format!("rank {} of {}", words::grouped(before as u64 + 1), words::grouped(of))
+        }
+    };
     ui.horizontal_wrapped(|ui| {
         if is_base {
             let base = eframe::egui::RichText::new("base").font(theme::semibold(theme::TABLE));
@@ -34,29 +42,30 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         }
         ui.label(note(about, palette));
     });
-    let what = Outlined::Edge([s.a, s.b]);
+    let what = [s.a, s.b];
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| {
         let tip = "Replaces the base that was just selected, or the next base, whatever the rank. This changes the run";
         if !is_base && ui.button("Choose as base").on_hover_text(tip).clicked() {
             commands.push(Command::ChooseBase([s.a, s.b]));
         }
-        super::past::actions(ui, state, what, commands);
+        super::past::actions(ui, state, Outlined::Edge(what), commands);
     });
+    if is_base {
+        step::next(ui, moment, palette);
+    }
     h_value(ui, moment, s, palette);
+    key(ui, moment, place, palette);
     heading(ui, "Frontal angles", "metric of the node", palette);
     for (side, name) in Side::BOTH.into_iter().zip(["A", "B"]) {
         angle(ui, moment, s, side, name, palette);
     }
-    why::show(ui, state, moment, place, commands, palette);
-    match moment.candidates.as_ref().filter(|_| is_base) {
-        Some(tried) => candidates(ui, moment, tried, s, commands, palette),
-        None if is_base => {
-            heading(ui, "Side edges", "4.3.4", palette);
-            let text = "Step forward by one operation (Ctrl+Right) to see the candidates for a side.";
-            ui.add(eframe::egui::Label::new(note(text, palette)).wrap());
-        }
-        None => {}
+    why::show(ui, state, moment, what, commands, palette);
+    if let Some(tried) = moment.candidates.as_ref().filter(|_| is_base) {
+        candidates(ui, moment, tried, s, commands, palette);
+    }
+    if is_base {
+        step::so_far(ui, moment, commands, palette);
     }
     length(ui, s.length_metric, s.length_physical, palette);
     heading(ui, "Ends", "sizes of their metrics", palette);
@@ -77,30 +86,31 @@ fn h_value(ui: &mut Ui, moment: &Moment, s: &Segment, palette: &Palette) {
     formula(ui, &numbers, palette).on_hover_text(tip);
 }
 
+/// The key by which the segment is ordered, where that is not its H alone, against what is within reach.
+fn key(ui: &mut Ui, moment: &Moment, place: usize, palette: &Palette) {
+    let (row, table) = (&moment.rows[place], &moment.selecting.table);
+    let parameters = table.parameters();
+    let [_, name] = explain::key_name(parameters);
+    let own = explain::key_text(row, parameters);
+    let text = match (parameters.selection, parameters.selection_window) {
+        (Selection::Table1, SelectionWindow::MetricLengthTimesH) => {
+            let [length, h] = [row.length_metric, row.h_value].map(words::size);
+            format!("{name} = {length} \u{d7} {h} = **{own}**")
+        }
+        _ => format!("{name} = **{own}**"),
+    };
+    let reach = match parameters.selection {
+        Selection::Table1 => format!(",   c\u{b7}H_{{min}} = {}", words::size(table.reach())),
+        _ => String::new(),
+    };
+    heading(ui, "Key of the selection", "4.3.3", palette);
+    sentence(ui, &format!("{text}{reach}"), palette.text, palette);
+}
+
 fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, palette: &Palette) {
     let theta = s.theta[side.index()];
-    let parameters = &moment.parameters;
-    let mesh = &moment.mesh;
-    let which = words::side(side);
-    let degrees = |angle: f64| words::fixed(angle.to_degrees(), 0);
-    let neighbour = mesh.front_between(s.a, s.b).map(|h| match side {
-        Side::Left => words::edge([mesh.origin(mesh.front_before(h)), s.a]),
-        Side::Right => words::edge([s.b, mesh.target(mesh.front_after(h))]),
-    });
-    let front = neighbour.map_or(String::new(), |edge| format!(", {edge}"));
-    let rect = degrees(parameters.theta_rect);
-    let verdict = match Corner::of(theta, parameters) {
-        Corner::Seam => format!(
-            "\u{2264} {}° = \u{3b8}_{{seam}}: a seam; {which} side is the front{front}",
-            degrees(parameters.theta_seam)
-        ),
-        Corner::Rectangle => format!("< {rect}°: {which} side is the front{front}"),
-        Corner::Flat => format!("\u{2265} {rect}°: {which} side must be found"),
-        Corner::Reversal => {
-            format!("> {}° = \u{3b8}_{{revr}}: {which} side must be found", degrees(parameters.theta_revr))
-        }
-    };
-    formula(ui, &format!("\u{3b8}_{{{name}}}  **{}°**  {verdict}", words::degrees(theta)), palette);
+    let told = explain::corner(&moment.mesh, &moment.phase, &moment.parameters, [s.a, s.b], theta, side);
+    sentence(ui, &format!("\u{3b8}_{{{name}}}  **{}\u{b0}**  {told}", words::degrees(theta)), palette.text, palette);
 }
 
 /// The candidates for a side in the last step.
@@ -125,12 +135,7 @@ fn candidates(
     let edges = tried.edges.len() - swaps;
     let told = format!("{} tried, {}", count(edges, "edge"), count(swaps, "swap"));
     heading(ui, &format!("{side} side at {end}"), &told, palette);
-    let aim = format!(
-        "The target is {}° from the base; edges within {}° of it are accepted.",
-        words::degrees(tried.target),
-        words::degrees(tried.limit)
-    );
-    ui.add(eframe::egui::Label::new(note(aim, palette)).wrap());
+    sentence(ui, &explain::side_rule(tried), palette.text, palette);
     let widths = [60.0, 40.0, 34.0, 36.0];
     table_head(ui, &widths, &["edge", "angle °", "off °", "length", "verdict"], palette);
     for (k, candidate) in tried.edges.iter().enumerate() {

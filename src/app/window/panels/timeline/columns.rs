@@ -26,7 +26,16 @@ const ROWS: [(&str, &[EventKind]); 5] = [
             EventKind::Swept,
         ],
     ),
-    ("rolled back", &[EventKind::RolledBack, EventKind::Deferred, EventKind::SecondPass, EventKind::SeamRefused]),
+    (
+        "rolled back",
+        &[
+            EventKind::RolledBack,
+            EventKind::Deferred,
+            EventKind::SecondPass,
+            EventKind::SeamRefused,
+            EventKind::SplitRefused,
+        ],
+    ),
 ];
 /// The row of failures.
 const FAILURES: usize = 4;

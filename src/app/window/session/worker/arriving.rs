@@ -7,11 +7,20 @@ use std::time::Instant;
 use super::super::SessionNews;
 use super::super::moment::{Moment, Verdict, segment};
 use super::{RECENT, Worker};
-use crate::core::convert::Candidates;
+use crate::core::convert::{Candidates, Narrow};
 use crate::core::fault::Fault;
 use crate::core::mesh::ElementId;
 use crate::core::run::front_table::Row;
-use crate::core::run::{Changes, FrontTable, SegmentFacts};
+use crate::core::run::{Changes, explain};
+
+/// What a step looked at, computed from the state before it.
+#[derive(Default)]
+struct LookedAt {
+    /// The candidates for a side edge.
+    candidates: Option<Candidates>,
+    /// The triangles at which the front may be split.
+    narrow: Option<Narrow>,
+}
 
 impl Worker {
     /// Goes to a step and notes the changes.
@@ -23,20 +32,21 @@ impl Worker {
         Ok(changes)
     }
 
-    /// Goes to a step such that the changes of the last steps are known. Returns the candidates of the last step.
-    fn walk_with_recent(&mut self, step: u64) -> Result<Option<Candidates>, Fault> {
+    /// Goes to a step such that the changes of the last steps are known. Returns what the last step looked at.
+    fn walk_with_recent(&mut self, step: u64) -> Result<LookedAt, Fault> {
         let first = (step + 1).saturating_sub(RECENT).max(1);
         let is_known = |recent: &VecDeque<(u64, _)>, step: u64| recent.iter().any(|known| known.0 == step);
         let unknown = (first..=step).find(|k| !is_known(&self.recent, *k)).unwrap_or(step);
         if step == 0 {
             self.walk(0)?;
-            return Ok(None);
+            return Ok(LookedAt::default());
         }
         self.walk(unknown - 1)?;
-        let mut candidates = None;
+        let mut looked_at = LookedAt::default();
         for k in unknown..=step {
             if k == step {
-                candidates = self.history.state().candidates();
+                let before = self.history.state();
+                looked_at = LookedAt { candidates: before.candidates(), narrow: before.narrow() };
             }
             let changed: Arc<[ElementId]> = match self.walk(k)? {
                 Changes::Some { elements, .. } => elements.into(),
@@ -49,22 +59,29 @@ impl Worker {
         while self.recent.len() > 4 * RECENT as usize {
             self.recent.pop_front();
         }
-        Ok(candidates)
+        Ok(looked_at)
     }
 
     pub(super) fn moment(&mut self, step: u64, since: Instant) -> Result<Moment, Fault> {
         let step = step.min(self.history.log().known());
-        let candidates = self.walk_with_recent(step)?;
+        let LookedAt { candidates, narrow } = self.walk_with_recent(step)?;
+        let selecting = self.history.selecting()?;
+        // That may have gone back and come again.
+        self.walk(step)?;
         let just_changed = self.recent.iter().find(|r| r.0 == step).map_or_else(|| Arc::new([]) as _, |r| r.1.clone());
         let mut recent: Vec<_> = self.recent.iter().filter(|r| r.0 <= step && !r.1.is_empty()).collect();
         recent.sort_unstable_by_key(|r| std::cmp::Reverse(r.0));
         recent.retain(|r| r.0 + RECENT > step);
         let changed = std::array::from_fn(|k| recent.get(k).map_or_else(|| Arc::new([]) as _, |r| r.1.clone()));
         let event = self.history.event(step)?;
+        let so_far = match &selecting.base {
+            Some(base) => (base.step..).zip(self.history.events(base.step, step)?).collect(),
+            None => Vec::new(),
+        };
         let state = self.history.state();
-        let table = FrontTable::of(state);
+        let table = &selecting.table;
         let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
-        let base = state.phase().base().and_then(|base| SegmentFacts::in_table(state, &table, base.a, base.b));
+        let base = selecting.base.and_then(|base| selecting.explain(state, base.a, base.b));
         let changes = self.since.take();
         self.unchecked |= std::mem::take(&mut self.was_broken) || changes == Changes::Everything;
         let found = match &changes {
@@ -93,9 +110,13 @@ impl Worker {
             just_changed,
             front: rows.iter().map(segment).collect(),
             rows,
-            loops: table.loops,
+            loops: table.loops.clone(),
             candidates,
+            narrow: narrow.filter(|_| event.is_some_and(|event| event.is_about_a_split())),
             base,
+            so_far,
+            next: explain::next(state, &selecting),
+            selecting,
             verdict,
             took: since.elapsed(),
         })

@@ -1,4 +1,4 @@
-//! Numbers for figures and the window: integers grouped by thin spaces, a true minus sign, an en dash for
+//! Numbers for explanations, figures and the window: integers grouped by thin spaces, a true minus sign, an en dash for
 //! undefined values.
 
 /// The text of an undefined number.

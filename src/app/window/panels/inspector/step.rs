@@ -1,0 +1,42 @@
+//! The last step: what it did and looked at; what is done of the quadrilateral under way; what comes next.
+
+use eframe::egui::Ui;
+
+use super::past::step_link;
+use super::{heading, note, sentence};
+use crate::app::window::command::Command;
+use crate::app::window::session::Moment;
+use crate::app::window::words;
+use crate::core::run::explain;
+use crate::render::palette::Palette;
+
+/// How many steps of the quadrilateral under way are listed, at most.
+const LISTED: usize = 12;
+
+/// The last step, where no quadrilateral is under way.
+pub fn show(ui: &mut Ui, moment: &Moment, palette: &Palette) {
+    let Some(event) = &moment.event else { return };
+    heading(ui, "Last step", &format!("step {}", words::grouped(moment.step)), palette);
+    sentence(ui, &format!("{}.", words::capital(&words::event(event))), palette.text, palette);
+    for text in explain::about(event, moment.candidates.as_ref(), moment.narrow.as_ref()) {
+        sentence(ui, &text, palette.weak, palette);
+    }
+}
+
+/// The steps since the selection of the base under way, the latest first.
+pub fn so_far(ui: &mut Ui, moment: &Moment, commands: &mut Vec<Command>, palette: &Palette) {
+    heading(ui, "This quadrilateral so far", "4.3.4", palette);
+    for (step, event) in moment.so_far.iter().rev().take(LISTED) {
+        step_link(ui, *step, &words::event(event), commands, palette);
+    }
+    if moment.so_far.len() > LISTED {
+        let more = words::grouped((moment.so_far.len() - LISTED) as u64);
+        ui.label(note(format!("and {more} steps before these"), palette));
+    }
+}
+
+/// What comes next.
+pub fn next(ui: &mut Ui, moment: &Moment, palette: &Palette) {
+    heading(ui, "Next step", "Ctrl+Right", palette);
+    sentence(ui, &moment.next, palette.text, palette);
+}

@@ -1,0 +1,235 @@
+//! What a step did, in one line, and what it looked at, in sentences.
+
+use super::numbers::{angles_apart, apart, count, edge, segment};
+use super::side::{name, side_rule};
+use crate::core::convert::{
+    CROWDED, Candidates, Event, LEAST_PART, MOST_UNLIKE, Mending, Narrow, NotSlender, OnFront, Purpose, SHORT,
+    SeamCorner, SideToCollapse, Slender, Unmerged, Why,
+};
+use crate::core::kernel::number::{degrees, fixed, grouped, size};
+
+/// What a step did, in one line.
+pub fn event(event: &Event) -> String {
+    match *event {
+        Event::BaseSelected { a, b, class, h_value, picked, .. } => {
+            let by = if picked { "you chose the base" } else { "base selected" };
+            format!("{by}: {}, class {class}, H {}", segment([a, b]), size(h_value))
+        }
+        Event::PickLost { a, b } => format!("{} was chosen as base, but is no longer on the front", segment([a, b])),
+        Event::SideIsFront { side, node } => format!("{} side is the front, to node {}", name(side), node.0),
+        Event::SideChosen { edge } => {
+            let off = degrees(edge.deviation);
+            format!("{} side chosen: node {}, {off}\u{b0} off the target direction", name(edge.side), edge.node.0)
+        }
+        Event::SideSwapped { edge, .. } => {
+            let (which, off) = (name(edge.side), degrees(edge.deviation));
+            format!("{which} side made by a swap: node {}, {off}\u{b0} off the target direction", edge.node.0)
+        }
+        Event::SideDivided { side, node, length } => {
+            format!("{} side divided at new node {}; it was {} long", name(side), node.0, fixed(length, 2))
+        }
+        Event::TopSwapped { across, new } => format!("top: {} swapped for {}", edge(across), edge(new)),
+        Event::TopSmoothed { nodes } => format!("{} smoothed around the left top", count(nodes.into(), "node")),
+        Event::TopFound { ends, swaps: 0 } => format!("top edge found: {}", edge(ends)),
+        Event::TopFound { ends, swaps } => {
+            format!("top edge found: {}, after {}", edge(ends), count(swaps.into(), "change"))
+        }
+        Event::NodeRemoved { node, purpose: Purpose::Recovery } => {
+            format!("node {} removed to clear the way for the top", node.0)
+        }
+        Event::NodeRemoved { node, purpose: Purpose::Enhancement } => {
+            format!("node {}, with three or four triangles, removed", node.0)
+        }
+        Event::Formed { element, quality, merged, .. } => {
+            format!("quadrilateral {} formed: quality {}, {merged} triangles merged", element.0, fixed(quality, 2))
+        }
+        Event::RolledBack { attempt, why } => {
+            format!("attempt {} rolled back: {}", u32::from(attempt) + 1, why_rolled_back(why))
+        }
+        Event::Deferred { a, b } => format!("segment {} deferred: every attempt failed", segment([a, b])),
+        Event::Enhanced { new } => format!("edge {} made by a swap beside the new quadrilateral", edge(new)),
+        Event::Smoothed { nodes } => format!("{} smoothed", count(nodes.into(), "node")),
+        Event::Seamed { at, node, corner } => {
+            format!("seam at node {}: {}\u{b0} closed, ends joined in node {}", at.0, degrees(corner.angle), node.0)
+        }
+        Event::TransitionSeamed { at, node, corner } => format!(
+            "transition seam at node {}: {}\u{b0} closed, one side {} times the other, joined in node {}",
+            at.0,
+            degrees(corner.angle),
+            fixed(corner.ratio, 1),
+            node.0
+        ),
+        Event::SeamRefused { at, corner, why, .. } => {
+            format!("no seam at node {} of {}\u{b0}: {}", at.0, degrees(corner.angle), why_unmerged(why))
+        }
+        Event::Split { node, gone, segments: [first, second], .. } => {
+            format!("front split: node {} joined to node {}, loops of {first} and {second} segments", gone.0, node.0)
+        }
+        Event::SplitRefused { slender, why, .. } => {
+            let triangles = count(slender.into(), "slender triangle");
+            let why = why.map_or("no side leaves two even loops".to_owned(), why_unmerged);
+            format!("front not split at {triangles}: {why}")
+        }
+        Event::Closed { segments, quads: 0, quality } => format!(
+            "loop of {segments} segments closed without a new quadrilateral, worst quality {}",
+            fixed(quality, 2)
+        ),
+        Event::Closed { segments, quads, quality } => format!(
+            "loop of {segments} segments closed by {}, worst quality {}",
+            count(quads.into(), "quadrilateral"),
+            fixed(quality, 2)
+        ),
+        Event::SecondPass => "all segments are deferred: second pass with wider tolerances".to_owned(),
+        Event::Matched { triangles, unmatched, .. } => format!(
+            "last resort: {} triangles paired, {} without a partner",
+            grouped(triangles as u64),
+            grouped(unmatched as u64)
+        ),
+        Event::Patched { triangles, quads, element, .. } => {
+            format!("last resort: {quads} quadrilaterals of {triangles} triangles, from element {}", element.0)
+        }
+        Event::Cleaned { energy: [before, after], .. } => {
+            let [before, after] = apart(before, after);
+            format!("mesh structure cleaned up locally: energy {before} to {after}")
+        }
+        Event::Unfolded { element, how, .. } => {
+            let how = match how {
+                Mending::Moved => "its corners were moved",
+                Mending::Rotated { .. } => "an edge was rotated",
+                Mending::Collapsed { .. } => "two of its corners were merged",
+                Mending::Pillowed { .. } => "a smaller quadrilateral was inserted",
+            };
+            format!("element {} folded over the surface: {how}", element.0)
+        }
+        Event::FaceConverted { region } => format!("face {} is converted", region + 1),
+        Event::Swept { looked, moved } => {
+            format!("{moved} of {} moved to lower the energy", count(looked as usize, "node"))
+        }
+        Event::LastResort(outcome) if outcome.triangles == 0 => "the front has left no triangle over".to_owned(),
+        Event::LastResort(outcome) => {
+            format!("the last resort has converted {} triangles", grouped(outcome.triangles as u64))
+        }
+        Event::PostProcessed => "whole mesh cleaned up and smoothed".to_owned(),
+        Event::Finished => "done".to_owned(),
+    }
+}
+
+/// Why an attempt was taken back.
+pub fn why_rolled_back(why: Why) -> String {
+    match why {
+        Why::NoSide(side) => format!("no edge fits the {} side", name(side)),
+        Why::NoDivision(side) => format!("the {} side cannot be divided at the required point", name(side)),
+        Why::TopBlocked(ends) => format!("dead edge {} lies across the top", edge(ends)),
+        Why::TopThroughNode(node) => format!("node {} lies on the top edge", node.0),
+        Why::TopTooLong => "swaps and removals of nodes do not recover the top edge".to_owned(),
+        Why::TooLong(length) => format!("a new side or the top is too long: {}", fixed(length, 2)),
+        Why::NotDisc => "the four sides do not enclose a disc of live triangles".to_owned(),
+        Why::NotConvex => "it would not be strictly convex".to_owned(),
+        Why::Poor(quality) => format!("its quality would be only {}", fixed(quality, 2)),
+        Why::OddLoop(segments) => format!("a loop would become odd, with {segments} segments"),
+        Why::NoMetric => "the field gives no metric at a new node".to_owned(),
+    }
+}
+
+/// Why two nodes of the front were not joined.
+fn why_unmerged(why: Unmerged) -> String {
+    match why {
+        Unmerged::BothFixed => "both nodes are fixed".to_owned(),
+        Unmerged::Unlike => "the longer segment cannot be divided".to_owned(),
+        Unmerged::Doublet => "a node would be left with two edges".to_owned(),
+        Unmerged::NotRecovered => "the edge between the ends cannot be recovered".to_owned(),
+        Unmerged::NotEmpty => "something lies between the two segments".to_owned(),
+        Unmerged::NotPositive => "an element would be turned over".to_owned(),
+        Unmerged::Poor { quality, least } => {
+            let [quality, least] = apart(quality, least);
+            format!("an element would have quality {quality}, and {least} is the least allowed")
+        }
+    }
+}
+
+/// What a step looked at: the rule that chose a side, the angles of a seam, the sets T and V of a split. In sentences.
+pub fn about(event: &Event, candidates: Option<&Candidates>, narrow: Option<&Narrow>) -> Vec<String> {
+    match event {
+        Event::SideIsFront { .. } | Event::SideChosen { .. } | Event::SideSwapped { .. } => {
+            candidates.map(side_rule).into_iter().collect()
+        }
+        Event::RolledBack { why: Why::NoSide(_), .. } => candidates.map(side_rule).into_iter().collect(),
+        Event::Seamed { corner, .. } | Event::SeamRefused { corner, .. } => vec![angle(corner)],
+        Event::TransitionSeamed { corner, .. } => vec![
+            angle(corner),
+            format!(
+                "One segment is {} times as long as the other, more than {MOST_UNLIKE}: it was divided first.",
+                fixed(corner.ratio, 2)
+            ),
+        ],
+        Event::Split { .. } | Event::SplitRefused { .. } => narrow.map(regions).unwrap_or_default(),
+        _ => Vec::new(),
+    }
+}
+
+/// The frontal angle of a seam against its bound.
+fn angle(corner: &SeamCorner) -> String {
+    let SeamCorner { angle, theta_seam, widest, length, quads, .. } = *corner;
+    let [angle, bound] = angles_apart(angle, widest);
+    if widest == theta_seam {
+        return format!("The frontal angle is {angle}\u{b0}, and \u{3b8}_{{seam}} = {bound}\u{b0} (4.3.6).");
+    }
+    let why = if length < SHORT {
+        format!("the segments are {} long on average, less than {SHORT}", fixed(length, 3))
+    } else {
+        format!("{quads} quadrilaterals meet there, {CROWDED} or more")
+    };
+    format!(
+        "The frontal angle is {angle}\u{b0}; \u{3b8}_{{seam}} = {}\u{b0} is widened to {bound}\u{b0}, since {why} (4.3.6).",
+        degrees(theta_seam)
+    )
+}
+
+/// The sets T and V of 4.3.6 (fig. 19), a sentence for each triangle.
+fn regions(narrow: &Narrow) -> Vec<String> {
+    let Narrow { eps1, eps2, on_front, slender } = narrow;
+    let mut sentences = vec![format!("T has {} (all nodes on the front):", count(on_front.len(), "triangle"))];
+    for OnFront { element, area, ratio, passed } in on_front {
+        let area = |sign: &str| {
+            let [area, bound] = apart(*area, *eps1);
+            format!("metric area {area} {sign} \u{3b5}_{{1}} = {bound}")
+        };
+        let ratio = |sign: &str| {
+            let [ratio, bound] = apart(*ratio, *eps2);
+            format!("width / height {ratio} {sign} \u{3b5}_{{2}} = {bound}")
+        };
+        let why = match passed {
+            Some(NotSlender::Adjacent) => "not slender, two sides are adjacent front segments (condition a)".to_owned(),
+            Some(NotSlender::NoBase) => "not slender, it has no side on the front".to_owned(),
+            Some(NotSlender::Large) => format!("not slender, {} (condition b)", area("\u{2265}")),
+            Some(NotSlender::Wide) => format!("not slender, {}, but {} (condition c)", area("<"), ratio("\u{2264}")),
+            None => format!("slender: {}, {}", area("<"), ratio(">")),
+        };
+        sentences.push(format!("Triangle {}: {why}.", element.0));
+    }
+    let least = if slender.len() > 1 { ", the least area / ratio first" } else { "" };
+    sentences.push(format!("V has {}{least}:", count(slender.len(), "slender triangle")));
+    for Slender { element, sides, .. } in slender {
+        let sides = sides.iter().map(side_to_collapse).collect::<Vec<_>>().join("; ");
+        sentences.push(format!("Triangle {}: {sides}.", element.0));
+    }
+    sentences
+}
+
+/// What the collapse of a side edge would leave.
+fn side_to_collapse(side: &SideToCollapse) -> String {
+    let ends = edge(side.ends);
+    match side.segments {
+        None => format!("the ends of {ends} lie on two loops"),
+        Some([first, second]) => {
+            let parts = format!("{ends} would leave loops of {first} and {second} segments");
+            if side.splits() {
+                format!("{parts}, both even")
+            } else if first % 2 == 1 || second % 2 == 1 {
+                format!("{parts}, not both even")
+            } else {
+                format!("{parts}, one with fewer than {LEAST_PART}")
+            }
+        }
+    }
+}
