@@ -205,8 +205,8 @@ fn figure_18_seaming_recovers_the_edge_between_the_far_ends_and_collapses_it() {
         step_until(&mut converter, |e| matches!(e, Event::Formed { .. }));
         assert!(joined(&converter.mesh, 1, 8) && !joined(&converter.mesh, 9, 10));
         let events = step_until(&mut converter, |e| matches!(e, Event::Seamed { .. }));
-        let [Event::Seamed { at, node, angle }] = events[..] else { panic!("{events:?}") };
-        assert_eq!((at, node), (NodeId(1), NodeId(10)));
+        let [Event::Seamed { at, node, gone, angle }] = events[..] else { panic!("{events:?}") };
+        assert_eq!((at, node, gone), (NodeId(1), NodeId(10), NodeId(9)));
         assert!((20.0..20.5).contains(&angle.to_degrees()));
         let mesh = &converter.mesh;
         mesh.check().unwrap();
@@ -227,8 +227,8 @@ fn a_transition_seam_divides_the_longer_segment_and_frees_a_triangle_of_the_quad
         let live = |mesh: &Mesh| mesh.elements().filter(|&e| mesh.is_triangle(e)).count();
         let before = live(&converter.mesh);
         let events = step_until(&mut converter, |e| matches!(e, Event::TransitionSeamed { .. }));
-        let [Event::TransitionSeamed { at, node, angle, ratio }] = events[..] else { panic!("{events:?}") };
-        assert_eq!((at, node), (NodeId(1), NodeId(8)));
+        let [Event::TransitionSeamed { at, node, gone, angle, ratio }] = events[..] else { panic!("{events:?}") };
+        assert_eq!((at, node, gone), (NodeId(1), NodeId(8), NodeId(9)));
         assert!(angle.to_degrees() < 30.0 && (2.5..2.7).contains(&ratio));
         let mesh = &converter.mesh;
         mesh.check().unwrap();

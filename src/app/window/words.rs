@@ -86,8 +86,14 @@ pub fn event(event: &Event) -> String {
             format!("node {} removed to clear the way for the top", node.0)
         }
         Event::NodeRemoved { node, purpose: Purpose::Enhancement } => format!("node {} of low valence removed", node.0),
-        Event::Formed { element, quality, merged, .. } => {
-            format!("quadrilateral {} formed: quality {}, {merged} triangles merged", element.0, fixed(quality, 2))
+        Event::Formed { element, quality, merged, swallowed, .. } => {
+            let inside: Vec<String> = swallowed.iter().map(|node| node.0.to_string()).collect();
+            let with = if inside.is_empty() { String::new() } else { format!(", with node {}", inside.join(", ")) };
+            format!(
+                "quadrilateral {} formed: quality {}, {merged} triangles merged{with}",
+                element.0,
+                fixed(quality, 2)
+            )
         }
         Event::RolledBack { attempt, why: reason } => {
             format!("attempt {} rolled back: {}", u32::from(attempt) + 1, why(reason))
@@ -95,10 +101,10 @@ pub fn event(event: &Event) -> String {
         Event::Deferred { a, b } => format!("segment {} deferred", segment(a, b)),
         Event::Enhanced { new } => format!("edge {} made by a swap beside the new quadrilateral", edge(new)),
         Event::Smoothed { nodes } => format!("{nodes} nodes smoothed"),
-        Event::Seamed { at, node, angle } => {
+        Event::Seamed { at, node, angle, .. } => {
             format!("seam at node {}: {}° closed, ends joined in node {}", at.0, degrees(angle), node.0)
         }
-        Event::TransitionSeamed { at, node, angle, ratio } => format!(
+        Event::TransitionSeamed { at, node, angle, ratio, .. } => format!(
             "transition seam at node {}: {}° closed, one side {} times the other, joined in node {}",
             at.0,
             degrees(angle),

@@ -66,10 +66,11 @@ fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
             let long = if l_b > l_c { h } else { before };
             transition::divide_segment(front, at, long).and_then(|middle| {
                 let (b, c) = if l_b > l_c { (middle, c) } else { (b, middle) };
-                Ok(Event::TransitionSeamed { at, node: seam(front, at, b, c)?, angle, ratio })
+                let [node, gone] = seam(front, at, b, c)?;
+                Ok(Event::TransitionSeamed { at, node, gone, angle, ratio })
             })
         } else {
-            seam(front, at, b, c).map(|node| Event::Seamed { at, node, angle })
+            seam(front, at, b, c).map(|[node, gone]| Event::Seamed { at, node, gone, angle })
         };
         match seamed {
             Ok(event) => return Some(event),
@@ -91,8 +92,9 @@ fn widest(front: &Front<'_>, at: NodeId, length: f64) -> f64 {
     if wide > theta_seam && (length < SHORT || is_crowded()) { wide } else { theta_seam }
 }
 
-/// Recovers the edge between the far ends, empties the triangle, and merges the ends. Returns the merged node.
-fn seam(front: &mut Front<'_>, a: NodeId, b: NodeId, c: NodeId) -> Result<NodeId, Unmerged> {
+/// Recovers the edge between the far ends, empties the triangle, and merges the ends. Returns the merged node and the
+/// one removed.
+fn seam(front: &mut Front<'_>, a: NodeId, b: NodeId, c: NodeId) -> Result<[NodeId; 2], Unmerged> {
     let mesh = &*front.mesh;
     if mesh.is_fixed(b) && mesh.is_fixed(c) {
         return Err(Unmerged::BothFixed);
@@ -115,5 +117,6 @@ fn seam(front: &mut Front<'_>, a: NodeId, b: NodeId, c: NodeId) -> Result<NodeId
         return Err(Unmerged::NotEmpty);
     }
     // The merge (fig. 18c).
-    merge::merge(front, h_bc, &|_, _| true)
+    let node = merge::merge(front, h_bc, &|_, _| true)?;
+    Ok([node, if node == b { c } else { b }])
 }
