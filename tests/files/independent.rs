@@ -299,10 +299,10 @@ fn a_mesh_without_a_run_has_neither_levels_nor_births() {
     let mut export = Export::of(&made.mesh, &made.names);
     export.describe(&made.mesh, &made.sizing, None).unwrap();
     let names: Vec<&str> = export.file.element_data.iter().map(|data| data.name.as_str()).collect();
-    assert_eq!(names, ["quality", "face"]);
-    let faces = &export.file.element_data[1].values;
+    assert_eq!(names, ["element_id", "quality", "face"]);
+    let faces = &export.file.element_data[2].values;
     let tags = export.file.triangle_tags.iter().map(|&tag| f64::from(tag));
     assert!(faces.iter().copied().eq(tags) && faces.contains(&2.0));
-    let quality = &export.file.element_data[0].values;
+    let quality = &export.file.element_data[1].values;
     assert!(quality.iter().all(|q| (0.0..=1.0 + 1e-12).contains(q)));
 }

@@ -38,6 +38,39 @@ fn interleaved_regions_keep_the_order_of_their_elements() {
 }
 
 #[test]
+fn msh_lists_the_data_of_points_in_the_order_of_the_points_as_readers_without_tags_need_it() {
+    // The first tag of each line in a section: the tags of nodes in $Nodes, those of values in $NodeData.
+    let tags = |text: &str, section: &str, blocks: bool| -> Vec<Vec<u64>> {
+        let heading = format!("${section}\n");
+        let parts = text.split(heading.as_str()).skip(1);
+        let lines = parts.map(|part| part.split("$End").next().unwrap().lines().collect::<Vec<_>>());
+        lines
+            .map(|lines| {
+                let mut tags = Vec::new();
+                let mut at = if blocks { 1 } else { 8 };
+                while at < lines.len() {
+                    let count = if blocks { lines[at].split(' ').nth(3).unwrap().parse().unwrap() } else { 1 };
+                    let first = if blocks { at + 1 } else { at };
+                    let tag = |line: &&str| line.split(' ').next().unwrap().parse::<u64>().unwrap();
+                    tags.extend(lines[first..first + count].iter().map(tag));
+                    at += if blocks { 1 + 2 * count } else { 1 };
+                }
+                tags
+            })
+            .collect()
+    };
+    // The boundary's entity comes first, and its points are not the first ones.
+    let mut mesh = plates();
+    mesh.lines = vec![[3, 0], [5, 2]];
+    mesh.line_tags = vec![7, 7];
+    let text = String::from_utf8(bytes_of(Format::Msh, &mesh, TEXT)).unwrap();
+    let nodes = tags(&text, "Nodes", true).concat();
+    assert!(!nodes.is_sorted() && nodes.len() == mesh.points.len());
+    let of_data = tags(&text, "NodeData", false);
+    assert!(of_data.len() > 1 && of_data.iter().all(|tags| *tags == nodes), "{nodes:?} {of_data:?}");
+}
+
+#[test]
 fn medit_reads_back_the_same_with_its_metric_beside_it() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mesh");

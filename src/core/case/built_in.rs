@@ -56,6 +56,7 @@ cases![
     "figure-17",
     "figure-18",
     "figure-19",
+    "top-smoothing",
     "transition-seam",
 ];
 

@@ -176,6 +176,14 @@ macro_rules! parameters {
                 Ok(())
             }
 
+            /// Whether the values of a parameter are words, which files write in quotes.
+            pub(super) fn is_word(key: &str) -> bool {
+                match key {
+                    $(stringify!($key) => stringify!($read) == "word",)*
+                    _ => false,
+                }
+            }
+
             /// The value of a parameter as text for [`Parameters::set`]; `None` for an unknown key.
             pub fn text_of(&self, key: &str) -> Option<String> {
                 match key {

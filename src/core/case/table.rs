@@ -5,7 +5,7 @@ use glam::DVec2;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::core::case::parameters::unknown_key;
+use crate::core::case::parameters::{Parameters, unknown_key};
 use crate::core::fault::Fault;
 use crate::core::kernel::spelling::nearest;
 
@@ -210,13 +210,13 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// The text for [`Parameters::set`](crate::core::case::parameters::Parameters::set): numbers as written; strings
-    /// without quotes for parameters that are words, and with quotes (which it rejects) for numbers.
+    /// The text for [`Parameters::set`]: numbers as written; strings without quotes for parameters that are words, and
+    /// with quotes (which it rejects) for numbers.
     pub fn parameter_text(&self) -> String {
         match self.value.get_ref() {
             DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().to_owned(),
             DeValue::Float(float) => float.as_str().to_owned(),
-            DeValue::String(text) if self.key.starts_with("selection") => text.clone().into_owned(),
+            DeValue::String(text) if Parameters::is_word(&self.key) => text.clone().into_owned(),
             _ => self.written(),
         }
     }

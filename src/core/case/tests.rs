@@ -267,3 +267,20 @@ fn loops_with_layers_are_a_list_of_names() {
         assert!(fault.contains(&format!("a.toml, line 4: layered_loops{said}")), "{fault}");
     }
 }
+
+#[test]
+fn every_parameter_can_be_written_in_a_case_file_with_its_word_in_quotes() {
+    for parameters in [Parameters::default(), Parameters::default().read_as_paper()] {
+        let mut text = PLATE.split("[parameters]").next().unwrap().to_owned() + "[parameters]\n";
+        for key in Parameters::KEYS {
+            let value = parameters.text_of(key).unwrap();
+            text += &match key {
+                "layered_loops" | "faces" => format!("{key} = []\n"),
+                _ if value.parse::<f64>().is_ok() || value.parse::<bool>().is_ok() => format!("{key} = {value}\n"),
+                _ => format!("{key} = \"{value}\"\n"),
+            };
+        }
+        text += &PLATE[PLATE.find("[[curve]]").unwrap()..];
+        assert_eq!(parse(&text).unwrap().parameters, parameters);
+    }
+}

@@ -3,11 +3,13 @@
 //! Serialised, an event is one flat object: `kind` is the name of its [`EventKind`], ids are numbers, angles are in
 //! degrees, and a reason is an object of its own with `kind` and, where there is one, `value`.
 
+mod few;
 mod kind;
 mod reason;
 
 use serde::{Serialize, Serializer};
 
+pub use self::few::FewNodes;
 pub use self::kind::{EventKind, WhyKind};
 pub use self::reason::{Purpose, SeamCorner, Unmerged, Why};
 use super::last_resort::{Means, Outcome};
@@ -201,6 +203,8 @@ pub enum Event {
         level: u16,
         /// Which attempt it was, from 0.
         attempt: u8,
+        /// The nodes inside it, which were removed with the triangles.
+        swallowed: FewNodes,
     },
     /// An attempt was rolled back.
     RolledBack {
@@ -232,6 +236,8 @@ pub enum Event {
         at: NodeId,
         /// The node into which the two other ends were merged.
         node: NodeId,
+        /// The one of the two that was removed.
+        gone: NodeId,
         /// What was looked at.
         #[serde(flatten)]
         corner: SeamCorner,
@@ -242,6 +248,8 @@ pub enum Event {
         at: NodeId,
         /// The node into which the other end of the shorter one and the midpoint of the longer one were merged.
         node: NodeId,
+        /// The one of the two that was removed.
+        gone: NodeId,
         /// What was looked at.
         #[serde(flatten)]
         corner: SeamCorner,

@@ -1,12 +1,12 @@
 //! From triangles to quadrilaterals: the merging front (paper 4.3), the guarantee (docs/algorithm.md, "The guarantee"),
 //! and the post-processing of the whole mesh (docs/algorithm.md, "Post-processing").
 //!
-//! How a base segment becomes a finished quadrilateral: `select` chooses it (4.3.3); `side` prepares its left
-//! side, then its right one, and `top` the edge between their tops (4.3.4); `form` merges the triangles between the
-//! four, and where that fails everything is taken back and `form::attempts` finds another way, or the segment is
-//! deferred. Around the new quadrilateral `local` swaps, removes and smooths, `seam` closes small angles and `split`
-//! narrow regions (4.3.6). `close` converts what the front leaves over: small loops, then the rest by the
-//! `last_resort`. `finish` cleans up and smooths the whole (4.3.7).
+//! How a base segment becomes a finished quadrilateral: `select` chooses it (4.3.3); `side` prepares its left side,
+//! then its right one, and `top` the edge between their tops (4.3.4); `form` merges the triangles between the four, and
+//! where that fails everything is taken back and `form::attempts` finds another way, or the segment is deferred. Around
+//! the new quadrilateral `local` swaps, removes and smooths, `seam` closes small angles and `split` narrow regions
+//! (4.3.6). `close` converts what the front leaves over: small loops, then the rest by the `last_resort`. `finish`
+//! cleans up and smooths the whole (4.3.7).
 //!
 //! Each step works on a `Front` and returns the next [`Phase`] and an [`Event`]; the `converter` drives them, with one
 //! match arm per phase.
@@ -33,7 +33,7 @@ pub mod conversion;
 pub use candidates::{Candidate, Candidates, Passed, SideRule};
 pub use conversion::Converted;
 pub use converter::{Converter, Counts};
-pub use event::{Cleaning, Event, EventKind, Mending, Purpose, SeamCorner, SideEdge, Unmerged, Why, WhyKind};
+pub use event::{Cleaning, Event, EventKind, FewNodes, Mending, Purpose, SeamCorner, SideEdge, Unmerged, Why, WhyKind};
 pub use finish::Finished;
 pub use finish::clean_up::CleanedUp;
 pub use finish::unfold::Unfolded;

@@ -13,7 +13,7 @@ use crate::core::geometry::Atlas;
 use crate::core::mesh::{ElementId, Mesh, Named, Names, PointId};
 use crate::core::metric::Sizing;
 use crate::core::run::Births;
-use crate::core::soup::mesh_file::{BUILT_IN, FRONT};
+use crate::core::soup::mesh_file::{BUILT_IN, ELEMENT_ID, FRONT, NODE_ID};
 use crate::core::soup::{Data, Group, MeshFile};
 
 /// Tag of lines with elements on one side (the boundary, both sides of a crack), unless a line of the file has it.
@@ -49,6 +49,9 @@ pub struct Export {
 impl Export {
     /// Exports a mesh whose faces and lines have these names; nodes and elements keep their order. Groups keep the tags
     /// of the file; sides on no line go to the groups `boundary` and `inside`.
+    ///
+    /// Events name nodes and elements by their ids, which are data: elements have `element_id`, points have `node_id`
+    /// and, where a curve has a node on each side, `node_id_2` and so on (-1 where a point has fewer nodes).
     pub fn of(mesh: &Mesh, names: &Names) -> Export {
         Export::with_nodes(mesh, names).0
     }
@@ -65,11 +68,11 @@ impl Export {
             values: live.iter().chain(&dead).map(|e| value(*e)).collect(),
         };
         let file = &mut export.file;
-        file.element_data = vec![
+        file.element_data.extend([
             data("live", &|e| f64::from(u8::from(mesh.is_triangle(e)))),
             data("level", &|e| f64::from(mesh.level(e))),
             data("region", &|e| f64::from(tags.get(mesh.region(e) as usize).copied().unwrap_or(0))),
-        ];
+        ]);
         let (_, front) = line_tags(&names.lines);
         for h in mesh.front() {
             let nodes = mesh.ends(h);
@@ -159,6 +162,10 @@ impl Export {
                 file.quad_tags.push(tag_of(e));
             }
         }
+        file.point_data = node_ids(mesh, points, file.points.len());
+        let (live, dead): (Vec<ElementId>, Vec<ElementId>) = mesh.elements().partition(|e| mesh.is_triangle(*e));
+        let values = live.iter().chain(&dead).map(|e| f64::from(e.0)).collect();
+        file.element_data = vec![Data { name: ELEMENT_ID.to_owned(), values }];
         let mut sides = Vec::new();
         for h in mesh.edges().filter(|h| mesh.twin(*h).is_none()) {
             let ends = mesh.ends(h);
@@ -200,6 +207,20 @@ impl Export {
             atlas: self.atlas.as_deref(),
         }
     }
+}
+
+/// The ids of the nodes of each point, ascending: the first ones, the second ones and so on; -1 past the last one.
+fn node_ids(mesh: &Mesh, point_of: &[PointId], points: usize) -> Vec<Data> {
+    let mut ids: Vec<Vec<f64>> = Vec::new();
+    for (node, point) in mesh.nodes().zip(point_of) {
+        let free = ids.iter().position(|ids| ids[point.index()] < 0.0).unwrap_or(ids.len());
+        if free == ids.len() {
+            ids.push(vec![-1.0; points]);
+        }
+        ids[free][point.index()] = f64::from(node.0);
+    }
+    let name = |rank: usize| if rank == 1 { NODE_ID.to_owned() } else { format!("{NODE_ID}_{rank}") };
+    ids.into_iter().zip(1..).map(|(values, rank)| Data { name: name(rank), values }).collect()
 }
 
 /// The tag of each face: that of the file, otherwise the next free one from 1 in the order of the names, equal for
@@ -263,6 +284,9 @@ mod tests {
         assert_eq!((export.uv.len(), export.file.points.len()), (6, 4));
         assert_eq!(export.file.triangles, [[0, 1, 2], [1, 3, 2]]);
         assert_eq!(export.file.triangle_tags, [1, 2]);
+        // Points 1 and 2 have a node of each face.
+        let ids: Vec<_> = export.file.point_data.iter().map(|data| (&data.name[..], &data.values[..])).collect();
+        assert_eq!(ids, [("node_id", &[0.0, 1.0, 2.0, 4.0][..]), ("node_id_2", &[-1.0, 3.0, 5.0, -1.0])]);
         let inside: Vec<_> = (0..5).filter(|i| export.file.line_tags[*i] == INSIDE).collect();
         assert_eq!(inside.len(), 1);
         assert_eq!(export.file.lines.len(), 5);
@@ -296,9 +320,11 @@ mod tests {
         mesh.set_level(new[0], 4);
         let file = Export::of_state(&mesh, &Names::of_faces(vec![Named::new("plate")])).file;
         assert_eq!((file.triangles.len(), file.quads.len()), (1, 1));
-        let values: Vec<_> = file.element_data.iter().map(|d| (d.name.as_str(), d.values.clone())).collect();
-        let expected = [("live", vec![1.0, 0.0]), ("level", vec![0.0, 4.0]), ("region", vec![1.0, 1.0])];
-        assert_eq!(values, expected);
+        let values = |all: &[Data]| all.iter().map(|d| (d.name.clone(), d.values.clone())).collect::<Vec<_>>();
+        let expected =
+            [("element_id", [2.0, 1.0]), ("live", [1.0, 0.0]), ("level", [0.0, 4.0]), ("region", [1.0, 1.0])];
+        assert_eq!(values(&file.element_data), expected.map(|(name, values)| (name.to_owned(), values.to_vec())));
+        assert_eq!(values(&file.point_data), [("node_id".to_owned(), vec![0.0, 1.0, 2.0, 3.0, 4.0])]);
         let mut front: Vec<_> =
             (0..file.lines.len()).filter(|i| file.line_tags[*i] == FRONT_TAG).map(|i| file.lines[i]).collect();
         front.sort_unstable();

@@ -328,12 +328,13 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::convert::Why;
+    use crate::core::convert::{FewNodes, Why};
     use crate::core::front::Side;
     use crate::core::mesh::{ElementId, NodeId};
 
     fn formed(quality: f64) -> Event {
-        Event::Formed { element: ElementId(7), nodes: [NodeId(1); 4], quality, merged: 4, level: 3, attempt: 0 }
+        let (element, nodes, swallowed) = (ElementId(7), [NodeId(1); 4], FewNodes::of(&[NodeId(2)]));
+        Event::Formed { element, nodes, quality, merged: 4, level: 3, attempt: 0, swallowed }
     }
 
     fn holds(text: &str, event: &Event, angles: Option<Angles>) -> bool {

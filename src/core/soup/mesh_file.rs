@@ -13,6 +13,11 @@ use crate::core::mesh::Named;
 
 /// The name of the group of lines that form the merging front of an intermediate mesh.
 pub const FRONT: &str = "front";
+/// The name of the element data that holds the ids by which events name elements.
+pub const ELEMENT_ID: &str = "element_id";
+/// The name of the point data that holds the ids by which events name nodes; of further nodes of a point, with `_2` and
+/// so on.
+pub const NODE_ID: &str = "node_id";
 /// The names of the line groups of every exported mesh: lines with elements on one side, and with elements on both.
 pub const BUILT_IN: [&str; 2] = ["boundary", "inside"];
 

@@ -8,7 +8,7 @@ mod placement;
 
 use smallvec::SmallVec;
 
-use super::event::{Event, Why};
+use super::event::{Event, FewNodes, Why};
 use super::front::{Done, Front};
 use super::local;
 use super::phase::{Attempt, Base};
@@ -16,8 +16,8 @@ use crate::core::front::Side;
 use crate::core::kernel::predicates::convex;
 use crate::core::mesh::{ElementId, Mesh, NewElement, NodeId, Operation};
 
-/// A quadrilateral does not replace more triangles than this.
-const MOST_TRIANGLES: usize = 64;
+/// A quadrilateral does not replace more triangles than this; its event names all nodes inside.
+const MOST_TRIANGLES: usize = 2 + 2 * FewNodes::MOST;
 
 /// What lies between the four sides of a quadrilateral to be formed.
 struct Enclosed {
@@ -49,7 +49,8 @@ pub(super) fn form(front: &mut Front<'_>, base: Base, attempt: Attempt, [c, d]: 
         parity::check(front.mesh, &nodes)?;
     }
     let merged = triangles.len() as u8;
-    let event = Event::Formed { element, nodes, quality, merged, level: base.level, attempt: attempt.number };
+    let (level, swallowed) = (base.level, FewNodes::of(&inside));
+    let event = Event::Formed { element, nodes, quality, merged, level, attempt: attempt.number, swallowed };
     Ok((local::begin(front, element, attempt.mark), Some(event)))
 }
 

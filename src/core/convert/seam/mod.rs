@@ -65,10 +65,11 @@ fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
             let long = if l_b > l_c { h } else { before };
             transition::divide_segment(front, at, long).and_then(|middle| {
                 let (b, c) = if l_b > l_c { (middle, c) } else { (b, middle) };
-                Ok(Event::TransitionSeamed { at, node: seam(front, at, b, c)?, corner })
+                let [node, gone] = seam(front, at, b, c)?;
+                Ok(Event::TransitionSeamed { at, node, gone, corner })
             })
         } else {
-            seam(front, at, b, c).map(|node| Event::Seamed { at, node, corner })
+            seam(front, at, b, c).map(|[node, gone]| Event::Seamed { at, node, gone, corner })
         };
         match seamed {
             Ok(event) => return Some(event),
@@ -101,8 +102,9 @@ fn corner(front: &Front<'_>, h: HalfEdgeId, [l_b, l_c]: [f64; 2]) -> SeamCorner 
     }
 }
 
-/// Recovers the edge between the far ends, empties the triangle, and merges the ends. Returns the merged node.
-fn seam(front: &mut Front<'_>, a: NodeId, b: NodeId, c: NodeId) -> Result<NodeId, Unmerged> {
+/// Recovers the edge between the far ends, empties the triangle, and merges the ends. Returns the merged node and the
+/// one removed.
+fn seam(front: &mut Front<'_>, a: NodeId, b: NodeId, c: NodeId) -> Result<[NodeId; 2], Unmerged> {
     let mesh = &*front.mesh;
     if mesh.is_fixed(b) && mesh.is_fixed(c) {
         return Err(Unmerged::BothFixed);
@@ -125,5 +127,6 @@ fn seam(front: &mut Front<'_>, a: NodeId, b: NodeId, c: NodeId) -> Result<NodeId
         return Err(Unmerged::NotEmpty);
     }
     // The merge (fig. 18c).
-    merge::merge(front, h_bc, &|_, _| true)
+    let node = merge::merge(front, h_bc, &|_, _| true)?;
+    Ok([node, if node == b { c } else { b }])
 }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::METRIC;
 use crate::core::kernel::Shortest;
-use crate::core::soup::mesh_file::tag_of;
+use crate::core::soup::mesh_file::{ELEMENT_ID, tag_of};
 use crate::core::soup::{Group, MeshFile};
 
 /// The version to write.
@@ -40,11 +40,18 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Resu
             entities.write_elements(out, mesh)?;
         }
     }
-    point_data(out, mesh)?;
-    for data in &mesh.element_data {
+    // Readers that use the order of nodes and elements instead of their tags (meshio) need data in the order in which
+    // those are written.
+    let nodes: Vec<usize> = match &entities {
+        None => (0..mesh.points.len()).collect(),
+        Some(entities) => entities.nodes.iter().flatten().map(|&node| node as usize).collect(),
+    };
+    point_data(out, mesh, &nodes)?;
+    // meshio (5.3) refuses version 2.2 with element data. The data of states on the way are worth that, the ids are
+    // not.
+    for data in mesh.element_data.iter().filter(|data| version == Version::V4 || data.name != ELEMENT_ID) {
         data_header(out, "ElementData", &data.name, 1, mesh.lines.len() + data.values.len())?;
-        // Readers that use the order of the elements instead of their tags (meshio) need a value for each line too, in
-        // the order of the elements. Gmsh ignores NaN.
+        // They need a value for each line too. Gmsh ignores NaN.
         let kinds = ElementType::all(mesh);
         let mut value = |kind: usize, i: usize| {
             let element = kinds[kind].before + i;
@@ -71,12 +78,14 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile, version: Version) -> io::Resu
     Ok(())
 }
 
-fn point_data(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
+/// Writes the metric and the data of points, in this order of the points.
+fn point_data(out: &mut dyn Write, mesh: &MeshFile, order: &[usize]) -> io::Result<()> {
     if let Some(metric) = &mesh.metric {
         data_header(out, "NodeData", METRIC, 9, metric.len())?;
-        for (m, node) in metric.iter().zip(1..) {
+        for &node in order {
+            let m = &metric[node];
             let rows = [m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz];
-            write!(out, "{node}")?;
+            write!(out, "{}", node + 1)?;
             for value in rows {
                 write!(out, " {}", Shortest(value))?;
             }
@@ -86,8 +95,8 @@ fn point_data(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     }
     for data in &mesh.point_data {
         data_header(out, "NodeData", &data.name, 1, data.values.len())?;
-        for (value, node) in data.values.iter().zip(1..) {
-            writeln!(out, "{node} {}", Shortest(*value))?;
+        for &node in order {
+            writeln!(out, "{} {}", node + 1, Shortest(data.values[node]))?;
         }
         writeln!(out, "$EndNodeData")?;
     }

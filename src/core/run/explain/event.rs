@@ -40,8 +40,18 @@ pub fn event(event: &Event) -> String {
         Event::NodeRemoved { node, purpose: Purpose::Enhancement } => {
             format!("node {}, with three or four triangles, removed", node.0)
         }
-        Event::Formed { element, quality, merged, .. } => {
-            format!("quadrilateral {} formed: quality {}, {merged} triangles merged", element.0, fixed(quality, 2))
+        Event::Formed { element, quality, merged, swallowed, .. } => {
+            let inside: Vec<String> = swallowed.iter().map(|node| node.0.to_string()).collect();
+            let gone = match inside.len() {
+                0 => String::new(),
+                1 => format!(", node {} between them removed", inside[0]),
+                _ => format!(", nodes {} between them removed", inside.join(", ")),
+            };
+            format!(
+                "quadrilateral {} formed: quality {}, {merged} triangles merged{gone}",
+                element.0,
+                fixed(quality, 2)
+            )
         }
         Event::RolledBack { attempt, why } => {
             format!("attempt {} rolled back: {}", u32::from(attempt) + 1, why_rolled_back(why))
@@ -49,10 +59,10 @@ pub fn event(event: &Event) -> String {
         Event::Deferred { a, b } => format!("segment {} deferred: every attempt failed", segment([a, b])),
         Event::Enhanced { new } => format!("edge {} made by a swap beside the new quadrilateral", edge(new)),
         Event::Smoothed { nodes } => format!("{} smoothed", count(nodes.into(), "node")),
-        Event::Seamed { at, node, corner } => {
+        Event::Seamed { at, node, corner, .. } => {
             format!("seam at node {}: {}\u{b0} closed, ends joined in node {}", at.0, degrees(corner.angle), node.0)
         }
-        Event::TransitionSeamed { at, node, corner } => format!(
+        Event::TransitionSeamed { at, node, corner, .. } => format!(
             "transition seam at node {}: {}\u{b0} closed, one side {} times the other, joined in node {}",
             at.0,
             degrees(corner.angle),

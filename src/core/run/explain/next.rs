@@ -3,6 +3,7 @@
 use super::numbers::{apart, capital, count, edge, segment};
 use super::selecting::Selecting;
 use super::side::name;
+use crate::core::case::CleanUpBy;
 use crate::core::convert::{Attempt, Base, Converter, FinishPart, Phase, SideRule};
 use crate::core::front::Side;
 use crate::core::kernel::number::fixed;
@@ -67,7 +68,7 @@ pub fn next(state: &Converter<'_>, selecting: &Selecting) -> String {
         Phase::Patch { plan, patch, .. } => {
             format!("The last resort makes quadrilaterals, patch {} of {}.", patch + 1, plan.patches())
         }
-        Phase::PostProcess { part } => finish(*part).to_owned(),
+        Phase::PostProcess { part } => finish(*part, parameters.clean_up).to_owned(),
         Phase::NextFace => "The next face is converted, if there is one.".to_owned(),
         Phase::Done => "Nothing: the conversion is finished.".to_owned(),
     }
@@ -156,13 +157,18 @@ fn split(state: &Converter<'_>, selecting: &Selecting) -> String {
     }
 }
 
-fn finish(part: FinishPart) -> &'static str {
-    match part {
-        FinishPart::FirstSmoothing => "The mesh is smoothed as the front has left it (4.3.7).",
-        FinishPart::CleanUp => "The structure is cleaned up by single changes, then by pairs and sequences (4.3.7).",
-        FinishPart::CleanUpByPairs => "The structure is cleaned up by pairs of changes, then by sequences (4.3.7).",
-        FinishPart::CleanUpBySequences => "The structure is cleaned up by sequences of up to four changes (4.3.7).",
-        FinishPart::LastSmoothing => "The final structure is smoothed (4.3.7).",
-        FinishPart::Unfolding => "Elements that fold over their surface are repaired.",
+fn finish(part: FinishPart, clean_up: CleanUpBy) -> &'static str {
+    match (part, clean_up) {
+        (FinishPart::FirstSmoothing, _) => "The mesh is smoothed as the front has left it (4.3.7).",
+        (FinishPart::CleanUp, CleanUpBy::Traditional) => {
+            "The structure is cleaned up by the traditional operations, where they improve the valences (4.3.7)."
+        }
+        (FinishPart::CleanUp, CleanUpBy::Search) => "The structure is cleaned up by single changes (4.3.7).",
+        (FinishPart::CleanUpByPairs, _) => "The structure is cleaned up by pairs of changes (4.3.7).",
+        (FinishPart::CleanUpBySequences, _) => {
+            "The structure is cleaned up by sequences of up to four changes (4.3.7)."
+        }
+        (FinishPart::LastSmoothing, _) => "The final structure is smoothed (4.3.7).",
+        (FinishPart::Unfolding, _) => "Elements that fold over their surface are repaired.",
     }
 }
