@@ -7,8 +7,8 @@ use crate::xor_shift::XorShift;
 /// Keys of names, which need the curves and faces of a case.
 const NAMES: [&str; 2] = ["layered_loops", "faces"];
 
-/// Sets every key but those in `kept` to a random value, as `--set` takes it: a limit, a value with all its digits, or a
-/// round one.
+/// Sets every key but those in `kept` to a random value, as `--set` takes it: a limit, a value with all its digits, or
+/// a round one.
 pub fn draw(parameters: &mut Parameters, kept: &[&str], random: &mut XorShift) -> Vec<(&'static str, String)> {
     let keys = Parameters::KEYS.into_iter().filter(|key| !kept.contains(key) && !NAMES.contains(key));
     let set: Vec<_> = keys.map(|key| (key, value(key, random))).collect();

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::app::command_line::Overrides;
 use crate::app::window::autosave::Autosave;
 use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
@@ -31,11 +32,20 @@ pub enum Lookup<T> {
     Unasked,
 }
 
+/// What is being opened.
+pub(super) struct Opening {
+    pub source: Source,
+    pub overrides: Overrides,
+    pub session: Session,
+}
+
 /// The run and the work on it.
 #[derive(Default)]
 pub struct RunState {
     /// What was opened.
     pub source: Option<Source>,
+    /// How its parameters were changed before it began.
+    pub overrides: Overrides,
     /// The case as it was opened, with its background mesh.
     pub opened: Option<Arc<Opened>>,
     /// How many runs have been opened before this one and with it.
@@ -66,7 +76,7 @@ pub struct RunState {
     pub autosave: Option<Autosave>,
     pub(super) session: Option<Session>,
     /// What is being opened; the run that is open stays until it is ready.
-    pub(super) opening: Option<(Source, Session)>,
+    pub(super) opening: Option<Opening>,
     /// The number of the last picture of an import.
     pub(super) pictures: u64,
     /// Watches the file that was opened.
