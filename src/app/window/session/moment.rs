@@ -44,6 +44,8 @@ pub struct Moment {
     pub loops: Vec<Loop>,
     /// The candidates for a side edge of the last step.
     pub candidates: Option<Candidates>,
+    /// The quadrilateral of the lowest quality, with its quality.
+    pub worst: Option<(ElementId, f64)>,
     /// Why the base is the base.
     pub base: Option<SegmentFacts>,
     /// Whether the invariants hold.

@@ -10,7 +10,7 @@ use crate::app::window::import::Import;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, Tracked, Verdict};
 use crate::core::convert::Phase;
-use crate::core::mesh::NodeId;
+use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
 use crate::core::run::{Sample, ShownState, Watched};
 
@@ -119,6 +119,14 @@ impl RunState {
     /// Whether a figure is being made.
     pub fn is_making_figure(&self) -> bool {
         !self.figures.is_empty()
+    }
+
+    /// Of all quadrilaterals that were formed up to a step the one that had the lowest quality then: step, element and
+    /// quality.
+    pub fn worst_formed(&self, step: u64) -> Option<(u64, ElementId, f64)> {
+        let formed = self.track.iter().take(step as usize).zip(1..);
+        let formed = formed.filter_map(|(tracked, step)| tracked.formed.map(|(e, quality)| (step, e, quality)));
+        formed.min_by(|a, b| a.2.total_cmp(&b.2))
     }
 
     /// Whether the current state is the last one.

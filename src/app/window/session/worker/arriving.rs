@@ -66,6 +66,7 @@ impl Worker {
         let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
         let base = state.phase().base().and_then(|base| SegmentFacts::in_table(state, &table, base.a, base.b));
         let changes = self.since.take();
+        self.qualities.follow(&state.mesh, &changes);
         self.unchecked |= std::mem::take(&mut self.was_broken) || changes == Changes::Everything;
         let found = match &changes {
             Changes::Everything => Ok(()),
@@ -95,6 +96,7 @@ impl Worker {
             rows,
             loops: table.loops,
             candidates,
+            worst: self.qualities.worst(),
             base,
             verdict,
             took: since.elapsed(),
