@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut V
         let what = format!("edges of {} to {} in the metric", words::fixed(low, 2), words::fixed(high, 2));
         light(commands, lit, &what);
     }
-    head(ui, "Smallest and largest angle of each quad in the metric (fig. 24)", palette);
+    head(ui, "Smallest and largest angle of each quad in the metric, degrees (fig. 24)", palette);
     ui.horizontal(|ui| {
         angles(ui, "in the metric", numbers.in_metric, commands, palette);
         angles(ui, "in space", numbers.in_space, commands, palette);
@@ -77,7 +77,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut V
 /// The lowest quality now, and of all quadrilaterals when they were formed.
 fn quality(ui: &mut Ui, state: &State, moment: &Moment, commands: &mut Vec<Command>, palette: &Palette) {
     ui.horizontal(|ui| {
-        ui.add_space(12.0);
+        // A link keeps a distance of its own.
+        ui.add_space(8.0);
         match moment.worst {
             Some((e, quality)) => {
                 let text = format!("lowest now {}", words::fixed(quality, 2));

@@ -1,6 +1,7 @@
 //! The rows of the panel: every parameter that can change at a step, in groups, and those that belong to the case.
 
 use crate::core::case::Parameters;
+use crate::core::kernel::Shortest;
 
 /// A group of parameters.
 pub struct Group {
@@ -280,7 +281,8 @@ fn tip(key: &str, what: &str) -> String {
         text => text.unwrap_or_default(),
     };
     let range = Parameters::kind_of(key).and_then(|kind| kind.limits());
-    let range = range.map_or_else(String::new, |[least, most]| format!(", from {least} to {most}"));
+    let range =
+        range.map_or_else(String::new, |[least, most]| format!(", from {} to {}", Shortest(least), Shortest(most)));
     // What belongs to the case is not the paper's.
     let paper = match OF_CASE.iter().any(|row| row.key == key) {
         true => String::new(),
