@@ -15,7 +15,8 @@ use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use pictures::{difference, picture};
 use quadfront::MeshUse;
-use quadfront::app::window::{App, Command, Gesture, Source};
+use quadfront::app::window::{App, Command, Gesture, Overrides, Source};
+use quadfront::core::case::ImportOptions;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
 /// A window on nothing.
@@ -134,6 +135,39 @@ fn triangles_are_converted_as_they_are_and_the_panel_comes_back_as_it_was_left()
     harness.run_steps(2);
     let state = &harness.state().state;
     assert!(state.run().import.is_none() && state.run().moment.is_some());
+}
+
+#[test]
+fn what_was_given_stays_as_it_was_given_in_the_panel_and_beyond() {
+    let Some(mut harness) = window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = stl(folder.path(), "tube.stl", &tube(4));
+    let options = ImportOptions {
+        feature_angle: Some(61.234_567_8),
+        chart_stretch: Some(3.217_592_653),
+        mesh_size: Some(2e12),
+        curvature: Some(0.75),
+        ..ImportOptions::default()
+    };
+    let overrides = Overrides { set: vec![("c".to_owned(), "1.75".to_owned())], ..Overrides::default() };
+    // A mesh that is opened by its file is shown first.
+    harness.state_mut().apply(Command::OpenWith(Source::File(path), Box::new(overrides)));
+    shown(&mut harness);
+    harness.state_mut().apply(Command::SetImport(Box::new(options.clone()), Gesture::Done));
+    shown(&mut harness);
+    for field in ["Feature angle", "Chart stretch", "Edge length", "Chord error"] {
+        harness.get_by_label(field).focus();
+        harness.run_steps(2);
+        harness.key_press(Key::Tab);
+        harness.run_steps(2);
+    }
+    assert_eq!(harness.state().state.run().import.as_ref().unwrap().options, options);
+    let plain = ImportOptions { mesh_size: None, curvature: None, ..options };
+    harness.state_mut().apply(Command::SetImport(Box::new(plain), Gesture::Done));
+    shown(&mut harness);
+    harness.get_by_label("Convert").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().state.run().moment.as_ref().unwrap().parameters.c, 1.75);
 }
 
 #[test]

@@ -2,16 +2,21 @@
 //! program that is killed while it saves leaves a whole one.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/random_parameters.rs"]
+mod random_parameters;
+#[path = "common/xor_shift.rs"]
+mod xor_shift;
+
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use quadfront::core::case::built_in;
+use quadfront::core::case::{Parameters, built_in};
 use quadfront::core::convert::EventKind;
 use quadfront::core::mesh::NodeId;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::{Keeper, run_file};
-use quadfront::core::run::{Bookmark, Edit, EditKind, History, Run};
+use quadfront::core::run::{Bookmark, Edit, EditKind, History, Run, run};
 
 /// Set for the child that saves until it is killed.
 const CHILD: &str = "QUADFRONT_TEST_SAVES_TO";
@@ -30,6 +35,30 @@ fn grown(count: u64) -> Run {
     run.set_edits((0..count).map(|k| parameter(k, "theta_rect", &format!("{}", 100 + k % 60))).collect());
     run.bookmarks = (0..count).map(|step| Bookmark { step, name: format!("number {step} of {count}") }).collect();
     run
+}
+
+#[test]
+fn parameters_and_edits_are_read_back_bit_for_bit() {
+    let mut random = xor_shift::XorShift::of(17);
+    for _ in 0..200 {
+        let mut run = run_of("two-faces");
+        random_parameters::draw(&mut run.parameters, &[], &mut random);
+        run.parameters.faces = vec!["left, \"one\"".to_owned(), "right".to_owned()];
+        run.parameters.layered_loops = vec!["hole".to_owned()];
+        let edits = random_parameters::draw(&mut Parameters::default(), &run::OF_BACKGROUND, &mut random);
+        run.set_edits(edits.iter().zip(0..).map(|((key, value), step)| parameter(step, key, value)).collect());
+        let text = run_file::embedded(&run).unwrap();
+        let read = run_file::parse(&text, "a.toml", Path::new("")).unwrap();
+        assert_eq!(read.parameters, run.parameters, "{text}");
+        assert_eq!(read.edits(), run.edits());
+        let last = |run: &Run| run.parameters_at(u64::MAX).unwrap();
+        assert_eq!(last(&read), last(&run));
+        for (key, value) in edits {
+            let mut as_typed = Parameters::default();
+            as_typed.set(key, &value).unwrap();
+            assert_eq!(last(&read).text_of(key), as_typed.text_of(key));
+        }
+    }
 }
 
 #[test]

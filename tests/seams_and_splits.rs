@@ -280,7 +280,7 @@ fn check(name: &str, paper: bool, set: &[(&str, &str)], checked: &mut Checked) {
 #[test]
 fn seams_and_splits_say_what_the_formulas_give() {
     let mut checked = Checked::default();
-    check("example1", false, &[("seam_widening", "1.5")], &mut checked);
+    check("example1", false, &[("seam_widening", "2")], &mut checked);
     check("example1", true, &[], &mut checked);
     check("repeated-line", false, &[("eps1", "1"), ("eps2", "2")], &mut checked);
     check("polar-1", false, &[("size_scale", "1.5")], &mut checked);

@@ -3,6 +3,8 @@
 //! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
 
+#[path = "window/numbers.rs"]
+mod numbers;
 #[path = "window_harness/pictures.rs"]
 mod pictures;
 mod window_harness;

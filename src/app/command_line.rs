@@ -8,7 +8,9 @@ use super::figure::FigureOptions;
 use super::input::{InputFormat, Stops, Until, input_format, mesh_format, mesh_use, setting, stops, until};
 use super::output::Target;
 use crate::core::case::{ImportOptions, MeshUse};
+use crate::core::fault::Fault;
 use crate::core::formats::Format;
+use crate::core::run::Run;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
 #[derive(Parser)]
@@ -51,6 +53,16 @@ pub(super) struct Source {
     /// Metric at the nodes of MESH (Medit .sol)
     #[arg(long, value_name = "FILE")]
     pub sol: Option<PathBuf>,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// Print no progress and no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Changes of the parameters of a case before its run begins, in this order: the paper's, the faces, single values.
+#[derive(Args, Clone, Debug, Default, PartialEq)]
+pub struct Overrides {
     /// Set a parameter of the case, for example size_scale=0.5 (repeatable)
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
@@ -63,9 +75,27 @@ pub(super) struct Source {
     /// unfolding; the energy by which clean-up smooths (docs/algorithm.md, "Departures from the paper")
     #[arg(long)]
     pub paper: bool,
-    /// Print no progress and no summary
-    #[arg(short, long)]
-    pub quiet: bool,
+}
+
+impl Overrides {
+    /// Changes the parameters of a run from step 0 on.
+    ///
+    /// # Errors
+    /// An unknown key, or a value of the wrong type or out of range.
+    pub(super) fn apply(&self, run: &mut Run) -> Result<(), Fault> {
+        let parameters = &mut run.parameters;
+        if self.paper {
+            *parameters = parameters.read_as_paper();
+        }
+        if !self.faces.is_empty() {
+            parameters.faces.clone_from(&self.faces);
+        }
+        for (key, value) in &self.set {
+            parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
+        }
+        run.case.parameters = parameters.clone();
+        Ok(())
+    }
 }
 
 /// How a mesh is imported.
@@ -125,7 +155,16 @@ pub(super) struct OpenArguments {
     #[arg(value_name = "CASE|MESH|FIGURE", default_value = "example1")]
     pub input: String,
     #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
     pub mesh: MeshArguments,
+}
+
+impl OpenArguments {
+    /// Opens an input as it is.
+    pub fn of(input: &str) -> OpenArguments {
+        OpenArguments { input: input.to_owned(), overrides: Overrides::default(), mesh: MeshArguments::default() }
+    }
 }
 
 #[derive(Args)]
@@ -244,6 +283,8 @@ mod tests {
             "quadfront open",
             "quadfront open plate.toml",
             "quadfront open bracket.stl --use shape --feature-angle 30",
+            "quadfront open example1 --paper --set c=1.5 --set size_scale=0.5",
+            "quadfront open two-faces --face left --set layers=2",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
         }
@@ -251,6 +292,7 @@ mod tests {
             "quadfront wobble",
             "quadfront convert",
             "quadfront convert a --set size_scale",
+            "quadfront open a --set size_scale",
             "quadfront check",
             "quadfront convert a --at 5",
             "quadfront convert a.stl --use wobble",

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
+#[cfg(feature = "window")]
+use super::command_line::Overrides;
 use super::command_line::Source;
 use crate::core::case::{Case, ImportOptions, MeshUse, built_in};
 #[cfg(feature = "window")]
@@ -123,30 +125,20 @@ impl Input {
 /// The run that the arguments name, with the parameters they set.
 pub(super) fn read(source: &Source, mesh: &ImportOptions) -> Result<Input, Fault> {
     let Input { mut run, figure, folder } = read_plain(source, mesh)?;
-    let parameters = &mut run.parameters;
-    if source.paper {
-        *parameters = parameters.read_as_paper();
-    }
-    if !source.faces.is_empty() {
-        parameters.faces.clone_from(&source.faces);
-    }
-    for (key, value) in &source.set {
-        parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
-    }
-    run.case.parameters = parameters.clone();
+    source.overrides.apply(&mut run)?;
     Ok(Input { run, figure, folder })
 }
 
 /// The run of a file: a case, a mesh, a run file, or a figure with an embedded run.
 #[cfg(feature = "window")]
-pub(super) fn run_of(path: &Path, mesh: &ImportOptions) -> Result<Run, Fault> {
+pub(super) fn run_of(path: &Path, mesh: &ImportOptions, overrides: &Overrides) -> Result<Run, Fault> {
     let input = path.display().to_string();
     if input == "-" {
         return Err(Fault::new("The window cannot open standard input")
             .at(input)
             .remedy("Name a case, a mesh or a run file"));
     }
-    let source = Source { input, quiet: true, ..Source::default() };
+    let source = Source { input, overrides: overrides.clone(), quiet: true, ..Source::default() };
     let mut input = read(&source, mesh)?;
     input.run.shown = input.figure;
     Ok(input.run)

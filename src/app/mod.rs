@@ -53,11 +53,7 @@ pub fn run() -> ExitCode {
         std::thread::sleep(GRACE);
         std::process::exit(i32::from(INTERRUPTED));
     });
-    let done = match cli
-        .command
-        .as_ref()
-        .unwrap_or(&Command::Open(OpenArguments { input: "example1".to_owned(), mesh: Default::default() }))
-    {
+    let done = match cli.command.as_ref().unwrap_or(&Command::Open(OpenArguments::of("example1"))) {
         Command::Open(arguments) => open(arguments),
         Command::Convert(arguments) => convert::convert(arguments),
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
@@ -77,17 +73,18 @@ pub fn run() -> ExitCode {
 /// Opens the window.
 #[cfg(feature = "window")]
 fn open(arguments: &OpenArguments) -> Result<ExitCode, Fault> {
-    let (input, options) = (&arguments.input, arguments.mesh.options());
+    let OpenArguments { input, overrides, mesh } = arguments;
+    let options = mesh.options();
     let mut source = window::Source::named(input);
     // Report missing files and unsuitable options on the terminal, before the window opens.
-    input::run_of(std::path::Path::new(input), &options)?;
+    input::run_of(std::path::Path::new(input), &options, overrides)?;
     if let window::Source::File(path) = &source {
         save::find(path)?;
         if options != Default::default() {
             source = window::Source::Mesh(path.clone(), options);
         }
     }
-    window::open(source)
+    window::open(source, overrides.clone())
 }
 
 #[cfg(not(feature = "window"))]

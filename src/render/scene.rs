@@ -18,7 +18,7 @@ pub use given::{Given, feature_line, seam_line};
 pub use mesh::Drawn;
 pub use overlay::{Decision, Outlined, Overlay, front};
 pub use placed::{Placed, STRETCH};
-pub use shading::{ColourBy, Shading, angles, metric_area};
+pub use shading::{ColourBy, Shading, metric_angles, metric_area, space_angles};
 
 use crate::core::mesh::{ElementId, Mesh, NodeId};
 use placed::Places;

@@ -78,7 +78,7 @@ impl App {
             state.complain(&fault);
         }
         if let Some(source) = source {
-            state.open(source);
+            state.apply(Command::Open(source));
         }
         App {
             state,

@@ -8,8 +8,10 @@ use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
 use super::words;
-use crate::core::case::built_in;
+use crate::app::command_line::Overrides;
+use crate::core::case::{Parameters, built_in};
 use crate::core::convert::EventKind;
+use crate::core::kernel::worded::worded;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::Watched;
 use crate::render::camera::Bearing;
@@ -74,6 +76,10 @@ pub enum Command {
     ChooseBase([NodeId; 2]),
     /// Reset all parameters to those of the case.
     ResetParameters,
+    /// Set all parameters that can change at a step from this one on.
+    SetRules(Rules),
+    /// Open the run again with another value of a parameter that belongs to its case.
+    SetForCase(&'static str, String),
     /// Switch a layer on or off.
     Layer(ViewLayer),
     /// Colour elements by something.
@@ -90,6 +96,8 @@ pub enum Command {
     Bookmark,
     /// Open a case or a mesh.
     Open(Source),
+    /// Open a case or a mesh with its parameters changed.
+    OpenWith(Source, Box<Overrides>),
     /// Show again how the mesh that is open was imported, to change it.
     Import,
     /// Change how the mesh that is about to be converted is imported.
@@ -150,6 +158,27 @@ pub enum Command {
     ShowTimes,
     /// Close what is open over the window, or clear the selection.
     Escape,
+}
+
+worded! {
+    /// Values of all parameters at once.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Rules by name {
+        /// As `--paper` sets them.
+        Paper = "Paper",
+        /// The defaults of the program.
+        Default = "Default",
+    }
+}
+
+impl Rules {
+    /// The parameters; those that belong to a case have no meaning.
+    pub fn parameters(self) -> Parameters {
+        match self {
+            Rules::Paper => Parameters::paper(),
+            Rules::Default => Parameters::default(),
+        }
+    }
 }
 
 /// Kinds of events that one can go to.
@@ -258,6 +287,9 @@ impl Command {
             Command::Set(key, value) => format!("Set {key} = {value}"),
             Command::ChooseBase([a, b]) => format!("Choose {} as base", words::segment(*a, *b)),
             Command::ResetParameters => "Reset all parameters to the case".into(),
+            Command::SetRules(Rules::Paper) => "Set all parameters to the paper's from this step on".into(),
+            Command::SetRules(Rules::Default) => "Set all parameters to the defaults from this step on".into(),
+            Command::SetForCase(key, value) => format!("Open again with {key} = {value}"),
             Command::Layer(layer) => format!("Layer: {}", layer.name()),
             Command::ColourBy(by) => format!("Colour by {}", by.name()),
             Command::ToggleTheme => "Dark or light theme".into(),
@@ -265,8 +297,7 @@ impl Command {
             Command::SwitchBreakpoint(_) => "Switch a breakpoint".into(),
             Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
             Command::Bookmark => "Bookmark this step".into(),
-            Command::Open(Source::BuiltIn(name)) => format!("Open {name}"),
-            Command::Open(Source::File(path) | Source::Mesh(path, _)) => format!("Open {}", path.display()),
+            Command::Open(source) | Command::OpenWith(source, _) => format!("Open {}", source.name()),
             Command::Import => "Import settings of this mesh…".into(),
             Command::SetImport(..) => "Change the import".into(),
             Command::Convert => "Convert".into(),
@@ -344,6 +375,7 @@ impl Command {
                 | Command::HiddenLines
                 | Command::ToggleTheme
                 | Command::Open(_)
+                | Command::OpenWith(..)
                 | Command::OpenDialog
                 | Command::OpenPath
                 | Command::OpenKept
@@ -369,6 +401,7 @@ impl Command {
             Command::ShowTimes,
             Command::Measure,
         ]);
+        all.extend(Rules::ALL.map(Command::SetRules));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
         all.extend(KINDS.iter().flat_map(|&kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));

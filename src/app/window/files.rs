@@ -10,6 +10,7 @@ use eframe::egui::ColorImage;
 
 use super::import::ImportOptions;
 use super::session::{Source, Wake};
+use crate::app::command_line::Overrides;
 use crate::app::input;
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
@@ -151,13 +152,13 @@ impl Watcher {
                 }
                 before = now;
                 // If it cannot be read any more, nothing is lost, and the message says so.
-                let read = input::run_of(&path, &ImportOptions::default()).map(|_| path.display().to_string()).map_err(
-                    |fault| {
+                let read = input::run_of(&path, &ImportOptions::default(), &Overrides::default())
+                    .map(|_| path.display().to_string())
+                    .map_err(|fault| {
                         let remedy =
                             if fault.remedy.is_empty() { String::new() } else { format!("{}. ", fault.remedy) };
                         fault.remedy(format!("{remedy}The window keeps the run that is open"))
-                    },
-                );
+                    });
                 if tell.send(read).is_err() {
                     return;
                 }

@@ -11,6 +11,7 @@ use preview::{Preview, PreviewNews, Wanted};
 
 use super::session::{Direction, Wake};
 use super::state::{Progress, ViewCamera};
+use crate::app::command_line::Overrides;
 use crate::app::input;
 /// How a mesh is imported, in the words of the command line.
 pub use crate::core::case::ImportOptions;
@@ -38,6 +39,8 @@ pub struct Import {
     pub path: PathBuf,
     /// How it is imported.
     pub options: ImportOptions,
+    /// How the parameters of its run are changed.
+    pub overrides: Overrides,
     preview: Preview,
     /// The mesh with its repairs, once it has been read.
     pub loaded: Option<Arc<Loaded>>,
@@ -65,6 +68,7 @@ impl Import {
             preview: Preview::of(path.clone(), wake),
             path,
             options,
+            overrides: Overrides::default(),
             loaded: None,
             refused: None,
             shown: None,

@@ -172,7 +172,7 @@ impl Layout {
                 &[Pane::Inspector, Pane::Front, Pane::Breakpoints, Pane::Bookmarks, Pane::History],
                 210.0 / size.y.max(420.0),
             ),
-            _ => (&[Pane::Inspector, Pane::History], 0.42),
+            _ => (&[Pane::Inspector, Pane::History], 0.6),
         };
         let right = vec![(tabs(inspector), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), share)];
         let mut columns = Vec::new();

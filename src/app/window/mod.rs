@@ -31,8 +31,9 @@ use eframe::egui::{Vec2, ViewportBuilder};
 
 use crate::core::fault::Fault;
 
+pub use crate::app::command_line::Overrides;
 pub use app::App;
-pub use command::Command;
+pub use command::{Command, Rules};
 pub use graphics::Lost;
 pub use import::Gesture;
 pub use session::{Direction, Goal, Source};
@@ -42,11 +43,11 @@ pub use view_layer::ViewLayer;
 /// The largest window in points: egui's textures end there.
 const LARGEST: f32 = 8192.0;
 
-/// Opens the window on what is named, and returns when it is closed.
+/// Opens the window on what is named, with its parameters changed, and returns when it is closed.
 ///
 /// # Errors
 /// Where there is no display or no graphics adapter, or where the graphics device is lost.
-pub fn open(source: Source) -> Result<ExitCode, Fault> {
+pub fn open(source: Source, overrides: Overrides) -> Result<ExitCode, Fault> {
     let started = Instant::now();
     let path = settings::path();
     let kept = path.as_deref().and_then(|path| settings::Settings::read(path).ok().flatten());
@@ -73,7 +74,8 @@ pub fn open(source: Source) -> Result<ExitCode, Fault> {
         "quadfront",
         options,
         Box::new(move |cc| {
-            let app = App::kept(cc, Some(source), path, watch).keeping(autosave::folder());
+            let mut app = App::kept(cc, None, path, watch).keeping(autosave::folder());
+            app.apply(Command::OpenWith(source, Box::new(overrides)));
             Ok(Box::new(app.cleared().started(started)))
         }),
     );

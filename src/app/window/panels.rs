@@ -34,6 +34,7 @@ pub struct PanelStates {
     pub front: front::FrontState,
     pub breakpoints: breakpoints::BreakpointsState,
     pub parameters: parameters::ParametersState,
+    pub plots: plots::PlotsState,
     pub over: over::OverState,
 }
 

@@ -105,7 +105,7 @@ pub struct Tracked {
     /// Live triangles after it.
     pub live: u32,
     /// The quadrilateral that it formed, with its quality.
-    pub formed: Option<(ElementId, f32)>,
+    pub formed: Option<(ElementId, f64)>,
 }
 
 /// Why a segment was or was not chosen.

@@ -10,6 +10,7 @@ mod view_state;
 mod apply;
 mod hearing;
 
+use run_state::Opening;
 pub use run_state::{Lookup, Progress, RunState};
 pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState};
 pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint, Workspace};

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 pub use import_options::ImportOptions;
-pub use parameters::Parameters;
+pub use parameters::{ParameterKind, Parameters};
 pub use rules::{
     CleanUpBy, DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Selection, SelectionWindow, SmoothingWeights,
 };
@@ -289,17 +289,22 @@ fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) 
 fn parameters(table: &Table<'_>) -> Result<Parameters, Fault> {
     let mut parameters = Parameters::default();
     if let Some(value) = table.get("parameters") {
-        let own = value.table()?;
-        own.only(&Parameters::KEYS)?;
-        for entry in own.entries() {
-            match entry.key() {
-                "layered_loops" => parameters.layered_loops = entry.texts()?,
-                "faces" => parameters.faces = entry.texts()?,
-                key => parameters.set(key, &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?,
-            }
-        }
+        set_parameters(&mut parameters, &value.table()?)?;
     }
     Ok(parameters)
+}
+
+/// Sets the parameters of a table.
+pub(in crate::core) fn set_parameters(parameters: &mut Parameters, table: &Table<'_>) -> Result<(), Fault> {
+    table.only(&Parameters::KEYS)?;
+    for entry in table.entries() {
+        match entry.key() {
+            "layered_loops" => parameters.layered_loops = entry.texts()?,
+            "faces" => parameters.faces = entry.texts()?,
+            key => parameters.set(key, &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?,
+        }
+    }
+    Ok(())
 }
 
 fn gradation(table: &Table<'_>) -> Result<Option<f64>, Fault> {

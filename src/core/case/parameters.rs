@@ -140,13 +140,20 @@ impl Parameters {
     /// The paper's reading with the size, limit, offset rows and faces of these parameters, which belong to the case.
     #[must_use]
     pub fn read_as_paper(&self) -> Parameters {
+        self.with_rules_of(Parameters::paper())
+    }
+
+    /// The rules and values of `other` with the size, limit, offset rows and faces of these parameters, which belong to
+    /// the case.
+    #[must_use]
+    pub fn with_rules_of(&self, other: Parameters) -> Parameters {
         Parameters {
             size_scale: self.size_scale,
             layers: self.layers,
             layered_loops: self.layered_loops.clone(),
             faces: self.faces.clone(),
             max_quads: self.max_quads,
-            ..Parameters::paper()
+            ..other
         }
     }
 
@@ -158,6 +165,55 @@ impl Parameters {
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Fault> {
         self.take(key, value).map_err(|fault| fault.of_kind(FaultKind::Parameter))
     }
+}
+
+/// The values that a parameter takes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParameterKind {
+    /// A number between two limits.
+    Number([f64; 2]),
+    /// An angle between two limits, in degrees.
+    Angle([f64; 2]),
+    /// A whole number between two limits.
+    Count([f64; 2]),
+    /// One of these words.
+    Word(Vec<&'static str>),
+    /// True or false.
+    Flag,
+    /// A list of names.
+    Names,
+}
+
+impl ParameterKind {
+    /// The limits of a number, an angle (in degrees) or a whole number.
+    pub fn limits(&self) -> Option<[f64; 2]> {
+        match *self {
+            ParameterKind::Number(limits) | ParameterKind::Angle(limits) | ParameterKind::Count(limits) => Some(limits),
+            _ => None,
+        }
+    }
+}
+
+/// The [`ParameterKind`] of a reader with its limits.
+macro_rules! kind {
+    (number($least:expr, $most:expr)) => {
+        ParameterKind::Number([$least, $most])
+    };
+    (angle($least:expr, $most:expr, $usual:expr)) => {
+        ParameterKind::Angle([$least, $most])
+    };
+    (count($least:expr, $most:expr)) => {
+        ParameterKind::Count([$least, $most].map(f64::from))
+    };
+    (word($all:expr, $word:expr)) => {
+        ParameterKind::Word($all.iter().map(|&one| $word(one)).collect())
+    };
+    (flag()) => {
+        ParameterKind::Flag
+    };
+    (names($separator:expr)) => {
+        ParameterKind::Names
+    };
 }
 
 /// Reads and writes each parameter by a row `key = reader(limits), |value| text`.
@@ -176,18 +232,18 @@ macro_rules! parameters {
                 Ok(())
             }
 
-            /// Whether the values of a parameter are words, which files write in quotes.
-            pub(super) fn is_word(key: &str) -> bool {
-                match key {
-                    $(stringify!($key) => stringify!($read) == "word",)*
-                    _ => false,
-                }
-            }
-
             /// The value of a parameter as text for [`Parameters::set`]; `None` for an unknown key.
             pub fn text_of(&self, key: &str) -> Option<String> {
                 match key {
                     $(stringify!($key) => { let $value = &self.$key; Some($text) })*
+                    _ => None,
+                }
+            }
+
+            /// The values that a parameter takes; `None` for an unknown key.
+            pub fn kind_of(key: &str) -> Option<ParameterKind> {
+                match key {
+                    $(stringify!($key) => Some(kind!($read($($limit),*))),)*
                     _ => None,
                 }
             }
@@ -301,9 +357,12 @@ fn names(_: &str, value: &str, separator: char) -> Result<Vec<String>, Fault> {
     Ok(value.split(separator).map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect())
 }
 
-/// Degrees rounded to remove the rounding errors of the conversion to radians and back.
+/// Degrees that give the same radians again, without the digits that come from rounding errors where that is possible.
 fn degrees(radians: f64) -> String {
-    ((radians.to_degrees() * 1e9).round() / 1e9).to_string()
+    let exact = radians.to_degrees();
+    let plain = (exact * 1e9).round() / 1e9;
+    let near = [plain, exact, exact.next_down(), exact.next_up()];
+    near.into_iter().find(|degrees| degrees.to_radians() == radians).unwrap_or(exact).to_string()
 }
 
 /// A value for a message: strings in quotes (files pass their own) and escaped, to keep the message on one line.

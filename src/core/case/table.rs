@@ -5,7 +5,7 @@ use glam::DVec2;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::core::case::parameters::{Parameters, unknown_key};
+use crate::core::case::parameters::{ParameterKind, Parameters, unknown_key};
 use crate::core::fault::Fault;
 use crate::core::kernel::spelling::nearest;
 
@@ -216,7 +216,9 @@ impl<'a> Value<'a> {
         match self.value.get_ref() {
             DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().to_owned(),
             DeValue::Float(float) => float.as_str().to_owned(),
-            DeValue::String(text) if Parameters::is_word(&self.key) => text.clone().into_owned(),
+            DeValue::String(text) if matches!(Parameters::kind_of(&self.key), Some(ParameterKind::Word(_))) => {
+                text.clone().into_owned()
+            }
             _ => self.written(),
         }
     }

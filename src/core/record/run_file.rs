@@ -38,7 +38,7 @@ use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
 use crate::core::case::table::{Source, Table, Value};
-use crate::core::case::{Case, DomainSource, MeshSource, Parameters};
+use crate::core::case::{Case, DomainSource, MeshSource, ParameterKind, Parameters, set_parameters};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::{load, save};
 use crate::core::kernel::{Fingerprint, Shortest};
@@ -106,11 +106,7 @@ fn parsed(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
     let case = case(&table.need("case", "{ name = \"...\" }")?.table()?, file, folder)?;
     let mut run = Run::of(case);
     if let Some(value) = table.get("parameters") {
-        let own = value.table()?;
-        own.only(&Parameters::KEYS)?;
-        for entry in own.entries() {
-            run.parameters.set(entry.key(), &entry.parameter_text()).map_err(|fault| fault.at(entry.place()))?;
-        }
+        set_parameters(&mut run.parameters, &value.table()?)?;
     }
     let mut edits = Vec::new();
     for table in table.tables("edit")? {
@@ -330,8 +326,12 @@ fn text(run: &Run, links: &Links, folder: &Path) -> String {
         if i == 0 {
             line(format_args!("\n[parameters]\n"));
         }
-        let value = run.parameters.text_of(key).unwrap_or_default();
-        line(format_args!("{key} = {}\n", parameter(key, &value)));
+        let value = match *key {
+            "layered_loops" => list(&run.parameters.layered_loops),
+            "faces" => list(&run.parameters.faces),
+            key => parameter(key, &run.parameters.text_of(key).unwrap_or_default()),
+        };
+        line(format_args!("{key} = {value}\n"));
     }
     for Edit { step, kind } in run.edits() {
         line(format_args!("\n[[edit]]\nstep = {step}\n"));
@@ -356,7 +356,12 @@ fn text(run: &Run, links: &Links, folder: &Path) -> String {
 
 /// The value of a parameter in a file; words are quoted.
 fn parameter(key: &str, value: &str) -> String {
-    if key.starts_with("selection") { quoted(value) } else { value.to_owned() }
+    if let Some(ParameterKind::Word(_)) = Parameters::kind_of(key) { quoted(value) } else { value.to_owned() }
+}
+
+/// A list of names.
+fn list(names: &[String]) -> String {
+    format!("[{}]", names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", "))
 }
 
 /// Whether a character needs no escape in TOML and in XML (figures embed their run).

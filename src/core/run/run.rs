@@ -11,7 +11,7 @@ use crate::core::prepare::{Background, background};
 use crate::core::progress::Watch;
 
 /// Parameters of the background mesh: they can change for a whole run only.
-pub const OF_BACKGROUND: [&str; 2] = ["size_scale", "max_quads"];
+pub const OF_BACKGROUND: [&str; 4] = ["size_scale", "layered_loops", "faces", "max_quads"];
 
 /// A change to the run at a step.
 #[derive(Clone, Debug, PartialEq)]
@@ -248,8 +248,10 @@ mod tests {
 
     #[test]
     fn parameters_of_the_background_cannot_change_at_a_step() {
-        let fault = EditKind::parameter("size_scale", "0.5").unwrap_err();
-        assert!(fault.what.contains("background"), "{fault}");
+        for (key, value) in [("size_scale", "0.5"), ("max_quads", "9"), ("faces", "left"), ("layered_loops", "hole")] {
+            let fault = EditKind::parameter(key, value).unwrap_err();
+            assert!(fault.what.contains("background"), "{fault}");
+        }
         assert!(EditKind::parameter("theta_rect", "135deg").is_err());
     }
 }

@@ -1,8 +1,8 @@
 //! The quantities that elements can be coloured by, and their values.
 
 use crate::core::kernel::worded::worded;
-use crate::core::mesh::{ElementId, HalfEdgeId, Mesh};
-use crate::core::metric::measure::triangle_area;
+use crate::core::mesh::{ElementId, Mesh};
+use crate::core::metric::measure::{angle, triangle_area};
 use crate::render::colour_map::ColourMap;
 use crate::render::palette::Rgba;
 
@@ -15,12 +15,12 @@ worded! {
         State = "live and dead",
         /// The mean of the smallest target sizes at the nodes (eq. 6), on a logarithmic scale.
         HValue = "H",
-        /// The smallest angle, in degrees of the plane.
-        Angle = "smallest angle",
+        /// The smallest angle in the metric (eq. 5), in degrees.
+        Angle = "smallest angle, metric",
         /// Rows from the boundary.
         Level = "level",
         /// Quality in the metric.
-        Quality = "quality",
+        Quality = "quality, metric",
         /// The step that made the element.
         Birth = "step of birth",
         /// Area in the metric.
@@ -66,7 +66,7 @@ impl Shading {
                 let nodes: Vec<_> = mesh.corners(e).collect();
                 nodes.iter().map(|n| mesh.smallest_size(*n)).sum::<f64>() / nodes.len() as f64
             }
-            ColourBy::Angle => angles(mesh, e)[0].to_degrees(),
+            ColourBy::Angle => metric_angles(mesh, e)[0].to_degrees(),
             ColourBy::Level if mesh.is_quad(e) => f64::from(mesh.level(e)),
             ColourBy::Birth if mesh.is_quad(e) => births.get(e.index()).map_or(f64::NAN, |b| *b as f64),
             ColourBy::Level | ColourBy::Birth => f64::NAN,
@@ -98,14 +98,26 @@ impl Shading {
     }
 }
 
-/// The smallest and the largest inner angle of an element in the plane, in radians.
-pub fn angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
-    let angle = |h: HalfEdgeId| {
-        let p = mesh.uv(mesh.origin(h));
-        let (out, back) = (mesh.uv(mesh.target(h)) - p, mesh.uv(mesh.apex(h)) - p);
-        libm::atan2(out.perp_dot(back), out.dot(back)).rem_euclid(std::f64::consts::TAU)
-    };
-    mesh.half_edges(e).map(angle).fold([f64::INFINITY, 0.0], |[low, high], a| [low.min(a), high.max(a)])
+/// The smallest and the largest inner angle of an element, each in the metric of its node (eq. 5), in radians.
+pub fn metric_angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
+    extremes(mesh.half_edges(e).map(|h| {
+        let [node, next, last] = [mesh.origin(h), mesh.target(h), mesh.apex(h)];
+        let p = mesh.uv(node);
+        angle(mesh.metric_ref(node), mesh.uv(next) - p, mesh.uv(last) - p)
+    }))
+}
+
+/// The smallest and the largest angle between straight sides of an element in space, in radians.
+pub fn space_angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
+    extremes(mesh.half_edges(e).map(|h| {
+        let p = mesh.xyz(mesh.origin(h));
+        let (out, back) = (mesh.xyz(mesh.target(h)) - p, mesh.xyz(mesh.apex(h)) - p);
+        libm::atan2(out.cross(back).length(), out.dot(back))
+    }))
+}
+
+fn extremes(angles: impl Iterator<Item = f64>) -> [f64; 2] {
+    angles.fold([f64::INFINITY, 0.0], |[low, high], angle| [low.min(angle), high.max(angle)])
 }
 
 /// The area of an element in the metric of its nodes.

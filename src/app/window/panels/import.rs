@@ -2,7 +2,7 @@
 
 use eframe::egui::{
     self, Align, Button, DragValue, Frame, Grid, Layout, Panel, ProgressBar, Response, RichText, Role, ScrollArea,
-    Sense, Slider, Ui, Vec2, WidgetInfo,
+    Sense, Slider, SliderClamping, Ui, Vec2, WidgetInfo,
 };
 
 use super::{choice, heading, inset, line, note, on_click};
@@ -112,8 +112,8 @@ fn row(ui: &mut Ui, name: &str, tip: &str, palette: &Palette, widgets: impl FnOn
 
 /// A number that can be dragged and typed.
 fn number(ui: &mut Ui, value: &mut f64, [least, most]: [f64; 2], speed: f64, unit: &str, name: &str) -> Response {
+    let before = *value;
     let field = DragValue::new(value)
-        .range(least..=most)
         .speed(speed)
         .suffix(unit)
         .max_decimals(12)
@@ -121,6 +121,10 @@ fn number(ui: &mut Ui, value: &mut f64, [least, most]: [f64; 2], speed: f64, uni
         .update_while_editing(false);
     let response = ui.add_sized(Vec2::new(84.0, 22.0), field);
     response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, name));
+    // A range of the field would clamp what was given elsewhere, too.
+    if *value != before {
+        *value = if value.is_nan() { before } else { value.clamp(least, most) };
+    }
     response
 }
 
@@ -138,16 +142,17 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
         let defaults = Taking::default();
         let tip = "Folds beyond this angle are edges to keep (--feature-angle)";
         row(ui, "feature angle", tip, palette, |ui| {
-            let before = hundredths(taking.feature_angle.to_degrees());
+            let default = hundredths(defaults.feature_angle.to_degrees());
+            let before = options.feature_angle.unwrap_or(default);
             let mut degrees = before;
             dragging |= measure(ui, &mut degrees, Taking::ANGLES, false, "°", "Feature angle");
             if degrees != before {
-                options.feature_angle = unless_default(degrees, hundredths(defaults.feature_angle.to_degrees()));
+                options.feature_angle = unless_default(degrees, default);
             }
         });
         let tip = "How far shapes may be stretched when the surface is flattened (--chart-stretch)";
         row(ui, "chart stretch", tip, palette, |ui| {
-            let before = hundredths(taking.chart_stretch);
+            let before = taking.chart_stretch;
             let mut stretch = before;
             dragging |= measure(ui, &mut stretch, Taking::STRETCHES, true, "", "Chart stretch");
             if stretch != before {
@@ -169,9 +174,12 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
 /// A slider with its number. Returns whether one of them is being dragged.
 fn measure(ui: &mut Ui, value: &mut f64, range: [f64; 2], logarithmic: bool, unit: &str, name: &str) -> bool {
     ui.spacing_mut().slider_width = 104.0;
-    let slider = ui.add(Slider::new(value, range[0]..=range[1]).logarithmic(logarithmic).show_value(false));
+    let slider = Slider::new(value, range[0]..=range[1]).logarithmic(logarithmic).clamping(SliderClamping::Edits);
+    let slider = ui.add(slider.show_value(false));
     slider.widget_info(|| WidgetInfo::slider(true, *value, format!("{name} slider")));
-    *value = hundredths(*value);
+    if slider.changed() {
+        *value = hundredths(*value);
+    }
     let typed = number(ui, value, range, (range[1] - range[0]) / 400.0, unit, name);
     slider.dragged() || typed.dragged()
 }

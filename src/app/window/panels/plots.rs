@@ -1,52 +1,140 @@
-//! Figs. 23 and 24 of the current state: edge lengths in the metric, least and greatest angles of the elements.
+//! Figs. 23 and 24 of the current state: edge lengths in the metric, smallest and largest angles of the quadrilaterals
+//! in the metric; the lowest quality now and when quadrilaterals were formed. Each number leads to what has it.
+
+mod numbers;
+
+use std::sync::{Arc, Weak};
 
 use eframe::egui::{RichText, Ui, Vec2b};
 use egui_plot::{Bar, BarChart, Legend, Plot};
 
-use super::line;
+use super::{line, note};
 use crate::app::window::command::Command;
-use crate::app::window::session::Moment;
+use crate::app::window::session::{Goal, Moment};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::mesh::ElementId;
 use crate::render::palette::{Palette, Rgba};
-use crate::render::scene::{Outlined, angles};
+use crate::render::scene::{Outlined, metric_angles};
+use numbers::{BARS, Extremes, LONGEST, Numbers};
 
-/// The greatest edge length of the bars, and how many bars there are.
-const LONGEST: f64 = 3.0;
-const BARS: usize = 36;
+/// Height of all that is not a plot.
+const WORDS: f32 = 150.0;
+
+/// What the panel keeps for itself.
+#[derive(Default)]
+pub struct PlotsState {
+    /// The state that was measured last; a weak reference, since its mesh is updated once nobody uses it.
+    of: Weak<Moment>,
+    numbers: Option<Numbers>,
+}
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    let Some(moment) = state.run().moment.as_deref() else { return };
-    let half = 0.5 * (ui.available_height() - 60.0);
-    let (edges, mean) = lengths(moment);
-    head(ui, "Edge lengths in the metric (fig. 23)", format!("mean {}, unit is 1", words::fixed(mean, 3)), palette);
-    let [dead, live] = edges;
+pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = &state.run().moment else { return };
+    if !std::ptr::eq(local.of.as_ptr(), Arc::as_ptr(moment)) {
+        *local = PlotsState { of: Arc::downgrade(moment), numbers: None };
+    }
+    let numbers = local.numbers.get_or_insert_with(|| Numbers::of(moment));
+    let half = 0.5 * (ui.available_height() - WORDS);
+    ui.spacing_mut().item_spacing.y = 2.0;
+    head(ui, "Quality in the metric, 0 to 1", palette);
+    quality(ui, state, moment, commands, palette);
+    head(ui, "Edge lengths in the metric (fig. 23)", palette);
+    edges(ui, numbers, commands, palette);
+    let [dead, live] = numbers.lengths.clone();
     let series = [("quads", dead, palette.front[1]), ("triangles", live, palette.hint)];
     if let Some([low, high]) = chart(ui, "lengths", half, [0.0, LONGEST], series, palette) {
         let mesh = &moment.mesh;
         let fits = |length: f64| length >= low && (length < high || high >= LONGEST);
         let edges = mesh.edges().filter(|h| fits(mesh.length(*h)));
         let lit = edges.map(|h| Outlined::Edge(mesh.ends(h))).collect();
-        light(commands, lit, &format!("edges of {} to {}", words::fixed(low, 2), words::fixed(high, 2)));
+        let what = format!("edges of {} to {} in the metric", words::fixed(low, 2), words::fixed(high, 2));
+        light(commands, lit, &what);
     }
-    let (least, greatest, worst) = corner_angles(moment);
-    let note = worst.map(|(e, angle)| format!("smallest {}°, of element {}", words::degrees(angle), e.0));
-    if head(ui, "Smallest and largest angle of each quad, degrees (fig. 24)", note.unwrap_or_default(), palette)
-        && let Some((e, _)) = worst
-    {
-        commands.push(Command::Pick(Some(Outlined::Element(e))));
-    }
+    head(ui, "Smallest and largest angle of each quad in the metric, degrees (fig. 24)", palette);
+    ui.horizontal(|ui| {
+        angles(ui, "in the metric", numbers.in_metric, commands, palette);
+        angles(ui, "in space", numbers.in_space, commands, palette);
+    });
+    let [least, greatest] = numbers.angles.clone();
     let series = [("least", least, palette.front[1]), ("greatest", greatest, palette.front[2])];
     if let Some([low, high]) = chart(ui, "angles", half, [0.0, 180.0], series, palette) {
         let mesh = &moment.mesh;
-        let fits = |angle: f64| (low..high).contains(&angle.to_degrees());
-        let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && angles(mesh, *e).into_iter().any(fits));
+        let fits = |angle: f64| angle.to_degrees() >= low && (angle.to_degrees() < high || high >= 180.0);
+        let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && metric_angles(mesh, *e).into_iter().any(fits));
         let lit = quads.map(Outlined::Element).collect();
-        let what = format!("quads with an angle from {}° to {}°", words::fixed(low, 0), words::fixed(high, 0));
+        let what = format!(
+            "quads whose smallest or largest angle in the metric is {}° to {}°",
+            words::fixed(low, 0),
+            words::fixed(high, 0)
+        );
         light(commands, lit, &what);
+    }
+}
+
+/// The lowest quality now, and of all quadrilaterals when they were formed.
+fn quality(ui: &mut Ui, state: &State, moment: &Moment, commands: &mut Vec<Command>, palette: &Palette) {
+    ui.horizontal(|ui| {
+        // A link keeps a distance of its own.
+        ui.add_space(8.0);
+        match moment.worst {
+            Some((e, quality)) => {
+                let text = format!("lowest now {}", words::fixed(quality, 2));
+                let tip = format!("Select quadrilateral {}, which has it", e.0);
+                link(ui, text, &tip, [Command::Pick(Some(Outlined::Element(e)))], commands, palette);
+            }
+            None => _ = ui.label(note("no quadrilaterals yet", palette)),
+        }
+        if let Some((step, e, quality)) = state.run().worst_formed(moment.step) {
+            let text = format!("lowest when formed {}", words::fixed(quality, 2));
+            let tip = format!(
+                "Go to step {}, which formed quadrilateral {}. Those that close small loops are not counted",
+                words::grouped(step),
+                e.0
+            );
+            let asked = [Command::Go(Goal::Step(step)), Command::Pick(Some(Outlined::Element(e)))];
+            link(ui, text, &tip, asked, commands, palette);
+        }
+    });
+}
+
+fn edges(ui: &mut Ui, numbers: &Numbers, commands: &mut Vec<Command>, palette: &Palette) {
+    ui.horizontal(|ui| {
+        ui.add_space(12.0);
+        ui.label(note(format!("mean {}", words::fixed(numbers.mean, 2)), palette));
+        for (name, (ends, length)) in ["shortest", "longest"].into_iter().zip(numbers.edges.into_iter().flatten()) {
+            let text = format!("{name} {}", words::fixed(length, 2));
+            let tip = format!("Select edge {}, which has this length", words::edge(ends));
+            link(ui, text, &tip, [Command::Pick(Some(Outlined::Edge(ends)))], commands, palette);
+        }
+    });
+}
+
+fn angles(ui: &mut Ui, space: &str, extremes: Extremes<ElementId>, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(extremes) = extremes else { return };
+    ui.add_space(12.0);
+    ui.label(note(space, palette));
+    for (name, (e, angle)) in ["smallest", "largest"].into_iter().zip(extremes) {
+        let text = format!("{name} {}°", words::degrees(angle));
+        let tip = format!("Select quadrilateral {}, which has this angle {space}", e.0);
+        link(ui, text, &tip, [Command::Pick(Some(Outlined::Element(e)))], commands, palette);
+    }
+}
+
+/// A number that leads to what has it.
+fn link<const N: usize>(
+    ui: &mut Ui,
+    text: String,
+    tip: &str,
+    asked: [Command; N],
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    ui.add_space(4.0);
+    if ui.link(line(text, palette.text).underline()).on_hover_text(tip).clicked() {
+        commands.extend(asked);
     }
 }
 
@@ -56,20 +144,14 @@ fn light(commands: &mut Vec<Command>, lit: Vec<Outlined>, what: &str) {
     commands.push(Command::LightUp(lit, notice));
 }
 
-/// The heading of a plot. Returns whether its note was clicked.
-fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
-    let mut clicked = false;
+/// The heading of a plot.
+fn head(ui: &mut Ui, title: &str, palette: &Palette) {
     ui.horizontal(|ui| {
-        ui.set_height(26.0);
+        ui.set_height(24.0);
         ui.add_space(12.0);
         ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
-        if !note.is_empty() {
-            clicked = ui.link(line(note, palette.weak)).clicked();
-        }
     });
-    clicked
 }
-
 /// Shows bars. Returns the ends of one that was clicked.
 fn chart(
     ui: &mut Ui,
@@ -105,37 +187,4 @@ fn chart(
     let x = shown.transform.value_from_position(at).x;
     let bar = ((x - range[0]) / width).floor();
     (0.0..BARS as f64).contains(&bar).then(|| [range[0] + bar * width, range[0] + (bar + 1.0) * width])
-}
-
-/// Counts of edges of quadrilaterals and of live triangles by metric length, and the mean length of all.
-fn lengths(moment: &Moment) -> ([Vec<u32>; 2], f64) {
-    let mut counts = [vec![0; BARS], vec![0; BARS]];
-    let (mut sum, mut number) = (0.0, 0);
-    for h in moment.mesh.edges() {
-        let length = moment.mesh.length(h);
-        let dead =
-            moment.mesh.is_quad(h.element()) || moment.mesh.twin(h).is_some_and(|t| moment.mesh.is_quad(t.element()));
-        let bar = ((length / LONGEST * BARS as f64) as usize).min(BARS - 1);
-        counts[usize::from(!dead)][bar] += 1;
-        (sum, number) = (sum + length, number + 1);
-    }
-    (counts, sum / f64::from(number.max(1)))
-}
-
-type Worst = Option<(ElementId, f64)>;
-
-/// Counts of quadrilaterals by their least and greatest angles in the plane, and the one with the least.
-fn corner_angles(moment: &Moment) -> (Vec<u32>, Vec<u32>, Worst) {
-    let (mut least, mut greatest) = (vec![0; BARS], vec![0; BARS]);
-    let mut worst: Worst = None;
-    for e in moment.mesh.elements().filter(|e| moment.mesh.is_quad(*e)) {
-        let [low, high] = angles(&moment.mesh, e);
-        let bar = |angle: f64| ((angle / std::f64::consts::PI * BARS as f64).max(0.0) as usize).min(BARS - 1);
-        least[bar(low)] += 1;
-        greatest[bar(high)] += 1;
-        if worst.is_none_or(|w| low < w.1) {
-            worst = Some((e, low));
-        }
-    }
-    (least, greatest, worst)
 }

@@ -12,11 +12,11 @@ use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::render::palette::{Palette, Rgba};
-use columns::{Columns, Curve, Lane};
+use columns::{Columns, Curve, CurveKind, Lane};
 
 /// The label column and the counts, in points.
 const LABELS: f32 = 118.0;
-const COUNTS: f32 = 92.0;
+const COUNTS: f32 = 104.0;
 const LANE: f32 = 12.0;
 const GAP: f32 = 2.0;
 /// Height of a curve.
@@ -60,7 +60,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut TimelineState, commands: &mu
     let TimelineState { columns, open_row, .. } = local;
     columns.update(state, *open_row, axis.span, plot.width());
     let painter = ui.painter_at(rect);
-    let drawing = Drawing { painter, axis, palette, now: moment.step };
+    let worst = moment.worst.map(|worst| worst.1);
+    let drawing = Drawing { painter, axis, palette, now: moment.step, worst };
     let mut y = drawing.ruler(state, plot.top());
     let fits = |y: f32, height: f32| y + height <= plot.bottom() + 2.0;
     for lane in columns.lanes() {
@@ -139,12 +140,18 @@ fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
     let [loops, odd] = tracked.loops;
     text += &format!("\nfront: {} segments, {loops} loops, {odd} odd", words::grouped(tracked.front.into()));
     text += &format!("\n{} live triangles", words::grouped(tracked.live.into()));
+    if let Some(worst) = columns.worst_formed(step).filter(|worst| worst.is_finite()) {
+        let worst = words::fixed(worst, 2);
+        text += &format!("\nquality in the metric when formed (dots): the lowest up to here {worst} (line)");
+    }
     let next = state.run().samples.partition_point(|sample| sample.step < step);
     if let Some(sample) = state.run().samples.get(next.min(state.run().samples.len().saturating_sub(1))) {
         let verdict = columns.broken(sample).unwrap_or_else(|| "invariants hold".to_owned());
         let at = words::grouped(sample.step);
         text += &format!(
-            "\nchecked at step {at}: {verdict}; area {}, in the metric {}, nodes \u{2212} edges + elements {}",
+            "\nchecked at step {at}: {verdict}; lowest quality there {}; area in the plane {}, in the metric {}; \
+             nodes \u{2212} edges + elements {}",
+            words::fixed(sample.worst_quality, 2),
             words::size(sample.area),
             words::size(sample.area_metric),
             words::fixed(sample.euler as f64, 0)
@@ -193,6 +200,8 @@ struct Drawing<'a> {
     axis: Axis,
     palette: &'a Palette,
     now: u64,
+    /// The lowest quality of a quadrilateral now.
+    worst: Option<f64>,
 }
 
 impl Drawing<'_> {
@@ -232,7 +241,12 @@ impl Drawing<'_> {
     fn label(&self, y: f32, name: &str, count: &str, colour: Rgba) {
         let plot = self.axis.plot;
         self.text(Pos2::new(plot.left() - 9.0, y), Align2::RIGHT_CENTER, name, self.palette.weak);
-        self.text(Pos2::new(plot.right() + COUNTS - 32.0, y), Align2::RIGHT_CENTER, count, colour);
+        self.count(y, count, colour);
+    }
+
+    fn count(&self, y: f32, count: &str, colour: Rgba) {
+        let right = self.axis.plot.right() + COUNTS - 32.0;
+        self.text(Pos2::new(right, y), Align2::RIGHT_CENTER, count, colour);
     }
 
     /// One tick for each event, or a density strip if there are several in many columns.
@@ -290,7 +304,16 @@ impl Drawing<'_> {
             self.painter.add(Shape::line(line, Stroke::new(1.3, ink(self.palette.text.faded(fade)))));
         }
         let value = columns.value(curve.of, self.now);
-        self.label(y + 0.5 * CURVE, curve.of.name(), &value, self.palette.text);
+        let middle = y + 0.5 * CURVE;
+        if curve.of == CurveKind::Quality {
+            // Two numbers: in the mesh as it is, and of all quadrilaterals when they were formed.
+            let now = words::fixed(self.worst.unwrap_or(f64::NAN), 2);
+            self.label(middle, curve.of.name(), "", self.palette.text);
+            self.count(middle - 0.25 * CURVE, &format!("now {now}"), self.palette.text);
+            self.count(middle + 0.25 * CURVE, &format!("formed {value}"), self.palette.weak);
+        } else {
+            self.label(middle, curve.of.name(), &value, self.palette.text);
+        }
     }
 
     fn head(&self, bottom: f32) {

@@ -48,6 +48,8 @@ pub struct Moment {
     pub candidates: Option<Candidates>,
     /// The triangles that the last step looked at to split the front.
     pub narrow: Option<Narrow>,
+    /// The quadrilateral of the lowest quality, with its quality.
+    pub worst: Option<(ElementId, f64)>,
     /// Why the base is the base.
     pub base: Option<SegmentFacts>,
     /// The steps since the selection of the base under way, this one included.

@@ -15,7 +15,9 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
 use crate::core::run::history::BUDGET;
-use crate::core::run::{Condition, Copies, Edit, History, Recorder, Run, Sample, Stretch, Watched, breakpoint};
+use crate::core::run::{
+    Condition, Copies, Edit, History, Recorder, Run, Sample, Stretch, Watched, WorstQuality, breakpoint,
+};
 
 /// How many steps the recorder does before it hands them over, least and most: few at first, since the window may be
 /// waiting.
@@ -64,6 +66,8 @@ pub(super) struct Worker {
     copies: Copies,
     /// The changes since the last moment that was reported.
     since: Since,
+    /// The qualities in that moment.
+    qualities: WorstQuality,
     /// The changes of recent steps, by step.
     recent: VecDeque<(u64, Arc<[ElementId]>)>,
     /// Whether the whole mesh is still to be checked.
@@ -106,6 +110,7 @@ impl Worker {
             triangles,
             copies: Copies::default(),
             since: Since::everything(),
+            qualities: WorstQuality::default(),
             recent: VecDeque::new(),
             unchecked: true,
             was_broken: false,
@@ -289,7 +294,7 @@ impl Worker {
         let end = self.history.end().is_some();
         let steps = (self.tracked + 1..=log.known()).filter_map(|step| {
             let formed = match log.event(step) {
-                Some(Event::Formed { element, quality, .. }) => Some((*element, *quality as f32)),
+                Some(Event::Formed { element, quality, .. }) => Some((*element, *quality)),
                 _ => None,
             };
             let front = log.front(step);

@@ -1,11 +1,13 @@
 //! Does what the user asks for. With `hearing` this is the only place that changes [`State`].
 
 mod opening;
+mod parameters;
 mod saving;
 
 use std::time::{Duration, Instant};
 
 use super::{Breakpoint, Document, Look, Overlay, State, SurfaceView, ViewCamera, ViewKind, Watchpoint, watched};
+use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
@@ -67,6 +69,8 @@ impl State {
             Command::ResetParameters => {
                 self.change(|document| document.edits.retain(|edit| !matches!(edit.kind, EditKind::Parameter { .. })));
             }
+            Command::SetRules(rules) => self.set_rules(rules),
+            Command::SetForCase(key, value) => self.set_for_case(key, value),
             Command::Layer(layer) => self.change(|document| flip(Some(layer.switch(&mut document.layers)))),
             Command::ColourBy(by) => self.change(|document| document.colour_by = by),
             Command::AddBreakpoint(text) => self.add_breakpoint(text),
@@ -79,9 +83,12 @@ impl State {
                 }
             }),
             Command::Bookmark => self.bookmark(),
-            Command::Open(source) => self.open(source),
+            Command::Open(source) => self.open(source, Overrides::default()),
+            Command::OpenWith(source, overrides) => self.open(source, *overrides),
             Command::Import => match &self.run.source {
-                Some(Source::Mesh(path, options)) => self.import(path.clone(), options.clone()),
+                Some(Source::Mesh(path, options)) => {
+                    self.import(path.clone(), options.clone(), self.run.overrides.clone());
+                }
                 _ => self.notice("What is open was not imported from a mesh file in this window.".to_owned()),
             },
             Command::SetImport(options, gesture) => {
@@ -91,7 +98,8 @@ impl State {
             }
             Command::Convert => {
                 if let Some(import) = self.run.import.as_ref().filter(|import| import.is_ready()) {
-                    self.open(Source::Mesh(import.path.clone(), import.options.clone()));
+                    let source = Source::Mesh(import.path.clone(), import.options.clone());
+                    self.open(source, import.overrides.clone());
                 }
             }
             Command::CancelImport => self.cancel_import(),
@@ -115,13 +123,13 @@ impl State {
             Command::SaveFigure(formats) => self.save_figure(formats),
             Command::Reopen => {
                 if let Some(source) = self.run.source.clone() {
-                    self.open(source);
+                    self.open(source, self.run.overrides.clone());
                 }
             }
             Command::Notes => self.view.notes = !self.view.notes,
             Command::OpenKept => {
                 if let Some(source) = self.run.autosave.as_mut().and_then(|autosave| autosave.take()) {
-                    self.open(source);
+                    self.open(source, Overrides::default());
                 }
             }
             Command::DiscardKept => {
@@ -253,31 +261,12 @@ impl State {
         }
     }
 
-    fn set(&mut self, key: &'static str, value: String) {
-        let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
-        if self.parameter(key).as_ref() == Some(&value) {
-            return;
-        }
-        match EditKind::parameter(key, &value) {
-            Ok(kind) => self.edit(Edit { step, kind }),
-            Err(fault) => self.complain(&fault),
-        }
-    }
-
-    fn edit(&mut self, edit: Edit) {
-        self.change(|document| {
-            document.edits.retain(|old| old.step != edit.step || !edit.kind.replaces(&old.kind));
-            let place = document.edits.partition_point(|old| old.step <= edit.step);
-            document.edits.insert(place, edit);
-        });
-    }
-
     /// Replaces the base if it has just been selected, or else decides the next selection.
     fn choose_base(&mut self, [a, b]: [NodeId; 2]) {
         let Some(moment) = &self.run.moment else { return };
         let selected = matches!(moment.event, Some(Event::BaseSelected { .. }));
         let step = moment.step - u64::from(selected);
-        self.edit(Edit { step, kind: EditKind::Base { a, b } });
+        self.edit([Edit { step, kind: EditKind::Base { a, b } }]);
         let which = if selected { "The base is now" } else { "The next base will be" };
         self.notice(format!("{which} {}.", words::segment(a, b)));
     }

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::app::command_line::Overrides;
 use crate::app::window::autosave::Autosave;
 use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, Tracked, Verdict};
 use crate::core::convert::Phase;
-use crate::core::mesh::NodeId;
+use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
 use crate::core::run::{Sample, ShownState, Watched};
 
@@ -31,11 +32,20 @@ pub enum Lookup<T> {
     Unasked,
 }
 
+/// What is being opened.
+pub(super) struct Opening {
+    pub source: Source,
+    pub overrides: Overrides,
+    pub session: Session,
+}
+
 /// The run and the work on it.
 #[derive(Default)]
 pub struct RunState {
     /// What was opened.
     pub source: Option<Source>,
+    /// How its parameters were changed before it began.
+    pub overrides: Overrides,
     /// The case as it was opened, with its background mesh.
     pub opened: Option<Arc<Opened>>,
     /// How many runs have been opened before this one and with it.
@@ -66,7 +76,7 @@ pub struct RunState {
     pub autosave: Option<Autosave>,
     pub(super) session: Option<Session>,
     /// What is being opened; the run that is open stays until it is ready.
-    pub(super) opening: Option<(Source, Session)>,
+    pub(super) opening: Option<Opening>,
     /// The number of the last picture of an import.
     pub(super) pictures: u64,
     /// Watches the file that was opened.
@@ -109,6 +119,14 @@ impl RunState {
     /// Whether a figure is being made.
     pub fn is_making_figure(&self) -> bool {
         !self.figures.is_empty()
+    }
+
+    /// Of all quadrilaterals that were formed up to a step the one that had the lowest quality then: step, element and
+    /// quality.
+    pub fn worst_formed(&self, step: u64) -> Option<(u64, ElementId, f64)> {
+        let formed = self.track.iter().take(step as usize).zip(1..);
+        let formed = formed.filter_map(|(tracked, step)| tracked.formed.map(|(e, quality)| (step, e, quality)));
+        formed.min_by(|a, b| a.2.total_cmp(&b.2))
     }
 
     /// Whether the current state is the last one.

@@ -59,7 +59,7 @@ worded! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum CurveKind by name {
         Front = "front length",
-        Quality = "quality, worst",
+        Quality = "worst quality",
         Live = "live triangles",
         Loops = "loops",
     }
@@ -69,7 +69,7 @@ impl CurveKind {
     fn of(self, tracked: &Tracked) -> f32 {
         match self {
             CurveKind::Front => tracked.front as f32,
-            CurveKind::Quality => tracked.formed.map_or(1.0, |formed| formed.1),
+            CurveKind::Quality => tracked.formed.map_or(1.0, |formed| formed.1 as f32),
             CurveKind::Live => tracked.live as f32,
             CurveKind::Loops => f32::from(tracked.loops[0]),
         }
@@ -91,8 +91,8 @@ pub struct Columns {
     seen: Option<(u64, [f64; 2], usize, Option<usize>)>,
     lanes: Vec<Lane>,
     curves: Vec<Curve>,
-    /// The worst quality up to each step.
-    worst: Vec<f32>,
+    /// The lowest quality that a quadrilateral formed up to each step had when it was formed.
+    worst: Vec<f64>,
     /// Front, live triangles and loops after each step.
     figures: Vec<[u32; 3]>,
     first: Option<Sample>,
@@ -123,7 +123,7 @@ impl Columns {
 
     /// Follows the record of the run.
     fn follow(&mut self, state: &State) {
-        let mut worst = f32::INFINITY;
+        let mut worst = f64::INFINITY;
         let qualities = state.run().track.iter().map(|tracked| {
             worst = tracked.formed.map_or(worst, |formed| worst.min(formed.1));
             worst
@@ -217,13 +217,14 @@ impl Columns {
         let mut curve = Curve { of, line: Vec::new(), dots: Vec::new(), top: 1.0 };
         let every = (seen.len() / (2 * columns).max(1)).max(1);
         for k in seen.clone().step_by(every) {
-            let value = if of == CurveKind::Quality { self.worst[k].min(1.0) } else { of.of(&state.run().track[k]) };
+            let value =
+                if of == CurveKind::Quality { self.worst[k].min(1.0) as f32 } else { of.of(&state.run().track[k]) };
             curve.line.push((place(k + 1), value));
         }
         match of {
             CurveKind::Quality => {
                 let formed = seen.filter_map(|k| Some((k, state.run().track[k].formed?.1)));
-                let dots: Vec<_> = formed.map(|(k, quality)| (place(k + 1), quality)).collect();
+                let dots: Vec<_> = formed.map(|(k, quality)| (place(k + 1), quality as f32)).collect();
                 let every = (dots.len() / columns.max(1)).max(1);
                 curve.dots = dots.into_iter().step_by(every).collect();
             }
@@ -245,6 +246,11 @@ impl Columns {
         &self.broken
     }
 
+    /// The lowest quality that a quadrilateral formed up to a step had when it was formed.
+    pub fn worst_formed(&self, step: u64) -> Option<f64> {
+        self.worst.get(step.checked_sub(1)? as usize).copied()
+    }
+
     /// The value of a curve at a step.
     pub fn value(&self, of: CurveKind, step: u64) -> String {
         let k = step.checked_sub(1).map(|k| k as usize);
@@ -257,7 +263,7 @@ impl Columns {
             CurveKind::Front => figure(0),
             CurveKind::Live => figure(1),
             CurveKind::Loops => figure(2),
-            CurveKind::Quality => words::fixed(k.and_then(|k| self.worst.get(k)).map_or(f64::NAN, |w| (*w).into()), 2),
+            CurveKind::Quality => words::fixed(self.worst_formed(step).unwrap_or(f64::NAN), 2),
         }
     }
 }

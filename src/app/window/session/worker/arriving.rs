@@ -83,6 +83,7 @@ impl Worker {
         let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
         let base = selecting.base.and_then(|base| selecting.explain(state, base.a, base.b));
         let changes = self.since.take();
+        self.qualities.follow(&state.mesh, &changes);
         self.unchecked |= std::mem::take(&mut self.was_broken) || changes == Changes::Everything;
         let found = match &changes {
             Changes::Everything => Ok(()),
@@ -113,6 +114,7 @@ impl Worker {
             loops: table.loops.clone(),
             candidates,
             narrow: narrow.filter(|_| event.is_some_and(|event| event.is_about_a_split())),
+            worst: self.qualities.worst(),
             base,
             so_far,
             next: explain::next(state, &selecting),

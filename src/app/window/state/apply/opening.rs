@@ -4,47 +4,57 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::State;
+use crate::app::command_line::Overrides;
 use crate::app::input;
 use crate::app::window::import::{Import, ImportOptions};
 use crate::app::window::session::{Session, Source};
+use crate::app::window::state::Opening;
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
 use crate::core::run::Run;
 
 impl State {
-    /// Opens a case or a mesh; what is open stays until the other one is ready. A mesh is shown before it is converted.
-    pub(in crate::app::window) fn open(&mut self, source: Source) {
+    /// Opens a case or a mesh with its parameters changed; what is open stays until the other one is ready. A mesh is
+    /// shown before it is converted.
+    pub(super) fn open(&mut self, source: Source, overrides: Overrides) {
         if let Source::File(path) = &source
             && Format::from_path(path).is_ok()
         {
-            return self.import(path.clone(), ImportOptions::default());
+            return self.import(path.clone(), ImportOptions::default(), overrides);
         }
         let is_of_import =
             matches!((&source, &self.run.import), (Source::Mesh(path, _), Some(import)) if *path == import.path);
         if !is_of_import {
             self.give_up_import();
         }
-        let named = source.clone();
-        let session = Session::open(move || read(&named), self.wake.clone());
-        if self.run.opening.replace((source, session)).is_none() {
+        let (named, changed) = (source.clone(), overrides.clone());
+        let session = Session::open(move || read(&named, &changed), self.wake.clone());
+        if self.run.opening.replace(Opening { source, overrides, session }).is_none() {
             self.run.waiting += 1;
         }
         self.run.since.get_or_insert_with(Instant::now);
     }
 
     /// Shows a mesh and how it is to be imported.
-    pub(in crate::app::window::state) fn import(&mut self, path: PathBuf, options: ImportOptions) {
+    pub(in crate::app::window::state) fn import(
+        &mut self,
+        path: PathBuf,
+        options: ImportOptions,
+        overrides: Overrides,
+    ) {
         self.give_up_import();
         self.stop_opening();
         self.run.playing = None;
-        self.run.import = Some(Import::begin(path, options, self.run.pictures, self.wake.clone()));
+        let mut import = Import::begin(path, options, self.run.pictures, self.wake.clone());
+        import.overrides = overrides;
+        self.run.import = Some(import);
     }
 
     /// Gives up what is being opened.
     pub(super) fn stop_opening(&mut self) {
-        if let Some((_, session)) = &self.run.opening {
-            session.stop();
+        if let Some(opening) = &self.run.opening {
+            opening.session.stop();
         }
     }
 
@@ -66,13 +76,16 @@ impl State {
 }
 
 /// Reads what is to be opened.
-fn read(source: &Source) -> Result<Run, Fault> {
+fn read(source: &Source, overrides: &Overrides) -> Result<Run, Fault> {
     match source {
-        Source::BuiltIn(name) => match built_in::named(name) {
-            Some(case) => case.map(Run::of),
-            None => Err(Fault::new("There is no built-in case of this name").at(name.clone())),
-        },
-        Source::File(path) => input::run_of(path, &ImportOptions::default()),
-        Source::Mesh(path, options) => input::run_of(path, options),
+        Source::BuiltIn(name) => {
+            let case = built_in::named(name);
+            let missing = || Fault::new("There is no built-in case of this name").at(name.clone());
+            let mut run = Run::of(case.ok_or_else(missing)??);
+            overrides.apply(&mut run)?;
+            Ok(run)
+        }
+        Source::File(path) => input::run_of(path, &ImportOptions::default(), overrides),
+        Source::Mesh(path, options) => input::run_of(path, options, overrides),
     }
 }

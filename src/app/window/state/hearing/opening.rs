@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::app::window::files::Watcher;
-use crate::app::window::session::{Goal, Opened, Session, SessionNews, Source};
-use crate::app::window::state::{Look, RunState, State, ViewCamera};
+use crate::app::window::session::{Goal, Opened, SessionNews, Source};
+use crate::app::window::state::{Look, Opening, RunState, State, ViewCamera};
 use crate::core::case::built_in;
 
 impl State {
@@ -27,22 +27,22 @@ impl State {
     }
 
     pub(super) fn hear_opening(&mut self) {
-        while let Some(told) = self.run.opening.as_ref().and_then(|(_, session)| session.hear().next()) {
+        while let Some(told) = self.run.opening.as_ref().and_then(|opening| opening.session.hear().next()) {
             match told {
                 SessionNews::Progress(progress) => self.run.progress = Some(progress),
                 SessionNews::Opened(opened) => {
-                    if let Some((source, session)) = self.run.opening.take() {
-                        self.begin(source, session, opened);
+                    if let Some(opening) = self.run.opening.take() {
+                        self.begin(opening, opened);
                     }
                 }
                 SessionNews::Fault(fault, asks) => {
                     let opening = self.run.opening.take();
                     match opening {
                         _ if fault.is_stop() => {}
-                        Some((Source::Mesh(path, options), _)) => {
+                        Some(Opening { source: Source::Mesh(path, options), overrides, .. }) => {
                             // The import shows why, and how the mesh may be imported in another way.
                             if self.run.import.is_none() {
-                                self.import(path, options);
+                                self.import(path, options, overrides);
                             }
                             if let Some(import) = &mut self.run.import {
                                 import.refuse_conversion(fault);
@@ -64,7 +64,8 @@ impl State {
     }
 
     /// A run is open and takes the place of the one before.
-    fn begin(&mut self, source: Source, session: Session, opened: Arc<Opened>) {
+    fn begin(&mut self, opening: Opening, opened: Arc<Opened>) {
+        let Opening { source, overrides, session } = opening;
         self.give_up_import();
         let watcher = match &source {
             Source::File(path) | Source::Mesh(path, _) => Some(Watcher::of(path.clone(), self.wake.clone())),
@@ -75,6 +76,7 @@ impl State {
         let old = std::mem::take(&mut self.run);
         self.run = RunState {
             source: Some(source),
+            overrides,
             number: old.number + 1,
             track_epoch: old.track_epoch + 1,
             verdict: old.verdict,
