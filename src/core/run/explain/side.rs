@@ -101,7 +101,7 @@ pub fn side_rule(tried: &Candidates) -> String {
              {which} side (4.3.4, ii)."
         ),
         SideRule::Near => format!(
-            "{not_front} The edge nearest to the target of {target}\u{b0}, the {direction}, is {off}\u{b0} off, within {limit}\u{b0} (iii)."
+            "{not_front} The edge nearest to the target of {target}\u{b0}, the {direction}, is {off}\u{b0} off, within {limit}\u{b0} (4.3.4, iii)."
         ),
         SideRule::Swap => {
             let best = match nearest {
@@ -111,12 +111,12 @@ pub fn side_rule(tried: &Candidates) -> String {
                 None => "No edge is there".to_owned(),
             };
             format!(
-                "{not_front} {best}; a swap makes one that is {off}\u{b0} off the target of {target}\u{b0}, the {direction} (iv, v)."
+                "{not_front} {best}; a swap makes one that is {off}\u{b0} off the target of {target}\u{b0}, the {direction} (4.3.4, iv and v)."
             )
         }
         SideRule::Nearest => format!(
             "{not_front} No edge is within {limit}\u{b0} of the target of {target}\u{b0}, the {direction}, and no swap makes a nearer one than \
-             the best edge, {off}\u{b0} off (v)."
+             the best edge, {off}\u{b0} off (4.3.4, v)."
         ),
         SideRule::Attempt => {
             let node = chosen.map_or(0, |chosen| chosen.node.0);
