@@ -40,17 +40,25 @@ pub fn corner(
     let is_base = phase.base().is_some_and(|base| [base.a, base.b] == ends);
     let (tops, attempt) = decided(phase);
     if let Some(top) = tops[side.index()].filter(|_| is_base) {
-        return format!("{which} side decided: {}", edge([ends[side.index()], top]));
+        let is_divided = matches!(phase, Phase::DivideSide { side: at_hand, .. } if *at_hand == side);
+        let then = if is_divided { ", to be divided" } else { "" };
+        return format!("{which} side decided: {}{then}", edge([ends[side.index()], top]));
     }
     if let Some(top) = attempt.and_then(|tops| tops[side.index()]).filter(|_| is_base) {
-        return format!("this attempt takes {} as the {which} side", edge([ends[side.index()], top]));
+        return format!("this attempt tries {} as the {which} side", edge([ends[side.index()], top]));
     }
     let neighbour = mesh.front_between(ends[0], ends[1]).map(|h| match side {
-        Side::Left => edge([mesh.origin(mesh.front_before(h)), ends[0]]),
-        Side::Right => edge([ends[1], mesh.target(mesh.front_after(h))]),
+        Side::Left => [mesh.origin(mesh.front_before(h)), ends[0]],
+        Side::Right => [ends[1], mesh.target(mesh.front_after(h))],
     });
-    let front = neighbour.map_or("the front".to_owned(), |edge| format!("the front, {edge},"));
-    let becomes = if is_base { "is" } else { "would be" };
+    let front = neighbour.map_or("the front".to_owned(), |segment| format!("the front, {},", edge(segment)));
+    let far = neighbour.map(|segment| segment[side.index()]);
+    let is_taken = far.is_some_and(|far| ends.contains(&far) || is_base && tops.contains(&Some(far)));
+    let becomes = match (is_taken, is_base) {
+        (true, _) => "ends at a corner in use and cannot be",
+        (false, true) => "is to be",
+        (false, false) => "would be",
+    };
     let bound = |sign: &str, angle: f64, of: &str| {
         let [_, angle] = angles_apart(theta, angle);
         format!("{sign} {angle}\u{b0} = \u{3b8}_{{{of}}}")
