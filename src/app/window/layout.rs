@@ -14,10 +14,10 @@ use crate::core::kernel::worded::worded;
 pub use docks::Docks;
 
 /// Widths in points: front, lens, inspector; and the least width of the view.
-const LEFT: f32 = 402.0;
+const LEFT: f32 = 420.0;
 const LENS: f32 = 263.0;
 const RIGHT: f32 = 332.0;
-const VIEW: f32 = 422.0;
+const VIEW: f32 = 404.0;
 
 worded! {
     /// A panel.

@@ -1,5 +1,5 @@
-//! Names, numbers and events in words, as everywhere in the window: integers grouped by thin spaces, a true minus, an en
-//! dash for what is not defined.
+//! Names, numbers and events in words, as everywhere in the window: integers grouped by thin spaces, a true minus, an
+//! en dash for what is not defined.
 
 use super::session::words_of;
 use super::state::Progress;

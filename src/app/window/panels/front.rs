@@ -64,7 +64,7 @@ const COLUMNS: [(FrontColumn, &str, f32, &str); 10] = [
     (FrontColumn::Class, "cl", 26.0, "Class of table 1"),
     (FrontColumn::HValue, "H", 53.0, "H-value, eq. 6, in units of the case"),
     (FrontColumn::Length, "len", 31.0, "Length in the metric"),
-    (FrontColumn::Key, "key", 58.0, "Key by which segments of a class are ordered"),
+    (FrontColumn::Key, "key", 54.0, "Key by which segments of a class are ordered"),
     (FrontColumn::ThetaA, "θA °", 39.0, "Frontal angle at A, degrees, in the metric of A"),
     (FrontColumn::ThetaB, "θB °", 39.0, "Frontal angle at B, degrees, in the metric of B"),
     (FrontColumn::Level, "lv", 19.0, "Level: rows from the boundary"),

@@ -12,7 +12,7 @@ use crate::core::mesh::NodeId;
 pub enum Why {
     /// No edge can serve as this side.
     NoSide(Side),
-    /// The side edge cannot be divided at the required point.
+    /// The side edge cannot be divided: it is dead or too short, or the place of division is not valid.
     NoDivision(Side),
     /// A dead edge lies across the top edge.
     TopBlocked([NodeId; 2]),

@@ -26,7 +26,7 @@ pub fn event(event: &Event) -> String {
             format!("{which} side made by a swap: node {}, {off}\u{b0} off the target direction", edge.node.0)
         }
         Event::SideDivided { side, node, length } => {
-            format!("{} side divided at new node {}; it was {} long", name(side), node.0, fixed(length, 2))
+            format!("{} side divided at new node {}; its metric length was {}", name(side), node.0, fixed(length, 2))
         }
         Event::TopSwapped { across, new } => format!("top: {} swapped for {}", edge(across), edge(new)),
         Event::TopSmoothed { nodes } => format!("{} smoothed around the left top", count(nodes.into(), "node")),
@@ -70,7 +70,7 @@ pub fn event(event: &Event) -> String {
             node.0
         ),
         Event::SeamRefused { at, corner, why, .. } => {
-            format!("no seam at node {} of {}\u{b0}: {}", at.0, degrees(corner.angle), why_unmerged(why))
+            format!("corner of {}\u{b0} at node {} not seamed: {}", degrees(corner.angle), at.0, why_unmerged(why))
         }
         Event::Split { node, gone, segments: [first, second], .. } => {
             format!("front split: node {} joined to node {}, loops of {first} and {second} segments", gone.0, node.0)
@@ -91,9 +91,9 @@ pub fn event(event: &Event) -> String {
         ),
         Event::SecondPass => "all segments are deferred: second pass with wider tolerances".to_owned(),
         Event::Matched { triangles, unmatched, .. } => format!(
-            "last resort: {} triangles paired, {} without a partner",
-            grouped(triangles as u64),
-            grouped(unmatched as u64)
+            "last resort: the matching gives a partner to {} of {}",
+            grouped(triangles.saturating_sub(unmatched) as u64),
+            count(triangles, "triangle")
         ),
         Event::Patched { triangles, quads, element, .. } => {
             format!("last resort: {quads} quadrilaterals of {triangles} triangles, from element {}", element.0)
@@ -115,7 +115,7 @@ pub fn event(event: &Event) -> String {
         Event::Swept { looked, moved } => {
             format!("{moved} of {} moved to lower the energy", count(looked as usize, "node"))
         }
-        Event::LastResort(outcome) if outcome.triangles == 0 => "the front has left no triangle over".to_owned(),
+        Event::LastResort(outcome) if outcome.triangles == 0 => "nothing was left for the last resort".to_owned(),
         Event::LastResort(outcome) => {
             format!("the last resort has converted {} triangles", grouped(outcome.triangles as u64))
         }
@@ -128,7 +128,9 @@ pub fn event(event: &Event) -> String {
 pub fn why_rolled_back(why: Why) -> String {
     match why {
         Why::NoSide(side) => format!("no edge fits the {} side", name(side)),
-        Why::NoDivision(side) => format!("the {} side cannot be divided at the required point", name(side)),
+        Why::NoDivision(side) => {
+            format!("the {} side cannot be divided: it is dead or too short, or its middle is not valid", name(side))
+        }
         Why::TopBlocked(ends) => format!("dead edge {} lies across the top", edge(ends)),
         Why::TopThroughNode(node) => format!("node {} lies on the top edge", node.0),
         Why::TopTooLong => "swaps and removals of nodes do not recover the top edge".to_owned(),

@@ -62,9 +62,9 @@ pub fn next(state: &Converter<'_>, selecting: &Selecting) -> String {
             format!("The last resort pairs the triangles of part {} of {}.", at + 1, left.len())
         }
         Phase::Match { .. } if parameters.post_processing => {
-            "The whole mesh is cleaned up and smoothed (4.3.7).".to_owned()
+            "The last resort is done; the whole mesh is cleaned up and smoothed (4.3.7).".to_owned()
         }
-        Phase::Match { .. } => "The conversion ends: there is no post-processing.".to_owned(),
+        Phase::Match { .. } => "The last resort is done; the conversion ends without post-processing.".to_owned(),
         Phase::Patch { plan, patch, .. } => {
             format!("The last resort makes quadrilaterals, patch {} of {}.", patch + 1, plan.patches())
         }

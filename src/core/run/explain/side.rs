@@ -40,17 +40,25 @@ pub fn corner(
     let is_base = phase.base().is_some_and(|base| [base.a, base.b] == ends);
     let (tops, attempt) = decided(phase);
     if let Some(top) = tops[side.index()].filter(|_| is_base) {
-        return format!("{which} side decided: {}", edge([ends[side.index()], top]));
+        let is_divided = matches!(phase, Phase::DivideSide { side: at_hand, .. } if *at_hand == side);
+        let then = if is_divided { ", to be divided" } else { "" };
+        return format!("{which} side decided: {}{then}", edge([ends[side.index()], top]));
     }
     if let Some(top) = attempt.and_then(|tops| tops[side.index()]).filter(|_| is_base) {
-        return format!("this attempt takes {} as the {which} side", edge([ends[side.index()], top]));
+        return format!("this attempt tries {} as the {which} side", edge([ends[side.index()], top]));
     }
     let neighbour = mesh.front_between(ends[0], ends[1]).map(|h| match side {
-        Side::Left => edge([mesh.origin(mesh.front_before(h)), ends[0]]),
-        Side::Right => edge([ends[1], mesh.target(mesh.front_after(h))]),
+        Side::Left => [mesh.origin(mesh.front_before(h)), ends[0]],
+        Side::Right => [ends[1], mesh.target(mesh.front_after(h))],
     });
-    let front = neighbour.map_or("the front".to_owned(), |edge| format!("the front, {edge},"));
-    let becomes = if is_base { "is" } else { "would be" };
+    let front = neighbour.map_or("the front".to_owned(), |segment| format!("the front, {},", edge(segment)));
+    let far = neighbour.map(|segment| segment[side.index()]);
+    let is_taken = far.is_some_and(|far| ends.contains(&far) || is_base && tops.contains(&Some(far)));
+    let becomes = match (is_taken, is_base) {
+        (true, _) => "ends at a corner in use and cannot be",
+        (false, true) => "is to be",
+        (false, false) => "would be",
+    };
     let bound = |sign: &str, angle: f64, of: &str| {
         let [_, angle] = angles_apart(theta, angle);
         format!("{sign} {angle}\u{b0} = \u{3b8}_{{{of}}}")
@@ -101,7 +109,7 @@ pub fn side_rule(tried: &Candidates) -> String {
              {which} side (4.3.4, ii)."
         ),
         SideRule::Near => format!(
-            "{not_front} The edge nearest to the target of {target}\u{b0}, the {direction}, is {off}\u{b0} off, within {limit}\u{b0} (iii)."
+            "{not_front} The edge nearest to the target of {target}\u{b0}, the {direction}, is {off}\u{b0} off, within {limit}\u{b0} (4.3.4, iii)."
         ),
         SideRule::Swap => {
             let best = match nearest {
@@ -111,12 +119,12 @@ pub fn side_rule(tried: &Candidates) -> String {
                 None => "No edge is there".to_owned(),
             };
             format!(
-                "{not_front} {best}; a swap makes one that is {off}\u{b0} off the target of {target}\u{b0}, the {direction} (iv, v)."
+                "{not_front} {best}; a swap makes one that is {off}\u{b0} off the target of {target}\u{b0}, the {direction} (4.3.4, iv and v)."
             )
         }
         SideRule::Nearest => format!(
             "{not_front} No edge is within {limit}\u{b0} of the target of {target}\u{b0}, the {direction}, and no swap makes a nearer one than \
-             the best edge, {off}\u{b0} off (v)."
+             the best edge, {off}\u{b0} off (4.3.4, v)."
         ),
         SideRule::Attempt => {
             let node = chosen.map_or(0, |chosen| chosen.node.0);
