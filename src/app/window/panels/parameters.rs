@@ -30,7 +30,7 @@ const NUMBERS: [Number; 9] = [
         decimals: 1,
         unit: "°",
         paper: "paper 135",
-        tip: "Below this frontal angle the neighbouring front segment is the side edge (table 1).",
+        tip: "Below this frontal angle the neighbouring front segment is the side edge (4.3.4), and table 1 has its classes.",
     },
     Number {
         key: "c",
@@ -119,7 +119,7 @@ const SWITCHES: [(&str, &str, &str); 7] = [
 const SELECTION: [(&str, &str); 4] = [
     ("table1", "table 1 (paper)"),
     ("shortest", "shortest segment"),
-    ("smallest_angle", "smallest frontal angle"),
+    ("smallest_angle", "smallest frontal angles"),
     ("level", "by rows, as in Q-Morph"),
 ];
 

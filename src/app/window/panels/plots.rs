@@ -22,10 +22,16 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     let Some(moment) = state.run().moment.as_deref() else { return };
     let half = 0.5 * (ui.available_height() - 60.0);
     let (edges, mean) = lengths(moment);
-    head(ui, "Edge lengths in the metric (fig. 23)", format!("mean {}, unit is 1", words::fixed(mean, 3)), palette);
+    head(
+        ui,
+        "Edge lengths in the metric, proportion of edges (fig. 23)",
+        format!("mean {}, unit is 1", words::fixed(mean, 3)),
+        palette,
+    );
     let [dead, live] = edges;
+    let all = dead.iter().chain(&live).sum::<u32>().max(1);
     let series = [("quads", dead, palette.front[1]), ("triangles", live, palette.hint)];
-    if let Some([low, high]) = chart(ui, "lengths", half, [0.0, LONGEST], series, palette) {
+    if let Some([low, high]) = chart(ui, "lengths", half, [0.0, LONGEST], series, f64::from(all), palette) {
         let mesh = &moment.mesh;
         let fits = |length: f64| length >= low && (length < high || high >= LONGEST);
         let edges = mesh.edges().filter(|h| fits(mesh.length(*h)));
@@ -40,7 +46,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         commands.push(Command::Pick(Some(Outlined::Element(e))));
     }
     let series = [("least", least, palette.front[1]), ("greatest", greatest, palette.front[2])];
-    if let Some([low, high]) = chart(ui, "angles", half, [0.0, 180.0], series, palette) {
+    if let Some([low, high]) = chart(ui, "angles", half, [0.0, 180.0], series, 1.0, palette) {
         let mesh = &moment.mesh;
         let fits = |angle: f64| (low..high).contains(&angle.to_degrees());
         let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && angles(mesh, *e).into_iter().any(fits));
@@ -70,13 +76,15 @@ fn head(ui: &mut Ui, title: &str, note: String, palette: &Palette) -> bool {
     clicked
 }
 
-/// Shows bars. Returns the ends of one that was clicked.
+/// Shows bars as high as their counts divided by `unit`; the one under the pointer says its count. Returns the ends of
+/// one that was clicked.
 fn chart(
     ui: &mut Ui,
     id: &str,
     height: f32,
     range: [f64; 2],
     series: [(&str, Vec<u32>, Rgba); 2],
+    unit: f64,
     palette: &Palette,
 ) -> Option<[f64; 2]> {
     let width = (range[1] - range[0]) / BARS as f64;
@@ -95,10 +103,12 @@ fn chart(
             let fill = ink(colour);
             let bars = counts.iter().enumerate().map(|(i, count)| {
                 let middle = range[0] + (i as f64 + 0.3 + 0.4 * k as f64) * width;
-                Bar::new(middle, f64::from(*count)).width(0.36 * width).fill(fill)
+                let label = format!("{name}: {}", words::grouped(u64::from(*count)));
+                Bar::new(middle, f64::from(*count) / unit).name(label).width(0.36 * width).fill(fill)
             });
             let colour = if colour == palette.hint { colour.faded(0.7) } else { colour };
-            plot.bar_chart(BarChart::new(name, bars.collect()).color(ink(colour)));
+            let chart = BarChart::new(name, bars.collect()).color(ink(colour));
+            plot.bar_chart(chart.element_formatter(Box::new(|bar, _| bar.name.clone())));
         }
     });
     let at = shown.response.interact_pointer_pos().filter(|_| shown.response.clicked())?;
