@@ -209,7 +209,7 @@ fn a_top_edge_that_swaps_alone_do_not_recover_is_recovered_by_smoothing_after_a_
         let mut parameters = converter.parameters().clone();
         parameters.top_smoothing = false;
         converter.set_parameters(parameters);
-        assert_eq!(told(&mut converter), ["[6, 9] to [5, 7]", "TopTooLong"]);
+        assert_eq!(told(&mut converter), ["[6, 9] to [5, 7]", "TopStuck"]);
     });
     // What the first smoothing changes: the corner at node 9 beside the swap to 5-10 is reflex before, and not after.
     with_figure("top-smoothing", |mut converter| {

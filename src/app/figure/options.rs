@@ -61,7 +61,7 @@ impl std::fmt::Display for Size {
 /// What a histogram shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(in crate::app) enum Plot {
-    /// Edge lengths in the metric (fig. 23)
+    /// Edge lengths in the metric, as proportions of all edges (fig. 23)
     Lengths,
     /// Smallest and largest angles of the elements (fig. 24)
     Angles,

@@ -18,7 +18,8 @@ pub struct Parameters {
     /// The selection factor c of section 4.3.3: 1.5 to 2.0 in the paper, which used 2.0. So large that every segment is
     /// within reach, the classes of table 1 alone decide.
     pub c: f64,
-    /// Below this frontal angle the neighbouring front segment is the side edge (table 1).
+    /// Below this frontal angle the neighbouring front segment is the side edge (section 4.3.4, ii); table 1 makes its
+    /// classes by it.
     pub theta_rect: f64,
     /// At or below this frontal angle a front corner is closed by a seam (section 4.3.6).
     pub theta_seam: f64,

@@ -8,9 +8,9 @@ worded! {
     pub enum Selection by word {
         /// The paper's table 1: classes by frontal angles, within reach of the smallest H-value.
         Table1 = "table1",
-        /// The shortest physical length.
+        /// The shortest physical length (4.3.3, rule 1).
         Shortest = "shortest",
-        /// The smallest frontal angle.
+        /// The smallest sum of both frontal angles (4.3.3, rule 2).
         SmallestAngle = "smallest_angle",
         /// Q-Morph's order: state, level, metric length.
         Level = "level",
@@ -25,7 +25,7 @@ worded! {
         MetricLengthTimesH = "metric_length_times_h",
         /// The H-value of eq. (6).
         HValue = "h_value",
-        /// The physical length, as the paper says.
+        /// The physical length: the paper says only "length".
         PhysicalLength = "physical_length",
     }
 }

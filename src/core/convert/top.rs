@@ -74,7 +74,7 @@ pub(super) fn recover_step(mesh: &mut Mesh, c: NodeId, d: NodeId, keep: &[NodeId
             }
         }
     }
-    Err(Why::TopTooLong)
+    Err(Why::TopStuck)
 }
 
 /// Whether the line between two nodes crosses the line from C to D properly.

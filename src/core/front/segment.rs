@@ -58,8 +58,8 @@ impl Segment {
         }
     }
 
-    /// The quantity that must be below c Hmin for the segment to be within reach (4.3.3, step ii; the readings of
-    /// docs/algorithm.md, "The selection window").
+    /// The quantity that must be below c Hmin for the segment to be within reach (4.3.3, steps ii and iii; the readings
+    /// of docs/algorithm.md, "The selection window").
     pub fn window(&self, window: SelectionWindow) -> f64 {
         match window {
             SelectionWindow::HValue => self.h_value,

@@ -103,7 +103,7 @@ pub struct Lengths {
     pub deviation: f64,
     /// Share within [1/sqrt 2, sqrt 2].
     pub share_unit: f64,
-    /// Number of edges in each class of 0.1 (fig. 23).
+    /// Number of edges in each class of 0.1, of which fig. 23 draws proportions.
     pub edges: [u64; LENGTH_CLASSES],
 }
 

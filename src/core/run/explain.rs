@@ -65,7 +65,7 @@ impl MetricFacts {
 pub enum Corner {
     /// At most theta_seam: a seam closes it (4.3.6).
     Seam,
-    /// Below theta_rect: the neighbouring segment is the side edge (table 1).
+    /// Below theta_rect: the neighbouring segment is the side edge (4.3.4, side edges ii).
     Rectangle,
     /// Up to theta_revr: a side edge must be found.
     Flat,

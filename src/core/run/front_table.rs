@@ -180,7 +180,7 @@ impl FrontTable {
         self.rows.iter().filter(|row| !row.is_deferred && self.is_of_face(row))
     }
 
-    /// Whether the segment is within c Hmin and of class 1, 2 or 3 (4.3.3, step ii).
+    /// Whether the segment is within c Hmin and of class 1, 2 or 3 (4.3.3, steps ii and iii).
     pub fn is_within_reach(&self, row: &Row) -> bool {
         row.class < 4 && row.layer(&self.parameters) == self.layer && row.window < self.reach()
     }

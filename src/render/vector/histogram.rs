@@ -18,6 +18,8 @@ const RIGHT: f64 = 6.0;
 const SHAPE: f64 = 0.62;
 /// Bars with smaller counts have the count above them.
 const FEW: u64 = 12;
+/// What the vertical axis of proportions counts: a hundredth of a percent.
+const PARTS: f64 = 1e4;
 
 /// A histogram of one series or two.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,19 +34,21 @@ pub struct Histogram {
     tick: (f64, usize),
     /// Counts by class for each series, with a name where there are several.
     series: Vec<(&'static str, Vec<u64>)>,
+    /// The number of all, where the vertical axis has proportions of it and not counts.
+    all: Option<u64>,
 }
 
 impl Histogram {
-    /// Edge lengths in the metric (fig. 23); the classes are 0.1 wide.
+    /// Edge lengths in the metric, as proportions of all edges (fig. 23); the classes are 0.1 wide.
     pub fn of_lengths(statistics: &Statistics) -> Histogram {
         let lengths = &statistics.lengths;
         // To the next half beyond the longest edge; the last class contains all longer edges.
         let last = lengths.edges.iter().rposition(|count| *count > 0).map_or(0, |k| k + 1);
         let classes = last.next_multiple_of(5).clamp(20, LENGTH_CLASSES);
         Histogram {
-            axes: ["length of edge in the metric".to_owned(), "number of edges".to_owned()],
+            axes: ["length of edge in the metric".to_owned(), "proportion of edges".to_owned()],
             note: format!(
-                "{}, {} edges: {} ± {}",
+                "{}, {} edges: {} ± {}; above bars: number of edges",
                 elements(statistics),
                 grouped(statistics.edges as u64),
                 fixed(lengths.mean, 2),
@@ -53,6 +57,7 @@ impl Histogram {
             range: [0.0, 0.1 * classes as f64],
             tick: (0.5, 1),
             series: vec![("", lengths.edges[..classes].to_vec())],
+            all: Some(lengths.edges.iter().sum()),
         }
     }
 
@@ -68,6 +73,7 @@ impl Histogram {
                 ("least", angles.least_of_element.to_vec()),
                 ("greatest", angles.greatest_of_element.to_vec()),
             ],
+            all: None,
         }
     }
 
@@ -76,6 +82,7 @@ impl Histogram {
         let height = sheet.height.unwrap_or(SHAPE * sheet.width);
         let mut page = Page::new(sheet, height, true);
         let most = self.series.iter().flat_map(|s| &s.1).copied().max().unwrap_or(0).max(1);
+        let most = (self.height(most).ceil() as u64).max(1);
         let step = step(most);
         let top = most.div_ceil(step) * step;
         let plot = Plot {
@@ -90,6 +97,17 @@ impl Histogram {
         page.finish()
     }
 
+    /// The height of a bar in units of the vertical axis.
+    fn height(&self, count: u64) -> f64 {
+        self.all.map_or(count as f64, |all| PARTS * count as f64 / all.max(1) as f64)
+    }
+
+    /// A number on the vertical axis, of numbers that are `step` apart.
+    fn number(&self, height: u64, step: u64) -> String {
+        let decimals = (0..4).rev().find(|k| step.is_multiple_of(10_u64.pow(*k))).map_or(4, |k| 4 - k as usize);
+        if self.all.is_some() { fixed(height as f64 / PARTS, decimals) } else { grouped(height) }
+    }
+
     fn bars(&self, page: &mut Page, plot: &Plot, sheet: &Sheet<'_>) {
         let styles = bars(sheet.look.ink);
         let count = self.series.len() as f64;
@@ -100,7 +118,7 @@ impl Histogram {
         for k in 0..classes {
             for (i, (_, counts)) in self.series.iter().enumerate().filter(|s| s.1.1[k] > 0) {
                 let share = |part: f64| self.range[0] + class * (k as f64 + 0.08 + 0.84 * (i as f64 + part) / count);
-                let (low, high) = (plot.at(share(0.0), 0.0), plot.at(share(1.0), counts[k] as f64));
+                let (low, high) = (plot.at(share(0.0), 0.0), plot.at(share(1.0), self.height(counts[k])));
                 let [fill, stroke] = styles[i.min(1)];
                 // The outline lies inside the bar.
                 let inset = DVec2::new(0.2, 0.0);
@@ -139,7 +157,7 @@ impl Histogram {
         for k in 0..=(top / step) {
             let at = plot.at(self.range[0], (k * step) as f64);
             path.walk([at, at - DVec2::new(2.0, 0.0)].into_iter(), false);
-            numbers.push((at + DVec2::new(-3.5, 0.35 * NOTE), "end", grouped(k * step)));
+            numbers.push((at + DVec2::new(-3.5, 0.35 * NOTE), "end", self.number(k * step, step)));
         }
         let (tick, decimals) = self.tick;
         let ticks = ((self.range[1] - self.range[0]) / tick + 1e-6) as u32;
@@ -161,7 +179,7 @@ impl Histogram {
 
 /// The map from values of a plot to the page.
 struct Plot {
-    /// The corner on the page at the smallest value and count 0.
+    /// The corner on the page at the smallest value and height 0.
     low: DVec2,
     /// The opposite corner.
     high: DVec2,
@@ -170,8 +188,8 @@ struct Plot {
 }
 
 impl Plot {
-    fn at(&self, x: f64, count: f64) -> DVec2 {
-        let share = DVec2::new((x - self.range[0]) / (self.range[1] - self.range[0]), count / self.top);
+    fn at(&self, x: f64, height: f64) -> DVec2 {
+        let share = DVec2::new((x - self.range[0]) / (self.range[1] - self.range[0]), height / self.top);
         self.low + share * (self.high - self.low)
     }
 }
@@ -200,6 +218,24 @@ fn elements(statistics: &Statistics) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bars_are_counts_or_proportions_of_all() {
+        let histogram = |all| Histogram {
+            axes: [String::new(), String::new()],
+            note: String::new(),
+            range: [0.0, 1.0],
+            tick: (0.5, 1),
+            series: vec![("", vec![3, 7, 40])],
+            all,
+        };
+        let (counts, proportions) = (histogram(None), histogram(Some(50)));
+        assert_eq!([3, 40].map(|count| counts.height(count)), [3.0, 40.0]);
+        assert_eq!([3, 40].map(|count| proportions.height(count)), [600.0, 8000.0]);
+        assert_eq!([(20, 10), (2000, 1000)].map(|(height, step)| counts.number(height, step)), ["20", "2\u{2009}000"]);
+        let numbers = [(2000, 2000), (400, 200), (1500, 500), (15, 5)];
+        assert_eq!(numbers.map(|(height, step)| proportions.number(height, step)), ["0.2", "0.04", "0.15", "0.0015"]);
+    }
 
     #[test]
     fn axes_have_few_and_round_numbers() {

@@ -128,7 +128,7 @@ fn link(ui: &mut Ui, text: String, what: Outlined, commands: &mut Vec<Command>, 
 
 /// The length of an edge, in the metric and in space.
 fn length(ui: &mut Ui, metric: f64, physical: f64, palette: &Palette) {
-    heading(ui, "Length", "eqs. 4, 5", palette);
+    heading(ui, "Length", "eq. 4", palette);
     let text = format!("**{}** metric,  {} in space", words::fixed(metric, 2), words::size(physical));
     formula(ui, &text, palette).on_hover_text("In a plane case the parametric length is the length in space.");
 }

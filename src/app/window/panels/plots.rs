@@ -41,11 +41,12 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut V
     ui.spacing_mut().item_spacing.y = 2.0;
     head(ui, "Quality in the metric, 0 to 1", palette);
     quality(ui, state, moment, commands, palette);
-    head(ui, "Edge lengths in the metric (fig. 23)", palette);
+    head(ui, "Edge lengths in the metric, proportion of edges (fig. 23)", palette);
     edges(ui, numbers, commands, palette);
     let [dead, live] = numbers.lengths.clone();
+    let all = dead.iter().chain(&live).sum::<u32>().max(1);
     let series = [("quads", dead, palette.front[1]), ("triangles", live, palette.hint)];
-    if let Some([low, high]) = chart(ui, "lengths", half, [0.0, LONGEST], series, palette) {
+    if let Some([low, high]) = chart(ui, "lengths", half, [0.0, LONGEST], series, f64::from(all), palette) {
         let mesh = &moment.mesh;
         let fits = |length: f64| length >= low && (length < high || high >= LONGEST);
         let edges = mesh.edges().filter(|h| fits(mesh.length(*h)));
@@ -60,7 +61,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut V
     });
     let [least, greatest] = numbers.angles.clone();
     let series = [("least", least, palette.front[1]), ("greatest", greatest, palette.front[2])];
-    if let Some([low, high]) = chart(ui, "angles", half, [0.0, 180.0], series, palette) {
+    if let Some([low, high]) = chart(ui, "angles", half, [0.0, 180.0], series, 1.0, palette) {
         let mesh = &moment.mesh;
         let fits = |angle: f64| angle.to_degrees() >= low && (angle.to_degrees() < high || high >= 180.0);
         let quads = mesh.elements().filter(|e| mesh.is_quad(*e) && metric_angles(mesh, *e).into_iter().any(fits));
@@ -152,13 +153,16 @@ fn head(ui: &mut Ui, title: &str, palette: &Palette) {
         ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
     });
 }
-/// Shows bars. Returns the ends of one that was clicked.
+
+/// Shows bars as high as their counts divided by `unit`; the one under the pointer says its count. Returns the ends of
+/// one that was clicked.
 fn chart(
     ui: &mut Ui,
     id: &str,
     height: f32,
     range: [f64; 2],
     series: [(&str, Vec<u32>, Rgba); 2],
+    unit: f64,
     palette: &Palette,
 ) -> Option<[f64; 2]> {
     let width = (range[1] - range[0]) / BARS as f64;
@@ -177,10 +181,12 @@ fn chart(
             let fill = ink(colour);
             let bars = counts.iter().enumerate().map(|(i, count)| {
                 let middle = range[0] + (i as f64 + 0.3 + 0.4 * k as f64) * width;
-                Bar::new(middle, f64::from(*count)).width(0.36 * width).fill(fill)
+                let label = format!("{name}: {}", words::grouped(u64::from(*count)));
+                Bar::new(middle, f64::from(*count) / unit).name(label).width(0.36 * width).fill(fill)
             });
             let colour = if colour == palette.hint { colour.faded(0.7) } else { colour };
-            plot.bar_chart(BarChart::new(name, bars.collect()).color(ink(colour)));
+            let chart = BarChart::new(name, bars.collect()).color(ink(colour));
+            plot.bar_chart(chart.element_formatter(Box::new(|bar, _| bar.name.clone())));
         }
     });
     let at = shown.response.interact_pointer_pos().filter(|_| shown.response.clicked())?;

@@ -97,6 +97,7 @@ kinds! {
         TopBlocked "top_blocked",
         TopThroughNode "top_through_node",
         TopTooLong "top_too_long",
+        TopStuck "top_stuck",
         TooLong "too_long",
         NotDisc "not_disc",
         NotConvex "not_convex",

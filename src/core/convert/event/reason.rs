@@ -20,6 +20,8 @@ pub enum Why {
     TopThroughNode(NodeId),
     /// No swap and no removal of a node recovers the top edge, or too many would be needed.
     TopTooLong,
+    /// None of the edges across the top edge can be swapped, and no node there removed.
+    TopStuck,
     /// A new side or the top is longer than the gate allows, in the metric.
     TooLong(f64),
     /// The four sides do not enclose a disc of live triangles.

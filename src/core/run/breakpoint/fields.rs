@@ -168,7 +168,10 @@ fn rolled_back(facts: &StepFacts<'_>) -> Option<WhyKind> {
 
 fn recovery_failed(facts: &StepFacts<'_>) -> Option<Value> {
     let why = rolled_back(facts);
-    Some(Value::Flag(matches!(why, Some(WhyKind::TopBlocked | WhyKind::TopThroughNode | WhyKind::TopTooLong))))
+    Some(Value::Flag(matches!(
+        why,
+        Some(WhyKind::TopBlocked | WhyKind::TopThroughNode | WhyKind::TopTooLong | WhyKind::TopStuck)
+    )))
 }
 
 fn fallback(facts: &StepFacts<'_>) -> Option<Value> {

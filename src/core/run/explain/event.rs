@@ -133,7 +133,8 @@ pub fn why_rolled_back(why: Why) -> String {
         }
         Why::TopBlocked(ends) => format!("dead edge {} lies across the top", edge(ends)),
         Why::TopThroughNode(node) => format!("node {} lies on the top edge", node.0),
-        Why::TopTooLong => "swaps and removals of nodes do not recover the top edge".to_owned(),
+        Why::TopTooLong => "too many edges cross the top edge, or too many changes are needed".to_owned(),
+        Why::TopStuck => "no swap helps among the edges across the top edge, and no node there can go".to_owned(),
         Why::TooLong(length) => format!("a new side or the top is too long: {}", fixed(length, 2)),
         Why::NotDisc => "the four sides do not enclose a disc of live triangles".to_owned(),
         Why::NotConvex => "it would not be strictly convex".to_owned(),
