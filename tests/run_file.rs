@@ -124,7 +124,7 @@ fn the_command_line_goes_the_way_of_a_run_file() {
     let picture = folder.path().join("a.svg");
     let status = quadfront().args(["render", "--at", "step=170", "--quiet", "-o"]).args([&picture, &file]).status();
     assert!(status.unwrap().success() && std::fs::metadata(&picture).unwrap().len() > 1000);
-    let refused = quadfront().arg("convert").arg(&file).args(["--set", "c=99"]).output().unwrap();
+    let refused = quadfront().arg("convert").arg(&file).args(["--set", "c=9999"]).output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
     // Nonsense in it is told with its line.
     std::fs::write(&file, std::fs::read_to_string(&file).unwrap().replace("theta_rect = 110", "theta_rect = 500"))

@@ -191,10 +191,10 @@ fn what_is_typed_is_set_with_all_its_digits_or_refused_with_the_words_of_the_com
         settle(&mut harness);
         assert_eq!(now(&harness).text_of(key).as_deref(), Some(value));
     }
-    type_over(&mut harness, "c", "11");
+    type_over(&mut harness, "c", "1100");
     settle(&mut harness);
     let said = harness.state().state.view().faults.clone();
-    assert_eq!(said, [Parameters::default().set("c", "11").unwrap_err().to_string()]);
+    assert_eq!(said, [Parameters::default().set("c", "1100").unwrap_err().to_string()]);
     assert_eq!(now(&harness).text_of("c").as_deref(), Some("2"));
     for key in Parameters::KEYS {
         let kind = Parameters::kind_of(key).unwrap();
