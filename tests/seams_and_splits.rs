@@ -283,7 +283,7 @@ fn seams_and_splits_say_what_the_formulas_give() {
     check("example1", false, &[("seam_widening", "2")], &mut checked);
     check("example1", true, &[], &mut checked);
     check("repeated-line", false, &[("eps1", "1"), ("eps2", "2")], &mut checked);
-    check("polar-1", false, &[("size_scale", "1.5")], &mut checked);
+    check("polar-1", false, &[("size_scale", "1.5"), ("seam_widening", "2")], &mut checked);
     let Checked { seamed, refused, widened, split, split_refused, by_parity, nothing_slender } = checked;
     assert!(seamed > 50 && refused > 10 && widened > 20, "{checked:?}");
     assert!(split > 5 && split_refused > 20 && by_parity > 5 && nothing_slender > 200, "{checked:?}");
