@@ -59,9 +59,16 @@ fn examine(name: &str, paper: bool, one_of: usize) -> Seen {
 fn every_step_of_examples_1_and_2_is_the_one_of_the_formulas() {
     for paper in [false, true] {
         let [one, two] = ["example1", "example2"].map(|name| examine(name, paper, 1));
-        eprintln!("{one:#?} {two:#?}");
-        let both = |count: &dyn Fn(&Seen) -> usize| count(&one) + count(&two);
-        assert!(both(&|seen| seen.selections) > 450 && both(&|seen| seen.with_deferred) > 10);
+        let seen = format!("{paper}: {one:?} {two:?}");
+        let both = |count: fn(&Seen) -> usize| count(&one) + count(&two);
+        assert!(both(|seen| seen.selections) > 450 && both(|seen| seen.with_deferred) > 10, "{seen}");
+        let ways: [fn(&Sides) -> usize; 4] = [|s| s.front, |s| s.edge, |s| s.swap, |s| s.divided];
+        for way in ways {
+            assert!(way(&one.sides) + way(&two.sides) > 50, "{seen}");
+        }
+        assert_eq!(both(|seen| seen.sides.indivisible), 0, "{seen}");
+        let [moved, refused] = [both(|seen| seen.smoothings.moved), both(|seen| seen.smoothings.refused)];
+        assert!(moved > 1000 && refused < moved / 50 && both(|seen| seen.smoothings.joined) > 50, "{seen}");
     }
 }
 
@@ -70,7 +77,7 @@ fn one_of_ten_quadrilaterals_of_the_other_cases_is_the_one_of_the_formulas() {
     for (name, _) in built_in::CASES {
         for paper in [false, true] {
             let seen = examine(name, paper, 10);
-            eprintln!("{name} {seen:?}");
+            assert!(seen.selections > 20 && seen.smoothings.moved > 50, "{name} {paper}: {seen:?}");
         }
     }
 }

@@ -133,7 +133,8 @@ fn areas_and_arc_lengths_of_meshes_converge_to_the_closed_form_with_second_order
             let points = sizes.iter().zip(errors).map(|(h, error)| (libm::log(*h), libm::log(error[kind])));
             let n = sizes.len() as f64;
             let (x, y) = points.clone().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
-            let [over, under] = points.fold([0.0; 2], |[o, u], p| [o + (p.0 - x) * (p.1 - y), u + (p.0 - x).powi(2)]);
+            let [over, under] =
+                points.fold([0.0; 2], |[o, u], p| [o + (p.0 - x) * (p.1 - y), u + (p.0 - x) * (p.0 - x)]);
             let (order, fine) = (over / under, errors[5][kind]);
             assert!(order > 1.7 && fine < 3e-3, "{name}: {errors:?}, order {order}");
         }

@@ -60,7 +60,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut V
         angles(ui, "in space", numbers.in_space, commands, palette);
     });
     let [least, greatest] = numbers.angles.clone();
-    let series = [("least", least, palette.front[1]), ("greatest", greatest, palette.front[2])];
+    let series = [("smallest", least, palette.front[1]), ("largest", greatest, palette.front[2])];
     if let Some([low, high]) = chart(ui, "angles", half, [0.0, 180.0], series, 1.0, palette) {
         let mesh = &moment.mesh;
         let fits = |angle: f64| angle.to_degrees() >= low && (angle.to_degrees() < high || high >= 180.0);
