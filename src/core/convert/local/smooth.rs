@@ -7,7 +7,6 @@ use crate::core::case::SmoothingWeights;
 use crate::core::convert::front::Front;
 use crate::core::convert::relax::energy;
 use crate::core::mesh::{ElementId, Mesh, NodeId};
-use crate::core::metric::measure::angle;
 
 /// A smoothed node must not let the worst quality around fall below this share of what it was.
 const KEPT_QUALITY: f64 = 0.9;
@@ -69,11 +68,12 @@ pub fn around_top(front: &mut Front<'_>, tops: [NodeId; 2]) -> u8 {
 fn by_area(front: &mut Front<'_>, node: NodeId) -> bool {
     let mesh = &*front.mesh;
     let (mut sum, mut weight, mut before) = (DVec2::ZERO, 0.0, f64::INFINITY);
+    let mut last = None;
     for e in mesh.elements_at(node) {
         let centroid = mesh.corners(e).fold(DVec2::ZERO, |sum, n| sum + mesh.uv(n)) / mesh.sides(e) as f64;
         let area = match front.parameters.smoothing_weights {
             SmoothingWeights::Determinant => area_by_determinant(mesh, e),
-            SmoothingWeights::Printed => printed_area(mesh, e, node),
+            SmoothingWeights::Printed => printed_area(mesh, e, node, &mut last),
         };
         sum += centroid * area;
         weight += area;
@@ -116,18 +116,31 @@ fn area_by_determinant(mesh: &Mesh, e: ElementId) -> f64 {
     roots / mesh.sides(e) as f64 * area
 }
 
+/// An edge or a diagonal that leaves a node: its other end, its direction, and its metric length over that in the
+/// node's own metric.
+type Spoke = (NodeId, DVec2, f64);
+
 /// Area of an element at a node as printed (eqs. 10a, 10b): by the metric lengths of the edges, and of the diagonal,
-/// that leave the node, and the angles between them in its metric.
-fn printed_area(mesh: &Mesh, e: ElementId, node: NodeId) -> f64 {
+/// that leave the node, and the angles between them in its metric. `last` is the last edge of the element before, and
+/// becomes that of this one: two elements side by side share an edge.
+fn printed_area(mesh: &Mesh, e: ElementId, node: NodeId, last: &mut Option<Spoke>) -> f64 {
     let corners: SmallVec<[NodeId; 4]> = mesh.corners(e).collect();
     let at = corners.iter().position(|&n| n == node).expect("the element is at the node");
+    let metric = mesh.metric_ref(node);
+    let mut sum = 0.0;
+    let mut before: Option<Spoke> = None;
     // The other corners, anticlockwise.
-    let others = (1..corners.len()).map(|k| corners[(at + k) % corners.len()]);
-    let spokes: SmallVec<[(f64, DVec2); 3]> =
-        others.map(|n| (mesh.distance(node, n), mesh.uv(n) - mesh.uv(node))).collect();
-    let between = |pair: &[(f64, DVec2)]| {
-        let [(l, p), (next, q)] = [pair[0], pair[1]];
-        0.5 * l * next * libm::sin(angle(mesh.metric_ref(node), p, q))
-    };
-    spokes.windows(2).map(between).sum()
+    for n in (1..corners.len()).map(|k| corners[(at + k) % corners.len()]) {
+        let spoke = last.take_if(|last| last.0 == n).unwrap_or_else(|| {
+            let d = mesh.uv(n) - mesh.uv(node);
+            (n, d, mesh.distance(node, n) / metric.norm2(d).sqrt())
+        });
+        // l l' sin(theta), the sine by eq. 5: sqrt(det M) x(p, q) over both lengths in the node's metric.
+        if let Some((_, p, l)) = before {
+            sum += l * spoke.2 * p.perp_dot(spoke.1);
+        }
+        before = Some(spoke);
+    }
+    *last = before;
+    0.5 * metric.det().sqrt() * sum
 }
