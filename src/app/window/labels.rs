@@ -261,7 +261,7 @@ impl Labels<'_> {
         let [key, _] = explain::key_name(table.parameters());
         let row = table.rows.iter().find(|row| [row.a, row.b] == [s.a, s.b]);
         let key = row.map_or(String::new(), |row| format!("  ·  {key} {}", explain::key_text(row, table.parameters())));
-        format!("{}  ·  class {}  ·  H {}{key}", words::segment(s.a, s.b), s.class, words::size(s.h_value))
+        format!("{}  ·  class {}  ·  H {}{key}", words::segment([s.a, s.b]), s.class, words::size(s.h_value))
     }
 
     fn segment(&self, ends: [NodeId; 2]) -> Option<&Segment> {

@@ -4,12 +4,11 @@
 use super::session::words_of;
 use super::state::Progress;
 use crate::core::convert::EventKind;
-use crate::core::mesh::NodeId;
 use crate::core::progress::Stage;
 use crate::render::scene::Outlined;
 
 pub use crate::core::kernel::number::{UNDEFINED, decimals, degrees, fixed, grouped, size};
-pub use crate::core::run::explain::{capital, event, passed, why_rolled_back as why};
+pub use crate::core::run::explain::{capital, edge, event, passed, segment, why_rolled_back as why};
 
 /// The progress of some work.
 pub fn progress(progress: &Progress) -> String {
@@ -22,16 +21,6 @@ pub fn progress(progress: &Progress) -> String {
     } else {
         words.to_owned()
     }
-}
-
-/// A front segment by its nodes.
-pub fn segment(a: NodeId, b: NodeId) -> String {
-    format!("{} → {}", a.0, b.0)
-}
-
-/// An edge by its nodes.
-pub fn edge([a, b]: [NodeId; 2]) -> String {
-    format!("{}–{}", a.0, b.0)
 }
 
 /// The name of something that can be selected.

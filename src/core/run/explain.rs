@@ -15,7 +15,7 @@ mod next;
 
 pub use event::{about, event, why_rolled_back};
 pub use next::next;
-pub use numbers::{capital, plain};
+pub use numbers::{capital, edge, plain, segment};
 pub use segment::{SegmentFacts, Verdict};
 pub use selecting::{SelectedBase, Selecting};
 pub use side::{corner, passed, side_rule};

@@ -222,7 +222,7 @@ fn table(
             let is_ranked = !its_row.is_deferred && selection.is_of_face(its_row);
             let texts = [
                 if is_ranked { rank.to_string() } else { words::UNDEFINED.to_owned() },
-                words::segment(segment.a, segment.b),
+                words::segment([segment.a, segment.b]),
                 String::new(),
                 words::fixed(segment.h_value, decimals),
                 words::fixed(segment.length_metric, 2),
@@ -255,7 +255,7 @@ fn table(
                 }
             });
             let response = row.response();
-            let name = format!("Segment {}", words::segment(segment.a, segment.b));
+            let name = format!("Segment {}", words::segment([segment.a, segment.b]));
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_picked, name.clone()));
             let what = Outlined::Edge([segment.a, segment.b]);
             if response.hovered() {

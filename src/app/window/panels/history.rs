@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             for edit in &state.document().edits {
                 let what = match &edit.kind {
                     EditKind::Parameter { key, value } => format!("{key} = {value}"),
-                    EditKind::Base { a, b } => format!("base {}", words::segment(*a, *b)),
+                    EditKind::Base { a, b } => format!("base {}", words::segment([*a, *b])),
                 };
                 let button = ui.button(format!("from step {}: {what}", words::grouped(edit.step)));
                 on_click(&button, Command::Go(Goal::Step(edit.step)), commands);

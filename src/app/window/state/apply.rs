@@ -268,7 +268,7 @@ impl State {
         let step = moment.step - u64::from(selected);
         self.edit([Edit { step, kind: EditKind::Base { a, b } }]);
         let which = if selected { "The base is now" } else { "The next base will be" };
-        self.notice(format!("{which} {}.", words::segment(a, b)));
+        self.notice(format!("{which} {}.", words::segment([a, b])));
     }
 
     fn add_breakpoint(&mut self, text: String) {

@@ -18,12 +18,12 @@ pub fn plain(text: &str) -> String {
 }
 
 /// A front segment by its nodes.
-pub(super) fn segment([a, b]: [NodeId; 2]) -> String {
+pub fn segment([a, b]: [NodeId; 2]) -> String {
     format!("{} \u{2192} {}", a.0, b.0)
 }
 
 /// An edge by its nodes.
-pub(super) fn edge([a, b]: [NodeId; 2]) -> String {
+pub fn edge([a, b]: [NodeId; 2]) -> String {
     format!("{}\u{2013}{}", a.0, b.0)
 }
 

@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, node: NodeId, commands:
         let ends = [mesh.origin(*h), mesh.target(*h)];
         ui.horizontal(|ui| {
             formula(ui, &format!("\u{3b8} = **{}°**  left of", words::fixed(*angle, 1)), palette);
-            let name = words::segment(ends[0], ends[1]);
+            let name = words::segment(ends);
             super::link(ui, name, Outlined::Edge(ends), commands, palette);
         });
     }

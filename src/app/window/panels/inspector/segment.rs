@@ -18,7 +18,7 @@ use crate::render::scene::{Decision, Outlined};
 pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands: &mut Vec<Command>, palette: &Palette) {
     let s = &moment.front[place];
     let is_base = Decision::of(&moment.phase).base == Some([s.a, s.b]);
-    title(ui, format!("Front segment {}", words::segment(s.a, s.b)), palette);
+    title(ui, format!("Front segment {}", words::segment([s.a, s.b])), palette);
     let row = &moment.rows[place];
     let mut about = format!("class {}  ·  level {}", s.class, s.level);
     if let Some(ring) = moment.loops.get(row.front_loop as usize) {
