@@ -56,7 +56,7 @@ worded! {
     /// How the structure of the whole mesh is cleaned up (4.3.7; docs/algorithm.md, "Clean-up").
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum CleanUpBy by word {
-        /// Single changes, then a search for sequences of them, judged by an energy.
+        /// Changes of a few elements, then cavities that are filled anew, judged by an energy.
         Search = "search",
         /// The traditional operations that the paper names, one at a time, judged by the valences.
         Traditional = "traditional",

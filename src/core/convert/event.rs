@@ -331,10 +331,19 @@ pub enum Event {
         /// How.
         #[serde(flatten)]
         what: Cleaning,
-        /// Changes that follow it, where the first is an improvement only together with others.
-        #[serde(serialize_with = "present")]
-        then: [Option<Cleaning>; 3],
         /// Energy of the neighbourhood, before and after.
+        energy: [f64; 2],
+    },
+    /// The quadrilaterals of a cavity were replaced by others (4.3.7; docs/algorithm.md, "Cavities").
+    Refilled {
+        /// Edges of the sides of the cavity, anticlockwise.
+        #[serde(serialize_with = "present")]
+        sides: [u32; 6],
+        /// Number of quadrilaterals, before and after.
+        quads: [u32; 2],
+        /// Number of irregular nodes in it and on its border, before and after.
+        irregular: [u32; 2],
+        /// Energy of the cavity and its neighbourhood, before and after.
         energy: [f64; 2],
     },
     /// Free nodes were smoothed by minimising the energy (4.3.7).
@@ -390,9 +399,9 @@ pub(super) fn degrees<S: Serializer>(radians: &f64, serializer: S) -> Result<S::
     radians.to_degrees().serialize(serializer)
 }
 
-/// Writes the changes that are present, as a list.
-fn present<S: Serializer>(all: &[Option<Cleaning>; 3], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(all.iter().flatten())
+/// Writes the sides that are present, as a list.
+fn present<S: Serializer>(sides: &[u32; 6], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(sides.iter().filter(|&&edges| edges > 0))
 }
 
 fn degrees_if_any<S: Serializer>(radians: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
@@ -421,7 +430,7 @@ mod tests {
         let blocked = r#"{"kind":"rolled_back","attempt":1,"why":{"kind":"top_blocked","value":[7,8]}}"#;
         assert_eq!(json(Why::TopBlocked([node, NodeId(8)])), blocked);
         let what = Cleaning::DiamondCollapsed { gone: node, kept: NodeId(8) };
-        let cleaned = serde_json::to_string(&Event::Cleaned { what, then: [None; 3], energy: [2.0, 1.5] }).unwrap();
+        let cleaned = serde_json::to_string(&Event::Cleaned { what, energy: [2.0, 1.5] }).unwrap();
         assert_eq!(
             cleaned,
             r#"{"kind":"cleaned","what":"diamond_collapsed","gone":7,"kept":8,"then":[],"energy":[2.0,1.5]}"#

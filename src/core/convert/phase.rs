@@ -57,12 +57,8 @@ pub struct Attempt {
 pub enum FinishPart {
     /// Smoothing of all that the front has left.
     FirstSmoothing,
-    /// Clean-up of the structure by single changes.
+    /// Clean-up of the structure.
     CleanUp,
-    /// Clean-up of the structure by pairs of changes, where single ones do not help.
-    CleanUpByPairs,
-    /// Clean-up by sequences of up to four changes.
-    CleanUpBySequences,
     /// Smoothing of the final structure.
     LastSmoothing,
     /// Mending of what folds over its surface, when every face is converted.

@@ -164,6 +164,31 @@ impl Mesh {
         Ok(made[0])
     }
 
+    /// Fills the disc of some quadrilaterals anew. `inner` are the nodes inside it, `border` those around it,
+    /// anticlockwise; `quads` are the new quadrilaterals, by numbers of nodes: first those of the border, then the new
+    /// ones with these places and metrics. Returns the new nodes and the new elements.
+    ///
+    /// # Errors
+    /// Refused if a node inside is fixed.
+    pub fn refill(
+        &mut self,
+        old: &[ElementId],
+        inner: &[NodeId],
+        border: &[NodeId],
+        new: &[(DVec2, Metric2)],
+        quads: &[[u32; 4]],
+    ) -> Result<(Vec<NodeId>, Vec<ElementId>), Refusal> {
+        Refusal::FixedNode.when(inner.iter().any(|&n| self.is_fixed(n)))?;
+        self.permit(Operation::Refill, border)?;
+        let region = self.region(old[0]);
+        let nodes: Vec<NodeId> = new.iter().map(|&(uv, metric)| self.add_node(uv, metric)).collect();
+        let node = |k: u32| *border.get(k as usize).unwrap_or_else(|| &nodes[k as usize - border.len()]);
+        let quads: Vec<NewElement> = quads.iter().map(|quad| NewElement::quad(quad.map(node), region)).collect();
+        let made = self.replace(old, &quads);
+        inner.iter().for_each(|&n| self.release_node(n));
+        Ok((nodes, made.into_vec()))
+    }
+
     /// The element `e` with one corner replaced.
     fn with_node_replaced(&self, e: ElementId, from: NodeId, to: NodeId) -> NewElement {
         let swap = |n: NodeId| if n == from { to } else { n };

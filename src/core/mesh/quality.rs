@@ -63,6 +63,14 @@ impl Mesh {
         }
     }
 
+    /// Area of a quadrilateral in the mean of the metrics of its nodes.
+    pub fn metric_area(&self, e: ElementId) -> f64 {
+        let n = self.quad(e);
+        let [a, b, c, d] = n.map(|n| self.uv(n));
+        let root = n.map(|n| self.metric_ref(n).det().max(0.0).sqrt()).iter().sum::<f64>() / 4.0;
+        root * 0.5 * (c - a).perp_dot(d - b)
+    }
+
     /// Quality of a triangle of these nodes, whether or not it exists.
     #[inline]
     pub fn triangle_quality(&self, n: [NodeId; 3]) -> f64 {

@@ -58,6 +58,8 @@ pub enum Operation {
     OpenVertex,
     /// Removing a doublet.
     RemoveDoublet,
+    /// Filling a cavity anew.
+    Refill,
     /// Pillowing a quadrilateral.
     Pillow,
     /// Forming a quadrilateral.

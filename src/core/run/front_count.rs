@@ -163,6 +163,7 @@ pub(super) fn changes_front(event: &Event) -> bool {
             | Event::SecondPass
             | Event::Matched { .. }
             | Event::Cleaned { .. }
+            | Event::Refilled { .. }
             | Event::Swept { .. }
             | Event::Unfolded { .. }
             | Event::FaceConverted { .. }

@@ -61,6 +61,7 @@ impl Lane {
             EventKind::Split | EventKind::SplitRefused => Lane::Splits,
             EventKind::Closed | EventKind::Matched | EventKind::Patched | EventKind::LastResort => Lane::Closing,
             EventKind::Cleaned
+            | EventKind::Refilled
             | EventKind::Swept
             | EventKind::Unfolded
             | EventKind::FaceConverted

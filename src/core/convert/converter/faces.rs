@@ -38,18 +38,6 @@ impl<'a> Converter<'a> {
         self.faces.get(self.face).copied()
     }
 
-    /// How much of the whole mesh the face at hand is, from 0 to 1: its share of what is bounded for the whole.
-    pub(super) fn share(&self) -> f64 {
-        let after = |face: usize| self.waiting.get(face).copied().unwrap_or(0);
-        let own = match self.face.checked_sub(1) {
-            _ if self.faces.is_empty() => self.total,
-            Some(before) => after(before) - after(self.face),
-            // The first face is all but the later ones; a face by itself has none.
-            None => self.elements_at_first - after(0),
-        };
-        own as f64 / self.total.max(1) as f64
-    }
-
     /// Goes on to the next face; after the last one, to what folds over the surface across faces.
     pub(super) fn next_face(&mut self) -> Done {
         let event = Event::FaceConverted { region: self.face().unwrap_or(0) };
@@ -96,7 +84,7 @@ impl<'a> Converter<'a> {
                 let (source, parameters) = (Arc::clone(&self.source), self.parameters.clone());
                 let cancel = cancel.clone();
                 scope.spawn(move |_| {
-                    let mut converter = Converter { total, ..Converter::new(mesh, source, parameters) };
+                    let mut converter = Converter::new(mesh, source, parameters);
                     let face = loop {
                         if converter.counts.steps.is_multiple_of(TELL) {
                             if let Err(stopped) = cancel.check() {

@@ -63,9 +63,6 @@ pub struct Converter<'a> {
     face: usize,
     /// Elements of the faces after each, at step 0.
     waiting: Arc<[u64]>,
-    /// Elements at step 0, and, where this is one of several faces at the same time, of all together.
-    elements_at_first: u64,
-    total: u64,
     /// Where the conversion of the face at hand began.
     begun: Begun,
     /// The base segment that a person picked for the next selection.
@@ -99,8 +96,6 @@ impl<'a> Converter<'a> {
             faces: faces.into(),
             face: 0,
             waiting: waiting.into(),
-            elements_at_first: mesh.element_count() as u64,
-            total: mesh.element_count() as u64,
             begun: Begun { stood: given, made: 0 },
             finished_faces: Vec::new(),
             mesh,
@@ -282,7 +277,6 @@ impl<'a> Converter<'a> {
     fn post_processing(&mut self) -> PostProcessing<'_, 'a> {
         PostProcessing {
             face: self.face(),
-            share: self.share(),
             by: self.parameters.clean_up,
             keeps_history: self.keeps_history(),
             keeps_journal: self.keeps_journal(),

@@ -81,6 +81,7 @@ kinds! {
         Patched "patched",
         LastResort "last_resort",
         Cleaned "cleaned",
+        Refilled "refilled",
         Swept "swept",
         Unfolded "unfolded",
         FaceConverted "face_converted",

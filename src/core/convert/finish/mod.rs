@@ -11,7 +11,7 @@ pub use self::parts::Finished;
 
 use std::sync::Arc;
 
-use self::clean_up::{CleanUp, Reach};
+use self::clean_up::CleanUp;
 use self::parts::Finishing;
 use self::unfold::{Unfolded, Unfolding};
 use self::worklist::Worklist;
@@ -34,8 +34,6 @@ pub(super) struct PostProcessing<'f, 'a> {
     pub source: &'f Arc<dyn MetricSource + Send + Sync + 'a>,
     /// The face, by its region; none where it is all.
     pub face: Option<u32>,
-    /// How much of the whole mesh that is, from 0 to 1.
-    pub share: f64,
     /// What is under way.
     pub parts: &'f mut Finishing<'a>,
     /// What was done.
@@ -53,10 +51,7 @@ impl PostProcessing<'_, '_> {
     pub fn step(&mut self, part: FinishPart) -> Done {
         let event = match part {
             FinishPart::FirstSmoothing | FinishPart::LastSmoothing => self.sweep(part),
-            FinishPart::CleanUp if self.by == CleanUpBy::Traditional => self.clean_up(Reach::Traditional),
-            FinishPart::CleanUp => self.clean_up(Reach::Singles),
-            FinishPart::CleanUpByPairs => self.clean_up(Reach::Pairs),
-            FinishPart::CleanUpBySequences => self.clean_up(Reach::Longer),
+            FinishPart::CleanUp => self.clean_up(),
             FinishPart::Unfolding => self.unfold(),
         };
         if event.is_some() {
@@ -64,22 +59,18 @@ impl PostProcessing<'_, '_> {
         }
         let next = match part {
             FinishPart::FirstSmoothing => FinishPart::CleanUp,
-            FinishPart::CleanUp if self.by == CleanUpBy::Traditional => FinishPart::LastSmoothing,
-            FinishPart::CleanUp => FinishPart::CleanUpByPairs,
-            FinishPart::CleanUpByPairs if !self.parts.pairs_are_cut_short() => FinishPart::CleanUpBySequences,
-            FinishPart::CleanUpByPairs | FinishPart::CleanUpBySequences => FinishPart::LastSmoothing,
+            FinishPart::CleanUp => FinishPart::LastSmoothing,
             FinishPart::LastSmoothing if self.face.is_some() => return (Phase::NextFace, Some(Event::PostProcessed)),
             FinishPart::LastSmoothing | FinishPart::Unfolding => return (Phase::Done, Some(Event::PostProcessed)),
         };
         (Phase::PostProcess { part: next }, None)
     }
 
-    /// The next change of structure within reach.
-    fn clean_up(&mut self, reach: Reach) -> Option<Event> {
+    /// The next change of structure.
+    fn clean_up(&mut self) -> Option<Event> {
         let (mesh, done) = (&mut *self.mesh, self.finished.cleaned_up);
-        let part = self.parts.clean_up[reach.place()].get_or_insert_with(|| {
-            CleanUp::begin(mesh, (self.face, self.share), Arc::clone(self.source), reach, done, self.keeps_history)
-        });
+        let begin = || CleanUp::begin(mesh, self.face, self.source, self.by, done, self.keeps_history);
+        let part = self.parts.clean_up.get_or_insert_with(begin);
         let event = part.step(mesh, self.keeps_journal);
         self.finished.cleaned_up = part.done;
         event

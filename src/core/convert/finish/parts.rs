@@ -1,6 +1,6 @@
 //! What the global post-processing (paper 4.3.7) has under way and has done.
 
-use super::clean_up::{CleanUp, CleanedUp, Reach};
+use super::clean_up::{CleanUp, CleanUpMark, CleanedUp};
 use super::unfold::{Unfolded, Unfolding};
 use super::worklist::{ListMark, Worklist};
 use crate::core::convert::sums::summed;
@@ -21,78 +21,76 @@ pub struct Finished {
 #[derive(Clone, Default)]
 pub struct Finishing<'a> {
     pub(super) first_smoothing: Option<Worklist>,
-    pub(super) clean_up: [Option<CleanUp<'a>>; 3],
+    pub(super) clean_up: Option<CleanUp<'a>>,
     pub(super) last_smoothing: Option<Worklist>,
     pub(super) unfolding: Option<Unfolding<'a>>,
 }
 
-/// Where the lists of the parts stood; none where a part had not begun.
+/// Where the parts stood; none where a part had not begun.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct PartMarks([Option<ListMark>; 6]);
+pub struct PartMarks {
+    first_smoothing: Option<ListMark>,
+    clean_up: Option<CleanUpMark>,
+    last_smoothing: Option<ListMark>,
+    unfolding: Option<ListMark>,
+}
 
 impl Finishing<'_> {
-    fn lists(&self) -> [Option<&Worklist>; 6] {
-        let [singles, pairs, longer] = self.clean_up.each_ref().map(|part| part.as_ref().map(|part| &part.list));
+    /// The lists of the parts, but for those of the clean-up.
+    fn lists(&self) -> impl Iterator<Item = &Worklist> {
         let unfolding = self.unfolding.as_ref().map(|part| &part.list);
-        [self.first_smoothing.as_ref(), singles, pairs, longer, self.last_smoothing.as_ref(), unfolding]
-    }
-
-    fn lists_mut(&mut self) -> [Option<&mut Worklist>; 6] {
-        let [singles, pairs, longer] = self.clean_up.each_mut().map(|part| part.as_mut().map(|part| &mut part.list));
-        let unfolding = self.unfolding.as_mut().map(|part| &mut part.list);
-        [self.first_smoothing.as_mut(), singles, pairs, longer, self.last_smoothing.as_mut(), unfolding]
-    }
-
-    /// Whether the budget of the pairs has ended before every node was looked at.
-    pub fn pairs_are_cut_short(&self) -> bool {
-        self.clean_up[Reach::Pairs.place()].as_ref().is_some_and(|part| part.list.len() > 0)
+        [self.first_smoothing.as_ref(), self.last_smoothing.as_ref(), unfolding].into_iter().flatten()
     }
 
     /// Bytes that the parts take.
     pub fn bytes(&self) -> usize {
-        self.lists().into_iter().flatten().map(Worklist::bytes).sum::<usize>()
-            + self.clean_up.iter().flatten().map(CleanUp::bytes_of_rest).sum::<usize>()
+        self.lists().map(Worklist::bytes).sum::<usize>()
+            + self.clean_up.as_ref().map_or(0, CleanUp::bytes)
             + self.unfolding.as_ref().map_or(0, Unfolding::bytes_of_rest)
     }
 
     /// Bytes of what the parts have written down for taking back.
     pub fn log_bytes(&self) -> usize {
-        self.lists().into_iter().flatten().map(Worklist::log_bytes).sum()
+        self.lists().map(Worklist::log_bytes).sum::<usize>() + self.clean_up.as_ref().map_or(0, CleanUp::log_bytes)
     }
 
     /// Lets every part write down from now on what it needs to be taken back.
     pub fn record(&mut self) {
-        self.lists_mut().into_iter().flatten().for_each(Worklist::record);
+        let unfolding = self.unfolding.as_mut().map(|part| &mut part.list);
+        let lists = [self.first_smoothing.as_mut(), self.last_smoothing.as_mut(), unfolding];
+        lists.into_iter().flatten().for_each(Worklist::record);
+        self.clean_up.iter_mut().for_each(CleanUp::record);
     }
 
     /// The present place.
     pub fn mark(&self) -> PartMarks {
-        PartMarks(self.lists().map(|list| list.map(Worklist::mark)))
+        PartMarks {
+            first_smoothing: self.first_smoothing.as_ref().map(Worklist::mark),
+            clean_up: self.clean_up.as_ref().map(CleanUp::mark),
+            last_smoothing: self.last_smoothing.as_ref().map(Worklist::mark),
+            unfolding: self.unfolding.as_ref().map(|part| part.list.mark()),
+        }
     }
 
-    /// Takes back everything that was done after the mark; `cleaned_up` is what the clean-up had done then.
-    pub fn take_back(&mut self, PartMarks(marks): PartMarks, cleaned_up: CleanedUp) {
-        for (list, mark) in self.lists_mut().into_iter().zip(marks) {
-            if let (Some(list), Some(mark)) = (list, mark) {
-                list.take_back(mark);
-            }
-        }
-        // A part without a mark had not begun.
-        let [first, clean_up @ .., last, unfolding] = marks;
-        self.first_smoothing.take_if(|_| first.is_none());
-        self.last_smoothing.take_if(|_| last.is_none());
-        self.unfolding.take_if(|_| unfolding.is_none());
-        for (part, mark) in self.clean_up.iter_mut().zip(clean_up) {
-            part.take_if(|_| mark.is_none());
-            part.iter_mut().for_each(|part| part.done = cleaned_up);
-        }
+    /// Takes back everything that was done after the marks; `cleaned_up` is what the clean-up had done then.
+    pub fn take_back(&mut self, marks: PartMarks, cleaned_up: CleanedUp) {
+        take_back(&mut self.first_smoothing, marks.first_smoothing, Worklist::take_back);
+        take_back(&mut self.clean_up, marks.clean_up, |part, mark| part.take_back(mark, cleaned_up));
+        take_back(&mut self.last_smoothing, marks.last_smoothing, Worklist::take_back);
+        take_back(&mut self.unfolding, marks.unfolding, |part, mark| part.list.take_back(mark));
     }
 
     /// Appends what the next steps depend on.
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
-        self.lists().into_iter().flatten().for_each(|list| list.write_state(bytes));
-        // What pairs and longer sequences have left of their trials.
-        let trials = self.clean_up.iter().flatten().map(|part| part.done.trials).max().unwrap_or(0);
-        bytes.extend_from_slice(&(trials as u64).to_le_bytes());
+        self.lists().for_each(|list| list.write_state(bytes));
+        self.clean_up.iter().for_each(|part| part.write_state(bytes));
+    }
+}
+
+/// Takes a part back to a mark; without one it had not begun.
+fn take_back<P, M>(part: &mut Option<P>, mark: Option<M>, back: impl FnOnce(&mut P, M)) {
+    match (part.as_mut(), mark) {
+        (Some(part), Some(mark)) => back(part, mark),
+        _ => *part = None,
     }
 }

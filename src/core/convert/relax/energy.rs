@@ -37,22 +37,58 @@ fn length(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
     LENGTH_WEIGHT * (a + 1.0 / a + b + 1.0 / b - 4.0)
 }
 
-/// What the clean-up judges a quadrilateral by: energy of its corners (1/sin^2 - 1, which leaves the lengths of a
-/// corner's sides to the next term) and half that of its sides' lengths (the other half is the neighbour's), infinite
-/// where it is not strictly convex; and its quality, as `Mesh::quality`.
-pub fn judge(mesh: &Mesh, e: ElementId) -> (f64, f64) {
+/// What the clean-up judges quadrilaterals by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// Energy of the corners (1/sin^2 - 1, which leaves the lengths of a corner's sides to the next term) and half that
+    /// of the sides' lengths (the other half is the neighbour's); infinite where one is not strictly convex.
+    pub energy: f64,
+    /// The worst quality, as `Mesh::quality`.
+    pub quality: f64,
+    /// The least sine of a corner.
+    pub sine: f64,
+    /// The lengths of the shortest and the longest side, over the metrics of both ends (geometric mean).
+    pub lengths: [f64; 2],
+}
+
+impl Judged {
+    /// Nothing, to which others are added.
+    pub const NOTHING: Judged =
+        Judged { energy: 0.0, quality: f64::INFINITY, sine: f64::INFINITY, lengths: [f64::INFINITY, 0.0] };
+}
+
+impl std::ops::AddAssign for Judged {
+    fn add_assign(&mut self, other: Judged) {
+        self.energy += other.energy;
+        self.quality = self.quality.min(other.quality);
+        self.sine = self.sine.min(other.sine);
+        self.lengths = [self.lengths[0].min(other.lengths[0]), self.lengths[1].max(other.lengths[1])];
+    }
+}
+
+/// Judges a quadrilateral of the mesh.
+pub fn judge(mesh: &Mesh, e: ElementId) -> Judged {
     let n = mesh.quad(e);
-    let p = n.map(|n| mesh.uv(n));
+    judge_corners(n.map(|n| mesh.uv(n)), n.map(|n| mesh.metric_ref(n)))
+}
+
+/// Judges the quadrilateral of these corners, anticlockwise, with their metrics.
+pub fn judge_corners(p: [DVec2; 4], metrics: [&Metric2; 4]) -> Judged {
     let (mut energy, mut quality) = (0.0, f64::INFINITY);
+    let (mut sine, mut lengths) = (f64::INFINITY, [f64::INFINITY, 0.0f64]);
     for k in 0..4 {
-        let m = mesh.metric_ref(n[k]);
+        let m = metrics[k];
         let (next, previous) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
         let (a, b, x) = (m.norm2(next), m.norm2(previous), m.det().sqrt() * next.perp_dot(previous));
         energy += if x > 0.0 { a * b / (x * x) - 1.0 } else { f64::INFINITY };
         energy += 0.5 * LENGTH_WEIGHT * (a + 1.0 / a + b + 1.0 / b - 4.0);
         quality = quality.min(2.0 * x / (a + b));
+        sine = sine.min(x / (a * b).sqrt());
+        // The square of the mean of both ends.
+        let length = (a * metrics[(k + 1) % 4].norm2(next)).sqrt();
+        lengths = [lengths[0].min(length), lengths[1].max(length)];
     }
-    (energy, quality)
+    Judged { energy, quality, sine, lengths: lengths.map(f64::sqrt) }
 }
 
 /// A corner that a star holds: its place, its metric and the root of the metric's determinant.

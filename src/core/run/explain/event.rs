@@ -102,6 +102,18 @@ pub fn event(event: &Event) -> String {
             let [before, after] = apart(before, after);
             format!("mesh structure cleaned up locally: energy {before} to {after}")
         }
+        Event::Refilled { sides, quads: [old, new], irregular: [from, to], energy: [before, after] } => {
+            let [before, after] = apart(before, after);
+            let sides: Vec<String> = sides.iter().filter(|&&n| n > 0).map(|n| n.to_string()).collect();
+            format!(
+                "cavity with sides of {} edges filled anew: {} before, {} now; {} before, {} now; energy {before} to {after}",
+                sides.join(", "),
+                count(old as usize, "quadrilateral"),
+                new,
+                count(from as usize, "irregular node"),
+                to
+            )
+        }
         Event::Unfolded { element, how, .. } => {
             let how = match how {
                 Mending::Moved => "its corners were moved",

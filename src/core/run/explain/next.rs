@@ -163,10 +163,9 @@ fn finish(part: FinishPart, clean_up: CleanUpBy) -> &'static str {
         (FinishPart::CleanUp, CleanUpBy::Traditional) => {
             "The structure is cleaned up by the traditional operations, where they improve the valences (4.3.7)."
         }
-        (FinishPart::CleanUp, CleanUpBy::Search) => "The structure is cleaned up by single changes (4.3.7).",
-        (FinishPart::CleanUpByPairs, _) => "The structure is cleaned up by pairs of changes (4.3.7).",
-        (FinishPart::CleanUpBySequences, _) => {
-            "The structure is cleaned up by sequences of up to four changes (4.3.7)."
+        (FinishPart::CleanUp, CleanUpBy::Search) => {
+            "The structure is cleaned up around irregular nodes: by changes of one or two elements, then by filling \
+             cavities anew (4.3.7)."
         }
         (FinishPart::LastSmoothing, _) => "The final structure is smoothed (4.3.7).",
         (FinishPart::Unfolding, _) => "Elements that fold over their surface are repaired.",

@@ -23,6 +23,7 @@ const ROWS: [(&str, &[EventKind]); 5] = [
             EventKind::Patched,
             EventKind::LastResort,
             EventKind::Cleaned,
+            EventKind::Refilled,
             EventKind::Swept,
         ],
     ),

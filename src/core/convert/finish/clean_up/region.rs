@@ -1,12 +1,12 @@
 //! What a trial may move and how good it is: the nodes of a change, their neighbours, and the elements around.
 
 use super::candidate::Valences;
-use crate::core::convert::relax::energy;
+use crate::core::convert::relax::energy::{self, Judged};
 use crate::core::mesh::{Mesh, NodeId};
 
 /// Weight of a squared excess against the shape of a corner and the length of an edge. With a little more than 1
 /// sequences of changes find as good angles and fewer irregular nodes.
-const VALENCE_WEIGHT: f64 = 1.5;
+pub const VALENCE_WEIGHT: f64 = 1.5;
 
 /// Nodes, each once.
 #[derive(Clone, Debug, Default)]
@@ -16,15 +16,6 @@ pub struct Region {
     node_seen: Vec<u32>,
     element_seen: Vec<u32>,
     gathering: u32,
-}
-
-/// How good a region is.
-#[derive(Clone, Copy, Debug)]
-pub struct Judged {
-    /// Energy of everything that depends on the nodes.
-    pub energy: f64,
-    /// The worst quality of the elements.
-    pub quality: f64,
 }
 
 impl Region {
@@ -60,16 +51,14 @@ impl Region {
     pub fn judge(&mut self, mesh: &Mesh, valences: &Valences) -> Judged {
         // Elements change between two judgements of the same nodes.
         self.gathering = self.gathering.wrapping_add(1);
-        let mut judged = Judged { energy: 0.0, quality: f64::INFINITY };
+        let mut judged = Judged::NOTHING;
         for &node in &self.nodes {
             let mut elements = 0;
             for h in mesh.fan(node) {
                 let e = h.element();
                 elements += 1;
                 if std::mem::replace(&mut self.element_seen[e.index()], self.gathering) != self.gathering {
-                    let (energy, quality) = energy::judge(mesh, e);
-                    judged.energy += energy;
-                    judged.quality = judged.quality.min(quality);
+                    judged += energy::judge(mesh, e);
                 }
             }
             let excess = f64::from(valences.excess_of(node, elements));
