@@ -47,6 +47,18 @@ impl Mesh {
         p + (q - p) * (l_q.sqrt() / (l_p.sqrt() + l_q.sqrt()))
     }
 
+    /// The mean of an element's nodes in the parametric plane.
+    #[inline]
+    pub fn centroid(&self, e: ElementId) -> DVec2 {
+        if self.is_triangle(e) {
+            let [a, b, c] = self.triangle(e).map(|n| self.uv(n));
+            (a + b + c) / 3.0
+        } else {
+            let [a, b, c, d] = self.quad(e).map(|n| self.uv(n));
+            (a + b + c + d) / 4.0
+        }
+    }
+
     /// The worst quality of the elements around a node.
     pub fn worst_quality_at(&self, node: NodeId) -> f64 {
         self.elements_at(node).map(|e| self.quality(e)).fold(f64::INFINITY, f64::min)

@@ -6,7 +6,8 @@ use smallvec::SmallVec;
 use crate::core::case::SmoothingWeights;
 use crate::core::convert::front::Front;
 use crate::core::convert::relax::energy;
-use crate::core::mesh::{ElementId, Mesh, NodeId};
+use crate::core::mesh::quality::length_over;
+use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 
 /// A smoothed node must not let the worst quality around fall below this share of what it was.
 const KEPT_QUALITY: f64 = 0.9;
@@ -67,17 +68,17 @@ pub fn around_top(front: &mut Front<'_>, tops: [NodeId; 2]) -> u8 {
 /// Moves a node to the weighted centroid of its elements (eq. 9), in steps 1, 1/2, 1/4, 1/8 until the guard holds.
 fn by_area(front: &mut Front<'_>, node: NodeId) -> bool {
     let mesh = &*front.mesh;
-    let (mut sum, mut weight, mut before) = (DVec2::ZERO, 0.0, f64::INFINITY);
+    let root = mesh.metric_ref(node).det().sqrt();
+    let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
     let mut last = None;
-    for e in mesh.elements_at(node) {
-        let centroid = mesh.corners(e).fold(DVec2::ZERO, |sum, n| sum + mesh.uv(n)) / mesh.sides(e) as f64;
+    for h in mesh.fan(node) {
+        let e = h.element();
         let area = match front.parameters.smoothing_weights {
             SmoothingWeights::Determinant => area_by_determinant(mesh, e),
-            SmoothingWeights::Printed => printed_area(mesh, e, node, &mut last),
+            SmoothingWeights::Printed => printed_area(mesh, h, root, &mut last),
         };
-        sum += centroid * area;
+        sum += mesh.centroid(e) * area;
         weight += area;
-        before = before.min(mesh.quality(e));
     }
     let here = mesh.uv(node);
     let there = sum / weight;
@@ -85,17 +86,18 @@ fn by_area(front: &mut Front<'_>, node: NodeId) -> bool {
     if mesh.metric_ref(node).norm2(there - here) < 1e-6 {
         return false;
     }
+    let least = KEPT_QUALITY * mesh.worst_quality_at(node);
     let mut step = 1.0;
     for _ in 0..4 {
         let place = here + (there - here) * step;
         step *= 0.5;
-        let Ok(metric) = front.source.metric(place) else { continue };
         if front.mesh.can_move(node, place).is_err() {
             continue;
         }
+        let Ok(metric) = front.source.metric(place) else { continue };
         let mark = front.mesh.mark();
         front.mesh.move_node(node, place, metric);
-        if front.mesh.worst_quality_at(node) >= KEPT_QUALITY * before {
+        if front.mesh.elements_at(node).all(|e| front.mesh.quality(e) >= least) {
             return true;
         }
         front.mesh.take_back(mark);
@@ -120,27 +122,30 @@ fn area_by_determinant(mesh: &Mesh, e: ElementId) -> f64 {
 /// node's own metric.
 type Spoke = (NodeId, DVec2, f64);
 
-/// Area of an element at a node as printed (eqs. 10a, 10b): by the metric lengths of the edges, and of the diagonal,
-/// that leave the node, and the angles between them in its metric. `last` is the last edge of the element before, and
-/// becomes that of this one: two elements side by side share an edge.
-fn printed_area(mesh: &Mesh, e: ElementId, node: NodeId, last: &mut Option<Spoke>) -> f64 {
-    let corners: SmallVec<[NodeId; 4]> = mesh.corners(e).collect();
-    let at = corners.iter().position(|&n| n == node).expect("the element is at the node");
+/// Area of the element of `h` at the node that it leaves, as printed (eqs. 10a, 10b): by the metric lengths of the
+/// edges, and of the diagonal, that leave the node, and the angles between them in its metric, with the `root` of its
+/// determinant. `last` is the last edge of the element before, and becomes that of this one: two elements side by side
+/// share an edge.
+fn printed_area(mesh: &Mesh, h: HalfEdgeId, root: f64, last: &mut Option<Spoke>) -> f64 {
+    let node = mesh.origin(h);
     let metric = mesh.metric_ref(node);
     let mut sum = 0.0;
     let mut before: Option<Spoke> = None;
     // The other corners, anticlockwise.
-    for n in (1..corners.len()).map(|k| corners[(at + k) % corners.len()]) {
+    let mut side = mesh.next(h);
+    while side != h {
+        let n = mesh.origin(side);
         let spoke = last.take_if(|last| last.0 == n).unwrap_or_else(|| {
             let d = mesh.uv(n) - mesh.uv(node);
-            (n, d, mesh.distance(node, n) / metric.norm2(d).sqrt())
+            (n, d, length_over(metric, mesh.metric_ref(n), d) / metric.norm2(d).sqrt())
         });
         // l l' sin(theta), the sine by eq. 5: sqrt(det M) x(p, q) over both lengths in the node's metric.
         if let Some((_, p, l)) = before {
             sum += l * spoke.2 * p.perp_dot(spoke.1);
         }
         before = Some(spoke);
+        side = mesh.next(side);
     }
     *last = before;
-    0.5 * metric.det().sqrt() * sum
+    0.5 * root * sum
 }
