@@ -59,11 +59,13 @@ impl Mesh {
     }
 
     /// Whether a node lies on the front (or on the boundary).
+    #[inline]
     pub fn is_on_front(&self, node: NodeId) -> bool {
         self.is_fixed(node) || self.elements_at(node).any(|e| !self.is_triangle(e))
     }
 
     /// Whether the elements around a node are all quadrilaterals.
+    #[inline]
     pub fn is_buried(&self, node: NodeId) -> bool {
         self.elements_at(node).all(|e| self.is_quad(e))
     }

@@ -76,15 +76,10 @@ fn edges_around(mesh: &Mesh, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
 
 /// Removes one live node beside the quadrilateral that has three or four triangles (i).
 fn remove_a_node(mesh: &mut Mesh, element: ElementId) -> Option<Event> {
-    for corner in mesh.quad(element) {
-        let around: SmallVec<[NodeId; 12]> = mesh.neighbours(corner).collect();
-        for node in around {
-            if !mesh.is_fixed(node) && mesh.delete_node(node).is_ok() {
-                return Some(Event::NodeRemoved { node, purpose: Purpose::Enhancement });
-            }
-        }
-    }
-    None
+    let removable = |&node: &NodeId| !mesh.is_fixed(node) && mesh.can_delete_node(node).is_ok();
+    let node = mesh.quad(element).into_iter().find_map(|corner| mesh.neighbours(corner).find(removable))?;
+    mesh.delete_node(node).ok()?;
+    Some(Event::NodeRemoved { node, purpose: Purpose::Enhancement })
 }
 
 /// Swaps the edge if that lowers the largest angle of its two triangles (ii). Returns the edges around it too.
@@ -95,11 +90,11 @@ fn enhance_edge(mesh: &mut Mesh, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4
     let t = mesh.live_twin(h)?;
     let (a, b) = (mesh.origin(h), mesh.origin(t));
     let (c, d) = (mesh.apex(h), mesh.apex(t));
-    let before = least_cosine(mesh, [a, b, c]).min(least_cosine(mesh, [b, a, d]));
     // A largest angle below 90 degrees is no reason to change anything.
-    if before > 0.0 {
+    if is_acute(mesh, [a, b, c]) && is_acute(mesh, [b, a, d]) {
         return None;
     }
+    let before = least_cosine(mesh, [a, b, c]).min(least_cosine(mesh, [b, a, d]));
     let after = least_cosine(mesh, [a, d, c]).min(least_cosine(mesh, [d, b, c]));
     if after <= before + 1e-6 || mesh.can_swap(h).is_err() {
         return None;
@@ -108,6 +103,13 @@ fn enhance_edge(mesh: &mut Mesh, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4
     let t = mesh.twin(h)?;
     let around = [mesh.next(h), mesh.previous(h), mesh.next(t), mesh.previous(t)];
     Some((Event::Enhanced { new: mesh.ends(h) }, around))
+}
+
+/// Whether the angles of a triangle, each in the metric of its node, are all below 90 degrees.
+fn is_acute(mesh: &Mesh, n: [NodeId; 3]) -> bool {
+    let [a, b, c] = n.map(|n| mesh.uv(n));
+    let [m_a, m_b, m_c] = n.map(|n| mesh.metric_ref(n));
+    m_a.inner(b - a, c - a) > 0.0 && m_b.inner(c - b, a - b) > 0.0 && m_c.inner(a - c, b - c) > 0.0
 }
 
 /// Least cosine of a triangle's angles (that of its largest angle), each in the metric of its node.
