@@ -384,6 +384,14 @@ impl Mesh {
         std::array::from_fn(|corner| NodeId(self.origin[4 * e.index() + corner]))
     }
 
+    /// The nodes of a quadrilateral, anticlockwise, from the one that a half-edge leaves.
+    #[inline]
+    pub fn quad_from(&self, h: HalfEdgeId) -> [NodeId; 4] {
+        let e = h.element();
+        debug_assert!(self.is_quad(e));
+        [0, 1, 2, 3].map(|i| self.origin(e.half_edge((h.corner() + i) % 4)))
+    }
+
     /// The half-edge from one node to another, if there is one.
     pub fn half_edge_between(&self, from: NodeId, to: NodeId) -> Option<HalfEdgeId> {
         self.fan(from).find(|&h| self.target(h) == to)

@@ -344,7 +344,15 @@ impl Mesh {
     /// The reason of the refusal.
     pub fn can_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
         Refusal::FixedNode.when(self.is_fixed(node))?;
-        Refusal::NotPositive.when(!self.elements_at(node).all(|e| self.stays_positive(e, node, uv)))?;
+        let is_sound = |h| {
+            if self.is_triangle(HalfEdgeId::element(h)) {
+                firm(uv, self.uv(self.target(h)), self.uv(self.apex(h)))
+            } else {
+                let [_, b, c, d] = self.quad_from(h).map(|n| self.uv(n));
+                convex(uv, b, c, d)
+            }
+        };
+        Refusal::NotPositive.when(!self.fan(node).all(is_sound))?;
         self.permit_move(node, uv)
     }
 

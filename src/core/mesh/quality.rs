@@ -75,6 +75,19 @@ impl Mesh {
         }
     }
 
+    /// Quality of the element of `h` if the node that it leaves moved to `place`, with this metric.
+    #[inline]
+    pub fn quality_with(&self, h: HalfEdgeId, place: DVec2, metric: &Metric2) -> f64 {
+        let at = |n: NodeId| (self.uv(n), self.metric_ref(n));
+        if self.is_triangle(h.element()) {
+            let ((b, m_b), (c, m_c)) = (at(self.target(h)), at(self.apex(h)));
+            quality_over([place, b, c], [metric, m_b, m_c])
+        } else {
+            let [_, b, c, d] = self.quad_from(h).map(at);
+            quad_quality([metric, b.1, c.1, d.1], [place, b.0, c.0, d.0])
+        }
+    }
+
     /// Quality of a triangle of these nodes, whether or not it exists.
     #[inline]
     pub fn triangle_quality(&self, n: [NodeId; 3]) -> f64 {

@@ -6,6 +6,7 @@ use smallvec::SmallVec;
 use crate::core::case::SmoothingWeights;
 use crate::core::convert::front::Front;
 use crate::core::convert::relax::energy;
+use crate::core::kernel::Metric2;
 use crate::core::mesh::quality::length_over;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 
@@ -86,23 +87,34 @@ fn by_area(front: &mut Front<'_>, node: NodeId) -> bool {
     if mesh.metric_ref(node).norm2(there - here) < 1e-6 {
         return false;
     }
-    let least = KEPT_QUALITY * mesh.worst_quality_at(node);
     let mut step = 1.0;
     for _ in 0..4 {
         let place = here + (there - here) * step;
         step *= 0.5;
-        if front.mesh.can_move(node, place).is_err() {
+        if mesh.can_move(node, place).is_err() {
             continue;
         }
         let Ok(metric) = front.source.metric(place) else { continue };
-        let mark = front.mesh.mark();
-        front.mesh.move_node(node, place, metric);
-        if front.mesh.elements_at(node).all(|e| front.mesh.quality(e) >= least) {
+        if keeps_quality(mesh, node, place, &metric) {
+            front.mesh.move_node(node, place, metric);
             return true;
         }
-        front.mesh.take_back(mark);
     }
     false
+}
+
+/// Whether a node may move to a place with this metric: the worst quality around it keeps its share.
+fn keeps_quality(mesh: &Mesh, node: NodeId, place: DVec2, metric: &Metric2) -> bool {
+    let (mut worst, mut after) = (None, f64::INFINITY);
+    for h in mesh.fan(node) {
+        let quality = mesh.quality_with(h, place, metric);
+        if quality < after {
+            (worst, after) = (Some(h.element()), quality);
+        }
+    }
+    // The worst before is at most that of the element that is the worst after: mostly a look at that one is enough.
+    worst.is_some_and(|e| after >= KEPT_QUALITY * mesh.quality(e))
+        || after >= KEPT_QUALITY * mesh.worst_quality_at(node)
 }
 
 /// Area of an element: in the parametric plane, times the mean of `sqrt(det M)` over its nodes.

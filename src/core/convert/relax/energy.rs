@@ -73,11 +73,10 @@ impl<'a> Star<'a> {
         let mut quads: SmallVec<[(Corner<'a>, DVec2, Corner<'a>); 6]> = SmallVec::new();
         let at = |n: NodeId| Corner { p: mesh.uv(n), m: mesh.metric_ref(n), root: mesh.metric_ref(n).det().sqrt() };
         for h in mesh.fan(node) {
-            let e = h.element();
-            if !mesh.is_quad(e) {
+            if !mesh.is_quad(h.element()) {
                 return None;
             }
-            let [b, c, d] = [1, 2, 3].map(|i| mesh.origin(e.half_edge((h.corner() + i) % 4)));
+            let [_, b, c, d] = mesh.quad_from(h);
             // Neighbours in the fan share a side.
             let b = quads.last().map_or_else(|| at(b), |last| last.2);
             quads.push((b, mesh.uv(c), at(d)));
