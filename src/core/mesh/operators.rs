@@ -346,7 +346,8 @@ impl Mesh {
         Refusal::FixedNode.when(self.is_fixed(node))?;
         let is_sound = |h| {
             if self.is_triangle(HalfEdgeId::element(h)) {
-                firm(uv, self.uv(self.target(h)), self.uv(self.apex(h)))
+                let [_, b, c] = self.triangle_from(h).map(|n| self.uv(n));
+                firm(uv, b, c)
             } else {
                 let [_, b, c, d] = self.quad_from(h).map(|n| self.uv(n));
                 convex(uv, b, c, d)

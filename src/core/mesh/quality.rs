@@ -37,7 +37,8 @@ impl Mesh {
     /// Metric length of the straight line between two nodes, over the metrics of both.
     #[inline]
     pub fn distance(&self, a: NodeId, b: NodeId) -> f64 {
-        length_over(&self.metric(a), &self.metric(b), self.uv(b) - self.uv(a))
+        let ((p, m_a), (q, m_b)) = (self.place(a), self.place(b));
+        length_over(m_a, m_b, q - p)
     }
 
     /// The place between two nodes that halves the metric length.
@@ -70,20 +71,19 @@ impl Mesh {
             let n = self.triangle(e);
             self.triangle_quality(n)
         } else {
-            let n = self.quad(e);
-            quad_quality(n.map(|n| self.metric_ref(n)), n.map(|n| self.uv(n)))
+            let corners = self.quad(e).map(|n| self.place(n));
+            quad_quality(corners.map(|corner| corner.1), corners.map(|corner| corner.0))
         }
     }
 
     /// Quality of the element of `h` if the node that it leaves moved to `place`, with this metric.
     #[inline]
     pub fn quality_with(&self, h: HalfEdgeId, place: DVec2, metric: &Metric2) -> f64 {
-        let at = |n: NodeId| (self.uv(n), self.metric_ref(n));
         if self.is_triangle(h.element()) {
-            let ((b, m_b), (c, m_c)) = (at(self.target(h)), at(self.apex(h)));
-            quality_over([place, b, c], [metric, m_b, m_c])
+            let [_, b, c] = self.triangle_from(h).map(|n| self.place(n));
+            quality_over([place, b.0, c.0], [metric, b.1, c.1])
         } else {
-            let [_, b, c, d] = self.quad_from(h).map(at);
+            let [_, b, c, d] = self.quad_from(h).map(|n| self.place(n));
             quad_quality([metric, b.1, c.1, d.1], [place, b.0, c.0, d.0])
         }
     }
@@ -91,7 +91,8 @@ impl Mesh {
     /// Quality of a triangle of these nodes, whether or not it exists.
     #[inline]
     pub fn triangle_quality(&self, n: [NodeId; 3]) -> f64 {
-        quality_over(n.map(|n| self.uv(n)), n.map(|n| self.metric_ref(n)))
+        let corners = n.map(|n| self.place(n));
+        quality_over(corners.map(|corner| corner.0), corners.map(|corner| corner.1))
     }
 }
 

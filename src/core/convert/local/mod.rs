@@ -9,7 +9,6 @@ use super::event::{Event, Purpose};
 use super::front::{Done, Front};
 use super::phase::Phase;
 use crate::core::case::EnhancementOrder;
-use crate::core::kernel::Metric2;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mark, Mesh, NodeId};
 
 /// Looks at edges for one enhancement: four times a ring's size (docs/algorithm.md, "Structural enhancement").
@@ -95,8 +94,8 @@ fn enhance_edge(mesh: &mut Mesh, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4
         return None;
     }
     let before = least_cosine(mesh, [a, b, c]).min(least_cosine(mesh, [b, a, d]));
-    let after = least_cosine(mesh, [a, d, c]).min(least_cosine(mesh, [d, b, c]));
-    if after <= before + 1e-6 || mesh.can_swap(h).is_err() {
+    let stays = |n| least_cosine(mesh, n) <= before + 1e-6;
+    if stays([a, d, c]) || stays([d, b, c]) || mesh.can_swap(h).is_err() {
         return None;
     }
     let h = mesh.swap(h);
@@ -107,19 +106,22 @@ fn enhance_edge(mesh: &mut Mesh, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4
 
 /// Whether the angles of a triangle, each in the metric of its node, are all below 90 degrees.
 fn is_acute(mesh: &Mesh, n: [NodeId; 3]) -> bool {
-    let [a, b, c] = n.map(|n| mesh.uv(n));
-    let [m_a, m_b, m_c] = n.map(|n| mesh.metric_ref(n));
+    let [(a, m_a), (b, m_b), (c, m_c)] = n.map(|n| mesh.place(n));
     m_a.inner(b - a, c - a) > 0.0 && m_b.inner(c - b, a - b) > 0.0 && m_c.inner(a - c, b - c) > 0.0
 }
 
 /// Least cosine of a triangle's angles (that of its largest angle), each in the metric of its node.
 fn least_cosine(mesh: &Mesh, n: [NodeId; 3]) -> f64 {
+    let corners = n.map(|n| mesh.place(n));
     let mut least = f64::INFINITY;
     for k in 0..3 {
-        let m: &Metric2 = mesh.metric_ref(n[k]);
-        let p = mesh.uv(n[k]);
-        let (a, b) = (mesh.uv(n[(k + 1) % 3]) - p, mesh.uv(n[(k + 2) % 3]) - p);
-        least = least.min(m.inner(a, b) / (m.norm2(a) * m.norm2(b)).sqrt());
+        let ((p, m), (q, _), (r, _)) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        let (a, b) = (q - p, r - p);
+        let inner = m.inner(a, b);
+        // A positive cosine is not the least beside one that is not.
+        if inner <= 0.0 || least > 0.0 {
+            least = least.min(inner / (m.norm2(a) * m.norm2(b)).sqrt());
+        }
     }
     least
 }

@@ -140,7 +140,7 @@ type Spoke = (NodeId, DVec2, f64);
 /// share an edge.
 fn printed_area(mesh: &Mesh, h: HalfEdgeId, root: f64, last: &mut Option<Spoke>) -> f64 {
     let node = mesh.origin(h);
-    let metric = mesh.metric_ref(node);
+    let (p, metric) = mesh.place(node);
     let mut sum = 0.0;
     let mut before: Option<Spoke> = None;
     // The other corners, anticlockwise.
@@ -148,8 +148,8 @@ fn printed_area(mesh: &Mesh, h: HalfEdgeId, root: f64, last: &mut Option<Spoke>)
     while side != h {
         let n = mesh.origin(side);
         let spoke = last.take_if(|last| last.0 == n).unwrap_or_else(|| {
-            let d = mesh.uv(n) - mesh.uv(node);
-            (n, d, length_over(metric, mesh.metric_ref(n), d) / metric.norm2(d).sqrt())
+            let (q, m) = mesh.place(n);
+            (n, q - p, length_over(metric, m, q - p) / metric.norm2(q - p).sqrt())
         });
         // l l' sin(theta), the sine by eq. 5: sqrt(det M) x(p, q) over both lengths in the node's metric.
         if let Some((_, p, l)) = before {

@@ -71,7 +71,10 @@ impl<'a> Star<'a> {
     #[inline]
     fn of(mesh: &'a Mesh, node: NodeId) -> Option<Star<'a>> {
         let mut quads: SmallVec<[(Corner<'a>, DVec2, Corner<'a>); 6]> = SmallVec::new();
-        let at = |n: NodeId| Corner { p: mesh.uv(n), m: mesh.metric_ref(n), root: mesh.metric_ref(n).det().sqrt() };
+        let at = |n: NodeId| {
+            let (p, m) = mesh.place(n);
+            Corner { p, m, root: m.det().sqrt() }
+        };
         for h in mesh.fan(node) {
             if !mesh.is_quad(h.element()) {
                 return None;
