@@ -138,6 +138,13 @@ impl Mesh {
         }
     }
 
+    /// Whether the frontal angle at A is between 90 and 270 degrees, which takes no arc tangent to see.
+    #[inline]
+    pub fn opens_wide(&self, h: HalfEdgeId) -> bool {
+        let (p, metric) = self.place(self.origin(h));
+        metric.inner(self.uv(self.target(h)) - p, self.uv(self.origin(self.front_before(h))) - p) < 0.0
+    }
+
     /// The frontal angle at one end of a front segment, in (0, 2 pi], in the metric of the node (fig. 9).
     #[inline]
     pub fn frontal_angle(&self, h: HalfEdgeId, side: Side) -> f64 {

@@ -42,8 +42,12 @@ pub(super) fn enhance(
         if deletes_first && let Some(event) = remove_a_node(front.mesh, element) {
             return (next(edges_around(front.mesh, element)), Some(event));
         }
+        // Several of them are one edge: a second look, before anything has changed, finds the same.
+        let mut seen: SmallVec<[HalfEdgeId; 24]> = SmallVec::new();
         while let Some(h) = edges.pop() {
-            if let Some((event, around)) = enhance_edge(front.mesh, h) {
+            let Some(t) = live_pair(front.mesh, h).filter(|&t| !seen.contains(&h.min(t))) else { continue };
+            seen.push(h.min(t));
+            if let Some((event, around)) = enhance_edge(front.mesh, [h, t]) {
                 edges.extend(around);
                 return (next(edges), Some(event));
             }
@@ -76,17 +80,21 @@ fn edges_around(mesh: &Mesh, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
 /// Removes one live node beside the quadrilateral that has three or four triangles (i).
 fn remove_a_node(mesh: &mut Mesh, element: ElementId) -> Option<Event> {
     let removable = |&node: &NodeId| !mesh.is_fixed(node) && mesh.can_delete_node(node).is_ok();
-    let node = mesh.quad(element).into_iter().find_map(|corner| mesh.neighbours(corner).find(removable))?;
+    // Only triangles are around such a node, so both at its edge are live.
+    let live = |h: &HalfEdgeId| mesh.live_twin(*h).is_some();
+    let beside = |corner| mesh.live_fan(corner).filter(live).map(|h| mesh.target(h)).find(removable);
+    let node = mesh.quad(element).into_iter().find_map(beside)?;
     mesh.delete_node(node).ok()?;
     Some(Event::NodeRemoved { node, purpose: Purpose::Enhancement })
 }
 
+/// The other half of an edge between two live triangles; none where an earlier change removed it.
+fn live_pair(mesh: &Mesh, h: HalfEdgeId) -> Option<HalfEdgeId> {
+    if mesh.has_element(h.element()) && mesh.is_triangle(h.element()) { mesh.live_twin(h) } else { None }
+}
+
 /// Swaps the edge if that lowers the largest angle of its two triangles (ii). Returns the edges around it too.
-fn enhance_edge(mesh: &mut Mesh, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4])> {
-    if !mesh.has_element(h.element()) || !mesh.is_triangle(h.element()) {
-        return None;
-    }
-    let t = mesh.live_twin(h)?;
+fn enhance_edge(mesh: &mut Mesh, [h, t]: [HalfEdgeId; 2]) -> Option<(Event, [HalfEdgeId; 4])> {
     let (a, b) = (mesh.origin(h), mesh.origin(t));
     let (c, d) = (mesh.apex(h), mesh.apex(t));
     // A largest angle below 90 degrees is no reason to change anything.

@@ -8,7 +8,7 @@ use crate::core::convert::front::Front;
 use crate::core::convert::relax::energy;
 use crate::core::kernel::Metric2;
 use crate::core::mesh::quality::length_over;
-use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
+use crate::core::mesh::{ElementId, Mesh, NodeId};
 
 /// A smoothed node must not let the worst quality around fall below this share of what it was.
 const KEPT_QUALITY: f64 = 0.9;
@@ -19,23 +19,24 @@ const KEPT_QUALITY: f64 = 0.9;
 pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
     let corners = front.mesh.quad(element);
     let mut around: SmallVec<[NodeId; 24]> = SmallVec::new();
+    let mut add = |node: NodeId| {
+        if !around.contains(&node) && !corners.contains(&node) {
+            around.push(node);
+        }
+    };
     for corner in corners {
+        let mut last = None;
         for h in front.mesh.live_fan(corner) {
-            for node in [front.mesh.target(h), front.mesh.apex(h)] {
-                if !around.contains(&node) && !corners.contains(&node) {
-                    around.push(node);
-                }
+            let [_, target, apex] = front.mesh.triangle_from(h);
+            if last != Some(target) {
+                add(target);
             }
+            add(apex);
+            last = Some(apex);
         }
     }
     if front.parameters.smooth_joined {
-        for corner in corners {
-            for node in front.mesh.neighbours(corner) {
-                if !around.contains(&node) && !corners.contains(&node) {
-                    around.push(node);
-                }
-            }
-        }
+        corners.iter().for_each(|&corner| front.mesh.neighbours(corner).for_each(&mut add));
     }
     let placement = front.parameters.placement;
     let mut moved = 0;
@@ -69,18 +70,10 @@ pub fn around_top(front: &mut Front<'_>, tops: [NodeId; 2]) -> u8 {
 /// Moves a node to the weighted centroid of its elements (eq. 9), in steps 1, 1/2, 1/4, 1/8 until the guard holds.
 fn by_area(front: &mut Front<'_>, node: NodeId) -> bool {
     let mesh = &*front.mesh;
-    let root = mesh.metric_ref(node).det().sqrt();
-    let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
-    let mut last = None;
-    for h in mesh.fan(node) {
-        let e = h.element();
-        let area = match front.parameters.smoothing_weights {
-            SmoothingWeights::Determinant => area_by_determinant(mesh, e),
-            SmoothingWeights::Printed => printed_area(mesh, h, root, &mut last),
-        };
-        sum += mesh.centroid(e) * area;
-        weight += area;
-    }
+    let (sum, weight) = match front.parameters.smoothing_weights {
+        SmoothingWeights::Determinant => by_determinants(mesh, node),
+        SmoothingWeights::Printed => by_printed_areas(mesh, node),
+    };
     let here = mesh.uv(node);
     let there = sum / weight;
     // Less than a thousandth of a unit is not worth the journal's memory.
@@ -117,47 +110,56 @@ fn keeps_quality(mesh: &Mesh, node: NodeId, place: DVec2, metric: &Metric2) -> b
         || after >= KEPT_QUALITY * mesh.worst_quality_at(node)
 }
 
-/// Area of an element: in the parametric plane, times the mean of `sqrt(det M)` over its nodes.
-fn area_by_determinant(mesh: &Mesh, e: ElementId) -> f64 {
-    let roots: f64 = mesh.corners(e).map(|n| mesh.metric_ref(n).det().sqrt()).sum();
-    let area = if mesh.is_triangle(e) {
-        let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
-        0.5 * (b - a).perp_dot(c - a)
-    } else {
-        let [a, b, c, d] = mesh.quad(e).map(|n| mesh.uv(n));
-        0.5 * (c - a).perp_dot(d - b)
-    };
-    roots / mesh.sides(e) as f64 * area
+/// The sum of the centroids of the elements at a node, each times its area, and of those areas: in the parametric plane
+/// times the mean of `sqrt(det M)` over the nodes of the element.
+fn by_determinants(mesh: &Mesh, node: NodeId) -> (DVec2, f64) {
+    let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
+    for e in mesh.elements_at(node) {
+        let roots: f64 = mesh.corners(e).map(|n| mesh.metric_ref(n).det().sqrt()).sum();
+        let area = if mesh.is_triangle(e) {
+            let [a, b, c] = mesh.triangle(e).map(|n| mesh.uv(n));
+            0.5 * (b - a).perp_dot(c - a)
+        } else {
+            let [a, b, c, d] = mesh.quad(e).map(|n| mesh.uv(n));
+            0.5 * (c - a).perp_dot(d - b)
+        };
+        let area = roots / mesh.sides(e) as f64 * area;
+        sum += mesh.centroid(e) * area;
+        weight += area;
+    }
+    (sum, weight)
 }
 
-/// An edge or a diagonal that leaves a node: its other end, its direction, and its metric length over that in the
-/// node's own metric.
-type Spoke = (NodeId, DVec2, f64);
-
-/// Area of the element of `h` at the node that it leaves, as printed (eqs. 10a, 10b): by the metric lengths of the
-/// edges, and of the diagonal, that leave the node, and the angles between them in its metric, with the `root` of its
-/// determinant. `last` is the last edge of the element before, and becomes that of this one: two elements side by side
-/// share an edge.
-fn printed_area(mesh: &Mesh, h: HalfEdgeId, root: f64, last: &mut Option<Spoke>) -> f64 {
-    let node = mesh.origin(h);
+/// As [`by_determinants`], the areas as printed (eqs. 10a, 10b): by the metric lengths of the edges, and of the
+/// diagonal, that leave the node, and the angles between them in its metric.
+fn by_printed_areas(mesh: &Mesh, node: NodeId) -> (DVec2, f64) {
     let (p, metric) = mesh.place(node);
-    let mut sum = 0.0;
-    let mut before: Option<Spoke> = None;
-    // The other corners, anticlockwise.
-    let mut side = mesh.next(h);
-    while side != h {
-        let n = mesh.origin(side);
-        let spoke = last.take_if(|last| last.0 == n).unwrap_or_else(|| {
-            let (q, m) = mesh.place(n);
-            (n, q - p, length_over(metric, m, q - p) / metric.norm2(q - p).sqrt())
-        });
-        // l l' sin(theta), the sine by eq. 5: sqrt(det M) x(p, q) over both lengths in the node's metric.
-        if let Some((_, p, l)) = before {
-            sum += l * spoke.2 * p.perp_dot(spoke.1);
-        }
-        before = Some(spoke);
-        side = mesh.next(side);
+    let half_root = 0.5 * metric.det().sqrt();
+    // An edge or a diagonal to another node: its direction, and its metric length over that in the node's own metric.
+    let spoke = |n: NodeId| {
+        let (q, m) = mesh.place(n);
+        (q - p, length_over(metric, m, q - p) / metric.norm2(q - p).sqrt())
+    };
+    // l l' sin(theta), the sine by eq. 5: sqrt(det M) x(p, q) over both lengths in the node's metric.
+    let sector = |(p, l): (DVec2, f64), (q, l_q): (DVec2, f64)| l * l_q * p.perp_dot(q);
+    let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
+    let mut last = None;
+    for h in mesh.fan(node) {
+        let e = h.element();
+        // Elements side by side share a spoke.
+        let first = last.unwrap_or_else(|| spoke(mesh.target(h)));
+        let (sectors, end) = if mesh.is_triangle(e) {
+            let end = spoke(mesh.triangle_from(h)[2]);
+            (sector(first, end), end)
+        } else {
+            let [_, _, c, d] = mesh.quad_from(h);
+            let (diagonal, end) = (spoke(c), spoke(d));
+            (sector(first, diagonal) + sector(diagonal, end), end)
+        };
+        last = Some(end);
+        let area = half_root * sectors;
+        sum += mesh.centroid(e) * area;
+        weight += area;
     }
-    *last = before;
-    0.5 * root * sum
+    (sum, weight)
 }
