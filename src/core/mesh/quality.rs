@@ -99,6 +99,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::mesh::{NewElement, PointId, TriangleSet};
 
     #[test]
     fn length_over_is_the_integral_for_geometric_sizes_within_0_2_percent() {
@@ -110,5 +111,57 @@ mod tests {
             assert!((length / expected - 1.0).abs() < 2e-3, "{a}: {length} and {expected}");
         }
         assert_eq!(length_over(&Metric2::isotropic(0.3), &Metric2::isotropic(0.5), DVec2::ZERO), 0.0);
+    }
+
+    /// A unit square around a free node (4) at (0.4, 0.6), with a quadrilateral below and three triangles, each node
+    /// with a metric of its own.
+    fn quad_and_triangles_around_a_node() -> Mesh {
+        let at = |x: f64, y: f64| DVec2::new(x, y);
+        let set = TriangleSet {
+            uv: vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0), at(0.4, 0.6), at(1.1, 0.5)],
+            point: [0, 1, 2, 3, 4, 5].map(PointId).to_vec(),
+            triangles: vec![[0, 1, 4], [1, 5, 4], [5, 2, 4], [2, 3, 4], [3, 0, 4]],
+            region: vec![0; 5],
+            ..TriangleSet::default()
+        };
+        let metric = |n: usize| Metric2 { uu: 1.0 + n as f64, uv: 0.1 * n as f64, vv: 6.0 - n as f64 };
+        let mut mesh = Mesh::from_triangles(&set, (0..6).map(metric).collect());
+        let quad = NewElement::quad([0, 1, 5, 4].map(NodeId), 0);
+        mesh.replace(&[ElementId(0), ElementId(1)], &[quad]);
+        mesh
+    }
+
+    #[test]
+    fn qualities_and_moves_are_judged_as_if_the_node_had_moved() {
+        let mesh = quad_and_triangles_around_a_node();
+        let node = NodeId(4);
+        assert_eq!(mesh.elements_at(node).filter(|&e| mesh.is_quad(e)).count(), 1);
+        let metric = Metric2 { uu: 2.0, uv: 0.3, vv: 0.7 };
+        for place in [DVec2::new(0.5, 0.5), DVec2::new(0.9, 0.9), DVec2::new(0.55, 0.26), DVec2::new(0.5, -0.1)] {
+            let stays = mesh.elements_at(node).all(|e| mesh.stays_positive(e, node, place));
+            assert_eq!(mesh.can_move(node, place).is_ok(), stays, "{place}");
+            let mut moved = mesh.clone();
+            moved.move_node(node, place, metric);
+            for h in mesh.fan(node) {
+                let (judged, found) = (mesh.quality_with(h, place, &metric), moved.quality(h.element()));
+                assert!((judged - found).abs() < 1e-14, "{place}: {judged} {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn elements_are_read_from_any_of_their_nodes() {
+        let mesh = quad_and_triangles_around_a_node();
+        for e in mesh.elements() {
+            let nodes: Vec<NodeId> = mesh.corners(e).collect();
+            let sum = nodes.iter().map(|&n| mesh.uv(n)).sum::<DVec2>();
+            assert!((mesh.centroid(e) - sum / nodes.len() as f64).length() < 1e-15);
+            for h in mesh.half_edges(e) {
+                let from = if mesh.is_quad(e) { mesh.quad_from(h).to_vec() } else { mesh.triangle_from(h).to_vec() };
+                assert_eq!(from[0], mesh.origin(h));
+                assert_eq!([from[1], from[from.len() - 1]], [mesh.target(h), mesh.apex(h)]);
+                assert!(nodes.iter().all(|n| from.contains(n)) && from.len() == nodes.len());
+            }
+        }
     }
 }

@@ -163,3 +163,64 @@ fn by_printed_areas(mesh: &Mesh, node: NodeId) -> (DVec2, f64) {
     }
     (sum, weight)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::mesh::{NewElement, PointId, TriangleSet};
+    use crate::core::metric::measure::angle;
+
+    /// A free node (6) in a hexagon, between a quadrilateral and four triangles, with a metric of its own at each node.
+    fn quad_and_triangles_in_a_hexagon() -> Mesh {
+        let corner = |k: usize| DVec2::new(libm::cos(k as f64 * 1.0472), libm::sin(k as f64 * 1.0472));
+        let set = TriangleSet {
+            uv: (0..6).map(corner).chain([DVec2::new(0.2, 0.1)]).collect(),
+            point: (0..7).map(PointId).collect(),
+            triangles: (0..6).map(|k| [k, (k + 1) % 6, 6]).collect(),
+            region: vec![0; 6],
+            ..TriangleSet::default()
+        };
+        let metric = |k: usize| Metric2 { uu: 1.0 + 0.3 * k as f64, uv: 0.1 * k as f64, vv: 2.0 };
+        let mut mesh = Mesh::from_triangles(&set, (0..7).map(metric).collect());
+        mesh.replace(&[ElementId(0), ElementId(1)], &[NewElement::quad([0, 1, 2, 6].map(NodeId), 0)]);
+        mesh
+    }
+
+    #[test]
+    fn the_printed_areas_are_those_of_eq_10() {
+        let mesh = quad_and_triangles_in_a_hexagon();
+        let node = NodeId(6);
+        let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
+        for e in mesh.elements_at(node) {
+            let corners: Vec<NodeId> = mesh.corners(e).collect();
+            let at = corners.iter().position(|&n| n == node).expect("the element is at the node");
+            let others: Vec<NodeId> = (1..corners.len()).map(|k| corners[(at + k) % corners.len()]).collect();
+            let to = |n| mesh.uv(n) - mesh.uv(node);
+            let sector = |p: NodeId, q: NodeId| {
+                let theta = angle(mesh.metric_ref(node), to(p), to(q));
+                0.5 * mesh.distance(node, p) * mesh.distance(node, q) * libm::sin(theta)
+            };
+            let area: f64 = others.windows(2).map(|pair| sector(pair[0], pair[1])).sum();
+            sum += corners.iter().map(|&n| mesh.uv(n)).sum::<DVec2>() / corners.len() as f64 * area;
+            weight += area;
+        }
+        let (found, found_weight) = by_printed_areas(&mesh, node);
+        assert!((found_weight - weight).abs() < 1e-13 && (found - sum).length() < 1e-13, "{found} {sum}");
+    }
+
+    #[test]
+    fn a_move_is_judged_by_the_worst_quality_before_and_after() {
+        let mesh = quad_and_triangles_in_a_hexagon();
+        let (node, metric) = (NodeId(6), Metric2 { uu: 1.5, uv: 0.2, vv: 1.8 });
+        let mut answers = [0; 2];
+        for k in 0..400 {
+            let place = DVec2::new(-0.8 + 0.08 * f64::from(k % 20), -0.8 + 0.08 * f64::from(k / 20));
+            let mut moved = mesh.clone();
+            moved.move_node(node, place, metric);
+            let keeps = moved.worst_quality_at(node) >= KEPT_QUALITY * mesh.worst_quality_at(node);
+            assert_eq!(keeps_quality(&mesh, node, place, &metric), keeps, "{place}");
+            answers[usize::from(keeps)] += 1;
+        }
+        assert!(answers.iter().all(|&n| n > 20), "both happen: {answers:?}");
+    }
+}
