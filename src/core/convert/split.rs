@@ -103,11 +103,11 @@ pub(super) fn step(front: &mut Front<'_>, element: ElementId) -> Done {
 pub(super) fn narrow(mesh: &Mesh, parameters: &Parameters, quad: ElementId) -> Narrow {
     let mut elements: SmallVec<[ElementId; 16]> = SmallVec::new();
     for node in mesh.quad(quad) {
-        let live = mesh.elements_at(node).filter(|&e| mesh.is_triangle(e));
-        elements.extend(live.filter(|&e| mesh.triangle(e).iter().all(|&n| mesh.is_on_front(n))));
+        elements.extend(mesh.elements_at(node).filter(|&e| mesh.is_triangle(e)));
     }
     elements.sort_unstable();
     elements.dedup();
+    elements.retain(|e| mesh.triangle(*e).iter().all(|&n| mesh.is_on_front(n)));
     let Parameters { eps1, eps2, .. } = *parameters;
     let mut narrow = Narrow { eps1, eps2, on_front: Vec::new(), slender: Vec::new() };
     for element in elements {

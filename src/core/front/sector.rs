@@ -59,11 +59,13 @@ impl Mesh {
     }
 
     /// Whether a node lies on the front (or on the boundary).
+    #[inline]
     pub fn is_on_front(&self, node: NodeId) -> bool {
         self.is_fixed(node) || self.elements_at(node).any(|e| !self.is_triangle(e))
     }
 
     /// Whether the elements around a node are all quadrilaterals.
+    #[inline]
     pub fn is_buried(&self, node: NodeId) -> bool {
         self.elements_at(node).all(|e| self.is_quad(e))
     }
@@ -136,6 +138,13 @@ impl Mesh {
         }
     }
 
+    /// Whether the frontal angle at A is between 90 and 270 degrees, which takes no arc tangent to see.
+    #[inline]
+    pub fn opens_wide(&self, h: HalfEdgeId) -> bool {
+        let (p, metric) = self.place(self.origin(h));
+        metric.inner(self.uv(self.target(h)) - p, self.uv(self.origin(self.front_before(h))) - p) < 0.0
+    }
+
     /// The frontal angle at one end of a front segment, in (0, 2 pi], in the metric of the node (fig. 9).
     #[inline]
     pub fn frontal_angle(&self, h: HalfEdgeId, side: Side) -> f64 {
@@ -148,5 +157,38 @@ impl Mesh {
         // Equal directions: the tip of a crack, where the sector is a full turn. (Positive triangles cannot form a
         // sector of zero angle, and only needles form a thinner one than this.)
         if theta < 1e-9 || from == to { std::f64::consts::TAU } else { theta }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::kernel::Metric2;
+    use crate::core::mesh::{PointId, TriangleSet};
+    use glam::DVec2;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn an_end_opens_wide_where_its_angle_is_obtuse_or_reflex() {
+        // An arrowhead with angles of about 10, 140, 10 and 200 degrees, fanned from the reflex corner.
+        let uv = [(0.0, 0.0), (2.0, -0.4), (4.0, 0.0), (2.0, 0.4)].map(|(x, y)| DVec2::new(x, y)).to_vec();
+        for dent in [0.4, -0.2] {
+            let mut uv = uv.clone();
+            uv[3].y = dent;
+            let set = TriangleSet {
+                uv,
+                point: [0, 1, 2, 3].map(PointId).to_vec(),
+                triangles: vec![[0, 1, 3], [1, 2, 3]],
+                region: vec![0; 2],
+                ..TriangleSet::default()
+            };
+            for metric in [Metric2::isotropic(1.0), Metric2 { uu: 1.0, uv: 0.0, vv: 100.0 }] {
+                let mesh = Mesh::from_triangles(&set, vec![metric; 4]);
+                for h in mesh.front() {
+                    let angle = mesh.frontal_angle(h, Side::Left);
+                    assert_eq!(mesh.opens_wide(h), angle > FRAC_PI_2 && angle < 3.0 * FRAC_PI_2, "{angle}");
+                }
+            }
+        }
     }
 }

@@ -44,13 +44,14 @@ impl Segment {
             [false, true] => 3,
             [false, false] => 4,
         };
+        let [(size_a, at_a), (size_b, at_b)] = [a, b].map(|n| mesh.size_and_xyz(n));
         Segment {
             h,
             a,
             b,
-            h_value: h_value(mesh, [a, b]),
+            h_value: 0.5 * (size_a + size_b),
             length_metric: mesh.distance(a, b),
-            length_physical: mesh.physical_distance(a, b),
+            length_physical: at_a.distance(at_b),
             theta,
             class,
             level: front_level(mesh, h),

@@ -189,11 +189,8 @@ impl Queue {
             }
         }
         let mut segments: SmallVec<[HalfEdgeId; 64]> = SmallVec::new();
-        for &node in &nodes {
+        for &node in nodes.iter().filter(|&&n| mesh.is_on_front(n)) {
             for h in mesh.fan(node) {
-                if !mesh.is_triangle(h.element()) {
-                    continue;
-                }
                 if mesh.is_front(h) {
                     segments.push(h);
                     segments.push(mesh.front_before(h));
@@ -206,7 +203,7 @@ impl Queue {
             }
         }
         // A moved front node rotates the segments beside it, and so changes the angles at their other ends.
-        for &node in moved.iter().filter(|&&n| mesh.has_node(n)) {
+        for &node in moved.iter().filter(|&&n| mesh.has_node(n) && mesh.is_on_front(n)) {
             for h in mesh.fan(node) {
                 let p = mesh.previous(h);
                 // A deferred segment remains deferred: its own ends have not moved.

@@ -140,9 +140,9 @@ impl Series {
         (i, (t - 0.5 * (a + b)) * rate, rate)
     }
 
-    /// Homogeneous point and its derivatives: `[k][l]` by u and v, for `k + l` up to `order`.
-    #[inline]
-    fn at(&self, [u, v]: [f64; 2], order: usize) -> [[DVec4; 3]; 3] {
+    /// Homogeneous point and its derivatives: `[k][l]` by u and v, for `k + l` up to `ORDER`.
+    #[inline(always)]
+    fn at<const ORDER: usize>(&self, [u, v]: [f64; 2]) -> [[DVec4; 3]; 3] {
         let [p, q] = self.degrees;
         let ((i, s, rate_u), (j, t, rate_v)) = (self.piece(0, u), self.piece(1, v));
         let start = (i * (self.breaks[1].len() - 1) + j) * (p + 1) * (q + 1);
@@ -153,13 +153,13 @@ impl Series {
         for row in coefficients.rchunks_exact(q + 1) {
             let (mut g, mut g_t, mut g_tt) = (DVec4::ZERO, DVec4::ZERO, DVec4::ZERO);
             for &c in row.iter().rev() {
-                if order > 1 {
+                if ORDER > 1 {
                     g_tt = g_tt * t + g_t;
                 }
                 g_t = g_t * t + g;
                 g = g * t + c;
             }
-            if order > 1 {
+            if ORDER > 1 {
                 f_ss = f_ss * s + f_s;
                 f_st = f_st * s + f_t;
                 f_tt = f_tt * s + g_tt * 2.0;
@@ -344,8 +344,10 @@ impl NurbsSurface {
     #[inline]
     fn within(&self, uv: [f64; 2], order: usize) -> SurfacePoint {
         match &self.series {
-            Some(series) => self.divided(&series.at(uv, order), order),
-            None => self.divided(&self.by_basis(uv, order), order),
+            Some(series) if order == 1 => self.divided::<1>(&series.at::<1>(uv)),
+            Some(series) => self.divided::<2>(&series.at::<2>(uv)),
+            None if order == 1 => self.divided::<1>(&self.by_basis(uv, 1)),
+            None => self.divided::<2>(&self.by_basis(uv, 2)),
         }
     }
 
@@ -376,19 +378,19 @@ impl NurbsSurface {
     }
 
     /// Point and derivatives of the quotient (A4.4).
-    #[inline]
-    fn divided(&self, sums: &[[DVec4; 3]; 3], order: usize) -> SurfacePoint {
+    #[inline(always)]
+    fn divided<const ORDER: usize>(&self, sums: &[[DVec4; 3]; 3]) -> SurfacePoint {
         let at = |k: usize, l: usize| (sums[k][l].truncate(), sums[k][l].w);
         let (s, w) = at(0, 0);
         if self.polynomial {
-            let dd = if order > 1 { [at(2, 0).0, at(1, 1).0, at(0, 2).0] } else { [DVec3::ZERO; 3] };
+            let dd = if ORDER > 1 { [at(2, 0).0, at(1, 1).0, at(0, 2).0] } else { [DVec3::ZERO; 3] };
             return SurfacePoint { p: s, d: [at(1, 0).0, at(0, 1).0], dd };
         }
         let p = s / w;
         let ((a_u, w_u), (a_v, w_v)) = (at(1, 0), at(0, 1));
         let (d_u, d_v) = ((a_u - p * w_u) / w, (a_v - p * w_v) / w);
         let mut dd = [DVec3::ZERO; 3];
-        if order > 1 {
+        if ORDER > 1 {
             let ((a_uu, w_uu), (a_uv, w_uv), (a_vv, w_vv)) = (at(2, 0), at(1, 1), at(0, 2));
             dd = [
                 (a_uu - d_u * (2.0 * w_u) - p * w_uu) / w,

@@ -39,8 +39,7 @@ const NONE: u32 = u32::MAX;
 /// Triangles and quadrilaterals with their nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    uv: Vec<DVec2>,
-    metric: Vec<Metric2>,
+    places: Vec<Place>,
     /// The half-edge at which the fan of a node starts; `NONE` for a tombstone.
     anchor: Vec<u32>,
     /// The output point of a fixed node; `NONE` for a free one.
@@ -64,6 +63,13 @@ pub struct Mesh {
     pub(super) refusals: Option<Refusals>,
     /// The surfaces on which it lies; `None` in the plane.
     embedding: Option<Arc<Embedding>>,
+}
+
+/// Where a node is, and its metric there: side by side, since one is seldom read without the other.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    uv: DVec2,
+    metric: Metric2,
 }
 
 /// An element to be created: its nodes anticlockwise (three or four) and its region.
@@ -124,8 +130,7 @@ impl Mesh {
         assert!(set.triangles.len() < (NONE / 4) as usize, "half-edge ids are 32 bits");
         let elements = set.triangles.len();
         let mut mesh = Mesh {
-            uv: set.uv.clone(),
-            metric,
+            places: set.uv.iter().zip(metric).map(|(&uv, metric)| Place { uv, metric }).collect(),
             anchor: vec![NONE; set.uv.len()],
             point: vec![NONE; set.uv.len()],
             origin: vec![NONE; 4 * elements],
@@ -172,7 +177,7 @@ impl Mesh {
 
     /// Number of node slots, tombstones included.
     pub fn node_slots(&self) -> usize {
-        self.uv.len()
+        self.places.len()
     }
 
     /// All elements of one face (region), or all, by id.
@@ -193,7 +198,7 @@ impl Mesh {
 
     /// Number of nodes in use.
     pub fn node_count(&self) -> usize {
-        self.uv.len() - self.free_nodes.len()
+        self.places.len() - self.free_nodes.len()
     }
 
     /// Number of elements in use.
@@ -374,14 +379,33 @@ impl Mesh {
     #[inline]
     pub fn triangle(&self, e: ElementId) -> [NodeId; 3] {
         debug_assert!(self.is_triangle(e));
-        std::array::from_fn(|corner| NodeId(self.origin[4 * e.index() + corner]))
+        let [a, b, c, _] = self.origin.as_chunks().0[e.index()];
+        [a, b, c].map(NodeId)
     }
 
     /// The nodes of a quadrilateral.
     #[inline]
     pub fn quad(&self, e: ElementId) -> [NodeId; 4] {
         debug_assert!(self.is_quad(e));
-        std::array::from_fn(|corner| NodeId(self.origin[4 * e.index() + corner]))
+        self.origin.as_chunks::<4>().0[e.index()].map(NodeId)
+    }
+
+    /// The nodes of a triangle, anticlockwise, from the one that a half-edge leaves.
+    #[inline]
+    pub fn triangle_from(&self, h: HalfEdgeId) -> [NodeId; 3] {
+        let [a, b, c] = self.triangle(h.element());
+        match h.corner() {
+            0 => [a, b, c],
+            1 => [b, c, a],
+            _ => [c, a, b],
+        }
+    }
+
+    /// The nodes of a quadrilateral, anticlockwise, from the one that a half-edge leaves.
+    #[inline]
+    pub fn quad_from(&self, h: HalfEdgeId) -> [NodeId; 4] {
+        let (nodes, corner) = (self.quad(h.element()), h.corner() as usize);
+        [0, 1, 2, 3].map(|i| nodes[(corner + i) % 4])
     }
 
     /// The half-edge from one node to another, if there is one.
@@ -409,19 +433,26 @@ impl Mesh {
     /// Coordinates of a node in the parametric plane.
     #[inline]
     pub fn uv(&self, node: NodeId) -> DVec2 {
-        self.uv[node.index()]
+        self.places[node.index()].uv
     }
 
     /// Metric of a node (eq. 3).
     #[inline]
     pub fn metric(&self, node: NodeId) -> Metric2 {
-        self.metric[node.index()]
+        self.places[node.index()].metric
     }
 
     /// Metric of a node (eq. 3), by reference.
     #[inline]
     pub fn metric_ref(&self, node: NodeId) -> &Metric2 {
-        &self.metric[node.index()]
+        &self.places[node.index()].metric
+    }
+
+    /// Coordinates of a node and its metric.
+    #[inline]
+    pub fn place(&self, node: NodeId) -> (DVec2, &Metric2) {
+        let Place { uv, metric } = &self.places[node.index()];
+        (*uv, metric)
     }
 
     /// Whether the node lies on a boundary: it must not be moved or removed.

@@ -208,8 +208,15 @@ impl Mesh {
     /// positive.
     pub fn can_delete_node(&self, node: NodeId) -> Result<SmallVec<[NewElement; 2]>, Refusal> {
         Refusal::FixedNode.when(self.is_fixed(node))?;
-        let spokes: SmallVec<[HalfEdgeId; 8]> = self.fan(node).take(5).collect();
-        Refusal::Valence.when(!(3..=4).contains(&spokes.len()))?;
+        // Nearly all nodes are refused here.
+        let mut around = [HalfEdgeId(0); 4];
+        let mut valence = 0;
+        for h in self.fan(node) {
+            *around.get_mut(valence).ok_or(Refusal::Valence)? = h;
+            valence += 1;
+        }
+        let spokes = &around[..valence];
+        Refusal::Valence.when(valence < 3)?;
         Refusal::NotTriangles.when(spokes.iter().any(|h| !self.is_triangle(h.element())))?;
         self.permit(Operation::DeleteNode, &[node])?;
         let region = self.region(spokes[0].element());
@@ -337,7 +344,16 @@ impl Mesh {
     /// The reason of the refusal.
     pub fn can_move(&self, node: NodeId, uv: DVec2) -> Result<(), Refusal> {
         Refusal::FixedNode.when(self.is_fixed(node))?;
-        Refusal::NotPositive.when(!self.elements_at(node).all(|e| self.stays_positive(e, node, uv)))?;
+        let is_sound = |h| {
+            if self.is_triangle(HalfEdgeId::element(h)) {
+                let [_, b, c] = self.triangle_from(h).map(|n| self.uv(n));
+                firm(uv, b, c)
+            } else {
+                let [_, b, c, d] = self.quad_from(h).map(|n| self.uv(n));
+                convex(uv, b, c, d)
+            }
+        };
+        Refusal::NotPositive.when(!self.fan(node).all(is_sound))?;
         self.permit_move(node, uv)
     }
 

@@ -37,7 +37,8 @@ impl Mesh {
     /// Metric length of the straight line between two nodes, over the metrics of both.
     #[inline]
     pub fn distance(&self, a: NodeId, b: NodeId) -> f64 {
-        length_over(&self.metric(a), &self.metric(b), self.uv(b) - self.uv(a))
+        let ((p, m_a), (q, m_b)) = (self.place(a), self.place(b));
+        length_over(m_a, m_b, q - p)
     }
 
     /// The place between two nodes that halves the metric length.
@@ -45,6 +46,18 @@ impl Mesh {
         let (p, q) = (self.uv(a), self.uv(b));
         let [l_p, l_q] = [a, b].map(|n| self.metric_ref(n).norm2(q - p).sqrt());
         p + (q - p) * (l_q.sqrt() / (l_p.sqrt() + l_q.sqrt()))
+    }
+
+    /// The mean of an element's nodes in the parametric plane.
+    #[inline]
+    pub fn centroid(&self, e: ElementId) -> DVec2 {
+        if self.is_triangle(e) {
+            let [a, b, c] = self.triangle(e).map(|n| self.uv(n));
+            (a + b + c) / 3.0
+        } else {
+            let [a, b, c, d] = self.quad(e).map(|n| self.uv(n));
+            (a + b + c + d) / 4.0
+        }
     }
 
     /// The worst quality of the elements around a node.
@@ -58,8 +71,20 @@ impl Mesh {
             let n = self.triangle(e);
             self.triangle_quality(n)
         } else {
-            let n = self.quad(e);
-            quad_quality(n.map(|n| self.metric_ref(n)), n.map(|n| self.uv(n)))
+            let corners = self.quad(e).map(|n| self.place(n));
+            quad_quality(corners.map(|corner| corner.1), corners.map(|corner| corner.0))
+        }
+    }
+
+    /// Quality of the element of `h` if the node that it leaves moved to `place`, with this metric.
+    #[inline]
+    pub fn quality_with(&self, h: HalfEdgeId, place: DVec2, metric: &Metric2) -> f64 {
+        if self.is_triangle(h.element()) {
+            let [_, b, c] = self.triangle_from(h).map(|n| self.place(n));
+            quality_over([place, b.0, c.0], [metric, b.1, c.1])
+        } else {
+            let [_, b, c, d] = self.quad_from(h).map(|n| self.place(n));
+            quad_quality([metric, b.1, c.1, d.1], [place, b.0, c.0, d.0])
         }
     }
 
@@ -74,13 +99,15 @@ impl Mesh {
     /// Quality of a triangle of these nodes, whether or not it exists.
     #[inline]
     pub fn triangle_quality(&self, n: [NodeId; 3]) -> f64 {
-        quality_over(n.map(|n| self.uv(n)), n.map(|n| self.metric_ref(n)))
+        let corners = n.map(|n| self.place(n));
+        quality_over(corners.map(|corner| corner.0), corners.map(|corner| corner.1))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::mesh::{NewElement, PointId, TriangleSet};
 
     #[test]
     fn length_over_is_the_integral_for_geometric_sizes_within_0_2_percent() {
@@ -92,5 +119,57 @@ mod tests {
             assert!((length / expected - 1.0).abs() < 2e-3, "{a}: {length} and {expected}");
         }
         assert_eq!(length_over(&Metric2::isotropic(0.3), &Metric2::isotropic(0.5), DVec2::ZERO), 0.0);
+    }
+
+    /// A unit square around a free node (4) at (0.4, 0.6), with a quadrilateral below and three triangles, each node
+    /// with a metric of its own.
+    fn quad_and_triangles_around_a_node() -> Mesh {
+        let at = |x: f64, y: f64| DVec2::new(x, y);
+        let set = TriangleSet {
+            uv: vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0), at(0.4, 0.6), at(1.1, 0.5)],
+            point: [0, 1, 2, 3, 4, 5].map(PointId).to_vec(),
+            triangles: vec![[0, 1, 4], [1, 5, 4], [5, 2, 4], [2, 3, 4], [3, 0, 4]],
+            region: vec![0; 5],
+            ..TriangleSet::default()
+        };
+        let metric = |n: usize| Metric2 { uu: 1.0 + n as f64, uv: 0.1 * n as f64, vv: 6.0 - n as f64 };
+        let mut mesh = Mesh::from_triangles(&set, (0..6).map(metric).collect());
+        let quad = NewElement::quad([0, 1, 5, 4].map(NodeId), 0);
+        mesh.replace(&[ElementId(0), ElementId(1)], &[quad]);
+        mesh
+    }
+
+    #[test]
+    fn qualities_and_moves_are_judged_as_if_the_node_had_moved() {
+        let mesh = quad_and_triangles_around_a_node();
+        let node = NodeId(4);
+        assert_eq!(mesh.elements_at(node).filter(|&e| mesh.is_quad(e)).count(), 1);
+        let metric = Metric2 { uu: 2.0, uv: 0.3, vv: 0.7 };
+        for place in [DVec2::new(0.5, 0.5), DVec2::new(0.9, 0.9), DVec2::new(0.55, 0.26), DVec2::new(0.5, -0.1)] {
+            let stays = mesh.elements_at(node).all(|e| mesh.stays_positive(e, node, place));
+            assert_eq!(mesh.can_move(node, place).is_ok(), stays, "{place}");
+            let mut moved = mesh.clone();
+            moved.move_node(node, place, metric);
+            for h in mesh.fan(node) {
+                let (judged, found) = (mesh.quality_with(h, place, &metric), moved.quality(h.element()));
+                assert!((judged - found).abs() < 1e-14, "{place}: {judged} {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn elements_are_read_from_any_of_their_nodes() {
+        let mesh = quad_and_triangles_around_a_node();
+        for e in mesh.elements() {
+            let nodes: Vec<NodeId> = mesh.corners(e).collect();
+            let sum = nodes.iter().map(|&n| mesh.uv(n)).sum::<DVec2>();
+            assert!((mesh.centroid(e) - sum / nodes.len() as f64).length() < 1e-15);
+            for h in mesh.half_edges(e) {
+                let from = if mesh.is_quad(e) { mesh.quad_from(h).to_vec() } else { mesh.triangle_from(h).to_vec() };
+                assert_eq!(from[0], mesh.origin(h));
+                assert_eq!([from[1], from[from.len() - 1]], [mesh.target(h), mesh.apex(h)]);
+                assert!(nodes.iter().all(|n| from.contains(n)) && from.len() == nodes.len());
+            }
+        }
     }
 }

@@ -95,6 +95,8 @@ pub struct Program {
     /// Length of the register file: variables, then constants, then intermediate results.
     slots: usize,
     constants: Vec<f64>,
+    /// The file before the first instruction, where it fits on the stack.
+    first: Box<[f64; FILE_ON_STACK]>,
     code: Vec<Instruction>,
     outputs: Vec<u32>,
 }
@@ -135,17 +137,28 @@ impl Program {
     /// When `out` is shorter than [`Program::outputs`].
     #[inline]
     pub fn eval(&self, place: &MetricPlace, out: &mut [f64]) {
-        let mut on_stack = [0.0; FILE_ON_STACK];
-        let mut on_heap = Vec::new();
-        let file: &mut [f64] = if self.slots <= FILE_ON_STACK {
-            &mut on_stack
-        } else {
-            on_heap.resize(self.slots, 0.0);
-            &mut on_heap
-        };
-        let n = VARIABLES.len();
-        file[..n].copy_from_slice(&[place.xyz.x, place.xyz.y, place.xyz.z, place.uv.x, place.uv.y]);
-        file[n..n + self.constants.len()].copy_from_slice(&self.constants);
+        let variables = [place.xyz.x, place.xyz.y, place.xyz.z, place.uv.x, place.uv.y];
+        if self.slots > FILE_ON_STACK {
+            return self.eval_on_heap(variables, out);
+        }
+        let mut file = *self.first;
+        file[..VARIABLES.len()].copy_from_slice(&variables);
+        // Every index is within the file; the remainder tells the compiler so.
+        let at = |slot: u32| slot as usize % FILE_ON_STACK;
+        for i in &self.code {
+            file[at(i.out)] = i.op.apply(file[at(i.a)], file[at(i.b)]);
+        }
+        for (value, &slot) in out[..self.outputs.len()].iter_mut().zip(&self.outputs) {
+            *value = file[at(slot)];
+        }
+    }
+
+    #[cold]
+    fn eval_on_heap(&self, variables: [f64; VARIABLES.len()], out: &mut [f64]) {
+        let mut file = Vec::with_capacity(self.slots);
+        file.extend_from_slice(&variables);
+        file.extend_from_slice(&self.constants);
+        file.resize(self.slots, 0.0);
         for i in &self.code {
             file[i.out as usize] = i.op.apply(file[i.a as usize], file[i.b as usize]);
         }
@@ -269,7 +282,9 @@ impl Graph {
             });
             code.push(Instruction { op, a: slot[a as usize], b: slot[b as usize], out: slot[i] });
         }
-        Program { slots, constants, code, outputs: outputs.iter().map(|&o| slot[o as usize]).collect() }
+        let mut first = Box::new([0.0; FILE_ON_STACK]);
+        first.iter_mut().skip(VARIABLES.len()).zip(&constants).for_each(|(slot, constant)| *slot = *constant);
+        Program { slots, constants, first, code, outputs: outputs.iter().map(|&o| slot[o as usize]).collect() }
     }
 }
 

@@ -9,7 +9,6 @@ use super::event::{Event, Purpose};
 use super::front::{Done, Front};
 use super::phase::Phase;
 use crate::core::case::EnhancementOrder;
-use crate::core::kernel::Metric2;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mark, Mesh, NodeId};
 
 /// Looks at edges for one enhancement: four times a ring's size (docs/algorithm.md, "Structural enhancement").
@@ -43,8 +42,12 @@ pub(super) fn enhance(
         if deletes_first && let Some(event) = remove_a_node(front.mesh, element) {
             return (next(edges_around(front.mesh, element)), Some(event));
         }
+        // Several of them are one edge: a second look, before anything has changed, finds the same.
+        let mut seen: SmallVec<[HalfEdgeId; 24]> = SmallVec::new();
         while let Some(h) = edges.pop() {
-            if let Some((event, around)) = enhance_edge(front.mesh, h) {
+            let Some(t) = live_pair(front.mesh, h).filter(|&t| !seen.contains(&h.min(t))) else { continue };
+            seen.push(h.min(t));
+            if let Some((event, around)) = enhance_edge(front.mesh, [h, t]) {
                 edges.extend(around);
                 return (next(edges), Some(event));
             }
@@ -76,32 +79,31 @@ fn edges_around(mesh: &Mesh, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
 
 /// Removes one live node beside the quadrilateral that has three or four triangles (i).
 fn remove_a_node(mesh: &mut Mesh, element: ElementId) -> Option<Event> {
-    for corner in mesh.quad(element) {
-        let around: SmallVec<[NodeId; 12]> = mesh.neighbours(corner).collect();
-        for node in around {
-            if !mesh.is_fixed(node) && mesh.delete_node(node).is_ok() {
-                return Some(Event::NodeRemoved { node, purpose: Purpose::Enhancement });
-            }
-        }
-    }
-    None
+    let removable = |&node: &NodeId| !mesh.is_fixed(node) && mesh.can_delete_node(node).is_ok();
+    // Only triangles are around such a node, so both at its edge are live.
+    let live = |h: &HalfEdgeId| mesh.live_twin(*h).is_some();
+    let beside = |corner| mesh.live_fan(corner).filter(live).map(|h| mesh.target(h)).find(removable);
+    let node = mesh.quad(element).into_iter().find_map(beside)?;
+    mesh.delete_node(node).ok()?;
+    Some(Event::NodeRemoved { node, purpose: Purpose::Enhancement })
+}
+
+/// The other half of an edge between two live triangles; none where an earlier change removed it.
+fn live_pair(mesh: &Mesh, h: HalfEdgeId) -> Option<HalfEdgeId> {
+    if mesh.has_element(h.element()) && mesh.is_triangle(h.element()) { mesh.live_twin(h) } else { None }
 }
 
 /// Swaps the edge if that lowers the largest angle of its two triangles (ii). Returns the edges around it too.
-fn enhance_edge(mesh: &mut Mesh, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4])> {
-    if !mesh.has_element(h.element()) || !mesh.is_triangle(h.element()) {
-        return None;
-    }
-    let t = mesh.live_twin(h)?;
+fn enhance_edge(mesh: &mut Mesh, [h, t]: [HalfEdgeId; 2]) -> Option<(Event, [HalfEdgeId; 4])> {
     let (a, b) = (mesh.origin(h), mesh.origin(t));
     let (c, d) = (mesh.apex(h), mesh.apex(t));
-    let before = least_cosine(mesh, [a, b, c]).min(least_cosine(mesh, [b, a, d]));
     // A largest angle below 90 degrees is no reason to change anything.
-    if before > 0.0 {
+    if is_acute(mesh, [a, b, c]) && is_acute(mesh, [b, a, d]) {
         return None;
     }
-    let after = least_cosine(mesh, [a, d, c]).min(least_cosine(mesh, [d, b, c]));
-    if after <= before + 1e-6 || mesh.can_swap(h).is_err() {
+    let before = least_cosine(mesh, [a, b, c]).min(least_cosine(mesh, [b, a, d]));
+    let stays = |n| least_cosine(mesh, n) <= before + 1e-6;
+    if stays([a, d, c]) || stays([d, b, c]) || mesh.can_swap(h).is_err() {
         return None;
     }
     let h = mesh.swap(h);
@@ -110,14 +112,24 @@ fn enhance_edge(mesh: &mut Mesh, h: HalfEdgeId) -> Option<(Event, [HalfEdgeId; 4
     Some((Event::Enhanced { new: mesh.ends(h) }, around))
 }
 
+/// Whether the angles of a triangle, each in the metric of its node, are all below 90 degrees.
+fn is_acute(mesh: &Mesh, n: [NodeId; 3]) -> bool {
+    let [(a, m_a), (b, m_b), (c, m_c)] = n.map(|n| mesh.place(n));
+    m_a.inner(b - a, c - a) > 0.0 && m_b.inner(c - b, a - b) > 0.0 && m_c.inner(a - c, b - c) > 0.0
+}
+
 /// Least cosine of a triangle's angles (that of its largest angle), each in the metric of its node.
 fn least_cosine(mesh: &Mesh, n: [NodeId; 3]) -> f64 {
+    let corners = n.map(|n| mesh.place(n));
     let mut least = f64::INFINITY;
     for k in 0..3 {
-        let m: &Metric2 = mesh.metric_ref(n[k]);
-        let p = mesh.uv(n[k]);
-        let (a, b) = (mesh.uv(n[(k + 1) % 3]) - p, mesh.uv(n[(k + 2) % 3]) - p);
-        least = least.min(m.inner(a, b) / (m.norm2(a) * m.norm2(b)).sqrt());
+        let ((p, m), (q, _), (r, _)) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        let (a, b) = (q - p, r - p);
+        let inner = m.inner(a, b);
+        // A positive cosine is not the least beside one that is not.
+        if inner <= 0.0 || least > 0.0 {
+            least = least.min(inner / (m.norm2(a) * m.norm2(b)).sqrt());
+        }
     }
     least
 }

@@ -10,6 +10,7 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use crate::core::kernel::Metric2;
+use crate::core::kernel::predicates::convex;
 use crate::core::mesh::{ElementId, Mesh, NodeId};
 use crate::core::metric::MetricSource;
 
@@ -17,25 +18,6 @@ use crate::core::metric::MetricSource;
 const LENGTH_WEIGHT: f64 = 0.25;
 /// A node does not move farther than this in one step, in its metric.
 const LONGEST_MOVE: f64 = 0.5;
-
-/// Energy of the corner at p between the sides to `a` and `b` (anticlockwise); `root`: root of the determinant of `m`.
-#[inline]
-fn corner(m: &Metric2, root: f64, p: DVec2, a: DVec2, b: DVec2) -> f64 {
-    let (a, b) = (a - p, b - p);
-    let x = root * a.perp_dot(b);
-    if x <= 0.0 {
-        return f64::INFINITY;
-    }
-    let r = (m.norm2(a) + m.norm2(b)) / (2.0 * x);
-    r * r - 1.0
-}
-
-/// Energy of the length of an edge: 0 where it is 1 in the metrics of both ends.
-#[inline]
-fn length(m_a: &Metric2, m_b: &Metric2, d: DVec2) -> f64 {
-    let (a, b) = (m_a.norm2(d), m_b.norm2(d));
-    LENGTH_WEIGHT * (a + 1.0 / a + b + 1.0 / b - 4.0)
-}
 
 /// What the clean-up judges quadrilaterals by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,8 +73,29 @@ pub fn judge_corners(p: [DVec2; 4], metrics: [&Metric2; 4]) -> Judged {
     Judged { energy, quality, sine, lengths: lengths.map(f64::sqrt) }
 }
 
-/// A corner that a star holds: its place, its metric and the root of the metric's determinant.
-type Corner<'a> = (DVec2, &'a Metric2, f64);
+/// A corner beside a free node: its place, its metric and the root of the metric's determinant.
+#[derive(Clone, Copy)]
+struct Corner<'a> {
+    p: DVec2,
+    m: &'a Metric2,
+    root: f64,
+}
+
+impl Corner<'_> {
+    /// (a^2 + b^2) / 2x over the sides to `a` and `b` (anticlockwise), or infinite where it is not convex.
+    #[inline(always)]
+    fn ratio(&self, a: DVec2, b: DVec2) -> f64 {
+        let (a, b) = (a - self.p, b - self.p);
+        let x = self.root * a.perp_dot(b);
+        if x > 0.0 { (self.m.norm2(a) + self.m.norm2(b)) * (0.5 / x) } else { f64::INFINITY }
+    }
+}
+
+/// Energy of the length of an edge in the metric of one end, by the square of the length.
+#[inline(always)]
+fn length(a: f64) -> f64 {
+    LENGTH_WEIGHT * (a + 1.0 / a - 2.0)
+}
 
 /// What surrounds a free node: for each quadrilateral (node, b, c, d) its other corners.
 struct Star<'a> {
@@ -101,15 +104,18 @@ struct Star<'a> {
 
 impl<'a> Star<'a> {
     /// The star of a free node; none where an element around it is no quadrilateral.
+    #[inline]
     fn of(mesh: &'a Mesh, node: NodeId) -> Option<Star<'a>> {
         let mut quads: SmallVec<[(Corner<'a>, DVec2, Corner<'a>); 6]> = SmallVec::new();
-        let at = |n: NodeId| (mesh.uv(n), mesh.metric_ref(n), mesh.metric_ref(n).det().sqrt());
+        let at = |n: NodeId| {
+            let (p, m) = mesh.place(n);
+            Corner { p, m, root: m.det().sqrt() }
+        };
         for h in mesh.fan(node) {
-            let e = h.element();
-            if !mesh.is_quad(e) {
+            if !mesh.is_quad(h.element()) {
                 return None;
             }
-            let [b, c, d] = [1, 2, 3].map(|i| mesh.origin(e.half_edge((h.corner() + i) % 4)));
+            let [_, b, c, d] = mesh.quad_from(h);
             // Neighbours in the fan share a side.
             let b = quads.last().map_or_else(|| at(b), |last| last.2);
             quads.push((b, mesh.uv(c), at(d)));
@@ -119,48 +125,56 @@ impl<'a> Star<'a> {
 
     /// Energy of everything that depends on the node, with the node at `p`.
     fn energy(&self, p: DVec2, m: &Metric2) -> f64 {
-        let root = m.det().sqrt();
+        let node = Corner { p, m, root: m.det().sqrt() };
         let mut sum = 0.0;
-        for ((b, m_b, root_b), c, (d, m_d, root_d)) in &self.quads {
-            sum += corner(m, root, p, *b, *d) + corner(m_b, *root_b, *b, *c, p) + corner(m_d, *root_d, *d, p, *c);
-            sum += length(m, m_b, *b - p);
+        for (b, c, d) in &self.quads {
+            let ratios = [node.ratio(b.p, d.p), b.ratio(*c, p), d.ratio(p, *c)];
+            sum += ratios.iter().map(|r| r * r - 1.0).sum::<f64>();
+            sum += length(m.norm2(b.p - p)) + length(b.m.norm2(b.p - p));
         }
         sum
     }
 
-    /// First and second derivatives of the energy by the node's place, its own metric held fast.
+    /// First and second derivatives of the energy by the node's place, its own metric held fast; and the energy.
     fn slope(&self, p: DVec2, m: &Metric2) -> Slope {
         let root = m.det().sqrt();
         let mut sum = Slope::default();
-        for ((b, m_b, root_b), c, (d, m_d, root_d)) in &self.quads {
+        for (b, c, d) in &self.quads {
             // At the node: both sides turn with it.
-            let (to_b, to_d) = (*b - p, *d - p);
+            let (to_b, to_d) = (b.p - p, d.p - p);
             let m_to_b = m.times(to_b);
             let (a_b, a_d) = (to_b.dot(m_to_b), m.norm2(to_d));
             let x = root * to_b.perp_dot(to_d);
-            sum.add_corner(a_b + a_d, x, (m_to_b + m.times(to_d)) * -2.0, perp(*d - *b) * root, m, 4.0);
+            sum.add_corner(a_b + a_d, x, (m_to_b + m.times(to_d)) * -2.0, perp(d.p - b.p) * root, m, 4.0);
             // At b, between c and the node; at d, between the node and c: one side turns.
-            let (to_c, to_p) = (*c - *b, p - *b);
-            let m_to_p = m_b.times(to_p);
+            let (to_c, to_p) = (*c - b.p, p - b.p);
+            let m_to_p = b.m.times(to_p);
             let a_p = to_p.dot(m_to_p);
-            let x = root_b * to_c.perp_dot(to_p);
-            sum.add_corner(m_b.norm2(to_c) + a_p, x, m_to_p * 2.0, perp(to_c) * *root_b, m_b, 2.0);
+            let x = b.root * to_c.perp_dot(to_p);
+            sum.add_corner(b.m.norm2(to_c) + a_p, x, m_to_p * 2.0, perp(to_c) * b.root, b.m, 2.0);
             // The edge to b, in the metrics of both ends.
             sum.add_length(a_b, m_to_b * -2.0, m);
-            sum.add_length(a_p, m_to_p * 2.0, m_b);
-            let (to_p, to_c) = (p - *d, *c - *d);
-            let m_to_p = m_d.times(to_p);
-            let x = root_d * to_p.perp_dot(to_c);
-            let n = to_p.dot(m_to_p) + m_d.norm2(to_c);
-            sum.add_corner(n, x, m_to_p * 2.0, -perp(to_c) * *root_d, m_d, 2.0);
+            sum.add_length(a_p, m_to_p * 2.0, b.m);
+            let (to_p, to_c) = (p - d.p, *c - d.p);
+            let m_to_p = d.m.times(to_p);
+            let x = d.root * to_p.perp_dot(to_c);
+            let n = to_p.dot(m_to_p) + d.m.norm2(to_c);
+            sum.add_corner(n, x, m_to_p * 2.0, -perp(to_c) * d.root, d.m, 2.0);
         }
         sum
     }
+
+    /// Whether every quadrilateral is strictly convex, exactly, with the node at `p`.
+    fn is_convex(&self, p: DVec2) -> bool {
+        self.quads.iter().all(|(b, c, d)| convex(p, b.p, *c, d.p))
+    }
 }
 
-/// Gradient and second derivatives of a sum of terms.
+/// A sum of terms with its gradient and second derivatives.
 #[derive(Clone, Copy, Default)]
 struct Slope {
+    /// Infinite where a corner is not convex.
+    energy: f64,
     gradient: DVec2,
     uu: f64,
     uv: f64,
@@ -176,11 +190,12 @@ impl Slope {
         self.vv += w * m.vv + 2.0 * g.y * q.y;
     }
 
-    /// Adds (n / 2x)^2, where x is linear in the place and n has the second derivatives `second` * m.
+    /// Adds (n / 2x)^2 - 1, where x is linear in the place and n has the second derivatives `second` * m.
     #[inline(always)]
     fn add_corner(&mut self, n: f64, x: f64, gradient_n: DVec2, gradient_x: DVec2, m: &Metric2, second: f64) {
         let half = 0.5 / x;
         let r = n * half;
+        self.energy += if x > 0.0 { r * r - 1.0 } else { f64::INFINITY };
         // Gradient of the ratio r.
         let g = (gradient_n - gradient_x * (2.0 * r)) * half;
         self.gradient += g * (2.0 * r);
@@ -193,6 +208,7 @@ impl Slope {
     #[inline(always)]
     fn add_length(&mut self, a: f64, gradient: DVec2, m: &Metric2) {
         let inverse = 1.0 / a;
+        self.energy += LENGTH_WEIGHT * (a + inverse - 2.0);
         let first = LENGTH_WEIGHT * (1.0 - inverse * inverse);
         self.gradient += gradient * first;
         self.add_second(2.0 * first, m, gradient, gradient * (LENGTH_WEIGHT * inverse * inverse * inverse));
@@ -221,13 +237,12 @@ pub fn relax(mesh: &mut Mesh, node: NodeId, source: &dyn MetricSource) -> f64 {
     }
     let Some(star) = Star::of(mesh, node) else { return 0.0 };
     let (p, m) = (mesh.uv(node), mesh.metric(node));
-    let before = star.energy(p, &m);
-    if !before.is_finite() {
+    let slope = star.slope(p, &m);
+    if !slope.energy.is_finite() {
         return 0.0;
     }
     let e = unit_axes(&m);
     let along = |g: DVec2| DVec2::new(g.dot(e[0]), g.dot(e[1]));
-    let slope = star.slope(p, &m);
     let g = along(slope.gradient);
     // The second derivative is seldom below 10: the step would be too short to be worth the journal's memory.
     if g.length_squared() < 1e-4 {
@@ -256,7 +271,10 @@ pub fn relax(mesh: &mut Mesh, node: NodeId, source: &dyn MetricSource) -> f64 {
         let place = p + (e[0] * newton.x + e[1] * newton.y) * step;
         if let Ok(metric) = source.metric(place) {
             // The exact test comes last: it is expensive and seldom fails where the energy is finite.
-            if star.energy(place, &metric) < before - 1e-9 && mesh.can_move(node, place).is_ok() {
+            if star.energy(place, &metric) < slope.energy - 1e-9
+                && star.is_convex(place)
+                && mesh.permit_move(node, place).is_ok()
+            {
                 found = Some((place, metric));
                 break;
             }
@@ -279,11 +297,11 @@ mod tests {
         let (m, around) =
             (metric(2.0, 0.3, 1.0), [metric(1.5, -0.2, 0.8), metric(1.0, 0.0, 1.0), metric(2.2, 0.5, 1.3)]);
         let corners = [DVec2::new(1.0, 0.1), DVec2::new(1.1, 1.0), DVec2::new(0.0, 0.9)];
-        let at = |k: usize| (corners[k], &around[k], around[k].det().sqrt());
-        let quad = (at(0), corners[1], at(2));
-        let star = Star { quads: SmallVec::from_iter([quad]) };
+        let at = |k: usize| Corner { p: corners[k], m: &around[k], root: around[k].det().sqrt() };
+        let star = Star { quads: SmallVec::from_iter([(at(0), corners[1], at(2))]) };
         let p = DVec2::new(0.1, -0.05);
         let slope = star.slope(p, &m);
+        assert!((slope.energy - star.energy(p, &m)).abs() < 1e-12 * slope.energy);
         for (axis, second) in [(DVec2::X, [slope.uu, slope.uv]), (DVec2::Y, [slope.uv, slope.vv])] {
             let step = axis * 1e-5;
             let first = (star.energy(p + step, &m) - star.energy(p - step, &m)) / 2e-5;
@@ -291,14 +309,17 @@ mod tests {
             let turn = (star.slope(p + step, &m).gradient - star.slope(p - step, &m).gradient) / 2e-5;
             assert!((turn - DVec2::from(second)).length() < 1e-5, "{turn} {second:?}");
         }
+        // Beyond the line from b to d a corner is inverted.
+        let beyond = DVec2::new(1.2, 1.2);
+        assert_eq!([star.energy(beyond, &m), star.slope(beyond, &m).energy], [f64::INFINITY; 2]);
+        assert!(star.is_convex(p) && !star.is_convex(beyond));
     }
 
     #[test]
     fn the_unit_square_of_the_metric_has_no_energy() {
         let m = Metric2 { uu: 4.0, uv: 0.0, vv: 25.0 };
-        let p = [DVec2::ZERO, DVec2::new(0.5, 0.0), DVec2::new(0.0, 0.2)];
-        let root = m.det().sqrt();
-        assert!(corner(&m, root, p[0], p[1], p[2]).abs() < 1e-12 && length(&m, &m, p[1]).abs() < 1e-12);
-        assert_eq!(corner(&m, root, p[0], p[2], p[1]), f64::INFINITY);
+        let at = |x, y| Corner { p: DVec2::new(x, y), m: &m, root: m.det().sqrt() };
+        let star = Star { quads: SmallVec::from_iter([(at(0.5, 0.0), DVec2::new(0.5, 0.2), at(0.0, 0.2))]) };
+        assert!(star.energy(DVec2::ZERO, &m).abs() < 1e-12);
     }
 }

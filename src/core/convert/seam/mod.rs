@@ -53,6 +53,10 @@ fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
     let segments: SmallVec<[HalfEdgeId; 4]> = front.mesh.fan(at).filter(|&h| front.mesh.is_front(h)).collect();
     for h in segments {
         let mesh = &*front.mesh;
+        // None of the angles below is wider than this; most ends of segments are settled here.
+        if front.parameters.theta_seam <= FRAC_PI_2 && mesh.opens_wide(h) {
+            continue;
+        }
         let before = mesh.front_before(h);
         let [l_b, l_c] = [h, before].map(|h| mesh.length(h));
         let corner = corner(front, h, [l_b, l_c]);

@@ -190,7 +190,7 @@ fn series_agree_with_the_basis_functions_for_all_degrees_that_use_them() {
         let surface = NurbsSurface::new([degree; 2], [knots.clone(), knots], &weights, &points, count).unwrap();
         assert_eq!(surface.series.is_some(), degree <= SERIES);
         for uv in places(&surface, 23) {
-            let (a, b) = (surface.at(uv, 2), surface.divided(&surface.by_basis([uv.x, uv.y], 2), 2));
+            let (a, b) = (surface.at(uv, 2), surface.divided::<2>(&surface.by_basis([uv.x, uv.y], 2)));
             let near = |a: DVec3, b: DVec3, scale: f64| a.distance(b) < 1e-13 * scale * (1.0 + b.length());
             assert!(near(a.p, b.p, 10.0), "{degree} {uv}");
             assert!((0..2).all(|k| near(a.d[k], b.d[k], 100.0)), "{degree} {uv}");

@@ -1,6 +1,6 @@
 //! Copies of a mesh: along a Hilbert curve, without its journal, as bytes.
 
-use super::{Mesh, NONE};
+use super::{Mesh, NONE, Place};
 use crate::core::mesh::ids::{ElementId, NodeId};
 use crate::core::mesh::order::{grouped, hilbert_order};
 
@@ -11,7 +11,7 @@ impl Mesh {
     #[must_use]
     pub fn reordered(&self) -> Mesh {
         let nodes = hilbert_order(&self.nodes().map(|n| (n.0, self.uv(n))).collect::<Vec<_>>());
-        let mut new_node = vec![NONE; self.uv.len()];
+        let mut new_node = vec![NONE; self.places.len()];
         for (new, &old) in nodes.iter().enumerate() {
             new_node[old as usize] = new as u32;
         }
@@ -46,8 +46,7 @@ impl Mesh {
             deferred.extend_from_slice(&self.deferred[first..first + 4]);
         }
         Mesh {
-            uv: nodes.iter().map(|&n| self.uv[n as usize]).collect(),
-            metric: nodes.iter().map(|&n| self.metric[n as usize]).collect(),
+            places: nodes.iter().map(|&n| self.places[n as usize]).collect(),
             anchor: nodes.iter().map(|&n| half_edge(self.anchor[n as usize])).collect(),
             point: nodes.iter().map(|&n| self.point[n as usize]).collect(),
             origin,
@@ -75,17 +74,14 @@ impl Mesh {
     /// the same state if and only if these bytes are equal. (The journal is history, not state.)
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         let mut number = |n: u64| bytes.extend_from_slice(&n.to_le_bytes());
-        number(self.uv.len() as u64);
+        number(self.places.len() as u64);
         number(self.sides.len() as u64);
         number(self.free_nodes.len() as u64);
         number(self.free_elements.len() as u64);
         number(u64::from(self.closed[0]) << 32 | u64::from(self.closed[1]));
-        for n in 0..self.uv.len() {
-            number(self.uv[n].x.to_bits());
-            number(self.uv[n].y.to_bits());
-            number(self.metric[n].uu.to_bits());
-            number(self.metric[n].uv.to_bits());
-            number(self.metric[n].vv.to_bits());
+        for n in 0..self.places.len() {
+            let Place { uv, metric } = self.places[n];
+            [uv.x, uv.y, metric.uu, metric.uv, metric.vv].into_iter().for_each(|x| number(x.to_bits()));
             number(u64::from(self.anchor[n]) << 32 | u64::from(self.point[n]));
         }
         for h in 0..self.origin.len() {

@@ -121,20 +121,20 @@ impl Mesh {
 
     /// The memory of the arrays, without the journal, bytes.
     pub fn bytes(&self) -> usize {
-        self.uv.capacity() * size_of::<Node>()
+        self.places.capacity() * size_of::<Node>()
             + self.sides.capacity() * size_of::<Element>()
             + 4 * (self.free_nodes.capacity() + self.free_elements.capacity())
     }
 
     /// The difference from an earlier state, given the slots touched since and the free lists of that state.
     pub fn difference(&self, touched: &Touched, free: &FreeLists) -> Difference {
-        let mut nodes: Vec<_> = touched.nodes().iter().copied().filter(|n| n.index() < self.uv.len()).collect();
+        let mut nodes: Vec<_> = touched.nodes().iter().copied().filter(|n| n.index() < self.places.len()).collect();
         nodes.sort_unstable();
         let mut elements: Vec<_> =
             touched.elements().iter().copied().filter(|e| e.index() < self.sides.len()).collect();
         elements.sort_unstable();
         Difference {
-            node_slots: self.uv.len(),
+            node_slots: self.places.len(),
             element_slots: self.sides.len(),
             nodes: nodes.into_iter().map(|n| (n, self.node_slot(n))).collect(),
             elements: elements.into_iter().map(|e| (e, self.element_slot(e))).collect(),
@@ -155,7 +155,7 @@ impl Mesh {
             };
         }
         copy! {
-            uv metric anchor point origin twin sides region level deferred first_level
+            places anchor point origin twin sides region level deferred first_level
             free_nodes free_elements closed refusals embedding
         }
         self.journal = Journal::default();
@@ -164,8 +164,8 @@ impl Mesh {
     /// Copies the state of another mesh, of which this is an older or newer state: `touched` are the slots that differ.
     /// The cost is proportional to those; the journal is empty afterwards.
     pub(in crate::core) fn follow(&mut self, other: &Mesh, touched: &Touched) {
-        self.resize(other.uv.len(), other.sides.len());
-        for &n in touched.nodes().iter().filter(|n| n.index() < other.uv.len()) {
+        self.resize(other.places.len(), other.sides.len());
+        for &n in touched.nodes().iter().filter(|n| n.index() < other.places.len()) {
             self.put_node(n.index(), other.node_slot(n));
         }
         for &e in touched.elements().iter().filter(|e| e.index() < other.sides.len()) {

@@ -52,6 +52,16 @@ impl Mesh {
         }
     }
 
+    /// [`smallest_size`](Mesh::smallest_size) and [`xyz`](Mesh::xyz), with one look at the surface.
+    #[inline]
+    pub fn size_and_xyz(&self, node: NodeId) -> (f64, DVec3) {
+        let (uv, metric) = self.place(node);
+        let Some(embedding) = &self.embedding else { return (metric.min_size(), uv.extend(0.0)) };
+        let at = embedding.atlas.at(uv);
+        let xyz = self.point(node).map_or(at.xyz, |point| embedding.points[point.index()]);
+        (metric.min_size_against(&at.first_form()), xyz)
+    }
+
     /// The distance of two nodes in space.
     pub fn physical_distance(&self, a: NodeId, b: NodeId) -> f64 {
         match &self.embedding {

@@ -44,7 +44,7 @@ impl Mesh {
     /// One mesh for each group of regions; regions without a group are left out.
     fn grouped(&self, groups: usize, group_of: &dyn Fn(u32) -> Option<usize>) -> Vec<FaceMesh> {
         let (mut nodes, mut elements) = (vec![Vec::new(); groups], vec![Vec::new(); groups]);
-        let (mut new_node, mut new_element) = (vec![NONE; self.uv.len()], vec![NONE; self.sides.len()]);
+        let (mut new_node, mut new_element) = (vec![NONE; self.places.len()], vec![NONE; self.sides.len()]);
         for e in self.elements() {
             if let Some(group) = group_of(self.region(e)) {
                 new_element[e.index()] = elements[group].len() as u32;
@@ -68,15 +68,15 @@ impl Mesh {
     /// changed here one after another. The journal is empty afterwards.
     pub fn put_back(&mut self, faces: Vec<FaceMesh>) {
         for FaceMesh { mesh, nodes, elements } in faces {
-            let (first_node, first_element) = (self.uv.len(), self.sides.len());
+            let (first_node, first_element) = (self.places.len(), self.sides.len());
             let node = |n: usize| nodes.get(n).map_or_else(|| first_node + n - nodes.len(), |&n| n as usize);
             let element =
                 |e: usize| elements.get(e).map_or_else(|| first_element + e - elements.len(), |&e| e as usize);
             let half_edge = |h: u32| if h == NONE { NONE } else { (element(h as usize >> 2) as u32) << 2 | (h & 3) };
-            let more_nodes = mesh.uv.len() - nodes.len();
+            let more_nodes = mesh.places.len() - nodes.len();
             let more_elements = mesh.sides.len() - elements.len();
             self.resize(first_node + more_nodes, first_element + more_elements);
-            for own in 0..mesh.uv.len() {
+            for own in 0..mesh.places.len() {
                 let (uv, metric, anchor, point) = mesh.node_slot(NodeId(own as u32));
                 self.put_node(node(own), (uv, metric, half_edge(anchor), point));
             }

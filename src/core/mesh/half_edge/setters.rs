@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::slots::Element;
-use super::{Mesh, NONE};
+use super::{Mesh, NONE, Place};
 use crate::core::kernel::Metric2;
 use crate::core::mesh::ids::{ElementId, HalfEdgeId, NodeId};
 use crate::core::mesh::journal::Entry;
@@ -69,7 +69,7 @@ impl Mesh {
     /// does not record it.
     pub(in crate::core) fn set_first_level(&mut self, node: NodeId, level: u16) {
         if self.first_level.len() <= node.index() {
-            self.first_level.resize(self.uv.len(), 0);
+            self.first_level.resize(self.places.len(), 0);
         }
         self.first_level[node.index()] = level;
     }
@@ -101,10 +101,9 @@ impl Mesh {
     /// Sets the position of a node and its metric there.
     #[inline]
     pub(in crate::core::mesh) fn set_place(&mut self, node: NodeId, uv: DVec2, metric: Metric2) {
-        let old = std::mem::replace(&mut self.uv[node.index()], uv);
-        self.journal.note(Entry::Uv(node, old));
-        let old = std::mem::replace(&mut self.metric[node.index()], metric);
-        self.journal.note(Entry::Metric(node, old));
+        let old = std::mem::replace(&mut self.places[node.index()], Place { uv, metric });
+        self.journal.note(Entry::Uv(node, old.uv));
+        self.journal.note(Entry::Metric(node, old.metric));
     }
 
     /// Creates a free node without elements.
@@ -117,7 +116,7 @@ impl Mesh {
             return node;
         }
         self.append_node((uv, metric, NONE, NONE));
-        NodeId(self.uv.len() as u32 - 1)
+        NodeId(self.places.len() as u32 - 1)
     }
 
     /// Turns a free node without elements into a tombstone.

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Mesh, NONE};
+use super::{Mesh, NONE, Place};
 use crate::core::kernel::Metric2;
 use crate::core::mesh::ids::{ElementId, NodeId};
 
@@ -23,7 +23,8 @@ pub struct Element {
 impl Mesh {
     pub(super) fn node_slot(&self, n: NodeId) -> Node {
         let n = n.index();
-        (self.uv[n], self.metric[n], self.anchor[n], self.point[n])
+        let Place { uv, metric } = self.places[n];
+        (uv, metric, self.anchor[n], self.point[n])
     }
 
     pub(super) fn element_slot(&self, e: ElementId) -> Element {
@@ -40,7 +41,8 @@ impl Mesh {
 
     /// Sets the contents of a slot; the journal does not record it.
     pub(super) fn put_node(&mut self, n: usize, (uv, metric, anchor, point): Node) {
-        (self.uv[n], self.metric[n], self.anchor[n], self.point[n]) = (uv, metric, anchor, point);
+        self.places[n] = Place { uv, metric };
+        (self.anchor[n], self.point[n]) = (anchor, point);
     }
 
     /// Sets the contents of a slot; the journal does not record it.
@@ -54,8 +56,7 @@ impl Mesh {
 
     /// Resizes all arrays, except the first levels, to these numbers of slots; the journal does not record it.
     pub(super) fn resize(&mut self, nodes: usize, elements: usize) {
-        self.uv.resize(nodes, DVec2::ZERO);
-        self.metric.resize(nodes, Metric2::isotropic(1.0));
+        self.places.resize(nodes, Place { uv: DVec2::ZERO, metric: Metric2::isotropic(1.0) });
         self.anchor.resize(nodes, NONE);
         self.point.resize(nodes, NONE);
         self.origin.resize(4 * elements, NONE);

@@ -110,12 +110,12 @@ impl Mesh {
             Entry::Region(e, old) => Entry::Region(e, replace(&mut self.region[e.index()], old)),
             Entry::Level(e, old) => Entry::Level(e, replace(&mut self.level[e.index()], old)),
             Entry::Deferred(h, old) => Entry::Deferred(h, replace(&mut self.deferred[h.index()], old)),
-            Entry::Uv(n, old) => Entry::Uv(n, replace(&mut self.uv[n.index()], old)),
-            Entry::Metric(n, old) => Entry::Metric(n, replace(&mut self.metric[n.index()], old)),
+            Entry::Uv(n, old) => Entry::Uv(n, replace(&mut self.places[n.index()].uv, old)),
+            Entry::Metric(n, old) => Entry::Metric(n, replace(&mut self.places[n.index()].metric, old)),
             Entry::Closed(old) => Entry::Closed(replace(&mut self.closed, old)),
             Entry::Anchor(n, old) => Entry::Anchor(n, replace(&mut self.anchor[n.index()], old)),
             Entry::NodeAppended => {
-                let last = self.uv.len() - 1;
+                let last = self.places.len() - 1;
                 let node = self.node_slot(NodeId(last as u32));
                 self.resize(last, self.sides.len());
                 return Undone::NodeAppended(node);
@@ -123,7 +123,7 @@ impl Mesh {
             Entry::ElementAppended => {
                 let last = self.sides.len() - 1;
                 let element = self.element_slot(ElementId(last as u32));
-                self.resize(self.uv.len(), last);
+                self.resize(self.places.len(), last);
                 return Undone::ElementAppended(element);
             }
             Entry::NodeTaken(n) => {
@@ -146,7 +146,7 @@ impl Mesh {
     }
 
     pub(super) fn append_node(&mut self, node: Node) {
-        let last = self.uv.len();
+        let last = self.places.len();
         self.resize(last + 1, self.sides.len());
         self.put_node(last, node);
         self.journal.note(Entry::NodeAppended);
@@ -154,7 +154,7 @@ impl Mesh {
 
     pub(super) fn append_element(&mut self, element: &Element) {
         let last = self.sides.len();
-        self.resize(self.uv.len(), last + 1);
+        self.resize(self.places.len(), last + 1);
         self.put_element(last, element);
         self.journal.note(Entry::ElementAppended);
     }
