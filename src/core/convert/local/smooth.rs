@@ -169,10 +169,14 @@ mod tests {
     use super::*;
     use crate::core::mesh::{NewElement, PointId, TriangleSet};
     use crate::core::metric::measure::angle;
+    use std::f64::consts::FRAC_PI_3;
 
     /// A free node (6) in a hexagon, between a quadrilateral and four triangles, with a metric of its own at each node.
     fn quad_and_triangles_in_a_hexagon() -> Mesh {
-        let corner = |k: usize| DVec2::new(libm::cos(k as f64 * 1.0472), libm::sin(k as f64 * 1.0472));
+        let corner = |k: usize| {
+            let (y, x) = libm::sincos(k as f64 * FRAC_PI_3);
+            DVec2::new(x, y)
+        };
         let set = TriangleSet {
             uv: (0..6).map(corner).chain([DVec2::new(0.2, 0.1)]).collect(),
             point: (0..7).map(PointId).collect(),
