@@ -74,12 +74,12 @@ fn edges_around(mesh: &Mesh, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
     edges
 }
 
-/// Removes one live node beside the quadrilateral that has three or four triangles (i).
+/// Removes one live node beside the quadrilateral that has three or four triangles (i), unless they are a cut grid.
 fn remove_a_node(mesh: &mut Mesh, element: ElementId) -> Option<Event> {
     for corner in mesh.quad(element) {
         let around: SmallVec<[NodeId; 12]> = mesh.neighbours(corner).collect();
         for node in around {
-            if !mesh.is_fixed(node) && mesh.delete_node(node).is_ok() {
+            if !mesh.is_fixed(node) && !mesh.is_in_cut_grid(node) && mesh.delete_node(node).is_ok() {
                 return Some(Event::NodeRemoved { node, purpose: Purpose::Enhancement });
             }
         }
