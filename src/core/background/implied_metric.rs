@@ -40,8 +40,8 @@ fn equilateral([a, b, c]: [DVec2; 3]) -> Metric2 {
     inverse_of_sum([b - a, c - b, a - c], 0.5 / (doubled * doubled))
 }
 
-/// The metric in which the sides that meet in `a` are perpendicular and of unit length: the inverse of the sum of
-/// `e e^T` over both, whose determinant is the square of the doubled area.
+/// The metric in which the sides that meet in `a` are perpendicular and of unit length: the inverse of the sum of `e
+/// e^T` over both, whose determinant is the square of the doubled area.
 fn unit_legs(a: DVec2, b: DVec2, c: DVec2) -> Metric2 {
     let doubled = orient(a, b, c);
     inverse_of_sum([b - a, c - a], 1.0 / (doubled * doubled))

@@ -28,9 +28,9 @@ pub struct RightAngle {
 }
 
 /// The right angle of each triangle that counts as right-angled. A triangle scores if its neighbour across the side
-/// opposite to its right angle has its own right angle opposite to that side too; the score of the pair is
-/// `1 - (s / 0.4)^2` with its greater shear `s`. Scores are averaged at each node and then over the nodes of each
-/// triangle, twice; the mean gives the weight.
+/// opposite to its right angle has its own right angle opposite to that side too; the score of the pair is `1 - (s /
+/// 0.4)^2` with its greater shear `s`. Scores are averaged at each node and then over the nodes of each triangle,
+/// twice; the mean gives the weight.
 pub fn right_angles(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Option<RightAngle>> {
     let least = |t: &[u32; 3]| {
         let corners = t.map(|k| points[k as usize]);
