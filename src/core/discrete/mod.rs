@@ -18,6 +18,7 @@ mod as_rigid_as_possible;
 mod texture;
 pub mod surface;
 pub(crate) mod curvature;
+pub mod right_angled;
 pub mod own_triangles;
 pub mod census;
 

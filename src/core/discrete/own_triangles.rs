@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use super::chart::Chart;
 use super::defects::capital;
 use super::edges::{Corner, Edge, Edges, Triangles};
+use super::right_angled::right_angles;
 use super::surface::{Surface, sides};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::point_text;
@@ -276,13 +277,21 @@ impl Borders {
     }
 }
 
-/// The metric implied by the triangles, at each point: a triangle is equilateral with unit sides in its own metric; a
-/// point has the log-Euclidean mean over its triangles, as in the plane (`background::import`).
+/// The metric implied by the triangles, at each point: a triangle is equilateral with unit sides in its own metric, or,
+/// in a grid that was cut along diagonals, right-angled with unit legs; a point has the log-Euclidean mean over its
+/// triangles, as in the plane (`background::implied_metric`).
 pub fn implied_metric_in_space(mesh: &Triangles) -> Vec<Metric3> {
     let mut sums = vec![(LogMetric3::ZERO, 0.0_f64); mesh.points.len()];
+    let right_angles = right_angles(&mesh.points, &mesh.triangles);
     for (t, nodes) in mesh.triangles.iter().enumerate() {
-        let Some(metric) = implied_by(mesh.corners(t)) else { continue };
-        let ln = metric.ln();
+        let corners = mesh.corners(t);
+        let Some(metric) = implied_by(corners, Shape::Equilateral) else { continue };
+        let mut ln = metric.ln();
+        if let Some(right) = right_angles[t]
+            && let Some(metric) = implied_by(corners, Shape::RightAngled(right.corner))
+        {
+            ln = LogMetric3::ZERO.plus(1.0 - right.weight, &ln).plus(right.weight, &metric.ln());
+        }
         for &node in nodes {
             let (sum, count) = &mut sums[node as usize];
             *sum = sum.plus(1.0, &ln);
@@ -295,16 +304,31 @@ pub fn implied_metric_in_space(mesh: &Triangles) -> Vec<Metric3> {
     sums.iter().map(mean).collect()
 }
 
-/// The metric in which a triangle is equilateral with unit sides; the eigenvalue along the normal is the geometric mean
-/// of the other two. `None` for a degenerate triangle.
-fn implied_by([a, b, c]: [DVec3; 3]) -> Option<Metric3> {
+/// What a triangle is in the metric that it implies.
+#[derive(Clone, Copy)]
+enum Shape {
+    /// Equilateral with unit sides.
+    Equilateral,
+    /// Right-angled at a corner, with unit legs.
+    RightAngled(usize),
+}
+
+/// The metric in which a triangle has a shape; the eigenvalue along the normal is the geometric mean of the other two.
+/// `None` for a degenerate triangle.
+fn implied_by(corners: [DVec3; 3], shape: Shape) -> Option<Metric3> {
+    let first = if let Shape::RightAngled(corner) = shape { corner } else { 0 };
+    let [a, b, c] = [0, 1, 2].map(|k| corners[(first + k) % 3]);
     let s = (b - a).try_normalize()?;
     let normal = (b - a).cross(c - a).try_normalize()?;
     let t = normal.cross(s);
     let [e, f] = [b - a, c - a].map(|d| DVec2::new(d.dot(s), d.dot(t)));
     let doubled = e.perp_dot(f);
-    let sides = [e, f - e, -f];
-    let factor = 0.5 / (doubled * doubled);
+    let (third, share) = match shape {
+        Shape::Equilateral => (f - e, 0.5),
+        Shape::RightAngled(_) => (DVec2::ZERO, 1.0),
+    };
+    let sides = [e, third, -f];
+    let factor = share / (doubled * doubled);
     let sum = |of: fn(DVec2) -> f64| factor * sides.iter().map(|&side| of(side)).sum::<f64>();
     let (uu, uv, vv) = (sum(|d| d.y * d.y), -sum(|d| d.x * d.y), sum(|d| d.x * d.x));
     let angle = 0.5 * libm::atan2(2.0 * uv, uu - vv);
@@ -413,7 +437,7 @@ mod tests {
     #[test]
     fn sides_have_length_one_in_the_metric_of_their_triangle() {
         let corners = [DVec3::new(0.1, 0.2, 0.3), DVec3::new(4.0, 0.5, 1.0), DVec3::new(0.0, 1.0, -2.0)];
-        let metric = implied_by(corners).unwrap();
+        let metric = implied_by(corners, Shape::Equilateral).unwrap();
         for k in 0..3 {
             let d = corners[(k + 1) % 3] - corners[k];
             let [xx, xy, xz, yy, yz, zz] = [metric.xx, metric.xy, metric.xz, metric.yy, metric.yz, metric.zz];

@@ -77,9 +77,10 @@ fn edges_around(mesh: &Mesh, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
     edges
 }
 
-/// Removes one live node beside the quadrilateral that has three or four triangles (i).
+/// Removes one live node beside the quadrilateral that has three or four triangles (i), unless they are a cut grid.
 fn remove_a_node(mesh: &mut Mesh, element: ElementId) -> Option<Event> {
-    let removable = |&node: &NodeId| !mesh.is_fixed(node) && mesh.can_delete_node(node).is_ok();
+    let removable =
+        |&n: &NodeId| !mesh.is_fixed(n) && mesh.can_delete_node(n).is_ok() && !mesh.is_in_cut_grid(n);
     // Only triangles are around such a node, so both at its edge are live.
     let live = |h: &HalfEdgeId| mesh.live_twin(*h).is_some();
     let beside = |corner| mesh.live_fan(corner).filter(live).map(|h| mesh.target(h)).find(removable);

@@ -15,7 +15,8 @@ const KEPT_QUALITY: f64 = 0.9;
 
 /// Smooths around the quadrilateral in the paper's order: nodes of the triangles around it, then, where the parameters
 /// say so, other nodes that an edge joins to it, then its own. With placement on, nodes of the front stay, and nodes
-/// that the quadrilateral buried are relaxed by the energy. Returns how many nodes moved.
+/// that the quadrilateral buried are relaxed by the energy. Nodes in a cut grid stay, unless they are its own. Returns
+/// how many nodes moved.
 pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
     let corners = front.mesh.quad(element);
     let mut around: SmallVec<[NodeId; 24]> = SmallVec::new();
@@ -42,7 +43,7 @@ pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
     let mut moved = 0;
     for node in around {
         let stays = placement && front.mesh.is_on_front(node) && !front.mesh.is_buried(node);
-        if !front.mesh.is_fixed(node) && !stays {
+        if !front.mesh.is_fixed(node) && !stays && !front.mesh.is_in_cut_grid(node) {
             moved += u8::from(by_area(front, node));
         }
     }
