@@ -433,7 +433,7 @@ mod tests {
         let cleaned = serde_json::to_string(&Event::Cleaned { what, energy: [2.0, 1.5] }).unwrap();
         assert_eq!(
             cleaned,
-            r#"{"kind":"cleaned","what":"diamond_collapsed","gone":7,"kept":8,"then":[],"energy":[2.0,1.5]}"#
+            r#"{"kind":"cleaned","what":"diamond_collapsed","gone":7,"kept":8,"energy":[2.0,1.5]}"#
         );
     }
 }
