@@ -263,8 +263,8 @@ fn switches_are_read_from_a_case_file() {
 #[test]
 fn an_invalid_result_is_reported_and_not_written() {
     let folder = tempfile::tempdir().unwrap();
-    // Three quadrilaterals on a whole sphere lie in a plane.
-    let line = ["convert", "sphere", "--set", "size_scale=6", "-o", "a.obj", "--report", "a.json"];
+    // Four quadrilaterals on a whole sphere fold over it.
+    let line = ["convert", "sphere", "--set", "size_scale=8", "-o", "a.obj", "--report", "a.json"];
     let (code, out, err) = said(&run(&line, folder.path()));
     assert_eq!(code, 1, "{err}");
     assert!(

@@ -143,7 +143,8 @@ fn equilateral(file: &MeshFile) -> Vec<Metric2> {
         let [a, b, c] = t.map(|k| file.points[k as usize].truncate());
         let sum =
             [b - a, c - b, a - c].iter().fold([0.0; 3], |s, e| [s[0] + e.y * e.y, s[1] + e.x * e.y, s[2] + e.x * e.x]);
-        let factor = 0.5 / (b - a).perp_dot(c - a).powi(2);
+        let doubled = (b - a).perp_dot(c - a);
+        let factor = 0.5 / (doubled * doubled);
         let ln = Metric2 { uu: factor * sum[0], uv: -factor * sum[1], vv: factor * sum[2] }.ln();
         for &k in t {
             sums[k as usize] = (sums[k as usize].0.plus(1.0, &ln), sums[k as usize].1 + 1.0);

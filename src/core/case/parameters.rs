@@ -93,7 +93,7 @@ impl Default for Parameters {
             c: 2.0,
             theta_rect: 135_f64.to_radians(),
             theta_seam: 30_f64.to_radians(),
-            seam_widening: 1.0,
+            seam_widening: 2.0,
             theta_revr: 225_f64.to_radians(),
             side_split: 1.5,
             whole_below: 1.0,
@@ -132,6 +132,7 @@ impl Parameters {
         Parameters {
             selection_window: SelectionWindow::PhysicalLength,
             whole_below: 0.0,
+            seam_widening: 1.0,
             placement: false,
             clean_up: CleanUpBy::Traditional,
             ..Parameters::default()

@@ -431,9 +431,6 @@ mod tests {
         assert_eq!(json(Why::TopBlocked([node, NodeId(8)])), blocked);
         let what = Cleaning::DiamondCollapsed { gone: node, kept: NodeId(8) };
         let cleaned = serde_json::to_string(&Event::Cleaned { what, energy: [2.0, 1.5] }).unwrap();
-        assert_eq!(
-            cleaned,
-            r#"{"kind":"cleaned","what":"diamond_collapsed","gone":7,"kept":8,"energy":[2.0,1.5]}"#
-        );
+        assert_eq!(cleaned, r#"{"kind":"cleaned","what":"diamond_collapsed","gone":7,"kept":8,"energy":[2.0,1.5]}"#);
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn enhance(
     };
     if front.parameters.enhancement {
         let deletes_first = front.parameters.enhancement_order == EnhancementOrder::DeleteFirst;
-        if deletes_first && let Some(event) = remove_a_node(front.mesh, element) {
+        if deletes_first && let Some(event) = remove_a_node(front, element) {
             return (next(edges_around(front.mesh, element)), Some(event));
         }
         // Several of them are one edge: a second look, before anything has changed, finds the same.
@@ -52,7 +52,7 @@ pub(super) fn enhance(
                 return (next(edges), Some(event));
             }
         }
-        if !deletes_first && let Some(event) = remove_a_node(front.mesh, element) {
+        if !deletes_first && let Some(event) = remove_a_node(front, element) {
             return (next(edges_around(front.mesh, element)), Some(event));
         }
     }
@@ -77,10 +77,12 @@ fn edges_around(mesh: &Mesh, element: ElementId) -> SmallVec<[HalfEdgeId; 24]> {
     edges
 }
 
-/// Removes one live node beside the quadrilateral that has three or four triangles (i), unless they are a cut grid.
-fn remove_a_node(mesh: &mut Mesh, element: ElementId) -> Option<Event> {
-    let removable =
-        |&n: &NodeId| !mesh.is_fixed(n) && mesh.can_delete_node(n).is_ok() && !mesh.is_in_cut_grid(n);
+/// Removes one live node beside the quadrilateral that has three or four triangles (i); with placement on, not where
+/// they are a cut grid.
+fn remove_a_node(front: &mut Front<'_>, element: ElementId) -> Option<Event> {
+    let (mesh, placement) = (&mut *front.mesh, front.parameters.placement);
+    let stays = |n: NodeId| mesh.is_fixed(n) || (placement && mesh.is_in_cut_grid(n));
+    let removable = |&n: &NodeId| mesh.can_delete_node(n).is_ok() && !stays(n);
     // Only triangles are around such a node, so both at its edge are live.
     let live = |h: &HalfEdgeId| mesh.live_twin(*h).is_some();
     let beside = |corner| mesh.live_fan(corner).filter(live).map(|h| mesh.target(h)).find(removable);

@@ -14,9 +14,8 @@ use crate::core::mesh::{ElementId, Mesh, NodeId};
 const KEPT_QUALITY: f64 = 0.9;
 
 /// Smooths around the quadrilateral in the paper's order: nodes of the triangles around it, then, where the parameters
-/// say so, other nodes that an edge joins to it, then its own. With placement on, nodes of the front stay, and nodes
-/// that the quadrilateral buried are relaxed by the energy. Nodes in a cut grid stay, unless they are its own. Returns
-/// how many nodes moved.
+/// say so, other nodes that an edge joins to it, then its own. With placement on, nodes of the front and nodes in a cut
+/// grid stay, and nodes that the quadrilateral buried are relaxed by the energy. Returns how many nodes moved.
 pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
     let corners = front.mesh.quad(element);
     let mut around: SmallVec<[NodeId; 24]> = SmallVec::new();
@@ -42,8 +41,9 @@ pub fn around(front: &mut Front<'_>, element: ElementId) -> u8 {
     let placement = front.parameters.placement;
     let mut moved = 0;
     for node in around {
-        let stays = placement && front.mesh.is_on_front(node) && !front.mesh.is_buried(node);
-        if !front.mesh.is_fixed(node) && !stays && !front.mesh.is_in_cut_grid(node) {
+        let on_front = |n| front.mesh.is_on_front(n) && !front.mesh.is_buried(n);
+        let stays = placement && (on_front(node) || front.mesh.is_in_cut_grid(node));
+        if !front.mesh.is_fixed(node) && !stays {
             moved += u8::from(by_area(front, node));
         }
     }

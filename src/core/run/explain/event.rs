@@ -105,13 +105,11 @@ pub fn event(event: &Event) -> String {
         Event::Refilled { sides, quads: [old, new], irregular: [from, to], energy: [before, after] } => {
             let [before, after] = apart(before, after);
             let sides: Vec<String> = sides.iter().filter(|&&n| n > 0).map(|n| n.to_string()).collect();
+            let (sides, quads) = (sides.join(", "), count(new as usize, "quadrilateral"));
+            let irregular = count(to as usize, "irregular node");
             format!(
-                "cavity with sides of {} edges filled anew: {} before, {} now; {} before, {} now; energy {before} to {after}",
-                sides.join(", "),
-                count(old as usize, "quadrilateral"),
-                new,
-                count(from as usize, "irregular node"),
-                to
+                "cavity with sides of {sides} edges filled anew: {quads} instead of {old}, {irregular} instead of {from}, \
+                 energy {before} to {after}"
             )
         }
         Event::Unfolded { element, how, .. } => {

@@ -137,6 +137,11 @@ impl Disc {
         self.looked = 0;
     }
 
+    /// The metric area of its elements: the number of unit squares that fit.
+    pub fn metric_area(&self, mesh: &Mesh) -> f64 {
+        self.elements.iter().map(|&e| mesh.metric_area(e)).sum()
+    }
+
     /// A fingerprint of its elements with their nodes and places, whatever their order.
     pub fn fingerprint(&self, mesh: &Mesh) -> u64 {
         let of = |&e: &ElementId| {

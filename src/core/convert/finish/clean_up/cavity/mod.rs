@@ -127,11 +127,11 @@ impl<'a> Cavities<'a> {
         }
         let polygon = &self.disc.polygon;
         let (sides, now) = (polygon.sides.clone(), polygon.irregular);
-        let elements = self.disc.elements.len() as f64;
+        let area = self.disc.metric_area(mesh);
         let mut best: Option<(Judged, Filling)> = None;
         for filling in fillings(&sides) {
             let better = filling.irregular() + polygon.misfits < now;
-            if !better || (filling.quads(&sides) as f64 / elements - 1.0).abs() > WHOLE_WITHIN {
+            if !better || (filling.quads(&sides) as f64 / area - 1.0).abs() > WHOLE_WITHIN {
                 continue;
             }
             done.trials += 1;
@@ -205,7 +205,7 @@ impl<'a> Cavities<'a> {
         if self.refused.all.contains(&key) || !self.disc.gather_inner(mesh) {
             return None;
         }
-        let area = self.disc.elements.iter().map(|&e| mesh.metric_area(e)).sum::<f64>();
+        let area = self.disc.metric_area(mesh);
         let mut found = nearest(fillings(&sides), &sides, area);
         if least + 2 + misfits <= now {
             found.extend(nearest(fillings_with_a_pair(&sides), &sides, area));
