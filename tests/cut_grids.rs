@@ -2,8 +2,6 @@
 //! irregular node. Other triangles imply what they implied before.
 #![allow(clippy::unwrap_used)]
 
-use std::collections::BTreeMap;
-
 use glam::{DVec2, DVec3};
 use quadfront::core::background::implied_metric::implied_metric;
 use quadfront::core::background::import::import;
@@ -17,8 +15,11 @@ use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use quadfront::core::soup::MeshFile;
 
+#[path = "common/irregular.rs"]
+mod irregular;
 #[path = "common/xor_shift.rs"]
 mod xor_shift;
+use irregular::irregular_inside;
 use xor_shift::XorShift;
 
 /// Which diagonal cuts the square in column i and row j: whether it is the falling one.
@@ -65,19 +66,7 @@ fn converted(file: &MeshFile) -> [usize; 2] {
     let done = convert(&case, &mut Nobody).unwrap();
     let made = Export::of(&done.mesh, &done.names).file;
     assert!(made.triangles.is_empty());
-    let mut edges: BTreeMap<[u32; 2], usize> = BTreeMap::new();
-    let mut at = vec![0; made.points.len()];
-    for quad in &made.quads {
-        for k in 0..4 {
-            let [a, b] = [quad[k], quad[(k + 1) % 4]];
-            *edges.entry([a.min(b), a.max(b)]).or_default() += 1;
-            at[a as usize] += 1;
-        }
-    }
-    let mut inner = vec![true; at.len()];
-    let border = edges.iter().filter(|(_, count)| **count == 1);
-    border.for_each(|([a, b], _)| [a, b].into_iter().for_each(|&n| inner[n as usize] = false));
-    [made.quads.len(), (0..at.len()).filter(|&n| inner[n] && at[n] != 4).count()]
+    [made.quads.len(), irregular_inside(&made)]
 }
 
 #[test]

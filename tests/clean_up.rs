@@ -1,0 +1,109 @@
+//! Clean-up over a distance: where a grid is possible the mesh is one, elsewhere few nodes are irregular, and what the
+//! steps say of the cavities that they fill anew is true.
+#![allow(clippy::unwrap_used)]
+
+use quadfront::core::case::{Case, built_in};
+use quadfront::core::convert::conversion::convert;
+use quadfront::core::convert::{Converter, Event};
+use quadfront::core::mesh::{Mesh, NodeId};
+use quadfront::core::metric::measure::angle;
+use quadfront::core::prepare::background;
+use quadfront::core::progress::Nobody;
+use quadfront::core::record::Export;
+
+#[path = "common/irregular.rs"]
+mod irregular;
+use irregular::irregular_inside;
+
+/// Quadrilaterals and irregular nodes inside of a case.
+fn converted(case: &Case) -> [usize; 2] {
+    let done = convert(case, &mut Nobody).unwrap();
+    let made = Export::of(&done.mesh, &done.names).file;
+    assert!(made.triangles.is_empty());
+    [made.quads.len(), irregular_inside(&made)]
+}
+
+fn scaled(name: &str, size_scale: f64) -> Case {
+    let mut case = built_in::named(name).unwrap().unwrap();
+    case.parameters.size_scale *= size_scale;
+    case
+}
+
+/// A polygon with elements of one size.
+fn polygon(points: &[[f64; 2]], h: f64) -> Case {
+    let text = format!(
+        "version = 1\n[[curve]]\nname = \"p\"\nkind = \"polyline\"\npoints = {points:?}\nclosed = true\n[[face]]\n\
+         name = \"f\"\nouter = [\"p\"]\n[[metric]]\nkind = \"uniform\"\nh = {h}\n"
+    );
+    Case::parse(&text, "polygon", "polygon.toml", std::path::Path::new(".")).unwrap()
+}
+
+#[test]
+fn where_a_grid_is_possible_the_mesh_is_one() {
+    assert_eq!(converted(&scaled("uniform", 0.2)), [10_000, 0]);
+    assert_eq!(converted(&scaled("uniform", 0.1)), [40_000, 0]);
+    assert_eq!(converted(&polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]], 0.05)), [800, 0]);
+    let l = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+    assert_eq!(converted(&polygon(&l, 0.05)), [1200, 0]);
+    let arms = [[1, 0], [2, 0], [2, 1], [3, 1], [3, 2], [2, 2], [2, 3], [1, 3], [1, 2], [0, 2], [0, 1], [1, 1]];
+    assert_eq!(converted(&polygon(&arms.map(|p| p.map(f64::from)), 0.1)), [500, 0]);
+}
+
+#[test]
+fn where_no_grid_is_possible_few_nodes_are_irregular() {
+    let [quads, irregular] = converted(&scaled("sphere", 1.0));
+    assert!(quads > 800 && (8..=12).contains(&irregular), "sphere: {irregular} of {quads}");
+    // Five corners of 108 degrees with one element each: one node at least.
+    let corner = |k: u32| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 5.0);
+        [cos, sin]
+    };
+    let [quads, irregular] = converted(&polygon(&[0, 1, 2, 3, 4].map(corner), 0.05));
+    assert!(quads > 700 && (1..=15).contains(&irregular), "pentagon: {irregular} of {quads}");
+}
+
+/// Nodes whose number of elements is not four inside, or not that of right angles that fit at a boundary.
+fn irregular(mesh: &Mesh) -> i64 {
+    let fits = |n: NodeId| {
+        if !mesh.is_fixed(n) {
+            return 4;
+        }
+        let (p, metric) = (mesh.uv(n), mesh.metric(n));
+        let corner = |h| angle(&metric, mesh.uv(mesh.target(h)) - p, mesh.uv(mesh.apex(h)) - p);
+        let theta: f64 = mesh.fan(n).map(corner).sum();
+        (theta / std::f64::consts::FRAC_PI_2).round().max(1.0) as usize
+    };
+    mesh.nodes().filter(|&n| mesh.elements_at(n).count() != fits(n)).count() as i64
+}
+
+#[test]
+fn what_a_step_says_of_a_cavity_is_what_it_did() {
+    let (mut refills, mut removing) = (0, 0);
+    for name in ["gear", "example1", "crack"] {
+        let case = scaled(name, 1.0);
+        let made = background(&case, &mut Nobody).unwrap();
+        let mut converter = Converter::new(made.mesh.clone(), &made.sizing, case.parameters.clone());
+        loop {
+            let before = [converter.mesh.element_count() as i64, irregular(&converter.mesh)];
+            match converter.step().unwrap() {
+                Event::Finished => break,
+                Event::Refilled { sides, quads, irregular: nodes, energy } => {
+                    let [quads, nodes] = [quads, nodes].map(|told| told.map(i64::from));
+                    let after = [converter.mesh.element_count() as i64, irregular(&converter.mesh)];
+                    assert_eq!(
+                        [after[0] - before[0], after[1] - before[1]],
+                        [quads[1] - quads[0], nodes[1] - nodes[0]]
+                    );
+                    assert!(sides.iter().sum::<u32>() % 2 == 0 && sides[1] > 0, "{name}: {sides:?}");
+                    let removed = nodes[0] - nodes[1];
+                    let most = if removed == 0 { -0.5 } else { 3.5 * removed as f64 };
+                    assert!(removed >= 0 && energy[1] <= energy[0] + most, "{name}: {energy:?} for {removed}");
+                    refills += 1;
+                    removing += i32::from(removed > 0);
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(refills > 40 && removing > 20, "{refills} cavities, {removing} of them with fewer irregular nodes");
+}
