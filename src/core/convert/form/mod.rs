@@ -31,13 +31,14 @@ struct Enclosed {
 pub(super) fn form(front: &mut Front<'_>, base: Base, attempt: Attempt, [c, d]: [NodeId; 2]) -> Result<Done, Why> {
     let nodes = [base.a, base.b, d, c];
     let was_on_front = [c, d].map(|n| front.mesh.is_on_front(n));
-    let is_placed = [c, d].map(|n| front.mesh.is_on_front(n) || front.mesh.is_in_cut_grid(n));
+    let placement = front.parameters.placement;
+    let is_placed = [0, 1].map(|k| was_on_front[k] || (placement && front.mesh.is_in_cut_grid([c, d][k])));
     let sides = [[base.a, c], [base.b, d]];
     let were_live = sides.map(|[at, top]| front.mesh.is_live_edge(at, top));
     let Enclosed { triangles, inside } = enclosed(front.mesh, &base, nodes)?;
     let element = merge(front.mesh, nodes, &triangles, &inside);
     front.mesh.set_level(element, base.level);
-    if front.parameters.placement {
+    if placement {
         for side in Side::BOTH.into_iter().filter(|side| !is_placed[side.index()]) {
             placement::place(front, &base, element, side, [c, d]);
         }

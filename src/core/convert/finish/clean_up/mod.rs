@@ -1,6 +1,6 @@
 //! Clean-up of the structure around irregular nodes (docs/algorithm.md, "Clean-up"): changes of one or two elements
-//! first, then cavities of many that are filled anew. Each is a transaction, kept when the energy of all that it moves
-//! falls. Or the traditional operations alone, judged by the valences.
+//! first, then cavities of many that are filled anew. Each is a transaction, judged by the energy of all that it moves,
+//! which may rise a little where irregular nodes go. Or the traditional operations alone, judged by the valences.
 //!
 //! Worklists, not sweeps: the irregular nodes, and again those around whatever changed. Nodes wait for every reach, and
 //! the narrowest reach at which a node waits comes first.
@@ -9,6 +9,7 @@ mod candidate;
 mod local;
 mod cavity;
 mod region;
+mod seen;
 
 use std::sync::Arc;
 
@@ -59,7 +60,7 @@ enum Reach {
 /// elements a cavity is seldom found that a smaller one does not make superfluous (docs/experiments.md).
 const REACHES: [Reach; 5] = [Reach::Whole, Reach::Local, Reach::Cavity(40), Reach::Cavity(150), Reach::Cavity(600)];
 
-/// Nodes, some more than the clean-up of a few elements touches.
+/// The nodes around which a change has altered the mesh.
 type Touched = SmallVec<[NodeId; 24]>;
 
 /// A change that was kept.
@@ -106,8 +107,7 @@ impl<'a> CleanUp<'a> {
         let irregular: Vec<NodeId> = mesh.nodes_of(face).filter(|&n| valences.excess(mesh, n) != 0).collect();
         let nodes = mesh.nodes_of(face).count();
         let lists = REACHES.map(|reach| {
-            // Kept changes lower the energy or the number of irregular nodes, so this ends by itself; the budgets bound
-            // the time on hostile input.
+            // Kept changes lower the energy or the number of irregular nodes; the budgets bound how many there are.
             let looks = match reach {
                 Reach::Whole => 1,
                 Reach::Local => 20 * nodes + 1000,

@@ -1,35 +1,31 @@
 //! What a trial may move and how good it is: the nodes of a change, their neighbours, and the elements around.
 
 use super::candidate::Valences;
+use super::seen::Seen;
 use crate::core::convert::relax::energy::{self, Judged};
 use crate::core::mesh::{Mesh, NodeId};
 
-/// Weight of a squared excess against the shape of a corner and the length of an edge. With a little more than 1
-/// sequences of changes find as good angles and fewer irregular nodes.
+/// Weight of a squared excess against the shape of a corner and the length of an edge.
 pub const VALENCE_WEIGHT: f64 = 1.5;
 
-/// Nodes, each once.
+/// Nodes, each once, and the elements around them that were judged.
 #[derive(Clone, Debug, Default)]
 pub struct Region {
     pub nodes: Vec<NodeId>,
-    /// Which nodes and elements are in, by the number of the gathering.
-    node_seen: Vec<u32>,
-    element_seen: Vec<u32>,
-    gathering: u32,
+    node_seen: Seen,
+    element_seen: Seen,
 }
 
 impl Region {
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        4 * (self.nodes.capacity() + self.node_seen.capacity() + self.element_seen.capacity())
+        size_of::<NodeId>() * self.nodes.capacity() + self.node_seen.bytes() + self.element_seen.bytes()
     }
 
     /// Some nodes with their neighbours.
     pub fn gather(&mut self, mesh: &Mesh, core: &[NodeId]) {
         self.nodes.clear();
-        self.node_seen.resize(mesh.node_slots(), 0);
-        self.element_seen.resize(mesh.element_slots(), 0);
-        self.gathering = self.gathering.wrapping_add(1);
+        self.node_seen.clear(mesh.node_slots());
         core.iter().for_each(|&node| self.add(node));
         for &node in core {
             mesh.neighbours(node).for_each(|n| self.add(n));
@@ -42,7 +38,7 @@ impl Region {
     }
 
     fn add(&mut self, node: NodeId) {
-        if std::mem::replace(&mut self.node_seen[node.index()], self.gathering) != self.gathering {
+        if self.node_seen.add(node.index()) {
             self.nodes.push(node);
         }
     }
@@ -50,14 +46,14 @@ impl Region {
     /// Energy and worst quality. Regions with the same border can be compared: what lies across it counts in neither.
     pub fn judge(&mut self, mesh: &Mesh, valences: &Valences) -> Judged {
         // Elements change between two judgements of the same nodes.
-        self.gathering = self.gathering.wrapping_add(1);
+        self.element_seen.clear(mesh.element_slots());
         let mut judged = Judged::NOTHING;
         for &node in &self.nodes {
             let mut elements = 0;
             for h in mesh.fan(node) {
                 let e = h.element();
                 elements += 1;
-                if std::mem::replace(&mut self.element_seen[e.index()], self.gathering) != self.gathering {
+                if self.element_seen.add(e.index()) {
                     judged += energy::judge(mesh, e);
                 }
             }

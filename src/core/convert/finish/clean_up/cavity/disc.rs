@@ -11,45 +11,8 @@ use smallvec::SmallVec;
 
 use super::filling::{MOST_CORNERS, Sides};
 use crate::core::convert::finish::clean_up::candidate::Valences;
+use crate::core::convert::finish::clean_up::seen::Seen;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
-
-/// A set of ids that is emptied at once.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
-    stamps: Vec<u32>,
-    stamp: u32,
-}
-
-impl Seen {
-    /// Empties it, and makes room for ids below `slots`.
-    pub fn clear(&mut self, slots: usize) {
-        if self.stamp == u32::MAX {
-            self.stamps.fill(0);
-            self.stamp = 0;
-        }
-        self.stamp += 1;
-        if self.stamps.len() < slots {
-            self.stamps.resize(slots, 0);
-        }
-    }
-
-    /// Adds an id; false where it was in.
-    #[inline]
-    pub fn add(&mut self, id: usize) -> bool {
-        std::mem::replace(&mut self.stamps[id], self.stamp) != self.stamp
-    }
-
-    /// Whether an id is in.
-    #[inline]
-    pub fn has(&self, id: usize) -> bool {
-        self.stamps[id] == self.stamp
-    }
-
-    /// Bytes that it takes.
-    pub fn bytes(&self) -> usize {
-        size_of::<u32>() * self.stamps.capacity()
-    }
-}
 
 /// The border of a cavity as a polygon.
 #[derive(Clone, Debug, Default)]
@@ -275,7 +238,7 @@ impl Disc {
                 loops.push((length, first));
             }
         }
-        // The longest is the outer one; of equal ones any, since what lies outside is then beyond the limit.
+        // The longest is taken for the outer one. Where it is not, the flood below meets the limit or a boundary.
         let Some(outer) = (0..loops.len()).max_by_key(|&k| loops[k].0) else { return false };
         for (k, &(_, first)) in loops.iter().enumerate() {
             if k == outer {

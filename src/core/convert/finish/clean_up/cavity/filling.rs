@@ -1,8 +1,8 @@
 //! Fillings of a polygon with quadrilaterals that have few irregular nodes, by the numbers of sides alone.
 //!
 //! A polygon has n corners, at which one quadrilateral fits, and sides of so many edges each, at whose nodes two fit.
-//! By Euler's formula the irregular nodes inside sum to 4 - n, so that a filling has at least |4 - n| of them. The
-//! fillings here have the least number that the counts allow:
+//! By Euler's formula the excesses of the nodes inside sum to n - 4, so that a filling has at least |4 - n| irregular
+//! ones. The fillings here have the least number that the counts allow, or two more:
 //!
 //! - four corners and equal opposite sides: a grid;
 //! - three or five corners: one node from which a spoke goes to each side (Bunin 2006);

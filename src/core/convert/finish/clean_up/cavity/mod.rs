@@ -14,13 +14,15 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
-use self::disc::{Disc, Growth, Seen};
+use self::disc::{Disc, Growth};
 use self::filling::{Filling, fillings, fillings_with_a_pair, least_irregular};
 use self::smooth::Draft;
 use super::candidate::Valences;
 use super::region::VALENCE_WEIGHT;
+use super::seen::Seen;
 use super::{CleanedUp, Kept, Touched};
 use crate::core::convert::event::Event;
+use crate::core::convert::finish::STIRRED;
 use crate::core::convert::relax::energy::{self, Judged};
 use crate::core::mesh::{Mesh, NodeId};
 use crate::core::metric::MetricSource;
@@ -34,20 +36,18 @@ const LEAST_GAIN: f64 = 0.5;
 const LEAST_SINE: f64 = 0.66;
 /// The lengths of edges that a kept cavity may leave, where there were no shorter or longer ones before.
 const LENGTHS: [f64; 2] = [0.45, 1.8];
-/// A node that moved farther than this (in its metric) lets those around it move again.
-const STIRRED: f64 = 0.02;
 /// Fillings of each kind that are drawn: those with a number of quadrilaterals that fits the metric.
 const MOST_DRAFTS: usize = 5;
 /// Rounds of relaxation of a cavity and its surroundings.
 const ROUNDS: usize = 8;
 /// A filling is given up after two rounds if its energy is too high by this much: the other rounds give back less.
 const LATER_ROUNDS_GIVE: f64 = 1.0;
-/// A cavity of more elements is filled only where that removes irregular nodes.
+/// A cavity of more elements is filled only where a filling can remove irregular nodes.
 const LARGE: usize = 100;
 /// Rings of nodes around a cavity that move with it.
 const RINGS: usize = 2;
-/// A whole face is drawn as one cavity only where the filling has as many quadrilaterals as the face, within this
-/// share.
+/// A whole face is drawn as one cavity only where its filling has as many quadrilaterals as its metric area asks for,
+/// within this share.
 const WHOLE_WITHIN: f64 = 0.25;
 
 /// What grows cavities and fills them anew. Everything but the refusals is kept for its memory only.
@@ -239,7 +239,9 @@ impl<'a> Cavities<'a> {
     /// enough for that many irregular nodes removed; it is to be taken back then.
     fn attempt(&mut self, mesh: &mut Mesh, valences: &Valences, removed: usize) -> Option<(Change, Touched)> {
         self.gather_rings(mesh);
-        let before = self.judge(mesh, &self.disc.inner.clone());
+        let inner = std::mem::take(&mut self.disc.inner);
+        let before = self.judge(mesh, &inner);
+        self.disc.inner = inner;
         let quads = self.disc.elements.len() as u32;
         let (inner, made) = self.draft.place(mesh, &self.disc)?;
         // What may move: new nodes, the border and the rings; at first those that see something new.
