@@ -12,6 +12,7 @@ use smallvec::SmallVec;
 use super::filling::{MOST_CORNERS, Sides};
 use crate::core::convert::finish::clean_up::candidate::Valences;
 use crate::core::convert::finish::clean_up::seen::Seen;
+use crate::core::convert::relax::energy;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 
 /// The border of a cavity as a polygon.
@@ -103,6 +104,11 @@ impl Disc {
     /// The metric area of its elements: the number of unit squares that fit.
     pub fn metric_area(&self, mesh: &Mesh) -> f64 {
         self.elements.iter().map(|&e| mesh.metric_area(e)).sum()
+    }
+
+    /// The energy of its elements.
+    pub fn energy(&self, mesh: &Mesh) -> f64 {
+        self.elements.iter().map(|&e| energy::judge(mesh, e).energy).sum()
     }
 
     /// A fingerprint of its elements with their nodes and places, whatever their order.

@@ -42,10 +42,16 @@ const MOST_DRAFTS: usize = 5;
 const ROUNDS: usize = 8;
 /// A filling is given up after two rounds if its energy is too high by this much: the other rounds give back less.
 const LATER_ROUNDS_GIVE: f64 = 1.0;
+/// A drawing is put into the mesh only if its energy is too high by no more than this, where it removes no irregular
+/// nodes and where it removes some: the relaxation together with the surroundings gives back less (for one kept in a
+/// hundred).
+const RELAXATION_GIVES: [f64; 2] = [8.0, 25.0];
+/// A cavity with more misfits is not filled: one in two hundred would be kept.
+const MOST_MISFITS: usize = 1;
 /// A cavity of more elements is filled only where a filling can remove irregular nodes.
 const LARGE: usize = 100;
 /// Rings of nodes around a cavity that move with it.
-const RINGS: usize = 2;
+const RINGS: usize = 1;
 /// A whole face is drawn as one cavity only where its filling has as many quadrilaterals as its metric area asks for,
 /// within this share.
 const WHOLE_WITHIN: f64 = 0.25;
@@ -198,7 +204,11 @@ impl<'a> Cavities<'a> {
         let least = least_irregular(&sides);
         // A grid and a star are the only fillings with their numbers of irregular nodes.
         let is_known = least == now && least < 2 && self.disc.polygon.on_border == 0;
-        if least + misfits > now || is_known || (least + misfits == now && self.disc.elements.len() > LARGE) {
+        if misfits > MOST_MISFITS
+            || least + misfits > now
+            || is_known
+            || (least + misfits == now && self.disc.elements.len() > LARGE)
+        {
             return None;
         }
         let key = self.disc.fingerprint(mesh);
@@ -218,7 +228,13 @@ impl<'a> Cavities<'a> {
                 best = Some((energy, filling));
             }
         }
-        if let Some((_, filling)) = best {
+        let before = self.disc.energy(mesh) + VALENCE_WEIGHT * (now - misfits) as f64;
+        let is_hopeful = |&(energy, filling): &(f64, &Filling)| {
+            let removed = now - misfits - filling.irregular();
+            let allowed = most_rise(removed) - VALENCE_WEIGHT * removed as f64;
+            energy < before + allowed + RELAXATION_GIVES[usize::from(removed > 0)]
+        };
+        if let Some((_, filling)) = best.filter(is_hopeful) {
             let left = filling.irregular() + misfits;
             done.trials += 1;
             self.draft.draw(mesh, &*self.source, &self.disc.polygon, filling);
