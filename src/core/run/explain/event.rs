@@ -105,10 +105,14 @@ pub fn event(event: &Event) -> String {
         Event::Refilled { sides, quads: [old, new], irregular: [from, to], energy: [before, after] } => {
             let [before, after] = apart(before, after);
             let sides: Vec<String> = sides.iter().filter(|&&n| n > 0).map(|n| n.to_string()).collect();
-            let (sides, quads) = (sides.join(", "), count(new as usize, "quadrilateral"));
+            let border = match &*sides {
+                [edges] => format!("a border of {edges} edges"),
+                sides => format!("sides of {} edges", sides.join(", ")),
+            };
+            let quads = count(new as usize, "quadrilateral");
             let irregular = count(to as usize, "irregular node");
             format!(
-                "cavity with sides of {sides} edges filled anew: {quads} instead of {old}, {irregular} instead of {from}, \
+                "cavity with {border} filled anew: {quads} instead of {old}, {irregular} instead of {from}, \
                  energy {before} to {after}"
             )
         }

@@ -277,14 +277,18 @@ impl Disc {
         let is_corner = |&k: &usize| self.wanted[k].1 <= 1;
         let corners: SmallVec<[usize; MOST_CORNERS]> =
             (0..border.len()).filter(is_corner).take(MOST_CORNERS + 1).collect();
-        if !(2..=MOST_CORNERS).contains(&corners.len()) {
+        if corners.len() == 1 || corners.len() > MOST_CORNERS {
             return Growth::NoPolygon;
         }
         for (i, &corner) in corners.iter().enumerate() {
             let next = corners.get(i + 1).copied().unwrap_or(corners[0] + border.len());
             sides.push((next - corner) as u32);
         }
-        border.rotate_left(corners[0]);
+        if let Some(&first) = corners.first() {
+            border.rotate_left(first);
+        } else {
+            sides.push(border.len() as u32);
+        }
         if border.len().is_multiple_of(2) { Growth::Polygon } else { Growth::NoPolygon }
     }
 

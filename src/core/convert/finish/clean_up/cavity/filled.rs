@@ -99,6 +99,16 @@ impl Filled {
                 left.extend((1..n - 1).map(|k| sides[(corner + k) % n].clone()));
                 self.fill(rest, &left);
             }
+            Filling::Layers { layers, from, grid: [columns, rows] } => {
+                let inner = self.layers(&sides[0], *layers, (*columns).min(*rows));
+                let mut at = *from;
+                let [bottom, right, top, left] = [*columns, *rows, *columns, *rows].map(|edges| {
+                    let side: Chain = (at..=at + edges).map(|k| inner[k as usize % inner.len()]).collect();
+                    at += edges;
+                    side
+                });
+                self.grid([&bottom, &right, &top, &left]);
+            }
             Filling::Line { sides: [i, j], at, length, parts } => {
                 let [x, z] = at.map(|edges| edges as usize);
                 let line = self.line(sides[*i][x], sides[*j][z], *length);
@@ -116,6 +126,26 @@ impl Filled {
                 }
             }
         }
+    }
+
+    /// Layers along a closed border, each as many quadrilaterals as the border has edges, around a grid so many edges
+    /// wide. Returns the nodes of the innermost border.
+    fn layers(&mut self, border: &[u32], layers: u32, width: u32) -> Chain {
+        // The last node is the first one.
+        let mut outer: Chain = border[..border.len() - 1].to_vec();
+        let middle = outer.iter().map(|&n| self.at(n)).sum::<DVec2>() / outer.len() as f64;
+        let all = f64::from(layers) + 0.5 * f64::from(width);
+        for layer in 0..layers {
+            // What is left of the way to the middle.
+            let share = (all - f64::from(layer) - 1.0) / (all - f64::from(layer));
+            let inner: Chain = outer.iter().map(|&n| self.new_node(middle + (self.at(n) - middle) * share)).collect();
+            for k in 0..outer.len() {
+                let next = (k + 1) % outer.len();
+                self.quads.push([outer[k], outer[next], inner[next], inner[k]]);
+            }
+            outer = inner;
+        }
+        outer
     }
 
     /// Rows and columns between four sides, of which opposite ones are equal; places by transfinite interpolation.

@@ -7,13 +7,15 @@
 //! - four corners and equal opposite sides: a grid;
 //! - three or five corners: one node from which a spoke goes to each side (Bunin 2006);
 //! - four corners otherwise: a rectangle is cut off a corner, which leaves five corners and makes a node of three;
-//! - two corners: a rectangle is cut off, which leaves three corners; six: a line leaves five on both sides.
+//! - two corners: a rectangle is cut off, which leaves three corners; six: a line leaves five on both sides;
+//! - no corner: layers along the border, and a grid within them, whose corners are nodes of three.
 
 use smallvec::SmallVec;
 
 /// Most corners of a polygon that is filled.
 pub(super) const MOST_CORNERS: usize = 6;
-/// Edges of each side, anticlockwise; side k goes from corner k to corner k + 1.
+/// Edges of each side, anticlockwise; side k goes from corner k to corner k + 1. A single side is a border without a
+/// corner.
 pub(super) type Sides = SmallVec<[u32; MOST_CORNERS]>;
 
 /// A way to fill a polygon.
@@ -42,6 +44,15 @@ pub(super) enum Filling {
         length: u32,
         /// The fillings to its left and to its right.
         parts: Box<[Filling; 2]>,
+    },
+    /// So many layers along a border without a corner, and a grid of these rows and columns inside.
+    Layers {
+        /// The number of layers.
+        layers: u32,
+        /// Edges along the border from its first node to where the first corner of the grid lies.
+        from: u32,
+        /// Edges of the grid's sides.
+        grid: [u32; 2],
     },
 }
 
@@ -121,6 +132,7 @@ impl Filling {
             Filling::Star(_) => 1,
             Filling::Corner { rest, .. } => 1 + rest.irregular(),
             Filling::Line { parts, .. } => parts.iter().map(Filling::irregular).sum(),
+            Filling::Layers { .. } => 4,
         }
     }
 
@@ -136,6 +148,9 @@ impl Filling {
                 let [left, right] = beside_line(sides, *ends, *at, *length);
                 parts[0].quads(&left) + parts[1].quads(&right)
             }
+            Filling::Layers { layers, grid: [columns, rows], .. } => {
+                u64::from(sides[0]) * u64::from(*layers) + u64::from(*columns) * u64::from(*rows)
+            }
         }
     }
 }
@@ -150,6 +165,7 @@ pub(super) fn least_irregular(sides: &[u32]) -> usize {
                 2
             }
         }
+        [_] => 4,
         _ => sides.len().abs_diff(4),
     }
 }
@@ -165,6 +181,7 @@ pub(super) fn fillings(sides: &[u32]) -> Vec<Filling> {
         [_, _, _] | [_, _, _, _, _] => spokes(sides).map(Filling::Star).into_iter().collect(),
         [_, _] | [_, _, _, _] => corners_cut(sides),
         [_, _, _, _, _, _] => lines_cut(sides),
+        [border] => layered(border),
         _ => Vec::new(),
     }
 }
@@ -260,5 +277,23 @@ fn lines_cut(sides: &[u32]) -> Vec<Filling> {
             }
         }
     }
+    found
+}
+
+/// Grids within layers along a border without a corner: square ones and longish ones, at different places.
+fn layered(border: u32) -> Vec<Filling> {
+    let half = border / 2;
+    let mut found = Vec::new();
+    for columns in [half / 2, half / 3] {
+        for from in [0, border / 8, border / 4] {
+            // More layers than these leave no room for a grid of unit squares.
+            found.extend((1..=half / 6).map(|layers| Filling::Layers {
+                layers,
+                from,
+                grid: [columns, half - columns],
+            }));
+        }
+    }
+    found.retain(|filling| matches!(filling, Filling::Layers { grid: [columns, _], .. } if *columns > 0));
     found
 }

@@ -38,6 +38,8 @@ const LEAST_SINE: f64 = 0.66;
 const LENGTHS: [f64; 2] = [0.45, 1.8];
 /// Fillings of each kind that are drawn: those with a number of quadrilaterals that fits the metric.
 const MOST_DRAFTS: usize = 5;
+/// The same for a whole face.
+const MOST_WHOLE_DRAFTS: usize = 12;
 /// Rounds of relaxation of a cavity and its surroundings.
 const ROUNDS: usize = 8;
 /// A filling is given up after two rounds if its energy is too high by this much: the other rounds give back less.
@@ -117,7 +119,7 @@ impl<'a> Cavities<'a> {
     }
 
     /// Fills a whole face anew where it is a polygon with a better filling than it has. The filling is judged on its
-    /// own: nothing lies around.
+    /// own, as it is drawn: nothing lies around. Its lengths are left to the smoothing of the whole mesh.
     pub fn whole(
         &mut self,
         mesh: &mut Mesh,
@@ -135,7 +137,7 @@ impl<'a> Cavities<'a> {
         let (sides, now) = (polygon.sides.clone(), polygon.irregular);
         let area = self.disc.metric_area(mesh);
         let mut best: Option<(Judged, Filling)> = None;
-        for filling in fillings(&sides) {
+        for filling in nearest(fillings(&sides), &sides, area, MOST_WHOLE_DRAFTS) {
             let better = filling.irregular() + polygon.misfits < now;
             if !better || (filling.quads(&sides) as f64 / area - 1.0).abs() > WHOLE_WITHIN {
                 continue;
@@ -152,7 +154,7 @@ impl<'a> Cavities<'a> {
         self.disc.elements.iter().for_each(|&e| before += energy::judge(mesh, e));
         let left = filling.irregular() + self.disc.polygon.misfits;
         let rise = (now - left) as f64 * VALENCE_WEIGHT;
-        if after.energy > before.energy + rise || !is_sound(before, after) {
+        if after.energy > before.energy + rise || after.sine < LEAST_SINE.min(before.sine) {
             done.refused += 1;
             return None;
         }
@@ -216,9 +218,9 @@ impl<'a> Cavities<'a> {
             return None;
         }
         let area = self.disc.metric_area(mesh);
-        let mut found = nearest(fillings(&sides), &sides, area);
+        let mut found = nearest(fillings(&sides), &sides, area, MOST_DRAFTS);
         if least + 2 + misfits <= now {
-            found.extend(nearest(fillings_with_a_pair(&sides), &sides, area));
+            found.extend(nearest(fillings_with_a_pair(&sides), &sides, area, MOST_DRAFTS));
         }
         let mut best: Option<(f64, &Filling)> = None;
         for filling in &found {
@@ -335,10 +337,10 @@ impl<'a> Cavities<'a> {
     }
 }
 
-/// The fillings whose numbers of quadrilaterals are nearest to the metric area.
-fn nearest(mut fillings: Vec<Filling>, sides: &[u32], area: f64) -> Vec<Filling> {
+/// The `most` fillings whose numbers of quadrilaterals are nearest to the metric area.
+fn nearest(mut fillings: Vec<Filling>, sides: &[u32], area: f64, most: usize) -> Vec<Filling> {
     fillings.sort_by_cached_key(|filling| (filling.quads(sides) as f64 - area).abs() as u64);
-    fillings.truncate(MOST_DRAFTS);
+    fillings.truncate(most);
     fillings
 }
 
