@@ -286,8 +286,7 @@ fn layered(border: u32) -> Vec<Filling> {
     let mut found = Vec::new();
     for columns in [half / 2, half / 3] {
         for from in [0, border / 8, border / 4] {
-            // More layers than these leave no room for a grid of unit squares.
-            found.extend((1..=half / 6).map(|layers| Filling::Layers {
+            found.extend((1..=half / 2).map(|layers| Filling::Layers {
                 layers,
                 from,
                 grid: [columns, half - columns],
