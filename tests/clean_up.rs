@@ -2,10 +2,12 @@
 //! steps say of the cavities that they fill anew is true.
 #![allow(clippy::unwrap_used)]
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use quadfront::core::case::{Case, built_in};
 use quadfront::core::convert::conversion::convert;
 use quadfront::core::convert::{Converter, Event};
-use quadfront::core::mesh::{Mesh, NodeId};
+use quadfront::core::mesh::{ElementId, Mesh, NodeId};
 use quadfront::core::metric::measure::angle;
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
@@ -65,6 +67,33 @@ fn where_no_grid_is_possible_few_nodes_are_irregular() {
     };
     let [quads, irregular] = converted(&polygon(&[0, 1, 2, 3, 4].map(corner), 0.05));
     assert!(quads > 700 && (1..=15).contains(&irregular), "pentagon: {irregular} of {quads}");
+}
+
+/// Rows between each quadrilateral and the boundary, found by going inwards from the boundary row by row.
+fn rows(mesh: &Mesh) -> BTreeMap<ElementId, u16> {
+    let beside = |e| mesh.half_edges(e).map(|h| mesh.twin(h).map(|t| t.element()));
+    let mut row: Vec<ElementId> = mesh.elements().filter(|&e| beside(e).any(|other| other.is_none())).collect();
+    let mut rows = BTreeMap::new();
+    for number in 0.. {
+        row.retain(|&e| rows.insert(e, number).is_none());
+        if row.is_empty() {
+            break;
+        }
+        let next = row.iter().flat_map(|&e| beside(e).flatten()).filter(|e| !rows.contains_key(e));
+        row = next.collect::<BTreeSet<_>>().into_iter().collect();
+    }
+    rows
+}
+
+#[test]
+fn quadrilaterals_of_a_face_that_is_filled_anew_have_their_rows_as_levels() {
+    let done = convert(&built_in::named("example2").unwrap().unwrap(), &mut Nobody).unwrap();
+    assert!(done.finished.cleaned_up.refills > 0);
+    let rows = rows(&done.mesh);
+    assert!(rows.len() > 200 && rows.values().any(|&row| row > 2));
+    for (e, row) in rows {
+        assert_eq!(done.mesh.level(e), row, "{e:?}");
+    }
 }
 
 /// Nodes whose number of elements is not four inside, or not that of right angles that fit at a boundary.

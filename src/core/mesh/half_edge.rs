@@ -300,7 +300,7 @@ impl Mesh {
         self.region[e.index()]
     }
 
-    /// The level of a quadrilateral: its row, counted from the boundary; 0 for a triangle.
+    /// The level of a quadrilateral: rows of the front from the boundary; 0 for a triangle.
     #[inline]
     pub fn level(&self, e: ElementId) -> u16 {
         self.level[e.index()]

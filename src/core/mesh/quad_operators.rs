@@ -4,6 +4,8 @@
 //! These check only the topology: the result is conforming and manifold, but its elements may be inverted until the
 //! nodes around are relaxed. They are for use inside a transaction that ends with an exact check, or is rolled back.
 
+use std::collections::VecDeque;
+
 use glam::DVec2;
 use smallvec::SmallVec;
 
@@ -46,7 +48,7 @@ impl Mesh {
         self.permit(Operation::CollapseDiamond, &[a, b, c, d])?;
         let new: SmallVec<[NewElement; 8]> =
             old.iter().filter(|&&e| e != q).map(|&e| self.with_node_replaced(e, a, c)).collect();
-        self.replace(&old, &new);
+        self.replace_quads(&old, &new);
         self.release_node(a);
         Ok(())
     }
@@ -88,7 +90,7 @@ impl Mesh {
         let at = |k: usize| n[(by + k) % 6];
         let new =
             [[at(0), at(1), at(2), at(3)], [at(3), at(4), at(5), at(0)]].map(|nodes| NewElement::quad(nodes, region));
-        self.replace(&[h.element(), t.element()], &new);
+        self.replace_quads(&[h.element(), t.element()], &new);
         Ok(())
     }
 
@@ -133,7 +135,7 @@ impl Mesh {
         let mut new: SmallVec<[NewElement; 8]> = handed.iter().map(|&e| self.with_node_replaced(e, v, w)).collect();
         new.push(NewElement::quad([v, p, w, q], region));
         // The new quadrilateral fills the gap at the sides v-p and q-v of the sector.
-        self.replace(&handed, &new);
+        self.replace_quads(&handed, &new);
         Ok(w)
     }
 
@@ -159,7 +161,7 @@ impl Mesh {
         Refusal::Link.when(x == y)?;
         self.permit(Operation::RemoveDoublet, &[v])?;
         let new = NewElement::quad([a, x, c, y], self.region(h_va.element()));
-        let made = self.replace(&[h_va.element(), h_vc.element()], &[new]);
+        let made = self.replace_quads(&[h_va.element(), h_vc.element()], &[new]);
         self.release_node(v);
         Ok(made[0])
     }
@@ -184,9 +186,45 @@ impl Mesh {
         let nodes: Vec<NodeId> = new.iter().map(|&(uv, metric)| self.add_node(uv, metric)).collect();
         let node = |k: u32| *border.get(k as usize).unwrap_or_else(|| &nodes[k as usize - border.len()]);
         let quads: Vec<NewElement> = quads.iter().map(|quad| NewElement::quad(quad.map(node), region)).collect();
-        let made = self.replace(old, &quads);
+        let made = self.replace_quads(old, &quads);
         inner.iter().for_each(|&n| self.release_node(n));
         Ok((nodes, made.into_vec()))
+    }
+
+    /// Replaces elements by others that fill the same hole. A quadrilateral of these gets a level from those beside
+    /// it: that of the segment at the boundary, else one more than the least.
+    fn replace_quads(&mut self, old: &[ElementId], new: &[NewElement]) -> SmallVec<[ElementId; 8]> {
+        let made = self.replace(old, new);
+        let mut rows: SmallVec<[(ElementId, u16); 8]> = made.iter().map(|&e| (e, u16::MAX)).collect();
+        rows.sort_unstable();
+        let place_of = |rows: &[(ElementId, u16)], e| rows.binary_search_by_key(&e, |&(e, _)| e).ok();
+        let is_outer = |&k: &usize| {
+            let mut sides = self.half_edges(rows[k].0);
+            self.is_quad(rows[k].0)
+                && sides.any(|h| self.twin(h).is_none_or(|t| place_of(&rows, t.element()).is_none()))
+        };
+        let mut waiting: VecDeque<usize> = (0..rows.len()).filter(is_outer).collect();
+        while let Some(k) = waiting.pop_front() {
+            let (e, level) = rows[k];
+            let beside = self.half_edges(e).filter_map(|h| match self.twin(h).map(|t| t.element()) {
+                None => Some(self.first_level(self.origin(h))),
+                Some(other) if self.is_triangle(other) => None,
+                Some(other) => {
+                    let level = place_of(&rows, other).map_or_else(|| self.level(other), |k| rows[k].1);
+                    Some(level.saturating_add(1))
+                }
+            });
+            let least = beside.min().unwrap_or(0);
+            if least < level {
+                rows[k].1 = least;
+                let others = self.half_edges(e).filter_map(|h| place_of(&rows, self.twin(h)?.element()));
+                waiting.extend(others.filter(|&k| self.is_quad(rows[k].0)));
+            }
+        }
+        for (e, level) in rows {
+            self.set_level(e, if self.is_quad(e) && level < u16::MAX { level } else { 0 });
+        }
+        made
     }
 
     /// The element `e` with one corner replaced.

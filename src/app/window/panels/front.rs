@@ -67,7 +67,7 @@ const COLUMNS: [(FrontColumn, &str, f32, &str); 10] = [
     (FrontColumn::Key, "key", 54.0, "Key by which segments of a class are ordered"),
     (FrontColumn::ThetaA, "θA °", 39.0, "Frontal angle at A, degrees, in the metric of A"),
     (FrontColumn::ThetaB, "θB °", 39.0, "Frontal angle at B, degrees, in the metric of B"),
-    (FrontColumn::Level, "lv", 19.0, "Level: rows from the boundary"),
+    (FrontColumn::Level, "lv", 19.0, "Level: rows of the front from the boundary"),
     (FrontColumn::Loop, "lp", 17.0, "Loop of the front"),
 ];
 
