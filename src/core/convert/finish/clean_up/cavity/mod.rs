@@ -48,6 +48,9 @@ const LATER_ROUNDS_GIVE: f64 = 1.0;
 /// nodes and where it removes some: the relaxation together with the surroundings gives back less (for one kept in a
 /// hundred).
 const RELAXATION_GIVES: [f64; 2] = [8.0, 25.0];
+/// A filling is drawn only if its number of quadrilaterals is that for which the cavity has metric area, within this
+/// share, or fits it no worse than what it replaces: sizes are kept.
+const WITHIN: f64 = 0.4;
 /// A cavity with more misfits is not filled: one in two hundred would be kept.
 const MOST_MISFITS: usize = 1;
 /// A cavity of more elements is filled only where a filling can remove irregular nodes.
@@ -56,7 +59,7 @@ const LARGE: usize = 100;
 const RINGS: usize = 1;
 /// A whole face is drawn as one cavity only where its filling has as many quadrilaterals as its metric area asks for,
 /// within this share.
-const WHOLE_WITHIN: f64 = 0.25;
+const WHOLE_WITHIN: f64 = 0.15;
 
 /// What grows cavities and fills them anew. Everything but the refusals is kept for its memory only.
 #[derive(Clone)]
@@ -119,7 +122,7 @@ impl<'a> Cavities<'a> {
     }
 
     /// Fills a whole face anew where it is a polygon with a better filling than it has. The filling is judged on its
-    /// own, as it is drawn: nothing lies around. Its lengths are left to the smoothing of the whole mesh.
+    /// own, as it is drawn: nothing lies around.
     pub fn whole(
         &mut self,
         mesh: &mut Mesh,
@@ -154,7 +157,9 @@ impl<'a> Cavities<'a> {
         self.disc.elements.iter().for_each(|&e| before += energy::judge(mesh, e));
         let left = filling.irregular() + self.disc.polygon.misfits;
         let rise = (now - left) as f64 * VALENCE_WEIGHT;
-        if after.energy > before.energy + rise || after.sine < LEAST_SINE.min(before.sine) {
+        // Where nodes of three shorten the edges around, the smoothing that follows makes them longer.
+        let after = Judged { lengths: [f64::INFINITY, after.lengths[1]], ..after };
+        if after.energy > before.energy + rise || !is_sound(before, after) {
             done.refused += 1;
             return None;
         }
@@ -222,6 +227,9 @@ impl<'a> Cavities<'a> {
         if least + 2 + misfits <= now {
             found.extend(nearest(fillings_with_a_pair(&sides), &sides, area, MOST_DRAFTS));
         }
+        let misfit = |quads: u64| (quads as f64 / area - 1.0).abs();
+        let most = misfit(self.disc.elements.len() as u64).max(WITHIN);
+        found.retain(|filling| misfit(filling.quads(&sides)) <= most);
         let mut best: Option<(f64, &Filling)> = None;
         for filling in &found {
             let Some(drawn) = self.draft.draw(mesh, &*self.source, &self.disc.polygon, filling) else { continue };
