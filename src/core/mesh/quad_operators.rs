@@ -195,13 +195,14 @@ impl Mesh {
     /// it: that of the segment at the boundary, else one more than the least.
     fn replace_quads(&mut self, old: &[ElementId], new: &[NewElement]) -> SmallVec<[ElementId; 8]> {
         let made = self.replace(old, new);
-        let mut rows: SmallVec<[(ElementId, u16); 8]> = made.iter().map(|&e| (e, u16::MAX)).collect();
+        // The new quadrilaterals with their levels, by id.
+        let mut rows: SmallVec<[(ElementId, u16); 8]> =
+            made.iter().filter(|&&e| self.is_quad(e)).map(|&e| (e, u16::MAX)).collect();
         rows.sort_unstable();
         let place_of = |rows: &[(ElementId, u16)], e| rows.binary_search_by_key(&e, |&(e, _)| e).ok();
         let is_outer = |&k: &usize| {
             let mut sides = self.half_edges(rows[k].0);
-            self.is_quad(rows[k].0)
-                && sides.any(|h| self.twin(h).is_none_or(|t| place_of(&rows, t.element()).is_none()))
+            sides.any(|h| self.twin(h).is_none_or(|t| place_of(&rows, t.element()).is_none()))
         };
         let mut waiting: VecDeque<usize> = (0..rows.len()).filter(is_outer).collect();
         while let Some(k) = waiting.pop_front() {
@@ -217,12 +218,11 @@ impl Mesh {
             let least = beside.min().unwrap_or(0);
             if least < level {
                 rows[k].1 = least;
-                let others = self.half_edges(e).filter_map(|h| place_of(&rows, self.twin(h)?.element()));
-                waiting.extend(others.filter(|&k| self.is_quad(rows[k].0)));
+                waiting.extend(self.half_edges(e).filter_map(|h| place_of(&rows, self.twin(h)?.element())));
             }
         }
         for (e, level) in rows {
-            self.set_level(e, if self.is_quad(e) && level < u16::MAX { level } else { 0 });
+            self.set_level(e, level);
         }
         made
     }

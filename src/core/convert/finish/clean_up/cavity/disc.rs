@@ -12,7 +12,7 @@ use smallvec::SmallVec;
 use super::filling::{MOST_CORNERS, Sides};
 use crate::core::convert::finish::clean_up::candidate::Valences;
 use crate::core::convert::finish::clean_up::seen::Seen;
-use crate::core::convert::relax::energy;
+use crate::core::convert::relax::energy::{self, Judged};
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 
 /// The border of a cavity as a polygon.
@@ -106,9 +106,11 @@ impl Disc {
         self.elements.iter().map(|&e| mesh.metric_area(e)).sum()
     }
 
-    /// The energy of its elements.
-    pub fn energy(&self, mesh: &Mesh) -> f64 {
-        self.elements.iter().map(|&e| energy::judge(mesh, e).energy).sum()
+    /// Judges its elements.
+    pub fn judge(&self, mesh: &Mesh) -> Judged {
+        let mut judged = Judged::NOTHING;
+        self.elements.iter().for_each(|&e| judged += energy::judge(mesh, e));
+        judged
     }
 
     /// A fingerprint of its elements with their nodes and places, whatever their order.

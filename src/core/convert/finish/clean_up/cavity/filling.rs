@@ -284,7 +284,7 @@ fn lines_cut(sides: &[u32]) -> Vec<Filling> {
 fn layered(border: u32) -> Vec<Filling> {
     let half = border / 2;
     let mut found = Vec::new();
-    for columns in [half / 2, half / 3] {
+    for columns in [half / 2, half / 3].into_iter().filter(|&columns| columns > 0) {
         for from in [0, border / 8, border / 4] {
             found.extend((1..=half / 2).map(|layers| Filling::Layers {
                 layers,
@@ -293,6 +293,5 @@ fn layered(border: u32) -> Vec<Filling> {
             }));
         }
     }
-    found.retain(|filling| matches!(filling, Filling::Layers { grid: [columns, _], .. } if *columns > 0));
     found
 }

@@ -67,6 +67,8 @@ pub(super) struct Cavities<'a> {
     source: Arc<dyn MetricSource + Send + Sync + 'a>,
     disc: Disc,
     draft: Draft,
+    /// The best drawing of the present cavity.
+    best: Draft,
     ring: Vec<NodeId>,
     seen: Seen,
     movable: Seen,
@@ -92,6 +94,7 @@ impl<'a> Cavities<'a> {
             source,
             disc: Disc::default(),
             draft: Draft::default(),
+            best: Draft::default(),
             ring: Vec::new(),
             seen: Seen::default(),
             movable: Seen::default(),
@@ -103,6 +106,7 @@ impl<'a> Cavities<'a> {
     pub fn bytes(&self) -> usize {
         self.disc.bytes()
             + self.draft.bytes()
+            + self.best.bytes()
             + size_of::<NodeId>() * self.ring.capacity()
             + self.seen.bytes()
             + self.movable.bytes()
@@ -150,11 +154,11 @@ impl<'a> Cavities<'a> {
             let Some(judged) = drawn else { continue };
             if best.as_ref().is_none_or(|(least, _)| judged.energy < least.energy) {
                 best = Some((judged, filling));
+                std::mem::swap(&mut self.draft, &mut self.best);
             }
         }
         let (after, filling) = best?;
-        let mut before = Judged::NOTHING;
-        self.disc.elements.iter().for_each(|&e| before += energy::judge(mesh, e));
+        let before = self.disc.judge(mesh);
         let left = filling.irregular() + self.disc.polygon.misfits;
         let rise = (now - left) as f64 * VALENCE_WEIGHT;
         // Where nodes of three shorten the edges around, the smoothing that follows makes them longer.
@@ -163,11 +167,10 @@ impl<'a> Cavities<'a> {
             done.refused += 1;
             return None;
         }
-        self.draft.draw(mesh, &*self.source, &self.disc.polygon, &filling)?;
         // Decided already: the journal is not needed to take it back, and is large for a large face.
         let (quads, recording) = (self.disc.elements.len(), mesh.journal().is_recording());
         mesh.set_recording(recording && keep_journal);
-        let placed = self.draft.place(mesh, &self.disc);
+        let placed = self.best.place(mesh, &self.disc);
         mesh.set_recording(recording);
         let (nodes, made) = placed?;
         done.refills += 1;
@@ -236,18 +239,18 @@ impl<'a> Cavities<'a> {
             let energy = drawn.energy + VALENCE_WEIGHT * filling.irregular() as f64;
             if best.is_none_or(|(least, _)| energy < least) {
                 best = Some((energy, filling));
+                std::mem::swap(&mut self.draft, &mut self.best);
             }
         }
-        let before = self.disc.energy(mesh) + VALENCE_WEIGHT * (now - misfits) as f64;
+        let before = self.disc.judge(mesh).energy;
         let is_hopeful = |&(energy, filling): &(f64, &Filling)| {
             let removed = now - misfits - filling.irregular();
-            let allowed = most_rise(removed) - VALENCE_WEIGHT * removed as f64;
-            energy < before + allowed + RELAXATION_GIVES[usize::from(removed > 0)]
+            let drawn = energy - VALENCE_WEIGHT * filling.irregular() as f64;
+            drawn < before + most_rise(removed) + RELAXATION_GIVES[usize::from(removed > 0)]
         };
         if let Some((_, filling)) = best.filter(is_hopeful) {
             let left = filling.irregular() + misfits;
             done.trials += 1;
-            self.draft.draw(mesh, &*self.source, &self.disc.polygon, filling);
             let mark = mesh.mark();
             if let Some((change, touched)) = self.attempt(mesh, valences, now - left) {
                 done.refills += 1;
@@ -261,7 +264,7 @@ impl<'a> Cavities<'a> {
         None
     }
 
-    /// Puts the drawn filling into the mesh and relaxes it with its surroundings. None where the result is not good
+    /// Puts the best drawing into the mesh and relaxes it with its surroundings. None where the result is not good
     /// enough for that many irregular nodes removed; it is to be taken back then.
     fn attempt(&mut self, mesh: &mut Mesh, valences: &Valences, removed: usize) -> Option<(Change, Touched)> {
         self.gather_rings(mesh);
@@ -269,7 +272,7 @@ impl<'a> Cavities<'a> {
         let before = self.judge(mesh, &inner);
         self.disc.inner = inner;
         let quads = self.disc.elements.len() as u32;
-        let (inner, made) = self.draft.place(mesh, &self.disc)?;
+        let (inner, made) = self.best.place(mesh, &self.disc)?;
         // What may move: new nodes, the border and the rings; at first those that see something new.
         self.movable.clear(mesh.node_slots());
         inner.iter().chain(&self.ring).for_each(|n| _ = self.movable.add(n.index()));
