@@ -12,6 +12,7 @@ use quadfront::core::metric::measure::angle;
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
+use quadfront::core::run::explain;
 
 #[path = "common/irregular.rs"]
 mod irregular;
@@ -40,6 +41,13 @@ fn polygon(points: &[[f64; 2]], h: f64) -> Case {
     Case::parse(&text, "polygon", "polygon.toml", std::path::Path::new(".")).unwrap()
 }
 
+/// A disk with elements of one size.
+fn disk() -> Case {
+    let text = "version = 1\n[[curve]]\nname = \"c\"\nkind = \"circle\"\ncentre = [0, 0]\nradius = 1\n[[face]]\nname = \"f\"\n\
+                outer = [\"c\"]\n[[metric]]\nkind = \"uniform\"\nh = 0.07\n";
+    Case::parse(text, "disk", "disk.toml", std::path::Path::new(".")).unwrap()
+}
+
 #[test]
 fn where_a_grid_is_possible_the_mesh_is_one() {
     assert_eq!(converted(&scaled("uniform", 0.2)), [10_000, 0]);
@@ -55,10 +63,7 @@ fn where_a_grid_is_possible_the_mesh_is_one() {
 fn where_no_grid_is_possible_few_nodes_are_irregular() {
     let [quads, irregular] = converted(&scaled("sphere", 1.0));
     assert!(quads > 800 && irregular == 8, "sphere: {irregular} of {quads}");
-    let text = "version = 1\n[[curve]]\nname = \"c\"\nkind = \"circle\"\ncentre = [0, 0]\nradius = 1\n[[face]]\nname = \"f\"\n\
-                outer = [\"c\"]\n[[metric]]\nkind = \"uniform\"\nh = 0.07\n";
-    let disk = Case::parse(text, "disk", "disk.toml", std::path::Path::new(".")).unwrap();
-    let [quads, irregular] = converted(&disk);
+    let [quads, irregular] = converted(&disk());
     assert!(quads > 600 && irregular == 4, "disk: {irregular} of {quads}");
     // Five corners of 108 degrees with one element each: one node at least.
     let corner = |k: u32| {
@@ -140,4 +145,27 @@ fn what_a_step_says_of_a_cavity_is_what_it_did() {
         }
     }
     assert!(refills > 40 && removing > 20, "{refills} cavities, {removing} of them with fewer irregular nodes");
+}
+
+#[test]
+fn what_a_step_says_of_a_disk_is_what_it_did() {
+    let case = disk();
+    let made = background(&case, &mut Nobody).unwrap();
+    let mut converter = Converter::new(made.mesh.clone(), &made.sizing, case.parameters.clone());
+    let edges =
+        made.mesh.elements().flat_map(|e| made.mesh.half_edges(e)).filter(|&h| made.mesh.twin(h).is_none()).count();
+    loop {
+        let before = [converter.mesh.element_count() as u32, irregular(&converter.mesh) as u32];
+        let event = converter.step().unwrap();
+        assert_ne!(event, Event::Finished, "the disk is filled anew as a whole");
+        if let Event::Refilled { sides, quads, irregular: nodes, .. } = event {
+            let after = [converter.mesh.element_count() as u32, irregular(&converter.mesh) as u32];
+            assert_eq!(sides, [edges as u32, 0, 0, 0, 0, 0], "one border without a corner");
+            assert_eq!([quads, nodes], [[before[0], after[0]], [before[1], after[1]]]);
+            assert_eq!(after[1], 4);
+            let text = explain::event(&event);
+            assert!(text.starts_with(&format!("cavity with a border of {edges} edges filled anew")), "{text}");
+            return;
+        }
+    }
 }
