@@ -19,6 +19,9 @@ use crate::core::metric::MetricSource;
 
 /// The number of refinements of clashing curves before the domain is refused.
 const ROUNDS: usize = 64;
+/// A division that has become this many times as fine as the sizes ask for is not refined any more: what clashes even
+/// then is no matter of chords. (Each round divides a curve into half as many segments again.)
+const FINEST: usize = 1000;
 /// The two chords of a corner with a smaller sine in space are refined.
 const LEAST_SINE: f64 = 0.02;
 /// A chord is refined if its distance from its curve exceeds this fraction of the height of its triangle, since the
@@ -36,17 +39,20 @@ pub fn divide_and_triangulate(
 ) -> Result<(DividedDomain, TriangleSet), Fault> {
     let mut division = Division::measure(domain, metric)?;
     division.even_out()?;
+    let mut first = None;
     for round in 0.. {
         let divided = division.nodes()?;
+        let nodes = divided.nodes.len();
+        let is_last = round >= ROUNDS || nodes > FINEST * *first.get_or_insert(nodes);
         match triangulate(domain, &divided) {
             Ok((set, folded)) => {
                 // A corner that refinement does not improve is a corner of the surface.
-                if round >= ROUNDS || !refined(&mut division, &divided, folded) {
+                if is_last || !refined(&mut division, &divided, folded) {
                     return Ok((divided, set));
                 }
             }
             Err(clash) => {
-                if !refined(&mut division, &divided, clash.chords) || round >= ROUNDS {
+                if is_last || !refined(&mut division, &divided, clash.chords) {
                     return Err(clash.fault);
                 }
             }

@@ -108,6 +108,16 @@ fn chords_that_cannot_be_refined_are_refused_with_their_names() {
 }
 
 #[test]
+fn a_curve_is_not_refined_for_ever_beside_chords_that_stay() {
+    // The square in the rim cuts the hole, however finely the hole is divided.
+    let mut curves = vec![circle("rim", (0.0, 0.0), 1.0), circle("hole", (0.0, 0.0), 0.8)];
+    curves[0].segments = Some(4);
+    let domain = built((curves, vec![face("ring", "rim", &["hole"], "", "")]));
+    let says = divide_and_triangulate(&domain, &Uniform(0.5)).unwrap_err().to_string();
+    assert!(says.contains("\"hole\" and \"rim\" cross when divided"), "{says}");
+}
+
+#[test]
 fn lines_too_close_for_the_templates_are_refused_with_the_place() {
     let mut curves = sides_of_square();
     curves.push(segment("crack", (0.2, 2e-8), (0.8, 2e-8)));
