@@ -98,9 +98,10 @@ pub const QUESTIONS: [Question; 10] = [
     },
     Question {
         asks: "What do seams and front splitting give? (4.3.6)",
-        defaults: "both, theta_seam 30, seam_widening 2",
+        defaults: "both, theta_seam 30, seam_widening 3",
         others: &[
             Setting::With(&[("seam_widening", "1")]),
+            Setting::With(&[("seam_widening", "2")]),
             Setting::With(&[("theta_seam", "45")]),
             Setting::With(&[("seaming", "false")]),
             Setting::With(&[("splitting", "false")]),

@@ -22,7 +22,8 @@ pub struct Kept {
     pub templates: bool,
 }
 
-/// Steps of a conversion for each triangle that it starts from: more of them is a machine that does not end.
+/// Steps of a conversion for each element that there is: more of them is a machine that does not end. Beside the paper's
+/// sizes a few large triangles become many quadrilaterals.
 const MOST_STEPS: u64 = 1000;
 
 /// Converts a case and holds the result against everything that is promised.
@@ -41,10 +42,10 @@ pub fn keep_by(case: &Case, prepare: &mut dyn FnMut(&mut Converter<'_>)) -> Resu
     let mut ends = true;
     let converted = convert_by(case, &mut Nobody, &mut |converter, _| {
         prepare(converter);
-        let most = MOST_STEPS * (triangles.element_count() as u64 + 100);
         while *converter.phase() != Phase::Done && ends {
             converter.step()?;
-            ends = converter.counts.steps < most;
+            let elements = converter.mesh.element_count().min(case.parameters.max_quads as usize) as u64;
+            ends = converter.counts.steps < MOST_STEPS * (elements + 100);
         }
         Ok(())
     });

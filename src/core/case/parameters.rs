@@ -23,8 +23,8 @@ pub struct Parameters {
     pub theta_rect: f64,
     /// At or below this frontal angle a front corner is closed by a seam (section 4.3.6).
     pub theta_seam: f64,
-    /// Where a corner is crowded or its segments are short, it is closed by a seam up to `theta_seam` times this
-    /// (docs/algorithm.md, "Seaming"); 1, as in the paper, widens nothing.
+    /// Where segments are short, corners are closed by seams up to `theta_seam` times this (docs/algorithm.md,
+    /// "Seaming"); 1, as in the paper, widens nothing.
     pub seam_widening: f64,
     /// Above this frontal angle a corner is a reversal (fig. 12).
     pub theta_revr: f64,
@@ -93,7 +93,7 @@ impl Default for Parameters {
             c: 2.0,
             theta_rect: 135_f64.to_radians(),
             theta_seam: 30_f64.to_radians(),
-            seam_widening: 2.0,
+            seam_widening: 3.0,
             theta_revr: 225_f64.to_radians(),
             side_split: 1.5,
             whole_below: 1.0,

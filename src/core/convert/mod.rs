@@ -40,7 +40,7 @@ pub use finish::unfold::Unfolded;
 pub use last_resort::component::Component;
 pub use last_resort::{Means, Outcome, Plan, Stuck};
 pub use phase::{Attempt, Base, FinishPart, Phase};
-pub(in crate::core) use seam::{CROWDED, MOST_UNLIKE, SHORT};
+pub(in crate::core) use seam::{AROUND, MOST_UNLIKE, SHORT};
 pub(in crate::core) use split::LEAST_PART;
 pub use split::{Narrow, NotSlender, OnFront, SideToCollapse, Slender};
 pub use walk::{StepReport, Stop, Tell};

@@ -70,13 +70,11 @@ pub struct SeamCorner {
     /// The bound `theta_seam`.
     #[serde(serialize_with = "degrees")]
     pub theta_seam: f64,
-    /// The widest angle that is seamed there: `theta_seam`, or `seam_widening` times that.
+    /// The widest angle that is seamed there: `theta_seam`, or up to `seam_widening` times that.
     #[serde(serialize_with = "degrees")]
     pub widest: f64,
-    /// Their mean length in the metric.
+    /// The mean length in the metric of three segments on each side of the node, these two and the next ones.
     pub length: f64,
-    /// Number of quadrilaterals at the node between them.
-    pub quads: u8,
     /// Length of the longer one divided by that of the shorter one.
     pub ratio: f64,
 }

@@ -10,7 +10,10 @@ use crate::core::mesh::quality::length_over;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::metric::measure::quad_quality;
 
-/// Places a new top node at the mean of the place at unit metric length along the side's target direction and the
+/// The parallelogram's corner is all that counts for a base that is too long or too short by this much.
+const OFF: f64 = 0.2;
+
+/// Places a new top node between the place at unit metric length along the side's target direction and the
 /// parallelogram's corner, as far as everything around stays valid and good.
 pub fn place(front: &mut Front<'_>, base: &Base, element: ElementId, side: Side, tops: [NodeId; 2]) {
     let mesh = &*front.mesh;
@@ -21,10 +24,12 @@ pub fn place(front: &mut Front<'_>, base: &Base, element: ElementId, side: Side,
     let (p, here) = (mesh.uv(base.node(side)), mesh.uv(node));
     let Some(unit) = unit_place(front, base, side) else { return };
     // The top is to have unit length, not the base's: rows that run into larger or smaller sizes would never change the
-    // number of their columns, and drift away from the metric.
+    // number of their columns, and drift away from the metric. The side leans for it, and the next one more, until a
+    // column begins or ends; one that may stand upright would give the top the base's length again.
     let widen = (1.0 / base.length).clamp(0.5, 2.0);
     let parallel = mesh.uv(other_top) + (p - mesh.uv(base.node(side.other()))) * widen;
-    let there = 0.5 * (unit + parallel);
+    let share = (0.5 + 0.5 * (base.length - 1.0).abs() / OFF).min(1.0);
+    let there = unit.lerp(parallel, share);
     let old = mesh.quality(element);
     let nodes = mesh.quad(element);
     let mut step = 1.0;

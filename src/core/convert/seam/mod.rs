@@ -20,11 +20,13 @@ use crate::core::mesh::{ElementId, HalfEdgeId, NodeId};
 
 /// Segments whose lengths differ by more than this factor need a transition seam.
 pub(in crate::core) const MOST_UNLIKE: f64 = 2.5;
-/// With this many dead elements at the node, wider angles are seamed too (after Levik; docs/algorithm.md, "Seaming").
-pub(in crate::core) const CROWDED: usize = 5;
-/// So they are where the segments are shorter than this on average, in the metric: where sizes grow ahead of the front,
-/// columns must end, and this is where they do (docs/experiments.md).
-pub(in crate::core) const SHORT: f64 = 0.85;
+/// Seams are widened where the segments around are shorter than this on average, in the metric, the more the shorter:
+/// where sizes grow ahead of the front, columns must end, and this is where they do (docs/algorithm.md, "Seaming").
+pub(in crate::core) const SHORT: f64 = 0.97;
+/// Of this length and below, they are widened as far as they may be.
+const SHORTEST: f64 = 0.82;
+/// Segments on each side of the node whose lengths count for that: two alone may be short by chance.
+pub(in crate::core) const AROUND: usize = 3;
 
 /// One seam (4.3.6) at a node of the new quadrilateral, or why one is refused.
 pub(super) fn step(front: &mut Front<'_>, element: ElementId, mut nodes: SmallVec<[NodeId; 8]>) -> Done {
@@ -91,17 +93,20 @@ fn seam_at(front: &mut Front<'_>, at: NodeId) -> Option<Event> {
 fn corner(front: &Front<'_>, h: HalfEdgeId, [l_b, l_c]: [f64; 2]) -> SeamCorner {
     let mesh = &*front.mesh;
     let Parameters { theta_seam, seam_widening, .. } = *front.parameters;
-    let quads = mesh.elements_at(mesh.origin(h)).filter(|&e| mesh.is_quad(e)).count();
-    let length = 0.5 * (l_b + l_c);
+    let (mut after, mut before, mut sum) = (h, mesh.front_before(h), l_b + l_c);
+    for _ in 1..AROUND {
+        (after, before) = (mesh.front_after(after), mesh.front_before(before));
+        sum += mesh.length(after) + mesh.length(before);
+    }
+    let length = sum / (2 * AROUND) as f64;
+    let short = ((SHORT - length) / (SHORT - SHORTEST)).clamp(0.0, 1.0);
     // A right angle is a corner of a row.
-    let wide = (theta_seam * seam_widening).min(FRAC_PI_2);
-    let widest = if wide > theta_seam && (length < SHORT || quads >= CROWDED) { wide } else { theta_seam };
+    let widest = (theta_seam * (1.0 + (seam_widening - 1.0) * short)).min(FRAC_PI_2.max(theta_seam));
     SeamCorner {
         angle: mesh.frontal_angle(h, Side::Left),
         theta_seam,
         widest,
         length,
-        quads: u8::try_from(quads).unwrap_or(u8::MAX),
         ratio: l_b.max(l_c) / l_b.min(l_c),
     }
 }

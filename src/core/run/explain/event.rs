@@ -3,7 +3,7 @@
 use super::numbers::{angles_apart, apart, count, edge, segment};
 use super::side::{name, side_rule};
 use crate::core::convert::{
-    CROWDED, Candidates, Event, LEAST_PART, MOST_UNLIKE, Mending, Narrow, NotSlender, OnFront, Purpose, SHORT,
+    AROUND, Candidates, Event, LEAST_PART, MOST_UNLIKE, Mending, Narrow, NotSlender, OnFront, Purpose, SHORT,
     SeamCorner, SideToCollapse, Slender, Unmerged, Why,
 };
 use crate::core::kernel::number::{degrees, fixed, grouped, size};
@@ -196,19 +196,17 @@ pub fn about(event: &Event, candidates: Option<&Candidates>, narrow: Option<&Nar
 
 /// The frontal angle of a seam against its bound.
 fn angle(corner: &SeamCorner) -> String {
-    let SeamCorner { angle, theta_seam, widest, length, quads, .. } = *corner;
+    let SeamCorner { angle, theta_seam, widest, length, .. } = *corner;
     let [angle, bound] = angles_apart(angle, widest);
     if widest == theta_seam {
         return format!("The frontal angle is {angle}\u{b0}, and \u{3b8}_{{seam}} = {bound}\u{b0} (4.3.6).");
     }
-    let why = if length < SHORT {
-        format!("the segments are {} long on average, less than {SHORT}", fixed(length, 3))
-    } else {
-        format!("{quads} quadrilaterals meet there, {CROWDED} or more")
-    };
+    let [length, short] = apart(length, SHORT);
     format!(
-        "The frontal angle is {angle}\u{b0}; \u{3b8}_{{seam}} = {}\u{b0} is widened to {bound}\u{b0}, since {why} (4.3.6).",
-        degrees(theta_seam)
+        "The frontal angle is {angle}\u{b0}; \u{3b8}_{{seam}} = {}\u{b0} is widened to {bound}\u{b0}, since the \
+         {} segments around are {length} long on average, less than {short} (4.3.6).",
+        degrees(theta_seam),
+        2 * AROUND
     )
 }
 

@@ -99,9 +99,9 @@ impl Filled {
                 left.extend((1..n - 1).map(|k| sides[(corner + k) % n].clone()));
                 self.fill(rest, &left);
             }
-            Filling::Layers { layers, from, grid: [columns, rows] } => {
+            Filling::Layers { layers, grid: [columns, rows] } => {
                 let inner = self.layers(&sides[0], *layers, (*columns).min(*rows));
-                let mut at = *from;
+                let mut at = 0;
                 let [bottom, right, top, left] = [*columns, *rows, *columns, *rows].map(|edges| {
                     let side: Chain = (at..=at + edges).map(|k| inner[k as usize % inner.len()]).collect();
                     at += edges;

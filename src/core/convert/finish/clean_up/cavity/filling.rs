@@ -49,8 +49,6 @@ pub(super) enum Filling {
     Layers {
         /// The number of layers.
         layers: u32,
-        /// Edges along the border from its first node to where the first corner of the grid lies.
-        from: u32,
         /// Edges of the grid's sides.
         grid: [u32; 2],
     },
@@ -280,18 +278,12 @@ fn lines_cut(sides: &[u32]) -> Vec<Filling> {
     found
 }
 
-/// Grids within layers along a border without a corner: square ones and longish ones, at different places.
+/// Grids within layers along a border without a corner: square ones and longish ones.
 fn layered(border: u32) -> Vec<Filling> {
     let half = border / 2;
     let mut found = Vec::new();
     for columns in [half / 2, half / 3].into_iter().filter(|&columns| columns > 0) {
-        for from in [0, border / 8, border / 4] {
-            found.extend((1..=half / 2).map(|layers| Filling::Layers {
-                layers,
-                from,
-                grid: [columns, half - columns],
-            }));
-        }
+        found.extend((1..=half / 2).map(|layers| Filling::Layers { layers, grid: [columns, half - columns] }));
     }
     found
 }

@@ -39,18 +39,20 @@ const LENGTHS: [f64; 2] = [0.45, 1.8];
 /// Fillings of each kind that are drawn: those with a number of quadrilaterals that fits the metric.
 const MOST_DRAFTS: usize = 5;
 /// The same for a whole face.
-const MOST_WHOLE_DRAFTS: usize = 12;
+const MOST_WHOLE_DRAFTS: usize = 4;
 /// Rounds of relaxation of a cavity and its surroundings.
 const ROUNDS: usize = 8;
-/// A filling is given up after two rounds if its energy is too high by this much: the other rounds give back less.
+/// After so many rounds a filling is given up if its energy is too high by `LATER_ROUNDS_GIVE`.
+const EARLY_ROUNDS: usize = 2;
+/// The other rounds give back less.
 const LATER_ROUNDS_GIVE: f64 = 1.0;
 /// A drawing is put into the mesh only if its energy is too high by no more than this, where it removes no irregular
 /// nodes and where it removes some: the relaxation together with the surroundings gives back less (for one kept in a
 /// hundred).
 const RELAXATION_GIVES: [f64; 2] = [8.0, 25.0];
 /// A filling is drawn only if its number of quadrilaterals is that for which the cavity has metric area, within this
-/// share, or fits it no worse than what it replaces: sizes are kept.
-const WITHIN: f64 = 0.4;
+/// many times the root of it, or fits it no worse than what it replaces: sizes are kept.
+const WITHIN: f64 = 3.0;
 /// A cavity with more misfits is not filled: one in two hundred would be kept.
 const MOST_MISFITS: usize = 1;
 /// A cavity of more elements is filled only where a filling can remove irregular nodes.
@@ -60,6 +62,8 @@ const RINGS: usize = 1;
 /// A whole face is drawn as one cavity only where its filling has as many quadrilaterals as its metric area asks for,
 /// within this share.
 const WHOLE_WITHIN: f64 = 0.15;
+/// A drawing of a whole face is relaxed only if its energy is no more than this many times what it may be.
+const WHOLE_RELAXATION_GIVES: f64 = 1.1;
 
 /// What grows cavities and fills them anew. Everything but the refusals is kept for its memory only.
 #[derive(Clone)]
@@ -126,7 +130,7 @@ impl<'a> Cavities<'a> {
     }
 
     /// Fills a whole face anew where it is a polygon with a better filling than it has. The filling is judged on its
-    /// own, as it is drawn: nothing lies around.
+    /// own, for nothing lies around: as it is drawn, else relaxed.
     pub fn whole(
         &mut self,
         mesh: &mut Mesh,
@@ -162,19 +166,37 @@ impl<'a> Cavities<'a> {
         let left = filling.irregular() + self.disc.polygon.misfits;
         let rise = (now - left) as f64 * VALENCE_WEIGHT;
         // Where nodes of three shorten the edges around, the smoothing that follows makes them longer.
-        let after = Judged { lengths: [f64::INFINITY, after.lengths[1]], ..after };
-        if after.energy > before.energy + rise || !is_sound(before, after) {
+        let is_good = |after: Judged| {
+            let after = Judged { lengths: [f64::INFINITY, after.lengths[1]], ..after };
+            after.energy <= before.energy + rise && is_sound(before, after)
+        };
+        let is_decided = is_good(after);
+        if !is_decided && after.energy > WHOLE_RELAXATION_GIVES * (before.energy + rise) {
             done.refused += 1;
             return None;
         }
-        // Decided already: the journal is not needed to take it back, and is large for a large face.
+        // The journal is large for a large face, and is not needed to take back what is decided.
         let (quads, recording) = (self.disc.elements.len(), mesh.journal().is_recording());
-        mesh.set_recording(recording && keep_journal);
+        mesh.set_recording(recording && (keep_journal || !is_decided));
+        let mark = mesh.mark();
         let placed = self.best.place(mesh, &self.disc);
         mesh.set_recording(recording);
         let (nodes, made) = placed?;
+        let mut energy = [before.energy, after.energy];
+        if !is_decided {
+            self.movable.clear(mesh.node_slots());
+            nodes.iter().for_each(|n| _ = self.movable.add(n.index()));
+            self.relax(mesh, nodes.clone(), ROUNDS);
+            let mut after = Judged::NOTHING;
+            made.iter().for_each(|&e| after += energy::judge(mesh, e));
+            if !is_good(after) {
+                done.refused += 1;
+                mesh.take_back(mark);
+                return None;
+            }
+            energy[1] = after.energy;
+        }
         done.refills += 1;
-        let energy = [before.energy, after.energy];
         let change = Change { energy, quads: [quads as u32, made.len() as u32] };
         let touched = nodes.into_iter().filter(|&n| valences.excess(mesh, n) != 0).collect();
         Some(self.kept(&sides, [now, left], change, touched))
@@ -230,8 +252,8 @@ impl<'a> Cavities<'a> {
         if least + 2 + misfits <= now {
             found.extend(nearest(fillings_with_a_pair(&sides), &sides, area, MOST_DRAFTS));
         }
-        let misfit = |quads: u64| (quads as f64 / area - 1.0).abs();
-        let most = misfit(self.disc.elements.len() as u64).max(WITHIN);
+        let misfit = |quads: u64| (quads as f64 - area).abs();
+        let most = misfit(self.disc.elements.len() as u64).max(WITHIN * area.sqrt());
         found.retain(|filling| misfit(filling.quads(&sides)) <= most);
         let mut best: Option<(f64, &Filling)> = None;
         for filling in &found {
@@ -276,8 +298,29 @@ impl<'a> Cavities<'a> {
         // What may move: new nodes, the border and the rings; at first those that see something new.
         self.movable.clear(mesh.node_slots());
         inner.iter().chain(&self.ring).for_each(|n| _ = self.movable.add(n.index()));
-        let mut waiting: Vec<NodeId> = inner.iter().chain(&self.disc.polygon.border).copied().collect();
-        for round in 1..=ROUNDS {
+        let waiting = inner.iter().chain(&self.disc.polygon.border).copied().collect();
+        let waiting = self.relax(mesh, waiting, EARLY_ROUNDS);
+        if !waiting.is_empty() {
+            if self.judge(mesh, &inner).energy > before.energy + most_rise(removed) + LATER_ROUNDS_GIVE {
+                return None;
+            }
+            self.relax(mesh, waiting, ROUNDS - EARLY_ROUNDS);
+        }
+        let after = self.judge(mesh, &inner);
+        if !is_good(before, after, removed) {
+            return None;
+        }
+        let touched = inner.iter().chain(&self.ring).copied().filter(|&n| valences.excess(mesh, n) != 0).collect();
+        Some((Change { energy: [before.energy, after.energy], quads: [quads, made.len() as u32] }, touched))
+    }
+
+    /// Rounds of relaxation of the nodes that may move: these first, then those that see something new. Returns those
+    /// that are left.
+    fn relax(&mut self, mesh: &mut Mesh, mut waiting: Vec<NodeId>, rounds: usize) -> Vec<NodeId> {
+        for _ in 0..rounds {
+            if waiting.is_empty() {
+                break;
+            }
             let mut next = Vec::with_capacity(waiting.len());
             self.seen.clear(mesh.node_slots());
             for &node in &waiting {
@@ -287,19 +330,8 @@ impl<'a> Cavities<'a> {
                 }
             }
             waiting = next;
-            if waiting.is_empty() {
-                break;
-            }
-            if round == 2 && self.judge(mesh, &inner).energy > before.energy + most_rise(removed) + LATER_ROUNDS_GIVE {
-                return None;
-            }
         }
-        let after = self.judge(mesh, &inner);
-        if !is_good(before, after, removed) {
-            return None;
-        }
-        let touched = inner.iter().chain(&self.ring).copied().filter(|&n| valences.excess(mesh, n) != 0).collect();
-        Some((Change { energy: [before.energy, after.energy], quads: [quads, made.len() as u32] }, touched))
+        waiting
     }
 
     /// The nodes of the border, and those of the rings around.
