@@ -92,8 +92,10 @@ fn example_3_converts_with_layers_about_its_openings_and_without() {
         case.parameters.set("layers", layers).unwrap();
         case.parameters.set("layered_loops", "round,oval,slot").unwrap();
         let done = convert(&case, &mut Nobody).unwrap();
-        let share = done.mesh.element_count() as f64 / done.triangles as f64;
-        assert!((0.42..0.66).contains(&share), "{layers}: {share}");
+        let sides = done.mesh.elements().flat_map(|e| done.mesh.half_edges(e));
+        let lengths: Vec<f64> = sides.map(|h| done.mesh.length(h)).collect();
+        let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
+        assert!((0.95..1.05).contains(&mean), "{layers}: {mean}");
         let file = Export::of(&done.mesh, &done.names).file;
         assert!(file.triangles.is_empty() && done.mesh.folded().is_empty());
         examine(&file).verdict(Allow::default()).unwrap();

@@ -22,8 +22,8 @@ pub struct Kept {
     pub templates: bool,
 }
 
-/// Steps of a conversion for each element that there is: more of them is a machine that does not end. Beside the paper's
-/// sizes a few large triangles become many quadrilaterals.
+/// Steps of a conversion for each element that there is: more of them is a machine that does not end. A few triangles
+/// that are large for their sizes become many quadrilaterals.
 const MOST_STEPS: u64 = 1000;
 
 /// Converts a case and holds the result against everything that is promised.
