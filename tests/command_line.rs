@@ -487,3 +487,44 @@ fn a_metric_is_not_written_over_the_one_that_was_read() {
     assert!(err.contains("a.sol") && err.contains("overwrite the file"), "{err}");
     assert_eq!(std::fs::read(folder.path().join("a.sol")).unwrap(), before);
 }
+
+#[test]
+fn comparing_names_the_first_difference_and_its_exit_code_says_whether_there_is_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, out, _) = said(&run(&["compare", "example4", "--with", "c=1.5", "--quiet"], folder.path()));
+    assert_eq!(code, 1, "{out}");
+    assert!(out.starts_with("A: example4 with c = 2\nB: example4 with c = 1.5\nfirst difference: step "), "{out}");
+    assert!(out.contains("\n  A: ") && out.contains("\n  B: ") && out.contains("\n  quadrilaterals "), "{out}");
+    // The same in JSON, with the reports of both.
+    let (code, json, _) = said(&run(&["compare", "example4", "--with", "c=1.5", "--quiet", "--json"], folder.path()));
+    assert_eq!(code, 1);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let step = json["first_difference"]["step"].as_u64().unwrap();
+    assert!(out.contains(&format!("first difference: step {step} (")), "{out}");
+    for (k, c) in [2.0, 1.5].into_iter().enumerate() {
+        let did = &json["first_difference"]["did"][k];
+        assert!(did["event"]["kind"].is_string() && did["why"].is_array(), "{did}");
+        assert!(out.contains(did["text"].as_str().unwrap()), "{did}");
+        assert_eq!(json["reports"][k]["parameters"]["c"].as_f64(), Some(c));
+        let set = format!("c={c}");
+        let arguments = ["convert", "example4", "--set", &set, "--quiet", "--report", "-"];
+        let (_, report, _) = said(&run(&arguments, folder.path()));
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        assert_eq!(json["reports"][k]["mesh"], report["mesh"]);
+    }
+    // A case and its own file are the same run; another size differs from the beginning.
+    let (_, case, _) = said(&run(&["cases", "example4"], folder.path()));
+    std::fs::write(folder.path().join("own.toml"), case).unwrap();
+    let (code, out, _) = said(&run(&["compare", "example4", "own.toml", "--quiet"], folder.path()));
+    assert_eq!(code, 0, "{out}");
+    assert!(out.starts_with("A: example4\nB: own.toml\nno difference: "), "{out}");
+    let (code, out, _) = said(&run(&["compare", "example4", "--with", "size_scale=0.9", "--quiet"], folder.path()));
+    assert_eq!(code, 1);
+    assert!(out.contains("first difference: step 0 (the background meshes differ)\n"), "{out}");
+    // Nothing to compare with, and a parameter that does not exist.
+    for arguments in [&["compare", "example4"][..], &["compare", "example4", "--with", "k=2"]] {
+        let (code, out, error) = said(&run(arguments, folder.path()));
+        assert_eq!((code, out.as_str()), (2, ""), "{error}");
+        assert!(error.starts_with("error: "), "{error}");
+    }
+}

@@ -15,8 +15,10 @@ use crate::core::run::Run;
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
 #[derive(Parser)]
 #[command(name = "quadfront", version, about, max_term_width = 100)]
-#[command(after_help = "Exit codes: 0 success; 1 the checked or converted mesh is invalid; 2 bad input or usage; \
-                  130 stopped by Ctrl-C.")]
+#[command(
+    after_help = "Exit codes: 0 success; 1 the checked or converted mesh is invalid, or runs differ; 2 bad input \
+                  or usage; 130 stopped by Ctrl-C."
+)]
 pub(super) struct Cli {
     /// Without a command, the window opens with example 1
     #[command(subcommand)]
@@ -34,6 +36,8 @@ pub(super) enum Command {
     Background(BackgroundArguments),
     /// Check a quadrilateral mesh in a file (exit code 1 if it is invalid)
     Check(CheckArguments),
+    /// Compare two runs: the step at which they first differ, why, and what both end with (exit code 1 if they differ)
+    Compare(CompareArguments),
     /// Draw a mesh, or states of a conversion, as SVG or PNG
     Render(RenderArguments),
     /// List the built-in cases
@@ -222,6 +226,26 @@ pub(super) struct CheckArguments {
 }
 
 #[derive(Args)]
+pub(super) struct CompareArguments {
+    #[command(flatten)]
+    pub source: Source,
+    #[command(flatten)]
+    pub mesh: MeshArguments,
+    /// The other run, with the same options; without it, the same run with what --with changes
+    #[arg(value_name = "OTHER")]
+    pub other: Option<String>,
+    /// Set a parameter of the other run, for example c=1.5 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub with: Vec<(String, String)>,
+    /// Use the paper's rules and values in the other run, as --paper does in both
+    #[arg(long)]
+    pub with_paper: bool,
+    /// Print the difference and both reports as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
 pub(super) struct RenderArguments {
     #[command(flatten)]
     pub source: Source,
@@ -278,6 +302,9 @@ mod tests {
             "quadfront render example1 --at nq=100 --plot lengths --ink grey --size 84x60mm --dpi 600 -o lengths.png",
             "quadfront render a.svg --layers -letters,+h --transparent --part 0.5,-0.5,0.1 -o b.svg",
             "quadfront convert a.svg --at end -o b.msh",
+            "quadfront compare example1 --with c=1.5 --with theta_rect=120",
+            "quadfront compare example1 --with-paper --json",
+            "quadfront compare a.toml b.toml --set size_scale=0.5",
             "quadfront cases --json",
             "quadfront",
             "quadfront open",

@@ -9,6 +9,7 @@ mod figure;
 mod convert;
 mod check;
 mod cases;
+mod compare;
 mod render;
 #[cfg(feature = "window")]
 pub mod window;
@@ -24,7 +25,7 @@ use crate::core::formats::save;
 use command_line::{Cli, Command, OpenArguments};
 use progress::INTERRUPT;
 
-/// A mesh that was checked or converted is not valid.
+/// A mesh that was checked or converted is not valid, or runs that were compared differ.
 const FALLS_SHORT: u8 = 1;
 /// Bad input or usage.
 const BAD_INPUT: u8 = 2;
@@ -58,6 +59,7 @@ pub fn run() -> ExitCode {
         Command::Convert(arguments) => convert::convert(arguments),
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
         Command::Check(arguments) => check::check(arguments),
+        Command::Compare(arguments) => compare::compare(arguments),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
         Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),
     };

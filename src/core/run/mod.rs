@@ -7,6 +7,7 @@
 //! | reaching any state, bit-identical to a new run; stepping forward and back; editing | [`History`] |
 //! | copies of the mesh for other threads, updated by what changed | [`Copies`] |
 //! | what a figure shows of a run | [`Shown`] |
+//! | the first step after which two runs differ | [`compare::first_difference`] |
 //! | running ahead on another thread | [`Recorder`], which [`History::lend`] lends |
 //! | one event per step, the number of quadrilaterals, where to go next | [`Log`] |
 //! | invariants and statistics along a run, lanes of its work | [`Sample`], [`timeline`] |
@@ -28,6 +29,7 @@ pub mod timeline;
 mod keyframes;
 mod recorder;
 pub mod history;
+pub mod compare;
 pub mod copies;
 mod births;
 mod worst_quality;

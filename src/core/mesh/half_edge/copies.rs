@@ -70,6 +70,42 @@ impl Mesh {
         copy
     }
 
+    /// Whether another mesh has the same state: that of which [`Mesh::write_state`] writes the bytes.
+    pub fn is_same(&self, other: &Mesh) -> bool {
+        let bytes = [self, other].map(|mesh| {
+            let mut bytes = Vec::new();
+            mesh.write_state(&mut bytes);
+            bytes
+        });
+        bytes[0] == bytes[1]
+    }
+
+    /// Whether another mesh, which differs from this one at most in these nodes and elements, has the same state.
+    pub fn is_same_at(&self, other: &Mesh, nodes: &[NodeId], elements: &[ElementId]) -> bool {
+        self.places.len() == other.places.len()
+            && self.sides.len() == other.sides.len()
+            && self.free_nodes == other.free_nodes
+            && self.free_elements == other.free_elements
+            && self.closed == other.closed
+            && nodes.iter().all(|n| self.node_state(n.index()) == other.node_state(n.index()))
+            && elements.iter().all(|e| self.element_state(e.index()) == other.element_state(e.index()))
+    }
+
+    /// The state of the slot of a node; `None` beyond the last one.
+    fn node_state(&self, n: usize) -> Option<([u64; 5], [u32; 3])> {
+        let Place { uv, metric } = *self.places.get(n)?;
+        let numbers = [uv.x, uv.y, metric.uu, metric.uv, metric.vv].map(f64::to_bits);
+        Some((numbers, [self.anchor[n], self.point[n], self.first_level.get(n).map_or(0, |&level| level.into())]))
+    }
+
+    /// The state of the slot of an element; `None` beyond the last one.
+    fn element_state(&self, e: usize) -> Option<(&[u32], &[u32], &[bool], [u32; 3])> {
+        let sides = *self.sides.get(e)?;
+        let slots = 4 * e..4 * e + 4;
+        let rest = [self.region[e], self.level[e].into(), sides.into()];
+        Some((&self.origin[slots.clone()], &self.twin[slots.clone()], &self.deferred[slots], rest))
+    }
+
     /// Appends the canonical serialisation of the state: all arrays and both free lists, little-endian. Two meshes have
     /// the same state if and only if these bytes are equal. (The journal is history, not state.)
     pub fn write_state(&self, bytes: &mut Vec<u8>) {

@@ -1,0 +1,165 @@
+//! `compare`: two runs side by side: their first difference, and what both end with.
+
+use std::process::ExitCode;
+
+use serde::Serialize;
+
+use super::command_line::{CompareArguments, Source};
+use super::output::Stream;
+use super::progress::Progress;
+use super::{FALLS_SHORT, input, work};
+use crate::core::case::Parameters;
+use crate::core::fault::Fault;
+use crate::core::kernel::number::{fixed, grouped};
+use crate::core::progress::{Stage, Watch};
+use crate::core::record::Report;
+use crate::core::record::statistics::Range;
+use crate::core::run::compare::{Did, FirstDifference, first_difference};
+use crate::core::run::{History, Run};
+
+/// The names of the two runs in what is printed.
+const NAMES: [&str; 2] = ["A", "B"];
+
+/// What is printed with `--json`.
+#[derive(Serialize)]
+struct Comparison {
+    first_difference: Option<FirstDifference>,
+    reports: [Report; 2],
+}
+
+/// Compares two runs: success where they never differ, exit code 1 where they do.
+pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
+    let CompareArguments { source, mesh, other, with, with_paper, json } = arguments;
+    let first = input::read(source, &mesh.options())?;
+    let second = match other {
+        Some(other) => {
+            let Source { from, sol, overrides, quiet, .. } = source;
+            let (from, sol) = (*from, sol.clone());
+            let source = Source { input: other.clone(), from, sol, overrides: overrides.clone(), quiet: *quiet };
+            input::read(&source, &mesh.options())?.run
+        }
+        None if with.is_empty() && !with_paper => {
+            return Err(Fault::new("There is nothing to compare with")
+                .at(source.input.clone())
+                .remedy("Name another run, or change parameters: --with c=1.5, --with-paper"));
+        }
+        None => first.run.clone(),
+    };
+    let runs = [first.run, changed(second, with, *with_paper)?];
+    let mut progress = Progress::new(source.quiet);
+    let found = difference(&runs, &mut progress)?;
+    progress.finish();
+    let [a, b] = &runs;
+    let reports = [report(a, source.quiet)?, report(b, source.quiet)?];
+    let differ = found.is_some();
+    if *json {
+        let comparison = Comparison { first_difference: found, reports };
+        let text = serde_json::to_string_pretty(&comparison).expect("JSON can express all figures");
+        Stream::Output.print(&format!("{text}\n"));
+    } else {
+        let inputs = [&source.input, other.as_ref().unwrap_or(&source.input)];
+        Stream::Output.print(&text(inputs, &runs, found.as_ref(), &reports));
+    }
+    Ok(if differ { ExitCode::from(FALLS_SHORT) } else { ExitCode::SUCCESS })
+}
+
+/// A run with other parameters.
+fn changed(mut run: Run, with: &[(String, String)], paper: bool) -> Result<Run, Fault> {
+    if paper {
+        run.parameters = run.parameters.read_as_paper();
+    }
+    for (key, value) in with {
+        run.parameters.set(key, value).map_err(|fault| fault.at("--with"))?;
+    }
+    run.case.parameters = run.parameters.clone();
+    Ok(run)
+}
+
+fn difference([a, b]: &[Run; 2], watch: &mut dyn Watch) -> Result<Option<FirstDifference>, Fault> {
+    let [mut a, mut b] = [History::open(a.clone(), watch)?, History::open(b.clone(), watch)?];
+    first_difference([&mut a, &mut b], watch)
+}
+
+/// The report of a run at its end, with the time that it takes by itself.
+fn report(run: &Run, quiet: bool) -> Result<Report, Fault> {
+    let mut progress = Progress::new(quiet);
+    progress.tell(Stage::Read, 0, 0);
+    let mut report = work::convert(run, None, None, false, &mut progress)?.report;
+    report.timing = progress.finish();
+    Ok(report)
+}
+
+fn text(inputs: [&String; 2], runs: &[Run; 2], found: Option<&FirstDifference>, reports: &[Report; 2]) -> String {
+    let mut text = String::new();
+    for (k, name) in NAMES.into_iter().enumerate() {
+        let run = &runs[k];
+        let set = values_that_differ(&run.parameters, &runs[1 - k].parameters);
+        let edits = match run.edits().len() {
+            0 => String::new(),
+            1 => ", 1 edit".to_owned(),
+            n => format!(", {n} edits"),
+        };
+        text += &format!("{name}: {}{}{set}{edits}\n", inputs[k], if set.is_empty() { "" } else { " with " });
+    }
+    match found {
+        None => text += "no difference: every step of both leads to the same state\n",
+        Some(FirstDifference { step: 0, .. }) => text += "first difference: step 0 (the background meshes differ)\n",
+        Some(found) => {
+            text += &format!("first difference: step {} ({})\n", grouped(found.step), kinds(&found.did));
+            for (name, did) in NAMES.iter().zip(&found.did) {
+                match did {
+                    Some(Did { text: line, why, .. }) => {
+                        text += &format!("  {name}: {line}\n");
+                        why.iter().for_each(|sentence| text += &format!("     {sentence}\n"));
+                    }
+                    None => text += &format!("  {name}: had ended\n"),
+                }
+            }
+        }
+    }
+    text + &table(reports)
+}
+
+/// The parameters that differ from others, with their values.
+fn values_that_differ(parameters: &Parameters, others: &Parameters) -> String {
+    let differ = Parameters::KEYS.iter().filter_map(|key| {
+        let [value, other] = [parameters, others].map(|parameters| parameters.text_of(key));
+        (value != other).then(|| format!("{key} = {}", value.as_deref().unwrap_or("(none)")))
+    });
+    differ.collect::<Vec<_>>().join(", ")
+}
+
+/// The kinds of what both did.
+fn kinds(did: &[Option<Did>; 2]) -> String {
+    let [a, b] = did.each_ref().map(|did| did.as_ref().map_or("ended", |did| did.event.kind().name()));
+    if a == b { a.replace('_', " ") } else { format!("A {}, B {}", a.replace('_', " "), b.replace('_', " ")) }
+}
+
+/// What both end with.
+fn table(reports: &[Report; 2]) -> String {
+    let jacobian = |range: Option<Range>| {
+        range.map_or("none".to_owned(), |range| format!("{} / {}", fixed(range.min, 3), fixed(range.mean, 3)))
+    };
+    type Figure<'f> = (&'f str, &'f dyn Fn(&Report) -> String);
+    let rows: [Figure<'_>; 9] = [
+        ("quadrilaterals", &|r| grouped(r.mesh.quads as u64)),
+        ("background triangles", &|r| grouped(r.background_triangles as u64)),
+        ("irregular nodes", &|r| {
+            format!("{} ({} %)", grouped(r.mesh.irregular.irregular as u64), fixed(r.mesh.irregular.percent, 1))
+        }),
+        ("angles, metric", &|r| {
+            format!("{}–{}°", fixed(r.mesh.metric_angles.min, 1), fixed(r.mesh.metric_angles.max, 1))
+        }),
+        ("within 60–120°", &|r| format!("{} %", fixed(100.0 * r.mesh.metric_angles.share_60_120, 1))),
+        ("edge length", &|r| format!("{} ± {}", fixed(r.mesh.lengths.mean, 2), fixed(r.mesh.lengths.deviation, 2))),
+        ("scaled Jacobian", &|r| jacobian(r.mesh.metric_scaled_jacobian)),
+        ("by the last resort", &|r| grouped(r.last_resort.quads as u64)),
+        ("time", &|r| format!("{} s", fixed(r.timing.iter().map(|(_, seconds)| seconds).sum(), 2))),
+    ];
+    let mut text = format!("  {:<22} {:>16} {:>16}\n", "", "A", "B");
+    for (head, value) in rows {
+        let [a, b] = reports.each_ref().map(value);
+        text += &format!("  {head:<22} {a:>16} {b:>16}\n");
+    }
+    text
+}
