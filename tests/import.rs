@@ -74,24 +74,24 @@ fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says(
     let folder = tempfile::tempdir().unwrap();
     let path = stl(folder.path(), "tube.stl", &tube(6));
     open(&mut harness, &path);
-    for text in ["tube.stl", "20 × 20 × 30", "56 folded edges", "8 edges of the boundary", "9 charts", "104"] {
+    for text in ["tube.stl", "20 × 20 × 30", "56 feature edges", "8 edges of the boundary", "9 charts", "104"] {
         harness.get_by_label(text);
     }
     let before = picture(&mut harness, "tube-40");
     // The sides are folded by 45 degrees: beyond 60 only the lid's edge is left.
     type_over(&mut harness, "Feature angle", "60");
     shown(&mut harness);
-    harness.get_by_label("8 folded edges");
-    assert!(harness.query_by_label("56 folded edges").is_none());
+    harness.get_by_label("8 feature edges");
+    assert!(harness.query_by_label("56 feature edges").is_none());
     let after = picture(&mut harness, "tube-60");
     assert!(difference(&before, &after) > 0.02, "{}", difference(&before, &after));
     // That is taken back, and done again.
     harness.state_mut().apply(Command::Undo);
     shown(&mut harness);
-    harness.get_by_label("56 folded edges");
+    harness.get_by_label("56 feature edges");
     harness.state_mut().apply(Command::Redo);
     shown(&mut harness);
-    harness.get_by_label("8 folded edges");
+    harness.get_by_label("8 feature edges");
     type_over(&mut harness, "Scale", "0.1");
     harness.get_by_label("2 × 2 × 3");
     harness.get_by_label("Convert").click();

@@ -50,13 +50,31 @@ fn press(harness: &mut Window, modifiers: Modifiers, key: Key) {
 }
 
 #[test]
+fn every_press_of_a_key_counts_however_fast() {
+    let Some(mut harness) = window() else { return };
+    // Several in a frame, before the step of the first one is known, and over frames without a pause.
+    for presses in [20, 1, 3, 1, 1, 4] {
+        (0..presses).for_each(|_| harness.key_press_modifiers(Modifiers::NONE, Key::ArrowRight));
+        harness.step();
+    }
+    settle(&mut harness);
+    assert_eq!(quads(&harness), 30);
+    let after = step(&harness);
+    (0..7).for_each(|_| harness.key_press_modifiers(Modifiers::COMMAND, Key::ArrowRight));
+    harness.step();
+    (0..3).for_each(|_| harness.key_press_modifiers(Modifiers::COMMAND, Key::ArrowLeft));
+    settle(&mut harness);
+    assert_eq!(step(&harness), after + 4);
+}
+
+#[test]
 fn buttons_and_keys_step_forward_and_back() {
     let Some(mut harness) = window() else { return };
     assert_eq!(step(&harness), 0);
-    harness.get_by_label("One operation forward").click();
+    harness.get_by_label("Step forward (operation)").click();
     settle(&mut harness);
     assert_eq!(step(&harness), 1);
-    harness.get_by_label("One quadrilateral forward").click();
+    harness.get_by_label("Step forward (quadrilateral)").click();
     settle(&mut harness);
     assert_eq!(quads(&harness), 1);
     let after_one = step(&harness);
@@ -252,7 +270,7 @@ fn a_node_that_is_watched_stops_the_run_forward_and_backward_and_tells_who_touch
     apply(&mut harness, Command::Go(Goal::Step(second)));
     wait_for(&mut harness, "Past steps");
     apply(&mut harness, Command::Go(Goal::Step(second + 1)));
-    harness.get_by_label("Last step that changed this").click();
+    harness.get_by_label("Last change").click();
     settle(&mut harness);
     assert!(step(&harness) <= second);
     harness.get_by_label("Stop watching").click();
@@ -273,7 +291,7 @@ fn a_quadrilateral_tells_when_it_was_made_and_what_it_ate() {
     harness.get_by_label(&format!("Quadrilateral {}", element.0));
     wait_for(&mut harness, "Past steps");
     assert!(harness.query_by_label_contains("made of the triangles").is_some());
-    harness.get_by_label("Step that created this").click();
+    harness.get_by_label("Go to creation").click();
     settle(&mut harness);
     assert_eq!(step(&harness), at);
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, Context, Frame, Key, Modifiers, Panel, Ui, ViewportCommand};
+use eframe::egui::{self, Context, Event, Frame, InputState, Key, Modifiers, Panel, Ui, ViewportCommand};
 use eframe::{CreationContext, wgpu};
 
 use super::command::{Command, keys};
@@ -144,9 +144,10 @@ impl App {
             if bare && typing && command != Command::Escape {
                 continue;
             }
-            if context.input_mut(|input| input.consume_key(modifiers, key)) {
-                commands.push(command);
-            }
+            let (presses, is_held) = context.input_mut(|input| take_presses(input, modifiers, key));
+            // A key that is held does not run ahead of what is shown, so that nothing goes on when it is let go.
+            let again = is_held && command.repeats() && !self.state.run().is_busy();
+            commands.extend(std::iter::repeat_n(command, presses + usize::from(again)));
         }
         if !typing && context.input(|input| input.key_pressed(Key::Questionmark)) {
             commands.push(Command::Help);
@@ -337,4 +338,20 @@ impl eframe::App for App {
             let _ = now.write(path);
         }
     }
+}
+
+/// Takes the presses of a key out of the input: how many there were, and whether it repeats because it is held.
+fn take_presses(input: &mut InputState, modifiers: Modifiers, key: Key) -> (usize, bool) {
+    let (mut presses, mut is_held) = (0, false);
+    input.events.retain(|event| match event {
+        Event::Key { key: pressed, modifiers: held, pressed: true, repeat, .. }
+            if *pressed == key && held.matches_logically(modifiers) =>
+        {
+            presses += usize::from(!repeat);
+            is_held |= repeat;
+            false
+        }
+        _ => true,
+    });
+    (presses, is_held)
 }

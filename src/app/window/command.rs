@@ -263,10 +263,10 @@ impl Command {
             Command::Pick(_) => "Select".into(),
             Command::Show(_) => "Show in the middle".into(),
             Command::LightUp(..) => "Highlight".into(),
-            Command::LastTouch(_) => "Last step that changed this".into(),
-            Command::Made(_) => "Step that created this".into(),
+            Command::LastTouch(_) => "Last change".into(),
+            Command::Made(_) => "Go to creation".into(),
             Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
-            Command::TellPast(_) => "History of the selection".into(),
+            Command::TellPast(_) => "History".into(),
             Command::Watch(what) => format!("Watch {}", words::thing(*what)),
             Command::SwitchWatch(_) => "Switch a watchpoint".into(),
             Command::Measure => "Measure how long steps take".into(),
@@ -298,7 +298,7 @@ impl Command {
             Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
             Command::Bookmark => "Bookmark this step".into(),
             Command::Open(source) | Command::OpenWith(source, _) => format!("Open {}", source.name()),
-            Command::Import => "Import settings of this mesh…".into(),
+            Command::Import => "Import settings…".into(),
             Command::SetImport(..) => "Change the import".into(),
             Command::Convert => "Convert".into(),
             Command::CancelImport => "Cancel".into(),
@@ -310,7 +310,7 @@ impl Command {
             Command::Figures => "Figures: size, ink, layers, strips…".into(),
             Command::SetFigure(_) => "Change the figure".into(),
             Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
-            Command::Reopen => "Reopen the file".into(),
+            Command::Reopen => "Reload".into(),
             Command::Notes => "Notes on this case".into(),
             Command::OpenKept => "Recover the unsaved run".into(),
             Command::DiscardKept => "Discard the unsaved run".into(),
@@ -324,7 +324,7 @@ impl Command {
             Command::CloseOverlay => "Close".into(),
             Command::CloseFault(_) => "Close the message".into(),
             Command::Arrange(_) => "Arrange the panels".into(),
-            Command::ResetLayout => "Reset the panels".into(),
+            Command::ResetLayout => "Reset layout".into(),
             Command::Escape => "Close, or clear the selection".into(),
         }
     }
@@ -350,6 +350,11 @@ impl Command {
             Some(key) => format!("{}  ({key})", self.name()),
             None => self.name(),
         }
+    }
+
+    /// Whether its key repeats while it is held.
+    pub fn repeats(&self) -> bool {
+        matches!(self, Command::Go(Goal::Steps(_) | Goal::Quads(_)) | Command::Undo | Command::Redo)
     }
 
     /// Whether it works while a mesh is about to be converted. What belongs to a run has to wait until there is one,
@@ -422,11 +427,11 @@ fn go_name(goal: Goal) -> String {
     match goal {
         Goal::Step(0) => "To the beginning".into(),
         Goal::Step(step) => format!("To step {step}"),
-        Goal::Steps(1) => "One operation forward".into(),
-        Goal::Steps(-1) => "One operation back".into(),
+        Goal::Steps(1) => "Step forward (operation)".into(),
+        Goal::Steps(-1) => "Step back (operation)".into(),
         Goal::Steps(by) => format!("{by} operations"),
-        Goal::Quads(1) => "One quadrilateral forward".into(),
-        Goal::Quads(-1) => "One quadrilateral back".into(),
+        Goal::Quads(1) => "Step forward (quadrilateral)".into(),
+        Goal::Quads(-1) => "Step back (quadrilateral)".into(),
         Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals forward"),
         Goal::Quads(by) => format!("{} quadrilaterals back", -by),
         Goal::ToQuads(quads) => format!("To NQ = {quads}"),
@@ -463,7 +468,7 @@ mod tests {
     fn every_command_has_a_name_of_its_own_and_tells_its_key() {
         let all = Command::all();
         assert!(all.len() > 60);
-        assert_eq!(Command::Go(Goal::Steps(1)).tip(), "One operation forward  (Ctrl+Right)");
+        assert_eq!(Command::Go(Goal::Steps(1)).tip(), "Step forward (operation)  (Ctrl+Right)");
         assert_eq!(Command::ToBreakpoint(Direction::Back).tip(), "Back to a breakpoint  (Alt+F5)");
         assert_eq!(Command::Layer(ViewLayer::Front).tip(), "Layer: front  (3)");
     }

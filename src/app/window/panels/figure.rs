@@ -62,9 +62,9 @@ fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palet
         let usual = if figure.is_strip() { "174mm" } else { "84mm" };
         let hint = format!("{usual}, or 1920x1080");
         row("size", &mut |ui| field(ui, &mut figure.size, "Size of the figure", &hint));
-        row("dots per inch", &mut |ui| {
+        row("resolution (dpi)", &mut |ui| {
             let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
-            dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Dots per inch"));
+            dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Resolution (dpi)"));
         });
         row("ink", &mut |ui| radios(ui, &mut figure.ink, [(Ink::Colour, "colour"), (Ink::Grey, "grey")]));
         row("ground", &mut |ui| radios(ui, &mut figure.transparent, [(false, "white"), (true, "transparent")]));

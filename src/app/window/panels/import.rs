@@ -305,7 +305,7 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     ui.add_space(6.0);
     for (kind, count) in KINDS.into_iter().zip(shown.counts) {
         let (one, several) = match kind {
-            Feature::Fold => ("folded edge", "folded edges"),
+            Feature::Fold => ("feature edge", "feature edges"),
             Feature::Region => ("edge between regions", "edges between regions"),
             Feature::Line => ("edge on a line of the file", "edges on lines of the file"),
             Feature::Boundary => ("edge of the boundary", "edges of the boundary"),

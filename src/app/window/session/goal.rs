@@ -37,6 +37,23 @@ pub enum Goal {
 }
 
 impl Goal {
+    /// Whether it is seen from the step where one stands.
+    pub fn is_relative(self) -> bool {
+        matches!(self, Goal::Steps(_) | Goal::Quads(_) | Goal::Kind(..))
+    }
+
+    /// Adds it behind other goals; what goes on in the direction of the last one is added up with it.
+    pub fn follow(self, goals: &mut Vec<Goal>) {
+        match (goals.last_mut(), self) {
+            (Some(Goal::Steps(last)), Goal::Steps(by)) | (Some(Goal::Quads(last)), Goal::Quads(by))
+                if last.signum() == by.signum() =>
+            {
+                *last = last.saturating_add(by);
+            }
+            _ => goals.push(self),
+        }
+    }
+
     /// The step of the goal, seen from `step`; `None` if it is not known yet. `end` is the last step of the run, once
     /// it is known.
     pub fn resolve(self, log: &Log, step: u64, end: Option<u64>) -> Option<u64> {
@@ -91,6 +108,24 @@ mod tests {
             assert_eq!(go(Goal::Quads(-1), pair[1] + 1), pair[1], "from within a quadrilateral to its beginning");
         }
         assert_eq!((go(Goal::Quads(8), 0), go(Goal::Quads(-8), stands[8])), (stands[8], 0));
+    }
+
+    #[test]
+    fn goals_that_follow_each_other_lead_where_each_in_its_turn_leads() {
+        let history = history();
+        let (log, end) = (history.log(), history.end());
+        let turns =
+            [Goal::Quads(1), Goal::Quads(1), Goal::Steps(3), Goal::Quads(-1), Goal::Steps(-2), Goal::Steps(-900)];
+        let (mut goals, mut expected) = (vec![Goal::Step(7)], 7);
+        for goal in turns.into_iter().chain([Goal::Quads(1); 20]) {
+            assert!(goal.is_relative());
+            goal.follow(&mut goals);
+            expected = goal.resolve(log, expected, end).unwrap();
+            let found = goals.iter().try_fold(0, |step, goal| goal.resolve(log, step, end));
+            assert_eq!(found, Some(expected), "{goals:?}");
+        }
+        assert_eq!(goals[goals.len() - 1], Goal::Quads(20));
+        assert!(goals.len() == 6, "{goals:?}");
     }
 
     #[test]

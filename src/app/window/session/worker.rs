@@ -36,7 +36,8 @@ pub struct Stops {
 
 /// Where to go.
 enum Aim {
-    Goal(Goal),
+    /// One goal after the other.
+    Goals(Vec<Goal>),
     Break(Stops, Direction),
 }
 
@@ -103,7 +104,7 @@ impl Worker {
             own,
             voice,
             stop,
-            pending: Some(Pending { aim: Aim::Goal(Goal::Step(0)), asks: 1, since: Instant::now() }),
+            pending: Some(Pending { aim: Aim::Goals(vec![Goal::Step(0)]), asks: 1, since: Instant::now() }),
             conditions: Vec::new(),
             cancel,
             tracked: 0,
@@ -134,7 +135,7 @@ impl Worker {
             let Some(ask) = ask else { break };
             match ask {
                 Ask::Gone => break,
-                Ask::Go(goal, since) => self.go(Aim::Goal(goal), since),
+                Ask::Go(goal, since) => self.go(Aim::Goals(vec![goal]), since),
                 Ask::Break(stops, direction) => self.go(Aim::Break(stops, direction), Instant::now()),
                 Ask::Touch(watched) => {
                     self.go_back(self.history.last_touch(watched), "Nothing has touched it before this step.");
@@ -153,7 +154,7 @@ impl Worker {
                 && let Some(pending) = self.pending.take()
             {
                 // The steps up to here are known.
-                let aim = Aim::Goal(Goal::Step(self.history.log().known()));
+                let aim = Aim::Goals(vec![Goal::Step(self.history.log().known())]);
                 self.pending = Some(Pending { aim, ..pending });
             }
             self.arrive();
@@ -161,15 +162,26 @@ impl Worker {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// A goal replaces one that still waits; the arrival at the new one answers both requests.
+    /// A goal follows one that still waits if it is relative, so that every key press counts; otherwise it replaces it.
+    /// The arrival answers both requests.
     fn go(&mut self, aim: Aim, since: Instant) {
-        let before = self.pending.take().map_or(0, |pending| pending.asks);
-        self.pending = Some(Pending { aim, asks: before + 1, since });
+        let (mut aim, mut asks) = (aim, 1);
+        if let Some(pending) = self.pending.take() {
+            asks += pending.asks;
+            if let (Aim::Goals(before), Aim::Goals(goals)) = (pending.aim, &mut aim)
+                && let [goal] = goals[..]
+                && goal.is_relative()
+            {
+                *goals = before;
+                goal.follow(goals);
+            }
+        }
+        self.pending = Some(Pending { aim, asks, since });
     }
 
     fn go_back(&mut self, found: Result<Option<u64>, Fault>, nothing: &'static str) {
         match found {
-            Ok(Some(step)) => self.go(Aim::Goal(Goal::Step(step)), Instant::now()),
+            Ok(Some(step)) => self.go(Aim::Goals(vec![Goal::Step(step)]), Instant::now()),
             Ok(None) => self.voice.say(SessionNews::Nothing(nothing, 1)),
             Err(fault) => self.voice.say(SessionNews::Fault(fault, 1)),
         }
@@ -262,7 +274,7 @@ impl Worker {
         self.recent.clear();
         self.tell_track();
         self.lend(STRETCH[0]);
-        self.go(Aim::Goal(Goal::Step(step)), Instant::now());
+        self.go(Aim::Goals(vec![Goal::Step(step)]), Instant::now());
         self.count();
     }
 
@@ -320,7 +332,10 @@ impl Worker {
         let Some(Pending { aim, asks, since }) = self.pending.take() else { return };
         let end = self.history.end();
         let found = match &aim {
-            Aim::Goal(goal) => goal.resolve(self.history.log(), self.history.step(), end),
+            Aim::Goals(goals) => {
+                let log = self.history.log();
+                goals.iter().try_fold(self.history.step(), |step, goal| goal.resolve(log, step, end))
+            }
             Aim::Break(stops, direction) => match self.stop_at(stops, *direction) {
                 Ok(None) if end.is_some() || *direction == Direction::Back => {
                     return self.voice.say(SessionNews::Nothing("No breakpoint is hit in that direction.", asks));
