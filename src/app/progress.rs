@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use crate::core::kernel::number::grouped;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::record::report::grouped;
 
 /// The cancellation by Ctrl-C.
 pub(super) static INTERRUPT: LazyLock<Cancel> = LazyLock::new(Cancel::new);
@@ -79,10 +79,10 @@ fn style(template: &str) -> ProgressStyle {
     // Writing to a line of text cannot fail.
     style
         .with_key("done", |state: &ProgressState, out: &mut dyn Write| {
-            let _ = out.write_str(&grouped(state.pos() as usize));
+            let _ = out.write_str(&grouped(state.pos()));
         })
         .with_key("all", |state: &ProgressState, out: &mut dyn Write| {
-            let _ = out.write_str(&grouped(state.len().unwrap_or(0) as usize));
+            let _ = out.write_str(&grouped(state.len().unwrap_or(0)));
         })
         .with_key("left", |state: &ProgressState, out: &mut dyn Write| {
             let seconds = state.eta().as_secs_f64();

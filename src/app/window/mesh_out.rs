@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::files::{self, Writing, free_path};
 use super::session::{Moment, Opened, Wake};
 use super::state::State;
+use super::words;
 use crate::app::output::MeshTarget;
 use crate::app::work;
 use crate::core::convert::Phase;
@@ -50,6 +51,8 @@ fn write(moment: &Arc<Moment>, opened: &Arc<Opened>, target: &MeshTarget, path: 
     }
     target.write(&export.file)?;
     let (quads, triangles) = (export.file.quads.len(), export.file.triangles.len());
-    let rest = if triangles > 0 { format!(" and {triangles} triangles") } else { String::new() };
-    Ok(format!("The mesh was saved as {}: {quads} quadrilaterals{rest}.", path.display()))
+    let [quads, triangles] =
+        [(quads, "quadrilateral"), (triangles, "triangle")].map(|(n, one)| (n, words::counted(n as u64, one)));
+    let rest = if triangles.0 > 0 { format!(" and {}", triangles.1) } else { String::new() };
+    Ok(format!("The mesh was saved as {}: {}{rest}.", path.display(), quads.1))
 }

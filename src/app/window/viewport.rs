@@ -23,6 +23,7 @@ use super::panels::{self, inspector, on_click};
 use super::session::Moment;
 use super::state::{Look, State, SurfaceView, ViewCamera, ViewKind};
 use super::theme::ink;
+use super::words;
 use crate::core::mesh::ElementId;
 use crate::core::run::Changes;
 use crate::render::camera::Camera;
@@ -273,7 +274,7 @@ fn moved(before: ViewCamera, view: ViewKind, camera: ViewCamera, commands: &mut 
 /// The description of the view for screen readers.
 fn spoken(state: &State) -> String {
     match &state.run().moment {
-        Some(moment) => format!("Mesh at step {}, {} quadrilaterals", moment.step, moment.standing),
+        Some(moment) => format!("Mesh at step {}, {}", moment.step, words::counted(moment.standing, "quadrilateral")),
         None => "No mesh".to_owned(),
     }
 }

@@ -11,6 +11,7 @@ use super::phase::{FinishPart, Phase};
 use super::side::candidates::Candidates;
 use super::split::Narrow;
 use crate::core::fault::Fault;
+use crate::core::kernel::number::counted;
 use crate::core::mesh::NodeId;
 use crate::core::progress::{Stage, Watch};
 
@@ -160,6 +161,7 @@ pub fn walk_editing(
 
 fn past_the_end(converter: &Converter<'_>) -> Fault {
     let (steps, quads) = (converter.counts.steps, converter.standing());
-    Fault::new(format!("The conversion ends after step {steps} with {quads} quadrilaterals, before the stop"))
+    let quads = counted(quads, "quadrilateral");
+    Fault::new(format!("The conversion ends after step {steps} with {quads}, before the stop"))
         .remedy(format!("Stop at step={steps} at the latest"))
 }

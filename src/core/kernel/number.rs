@@ -19,6 +19,11 @@ pub fn grouped(n: u64) -> String {
     text
 }
 
+/// So many of something: `1 node`, `1 234 nodes`.
+pub fn counted(n: u64, one: &str) -> String {
+    format!("{} {one}{}", grouped(n), if n == 1 { "" } else { "s" })
+}
+
 /// A number with this many decimals.
 pub fn fixed(x: f64, decimals: usize) -> String {
     if !x.is_finite() {

@@ -15,6 +15,7 @@ use super::statistics::{Angles, Range, Statistics};
 use crate::core::case::{Case, Parameters};
 use crate::core::convert::Converted;
 use crate::core::fault::Fault;
+use crate::core::kernel::number::{counted, grouped};
 use crate::core::progress::Stage;
 
 /// The report of a conversion.
@@ -155,13 +156,13 @@ impl Report {
             "mesh",
             format!(
                 "{}, {}, {}; {}",
-                counted(mesh.quads, "quadrilateral"),
-                counted(mesh.nodes, "node"),
-                counted(self.regions, "face"),
+                counted(mesh.quads as u64, "quadrilateral"),
+                counted(mesh.nodes as u64, "node"),
+                counted(self.regions as u64, "face"),
                 if self.valid { "valid" } else { "NOT VALID" }
             ),
         );
-        row("background", counted(self.background_triangles, "triangle"));
+        row("background", counted(self.background_triangles as u64, "triangle"));
         row("angles, metric", angles(&mesh.metric_angles));
         row(if self.on_surfaces { "angles, space" } else { "angles, plane" }, angles(&mesh.physical_angles));
         row("edge length", lengths(mesh));
@@ -169,8 +170,8 @@ impl Report {
             "irregular nodes",
             format!(
                 "{} of {} inside, {:.1} %",
-                grouped(mesh.irregular.irregular),
-                grouped(mesh.irregular.interior),
+                grouped(mesh.irregular.irregular as u64),
+                grouped(mesh.irregular.interior as u64),
                 mesh.irregular.percent
             ),
         );
@@ -189,8 +190,8 @@ impl Report {
             "last resort",
             format!(
                 "made {} of {} before clean-up, {:.1} %",
-                grouped(self.last_resort.quads),
-                counted(self.last_resort.of, "quadrilateral"),
+                grouped(self.last_resort.quads as u64),
+                counted(self.last_resort.of as u64, "quadrilateral"),
                 100.0 * self.last_resort.share
             ),
         );
@@ -245,8 +246,8 @@ impl Formatter for ListsOnOneLine {
 pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], timing: &[(Stage, f64)]) -> String {
     let quality = mesh.quality.map_or_else(|| "\u{2013}".to_owned(), range);
     let mut text = format!("{}: {}\n", case.name, case.title);
-    let nodes = counted(mesh.nodes, "node");
-    row(&mut text, "background", &format!("{}, {nodes}", counted(mesh.triangles, "triangle")));
+    let nodes = counted(mesh.nodes as u64, "node");
+    row(&mut text, "background", &format!("{}, {nodes}", counted(mesh.triangles as u64, "triangle")));
     row(&mut text, "edge length", &lengths(mesh));
     row(&mut text, "quality, metric", &quality);
     rows_of_work(&mut text, repairs, timing);
@@ -334,23 +335,6 @@ fn range(range: Range) -> String {
     format!("least {:.3}, mean {:.3}", range.min, range.mean)
 }
 
-fn counted(count: usize, thing: &str) -> String {
-    format!("{} {thing}{}", grouped(count), if count == 1 { "" } else { "s" })
-}
-
-/// An integer with a thin space before every three digits.
-pub fn grouped(count: usize) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push('\u{2009}');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -405,13 +389,5 @@ mod tests {
     #[test]
     fn the_json_has_its_keys_in_a_fixed_order() {
         insta::assert_snapshot!(three_quads().json());
-    }
-
-    #[test]
-    fn integers_are_grouped_by_thin_spaces() {
-        assert_eq!(grouped(7), "7");
-        assert_eq!(grouped(999), "999");
-        assert_eq!(grouped(1000), "1\u{2009}000");
-        assert_eq!(grouped(1_234_567), "1\u{2009}234\u{2009}567");
     }
 }

@@ -79,8 +79,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut FrontState, commands: &mut V
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             ui.add_space(14.0);
-            let quads = words::grouped(moment.mesh.element_count() as u64);
-            ui.label(super::note(format!("The front is closed: the mesh has {quads} quads."), palette));
+            let quads = words::counted(moment.mesh.element_count() as u64, "quad");
+            ui.label(super::note(format!("The front is closed: the mesh has {quads}."), palette));
         });
         return;
     }

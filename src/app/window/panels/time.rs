@@ -153,14 +153,15 @@ fn status(ui: &mut Ui, state: &State, palette: &Palette) {
         return;
     }
     let Some(moment) = &state.run().moment else { return };
-    let (quads, all) = (words::grouped(moment.standing), state.run().track.last().map(|t| u64::from(t.standing)));
+    let (quads, all) =
+        (words::counted(moment.standing, "quad"), state.run().track.last().map(|t| u64::from(t.standing)));
     let more = if state.run().recorded { "" } else { "…" };
     let strong = |text: String| RichText::new(text).font(theme::semibold(theme::BODY)).color(ink(palette.strong));
     let weak = |text: String| RichText::new(text).color(ink(palette.weak));
     ui.spacing_mut().item_spacing.x = 5.0;
     ui.label(strong(format!("step {}", words::grouped(moment.step))));
     ui.label(weak(format!("/ {}{more}", words::grouped(state.run().track.len() as u64))));
-    ui.label(strong(format!("  {quads} quads")));
+    ui.label(strong(format!("  {quads}")));
     // Clean-up removes some: the number at the end is no total.
     if let Some(all) = all.filter(|_| state.run().recorded) {
         ui.label(weak(format!("({} at the end)", words::grouped(all))));

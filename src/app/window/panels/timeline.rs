@@ -138,8 +138,10 @@ fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
     };
     let mut text = format!("step {}  \u{b7}  {}", words::grouped(step), words::kind(tracked.kind));
     let [loops, odd] = tracked.loops;
-    text += &format!("\nfront: {} segments, {loops} loops, {odd} odd", words::grouped(tracked.front.into()));
-    text += &format!("\n{} live triangles", words::grouped(tracked.live.into()));
+    let [segments, loops] =
+        [(tracked.front.into(), "segment"), (loops.into(), "loop")].map(|(n, one)| words::counted(n, one));
+    text += &format!("\nfront: {segments}, {loops}, {odd} odd");
+    text += &format!("\n{}", words::counted(tracked.live.into(), "live triangle"));
     if let Some(worst) = columns.worst_formed(step).filter(|worst| worst.is_finite()) {
         let worst = words::fixed(worst, 2);
         text += &format!("\nquality in the metric when formed (dots): the lowest up to here {worst} (line)");

@@ -9,6 +9,7 @@ use crate::app::window::command::Command;
 use crate::app::window::import::Loaded;
 use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
 use crate::app::window::theme::ink;
+use crate::app::window::words;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::gpu::Light;
 use crate::render::palette::Palette;
@@ -28,7 +29,10 @@ impl Views {
         let marks = import.shown.as_ref().map_or_else(Default::default, |shown| shown.wanted.marks.clone());
         let spoken = match (&import.shown, marks.len()) {
             (Some(shown), marks) => {
-                let mesh = format!("Mesh of {} triangles, as imported", shown.scene.faces.items().len());
+                let mesh = format!(
+                    "Mesh of {}, as imported",
+                    words::counted(shown.scene.faces.items().len() as u64, "triangle")
+                );
                 match marks {
                     0 => mesh,
                     1 => mesh + ", one element marked",

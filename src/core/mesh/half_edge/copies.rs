@@ -87,23 +87,33 @@ impl Mesh {
             && self.free_nodes == other.free_nodes
             && self.free_elements == other.free_elements
             && self.closed == other.closed
-            && nodes.iter().all(|n| self.node_state(n.index()) == other.node_state(n.index()))
-            && elements.iter().all(|e| self.element_state(e.index()) == other.element_state(e.index()))
+            && nodes.iter().all(|n| self.is_node_same(other, n.index()))
+            && elements.iter().all(|e| self.is_element_same(other, e.index()))
     }
 
-    /// The state of the slot of a node; `None` beyond the last one.
-    fn node_state(&self, n: usize) -> Option<([u64; 5], [u32; 3])> {
-        let Place { uv, metric } = *self.places.get(n)?;
-        let numbers = [uv.x, uv.y, metric.uu, metric.uv, metric.vv].map(f64::to_bits);
-        Some((numbers, [self.anchor[n], self.point[n], self.first_level.get(n).map_or(0, |&level| level.into())]))
+    /// Whether the slot of a node is the same; beyond the last one there is nothing to differ.
+    fn is_node_same(&self, other: &Mesh, n: usize) -> bool {
+        let place = |of: &Mesh| {
+            let Place { uv, metric } = of.places[n];
+            [uv.x, uv.y, metric.uu, metric.uv, metric.vv].map(f64::to_bits)
+        };
+        n >= self.places.len()
+            || place(self) == place(other)
+                && self.anchor[n] == other.anchor[n]
+                && self.point[n] == other.point[n]
+                && self.first_level.get(n) == other.first_level.get(n)
     }
 
-    /// The state of the slot of an element; `None` beyond the last one.
-    fn element_state(&self, e: usize) -> Option<(&[u32], &[u32], &[bool], [u32; 3])> {
-        let sides = *self.sides.get(e)?;
+    /// The same of an element.
+    fn is_element_same(&self, other: &Mesh, e: usize) -> bool {
         let slots = 4 * e..4 * e + 4;
-        let rest = [self.region[e], self.level[e].into(), sides.into()];
-        Some((&self.origin[slots.clone()], &self.twin[slots.clone()], &self.deferred[slots], rest))
+        e >= self.sides.len()
+            || self.sides[e] == other.sides[e]
+                && self.region[e] == other.region[e]
+                && self.level[e] == other.level[e]
+                && self.origin[slots.clone()] == other.origin[slots.clone()]
+                && self.twin[slots.clone()] == other.twin[slots.clone()]
+                && self.deferred[slots.clone()] == other.deferred[slots]
     }
 
     /// Appends the canonical serialisation of the state: all arrays and both free lists, little-endian. Two meshes have

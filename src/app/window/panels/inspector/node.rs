@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, node: NodeId, commands:
     let mesh = &moment.mesh;
     let Some(told) = NodeFacts::of(mesh, node) else { return gone(ui, "The node", palette) };
     let place = if told.is_fixed { "on the boundary: fixed" } else { "free: may be moved" };
-    ui.label(note(format!("{place}  ·  {} edges", told.valence), palette));
+    ui.label(note(format!("{place}  ·  {}", words::counted(told.valence as u64, "edge")), palette));
     actions(ui, state, Outlined::Node(node), commands);
     heading(ui, "Place", "plane case: u = x, v = y", palette);
     let [x, y, z] = told.xyz.map(words::size);

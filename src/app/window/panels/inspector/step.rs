@@ -30,8 +30,8 @@ pub fn so_far(ui: &mut Ui, moment: &Moment, commands: &mut Vec<Command>, palette
         step_link(ui, *step, &words::event(event), commands, palette);
     }
     if moment.so_far.len() > LISTED {
-        let more = words::grouped((moment.so_far.len() - LISTED) as u64);
-        ui.label(note(format!("and {more} steps before these"), palette));
+        let more = words::counted((moment.so_far.len() - LISTED) as u64, "step");
+        ui.label(note(format!("and {more} before these"), palette));
     }
 }
 

@@ -156,7 +156,8 @@ impl Columns {
     pub fn broken(&self, sample: &Sample) -> Option<String> {
         let first = self.first?;
         if sample.inverted > 0 {
-            return Some(format!("{} elements are not positive", sample.inverted));
+            let are = if sample.inverted == 1 { "is" } else { "are" };
+            return Some(format!("{} {are} not positive", words::counted(sample.inverted as u64, "element")));
         }
         if sample.euler != first.euler {
             return Some(format!("nodes \u{2212} edges + elements was {} at step 0", first.euler));
@@ -164,7 +165,9 @@ impl Columns {
         if (sample.area - first.area).abs() > 1e-9 * first.area.abs() {
             return Some(format!("the area was {} at step 0", words::size(first.area)));
         }
-        (first.front.odd == 0 && sample.front.odd > 0).then(|| format!("{} loops are odd", sample.front.odd))
+        let odd = u64::from(sample.front.odd);
+        let are = if odd == 1 { "is" } else { "are" };
+        (first.front.odd == 0 && odd > 0).then(|| format!("{} {are} odd", words::counted(odd, "loop")))
     }
 
     fn count_lanes(
