@@ -16,6 +16,7 @@ use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
 use quadfront::app::window::{App, Command, Direction, Goal, Lost, Source, SurfaceView, ViewLayer};
 use quadfront::core::convert::EventKind;
+use quadfront::core::mesh::NodeId;
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -47,6 +48,35 @@ fn quads(harness: &Window) -> u64 {
 fn press(harness: &mut Window, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     settle(harness);
+}
+
+#[test]
+fn escape_closes_what_lies_over_the_views_before_it_clears_the_selection() {
+    let Some(mut harness) = window() else { return };
+    let picked = Outlined::Node(NodeId(3));
+    let is_picked = |harness: &Window| harness.state().state.document().picked == Some(picked);
+    harness.state_mut().apply(Command::Pick(Some(picked)));
+    settle(&mut harness);
+    // A menu with a submenu.
+    harness.get_by_label("Case").click();
+    settle(&mut harness);
+    harness.get_by_label_contains("Built-in cases").hover();
+    settle(&mut harness);
+    assert!(harness.query_by_label_contains("Figures of the paper").is_some());
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.query_by_label_contains("Figures of the paper").is_none());
+    assert!(is_picked(&harness));
+    // The windows for figures and notes.
+    for command in [Command::Figures, Command::Notes] {
+        harness.state_mut().apply(command);
+        settle(&mut harness);
+        press(&mut harness, Modifiers::NONE, Key::Escape);
+        let view = harness.state().state.view();
+        assert!(!view.figure_panel && !view.notes);
+        assert!(is_picked(&harness));
+    }
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(!is_picked(&harness));
 }
 
 #[test]

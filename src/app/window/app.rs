@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, Context, Event, Frame, InputState, Key, Modifiers, Panel, Ui, ViewportCommand};
+use eframe::egui::{self, Context, Event, Frame, InputState, Key, Modifiers, Panel, Popup, Ui, ViewportCommand};
 use eframe::{CreationContext, wgpu};
 
 use super::command::{Command, keys};
@@ -145,6 +145,11 @@ impl App {
                 continue;
             }
             let (presses, is_held) = context.input_mut(|input| take_presses(input, modifiers, key));
+            if presses > 0 && command == Command::Escape && Popup::is_any_open(context) {
+                // A menu with all its submenus.
+                Popup::close_all(context);
+                continue;
+            }
             // A key that is held does not run ahead of what is shown, so that nothing goes on when it is let go.
             let again = is_held && command.repeats() && !self.state.run().is_busy();
             commands.extend(std::iter::repeat_n(command, presses + usize::from(again)));

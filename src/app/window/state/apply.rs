@@ -336,6 +336,9 @@ impl State {
             self.view.overlay = Overlay::Nothing;
         } else if self.run.import.is_some() {
             self.cancel_import();
+        } else if self.view.figure_panel || self.view.notes {
+            // What lies over the views is closed before what is selected behind it is let go.
+            (self.view.figure_panel, self.view.notes) = (false, false);
         } else if self.run.playing.is_some() {
             self.run.playing = None;
         } else {
