@@ -196,6 +196,12 @@ fn what_is_typed_is_set_with_all_its_digits_or_refused_with_the_words_of_the_com
     let said = harness.state().state.view().faults.clone();
     assert_eq!(said, [Parameters::default().set("c", "1100").unwrap_err().to_string()]);
     assert_eq!(now(&harness).text_of("c").as_deref(), Some("2"));
+    // What is no number is refused in words too.
+    type_over(&mut harness, "theta_rect", "abc");
+    settle(&mut harness);
+    let said = harness.state().state.view().faults.last().cloned();
+    assert_eq!(said, Some(Parameters::default().set("theta_rect", "abc").unwrap_err().to_string()));
+    assert_eq!(now(&harness).text_of("theta_rect").as_deref(), Some("123.456789"));
     for key in Parameters::KEYS {
         let kind = Parameters::kind_of(key).unwrap();
         let before = now(&harness).text_of(key).unwrap();

@@ -3,6 +3,8 @@
 
 mod rows;
 
+use std::cell::Cell;
+
 use eframe::egui::{
     self, Align, CollapsingHeader, Layout, RichText, Role, ScrollArea, Slider, SliderClamping, TextEdit, Ui, Vec2,
     WidgetInfo,
@@ -179,17 +181,24 @@ impl Panel<'_> {
         let slid = ui.add(slider);
         slid.widget_info(|| WidgetInfo::slider(true, value, format!("{key} slider")));
         let shown = short(value);
+        // What is no number, so that it is refused with a word and not dropped.
+        let refused = Cell::new(None);
         let field = egui::DragValue::new(&mut value)
             .speed((usual[1] - usual[0]) / 400.0)
             .custom_formatter(|value, _| short(value))
             // What is left as it stands keeps the digits for which there is no room.
-            .custom_parser(move |text| if text == shown { Some(before) } else { parsed(text, unit) })
+            .custom_parser(|text| {
+                let value = if text == shown { Some(before) } else { parsed(text, unit) };
+                refused.set(value.is_none().then(|| text.to_owned()));
+                value
+            })
             .suffix(unit)
             .update_while_editing(false);
         let typed = ui.add_sized(Vec2::new(62.0, 22.0), field);
         typed.widget_info(|| WidgetInfo::drag_value(true, value));
         typed.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, key));
         let typed = typed.on_hover_text(format!("{key} = {now}"));
+        self.commands.extend(refused.take().map(|text| Command::Set(key, text)));
         let busy = slid.dragged() || typed.dragged();
         if value != before || (local.dragged.is_some_and(|dragged| dragged.0 == key) && !busy) {
             if value != before && (slid.changed() || typed.dragged()) {
