@@ -129,6 +129,17 @@ pub(super) fn read(source: &Source, mesh: &ImportOptions) -> Result<Input, Fault
     Ok(Input { run, figure, folder })
 }
 
+/// Refuses what the window should not be opened for: a missing file, options that do not fit. What is wrong within a
+/// file is for the window to show.
+#[cfg(feature = "window")]
+pub(super) fn check(input: &str, mesh: &ImportOptions, overrides: &Overrides) -> Result<(), Fault> {
+    match run_of(Path::new(input), mesh, &Overrides::default()) {
+        Err(_) if mesh.lines().is_empty() && Path::new(input).is_file() => Ok(()),
+        Err(fault) => Err(fault),
+        Ok(mut run) => overrides.apply(&mut run),
+    }
+}
+
 /// The run of a file: a case, a mesh, a run file, or a figure with an embedded run.
 #[cfg(feature = "window")]
 pub(super) fn run_of(path: &Path, mesh: &ImportOptions, overrides: &Overrides) -> Result<Run, Fault> {
@@ -281,4 +292,26 @@ fn standard_input() -> Result<Vec<u8>, Fault> {
         .read_to_end(&mut bytes)
         .map_err(|error| Fault::new(format!("Cannot read: {error}")).of_kind(FaultKind::Io).at(STANDARD_INPUT))?;
     Ok(bytes)
+}
+
+#[cfg(all(test, feature = "window"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_opens_for_a_broken_file_but_not_for_a_missing_one_or_unsuitable_options() {
+        let folder = tempfile::tempdir().unwrap();
+        let broken = folder.path().join("broken.toml");
+        std::fs::write(&broken, "version = 1\n[[curve]]\nname =\n").unwrap();
+        let none = Overrides::default();
+        let plain = ImportOptions::default();
+        let broken = broken.to_str().unwrap();
+        assert_eq!(check(broken, &plain, &none), Ok(()));
+        assert_eq!(check("example1", &plain, &none), Ok(()));
+        assert!(check("missing.toml", &plain, &none).is_err());
+        let unknown = Overrides { set: vec![("k".to_owned(), "2".to_owned())], ..Overrides::default() };
+        assert!(check("example1", &plain, &unknown).is_err());
+        let scaled = ImportOptions { scale: Some(2.0), ..ImportOptions::default() };
+        assert!(check(broken, &scaled, &none).is_err() && check("example1", &scaled, &none).is_err());
+    }
 }

@@ -79,7 +79,7 @@ fn open(arguments: &OpenArguments) -> Result<ExitCode, Fault> {
     let options = mesh.options();
     let mut source = window::Source::named(input);
     // Report missing files and unsuitable options on the terminal, before the window opens.
-    input::run_of(std::path::Path::new(input), &options, overrides)?;
+    input::check(input, &options, overrides)?;
     if let window::Source::File(path) = &source {
         save::find(path)?;
         if options != Default::default() {
