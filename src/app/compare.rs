@@ -105,7 +105,7 @@ fn text(inputs: [&String; 2], runs: &[Run; 2], found: Option<&FirstDifference>, 
         None => text += "no difference: every step of both leads to the same state\n",
         Some(FirstDifference { step: 0, .. }) => text += "first difference: step 0 (the background meshes differ)\n",
         Some(found) => {
-            text += &format!("first difference: step {} ({})\n", grouped(found.step), kinds(&found.did));
+            text += &format!("first difference: step {} ({})\n", found.step, kinds(&found.did));
             for (name, did) in NAMES.iter().zip(&found.did) {
                 match did {
                     Some(Did { text: line, why, .. }) => {
