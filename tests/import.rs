@@ -399,7 +399,7 @@ fn a_mesh_that_is_refused_is_shown_with_its_elements_marked_and_looked_at_from_n
     harness.get_by_label("Refused");
     harness.get_by_label("Triangles 861 and 3201 overlap.");
     harness.get_by_label("Remove the overlap: triangles in the plane must not overlap.");
-    harness.get_by_label("Mesh of 3201 triangles, as imported, 2 elements marked");
+    harness.get_by_label("Mesh of 3\u{2009}201 triangles, as imported, 2 elements marked");
     let near = picture(&mut harness, "refused");
     assert!(share_of(&near, BROKEN) > 0.0005, "{}", share_of(&near, BROKEN));
     let camera = |harness: &Window| harness.state().state.run().import.as_ref().unwrap().view.camera.unwrap();
