@@ -68,6 +68,12 @@ fn shown(harness: &mut Window) {
     });
 }
 
+/// Clicks on Convert, which can be done as soon as the mesh is read as the panel says.
+fn convert(harness: &mut Window) {
+    shown(harness);
+    harness.get_by_label("Convert").click();
+}
+
 #[test]
 fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says() {
     let Some(mut harness) = window() else { return };
@@ -94,7 +100,7 @@ fn a_mesh_is_shown_with_its_features_and_charts_and_converted_as_the_panel_says(
     harness.get_by_label("8 feature edges");
     type_over(&mut harness, "Scale", "0.1");
     harness.get_by_label("2 × 2 × 3");
-    harness.get_by_label("Convert").click();
+    convert(&mut harness);
     settle(&mut harness);
     let state = &harness.state().state;
     let run = state.current_run().unwrap();
@@ -122,7 +128,7 @@ fn triangles_are_converted_as_they_are_and_the_panel_comes_back_as_it_was_left()
     open(&mut harness, &stl(folder.path(), "tube.stl", &tube(4)));
     harness.get_by_label("convert its triangles").click();
     harness.run_steps(2);
-    harness.get_by_label("Convert").click();
+    convert(&mut harness);
     settle(&mut harness);
     let triangles = harness.state().state.run().opened.as_ref().unwrap().background.mesh.element_count();
     assert_eq!(triangles, 8 * (2 * 4 + 1));
@@ -165,7 +171,7 @@ fn what_was_given_stays_as_it_was_given_in_the_panel_and_beyond() {
     let plain = ImportOptions { mesh_size: None, curvature: None, ..options };
     harness.state_mut().apply(Command::SetImport(Box::new(plain), Gesture::Done));
     shown(&mut harness);
-    harness.get_by_label("Convert").click();
+    convert(&mut harness);
     settle(&mut harness);
     assert_eq!(harness.state().state.run().moment.as_ref().unwrap().parameters.c, 1.75);
 }
@@ -186,7 +192,7 @@ fn sizes_are_asked_for_in_the_scaled_unit_and_by_curvature() {
     picture(&mut harness, "sizes");
     let options = harness.state().state.run().import.as_ref().unwrap().options.clone();
     assert_eq!((options.mesh_size, options.curvature, options.scale), (Some(2.0), Some(0.02), Some(0.5)));
-    harness.get_by_label("Convert").click();
+    convert(&mut harness);
     settle(&mut harness);
     let text = harness.state().state.current_run().unwrap().case.text;
     assert!(text.contains("chord = 0.02") && text.contains("far = 2.0"), "{text}");
@@ -250,7 +256,7 @@ fn reading_and_converting_are_cancelled_and_the_window_goes_on() {
     until(&mut harness, "it is read", |window| {
         window.state().state.run().import.as_ref().is_some_and(|import| import.loaded.is_some())
     });
-    harness.get_by_label("Convert").click();
+    convert(&mut harness);
     harness.run_steps(3);
     assert!(harness.state().state.run().is_opening());
     harness.get_by_label("Cancel").click();
@@ -283,7 +289,7 @@ fn how_a_mesh_was_taken_is_kept_and_offered_again() {
     let mut harness = begin(kept.path());
     open(&mut harness, &path);
     type_over(&mut harness, "Feature angle", "60");
-    harness.get_by_label("Convert").click();
+    convert(&mut harness);
     settle(&mut harness);
     let text = harness.state().state.current_run().unwrap().case.text;
     harness.run_steps(4);
@@ -330,7 +336,7 @@ fn a_mesh_with_an_odd_border_is_converted_once_a_side_of_it_may_be_divided() {
             harness.get_by_label("convert its triangles").click();
             harness.run_steps(2);
         }
-        harness.get_by_label("Convert").click();
+        convert(&mut harness);
         until(&mut harness, "it is refused", |window| {
             window.state().state.run().import.as_ref().is_some_and(|import| import.refused.is_some())
         });
@@ -350,7 +356,7 @@ fn a_mesh_with_an_odd_border_is_converted_once_a_side_of_it_may_be_divided() {
             after.push(is_given(&harness));
         }
         assert_eq!(after, [true, false, true]);
-        harness.get_by_label("Convert").click();
+        convert(&mut harness);
         settle(&mut harness);
         let state = &harness.state().state;
         let triangles = state.run().opened.as_ref().unwrap().background.mesh.element_count();
@@ -430,7 +436,7 @@ fn what_a_conversion_is_refused_for_is_marked_until_the_mesh_is_taken_otherwise(
     harness.get_by_label("convert its triangles").click();
     harness.run_steps(2);
     type_over(&mut harness, "Scale", "0.001");
-    harness.get_by_label("Convert").click();
+    convert(&mut harness);
     until(&mut harness, "it is refused", |window| {
         window.state().state.run().import.as_ref().is_some_and(|import| import.refused.is_some())
     });
