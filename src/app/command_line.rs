@@ -82,11 +82,11 @@ pub struct Overrides {
 }
 
 impl Overrides {
-    /// Changes the parameters of a run from step 0 on.
+    /// Changes the parameters of a run from step 0 on; `option` is the one that sets single values.
     ///
     /// # Errors
     /// An unknown key, or a value of the wrong type or out of range.
-    pub(super) fn apply(&self, run: &mut Run) -> Result<(), Fault> {
+    pub(super) fn apply(&self, run: &mut Run, option: &str) -> Result<(), Fault> {
         let parameters = &mut run.parameters;
         if self.paper {
             *parameters = parameters.read_as_paper();
@@ -95,7 +95,7 @@ impl Overrides {
             parameters.faces.clone_from(&self.faces);
         }
         for (key, value) in &self.set {
-            parameters.set(key, value).map_err(|fault| fault.at("--set"))?;
+            parameters.set(key, value).map_err(|fault| fault.at(option))?;
         }
         run.case.parameters = parameters.clone();
         Ok(())

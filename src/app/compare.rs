@@ -4,13 +4,13 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use super::command_line::{CompareArguments, Source};
+use super::command_line::{CompareArguments, Overrides, Source};
 use super::output::Stream;
 use super::progress::Progress;
 use super::{FALLS_SHORT, input, work};
 use crate::core::case::Parameters;
 use crate::core::fault::Fault;
-use crate::core::kernel::number::{fixed, grouped};
+use crate::core::kernel::number::{counted, fixed, grouped};
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::Report;
 use crate::core::record::statistics::Range;
@@ -45,7 +45,9 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
         }
         None => first.run.clone(),
     };
-    let runs = [first.run, changed(second, with, *with_paper)?];
+    let mut runs = [first.run, second];
+    let changes = Overrides { set: with.clone(), paper: *with_paper, ..Overrides::default() };
+    changes.apply(&mut runs[1], "--with")?;
     let mut progress = Progress::new(source.quiet);
     let found = difference(&runs, &mut progress)?;
     progress.finish();
@@ -61,18 +63,6 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
         Stream::Output.print(&text(inputs, &runs, found.as_ref(), &reports));
     }
     Ok(if differ { ExitCode::from(FALLS_SHORT) } else { ExitCode::SUCCESS })
-}
-
-/// A run with other parameters.
-fn changed(mut run: Run, with: &[(String, String)], paper: bool) -> Result<Run, Fault> {
-    if paper {
-        run.parameters = run.parameters.read_as_paper();
-    }
-    for (key, value) in with {
-        run.parameters.set(key, value).map_err(|fault| fault.at("--with"))?;
-    }
-    run.case.parameters = run.parameters.clone();
-    Ok(run)
 }
 
 fn difference([a, b]: &[Run; 2], watch: &mut dyn Watch) -> Result<Option<FirstDifference>, Fault> {
@@ -94,10 +84,9 @@ fn text(inputs: [&String; 2], runs: &[Run; 2], found: Option<&FirstDifference>, 
     for (k, name) in NAMES.into_iter().enumerate() {
         let run = &runs[k];
         let set = values_that_differ(&run.parameters, &runs[1 - k].parameters);
-        let edits = match run.edits().len() {
+        let edits = match run.edits().len() as u64 {
             0 => String::new(),
-            1 => ", 1 edit".to_owned(),
-            n => format!(", {n} edits"),
+            n => format!(", {}", counted(n, "edit")),
         };
         text += &format!("{name}: {}{}{set}{edits}\n", inputs[k], if set.is_empty() { "" } else { " with " });
     }

@@ -125,7 +125,7 @@ impl Input {
 /// The run that the arguments name, with the parameters they set.
 pub(super) fn read(source: &Source, mesh: &ImportOptions) -> Result<Input, Fault> {
     let Input { mut run, figure, folder } = read_plain(source, mesh)?;
-    source.overrides.apply(&mut run)?;
+    source.overrides.apply(&mut run, "--set")?;
     Ok(Input { run, figure, folder })
 }
 
@@ -136,7 +136,7 @@ pub(super) fn check(input: &str, mesh: &ImportOptions, overrides: &Overrides) ->
     match run_of(Path::new(input), mesh, &Overrides::default()) {
         Err(_) if mesh.lines().is_empty() && Path::new(input).is_file() => Ok(()),
         Err(fault) => Err(fault),
-        Ok(mut run) => overrides.apply(&mut run),
+        Ok(mut run) => overrides.apply(&mut run, "--set"),
     }
 }
 

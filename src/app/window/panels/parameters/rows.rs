@@ -193,8 +193,8 @@ pub const GROUPS: [Group; 5] = [
                 "seam_widening",
                 "widening",
                 Number([1.0, 3.0], 2, "×"),
-                "The shorter the segments at a corner, the wider it may be and still be closed: up to θ seam times this, \
-                 at most 90°. The paper does not widen (4.3.6).",
+                "The shorter the segments around a corner, the wider it may be and still be closed: up to θ seam times \
+                 this, at most 90°. The paper does not widen (4.3.6).",
             ),
             row(
                 "splitting",

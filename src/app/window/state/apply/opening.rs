@@ -82,7 +82,7 @@ fn read(source: &Source, overrides: &Overrides) -> Result<Run, Fault> {
             let case = built_in::named(name);
             let missing = || Fault::new("There is no built-in case of this name").at(name.clone());
             let mut run = Run::of(case.ok_or_else(missing)??);
-            overrides.apply(&mut run)?;
+            overrides.apply(&mut run, "--set")?;
             Ok(run)
         }
         Source::File(path) => input::run_of(path, &ImportOptions::default(), overrides),
