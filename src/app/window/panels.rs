@@ -9,6 +9,7 @@ pub mod front;
 pub mod breakpoints;
 pub mod inspector;
 pub mod history;
+pub mod two_runs;
 pub mod parameters;
 pub mod layers;
 pub mod plots;
