@@ -1,7 +1,8 @@
 //! Conversion of the cells of a sweep on several threads.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use crate::app::work;
@@ -12,44 +13,63 @@ use crate::core::run::Run;
 /// The time between two calls while no cell is finished.
 const PATIENCE: Duration = Duration::from_millis(20);
 
+/// The work that the threads share.
+struct Work {
+    run: Run,
+    sweep: Sweep,
+    missing: Vec<usize>,
+    /// The place in `missing` of the next cell to convert.
+    next: AtomicUsize,
+    cancel: Cancel,
+}
+
 /// Converts the cells that a sweep of a run does not have yet, on so many threads. Calls `hear` from this thread with
-/// the cells that were finished since the last call, and at least every 20 milliseconds. Ends when `hear` returns
-/// false: the cells in work are then given up.
+/// the cells that were finished since the last call, and at least every 20 milliseconds. Returns as soon as `hear`
+/// returns false, without the cells in work; their threads end by themselves.
 pub(in crate::app) fn convert(
     run: &Run,
     sweep: &Sweep,
     threads: usize,
     hear: &mut dyn FnMut(Vec<(usize, Cell)>) -> bool,
 ) {
-    let cancel = Cancel::new();
     let missing = sweep.missing();
-    let next = AtomicUsize::new(0);
+    let threads = threads.clamp(1, missing.len().max(1));
+    let (run, sweep, next) = (run.clone(), sweep.clone(), AtomicUsize::new(0));
+    let work = Arc::new(Work { run, sweep, missing, next, cancel: Cancel::new() });
     let (sender, receiver) = channel();
-    std::thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, missing.len().max(1)) {
-            let sender = sender.clone();
-            let (missing, next, cancel) = (&missing, &next, &cancel);
-            scope.spawn(move || {
-                while let Some(&cell) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let Some(done) = cell_of(&sweep.run_of(cell, run), cancel) else { return };
-                    if sender.send((cell, done)).is_err() {
-                        return;
-                    }
-                }
-            });
+    let threads: Vec<_> = (0..threads)
+        .map(|_| {
+            let (work, sender) = (Arc::clone(&work), sender.clone());
+            std::thread::spawn(move || work.convert(&sender))
+        })
+        .collect();
+    drop(sender);
+    loop {
+        let goes_on = match receiver.recv_timeout(PATIENCE) {
+            Ok(first) => hear(std::iter::once(first).chain(receiver.try_iter()).collect()),
+            Err(RecvTimeoutError::Timeout) => hear(Vec::new()),
+            Err(RecvTimeoutError::Disconnected) => break,
+        };
+        if !goes_on {
+            work.cancel.ask();
+            return;
         }
-        drop(sender);
-        loop {
-            let goes_on = match receiver.recv_timeout(PATIENCE) {
-                Ok(first) => hear(std::iter::once(first).chain(receiver.try_iter()).collect()),
-                Err(RecvTimeoutError::Timeout) => hear(Vec::new()),
-                Err(RecvTimeoutError::Disconnected) => return,
-            };
-            if !goes_on {
-                cancel.ask();
+    }
+    for thread in threads {
+        // A bug in a conversion is one here too.
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    }
+}
+
+impl Work {
+    fn convert(&self, sender: &Sender<(usize, Cell)>) {
+        while let Some(&cell) = self.missing.get(self.next.fetch_add(1, Ordering::Relaxed)) {
+            let Some(done) = cell_of(&self.sweep.run_of(cell, &self.run), &self.cancel) else { return };
+            if sender.send((cell, done)).is_err() {
+                return;
             }
         }
-    });
+    }
 }
 
 /// What a run ends with; `None` if it is cancelled.
