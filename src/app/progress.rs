@@ -128,6 +128,16 @@ impl Watch for Progress {
     }
 }
 
+/// A bar for `left` of `all` equal parts of some work, such as "cells".
+pub(super) fn counting(message: &str, parts: &str, all: usize, left: usize, quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(all as u64), target).with_message(message.to_owned());
+    bar.set_style(style(&format!("{{msg}}: {{done}} of {{all}} {parts} {{bar:20}} {{left}}")));
+    bar.set_position((all - left) as u64);
+    bar.reset_eta();
+    bar
+}
+
 /// The name of a stage of the work.
 pub(super) fn words(stage: Stage) -> &'static str {
     match stage {
