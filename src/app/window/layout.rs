@@ -25,6 +25,8 @@ worded! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Pane by name {
         Front = "Front",
+        Elements = "Elements",
+        Nodes = "Nodes",
         Breakpoints = "Breakpoints",
         Bookmarks = "Bookmarks",
         Space = "Space",
@@ -162,14 +164,25 @@ impl Layout {
         };
         let (mut left, mut lens) = (Vec::new(), Vec::new());
         if room != Room::Narrow {
-            left = vec![(tabs(&[Pane::Front]), 1.0), (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42)];
+            left = vec![
+                (tabs(&[Pane::Front, Pane::Elements, Pane::Nodes]), 1.0),
+                (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42),
+            ];
         }
         if room == Room::Wide {
             lens = vec![(tabs(&[Pane::MetricLens]), 1.0), (tabs(&[Pane::Parametric]), 1.0)];
         }
         let (inspector, share): (&[Pane], f32) = match room {
             Room::Narrow => (
-                &[Pane::Inspector, Pane::Front, Pane::Breakpoints, Pane::Bookmarks, Pane::History],
+                &[
+                    Pane::Inspector,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                    Pane::History,
+                ],
                 210.0 / size.y.max(420.0),
             ),
             _ => (&[Pane::Inspector, Pane::History], 0.6),
