@@ -6,19 +6,18 @@
 
 mod window_harness;
 
-use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
 use quadfront::app::window::{App, Command, Goal, Source};
-use quadfront::core::mesh::{ElementId, Mesh, NodeId};
+use quadfront::core::mesh::{ElementId, Mesh};
 use quadfront::render::scene::Outlined;
-use window_harness::{Window, apply, has_adapter, settle, start, until};
+use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
 /// The window on example 1 at its end, with one of the tabs in front.
 fn at_the_end(tab: &str) -> Option<Window> {
     has_adapter().then(|| {
         let source = Source::BuiltIn("example1".to_owned());
-        let mut window = start(Vec2::new(1600.0, 1000.0), |cc| App::new(cc, Some(source)));
+        let mut window = start(LAPTOP, |cc| App::new(cc, Some(source)));
         settle(&mut window);
         apply(&mut window, Command::Go(Goal::End));
         window.get_by_label(tab).click();
@@ -45,16 +44,6 @@ fn row(window: &mut Window, name: &str) {
     until(window, name, |window| window.query_all_by_label(name).next().is_some());
 }
 
-/// Types a condition over what a field holds.
-fn filter(window: &mut Window, field: &str, text: &str) {
-    window.get_by_label(field).focus();
-    window.run_steps(2);
-    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    window.run_steps(1);
-    window.get_by_label(field).type_text(text);
-    window.run_steps(2);
-}
-
 #[test]
 fn the_worst_element_is_the_first_row_and_a_click_selects_it_and_brings_it_into_view() {
     let Some(mut window) = at_the_end("Elements") else { return };
@@ -79,7 +68,7 @@ fn the_worst_element_is_the_first_row_and_a_click_selects_it_and_brings_it_into_
 #[test]
 fn a_condition_filters_the_elements_and_a_wrong_one_is_explained() {
     let Some(mut window) = at_the_end("Elements") else { return };
-    filter(&mut window, "Filter of elements", "quality < .6 && level > 1");
+    type_over(&mut window, "Filter of elements", "quality < .6 && level > 1");
     let fits = |mesh: &Mesh, e: ElementId| mesh.quality(e) < 0.6 && mesh.level(e) > 1;
     let expected = mesh(&window).elements().filter(|e| fits(mesh(&window), *e)).count();
     let count = format!("{expected} of {} elements", mesh(&window).element_count());
@@ -91,9 +80,9 @@ fn a_condition_filters_the_elements_and_a_wrong_one_is_explained() {
         assert!(fits(mesh(&window), ElementId(id)), "{name}");
     }
     // A word that is begun is completed, and one that is wrong is explained; the list stays as it was.
-    filter(&mut window, "Filter of elements", "space.jac");
+    type_over(&mut window, "Filter of elements", "space.jac");
     window.get_by_label("Use space.jacobian");
-    filter(&mut window, "Filter of elements", "qualty < .3");
+    type_over(&mut window, "Filter of elements", "qualty < .3");
     window.get_by_label_contains("The nearest known field is \"quality\"");
     row(&mut window, &count);
 }
@@ -125,7 +114,7 @@ fn a_list_follows_the_run_and_is_copied_as_csv() {
     apply(&mut window, Command::Go(Goal::Step(40)));
     let count = format!("{0} of {0} elements", mesh(&window).element_count());
     row(&mut window, &count);
-    filter(&mut window, "Filter of elements", "quad");
+    type_over(&mut window, "Filter of elements", "quad");
     let quads = mesh(&window).elements().filter(|e| mesh(&window).is_quad(*e)).count();
     let count = format!("{quads} of {} elements", mesh(&window).element_count());
     row(&mut window, &count);
