@@ -4,6 +4,7 @@ use eframe::egui::{Key, Modifiers};
 
 use super::figures::{FigureForm, Formats};
 use super::import::{Gesture, ImportOptions};
+use super::lists::ListKind;
 use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
@@ -14,7 +15,7 @@ use crate::core::case::{Parameters, built_in};
 use crate::core::convert::EventKind;
 use crate::core::kernel::worded::worded;
 use crate::core::mesh::{ElementId, NodeId};
-use crate::core::run::Watched;
+use crate::core::run::{Query, Watched};
 use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 
@@ -49,6 +50,12 @@ pub enum Command {
     Explain([NodeId; 2]),
     /// Ask for the history of something.
     TellPast(Watched),
+    /// Make a list of elements or nodes.
+    List(ListKind, Query),
+    /// Copy such a list as comma-separated values.
+    CopyList(ListKind, Query),
+    /// Select something and bring it into view.
+    Find(Outlined),
     /// Watch something, or stop watching it.
     Watch(Outlined),
     /// Switch a watchpoint on or off.
@@ -271,6 +278,9 @@ impl Command {
             Command::Made(_) => "Go to creation".into(),
             Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
             Command::TellPast(_) => "History".into(),
+            Command::List(kind, _) => format!("List {}s", kind.name()),
+            Command::CopyList(kind, _) => format!("Copy the {}s as CSV", kind.name()),
+            Command::Find(what) => format!("Find {}", words::thing(*what)),
             Command::Watch(what) => format!("Watch {}", words::thing(*what)),
             Command::SwitchWatch(_) => "Switch a watchpoint".into(),
             Command::Measure => "Measure how long steps take".into(),
@@ -370,6 +380,7 @@ impl Command {
             Command::Hover(_)
                 | Command::Explain(_)
                 | Command::TellPast(_)
+                | Command::List(..)
                 | Command::MoveCamera(..)
                 | Command::SetFigure(_)
                 | Command::CloseOverlay

@@ -27,6 +27,8 @@ worded! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Pane by name {
         Front = "Front",
+        Elements = "Elements",
+        Nodes = "Nodes",
         Breakpoints = "Breakpoints",
         Bookmarks = "Bookmarks",
         Space = "Space",
@@ -175,19 +177,41 @@ impl Layout {
         };
         let (mut left, mut lens) = (Vec::new(), Vec::new());
         if matches!(room, Room::Wide | Room::Middle) {
-            left = vec![(tabs(&[Pane::Front]), 1.0), (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42)];
+            left = vec![
+                (tabs(&[Pane::Front, Pane::Elements, Pane::Nodes]), 1.0),
+                (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42),
+            ];
         }
         if room == Room::Wide {
             lens = vec![(tabs(&[Pane::MetricLens]), 1.0), (tabs(&[Pane::Parametric]), 1.0)];
         }
         let (inspector, share): (&[Pane], f32) = match room {
             Room::Narrow => (
-                &[Pane::Inspector, Pane::Front, Pane::Breakpoints, Pane::Bookmarks, Pane::History, Pane::TwoRuns],
+                &[
+                    Pane::Inspector,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                    Pane::History,
+                    Pane::TwoRuns,
+                ],
                 210.0 / size.y.max(420.0),
             ),
-            Room::Pair => {
-                (&[Pane::TwoRuns, Pane::Inspector, Pane::History, Pane::Front, Pane::Breakpoints, Pane::Bookmarks], 0.5)
-            }
+            Room::Pair => (
+                &[
+                    Pane::TwoRuns,
+                    Pane::Inspector,
+                    Pane::History,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                ],
+                0.42,
+            ),
             _ => (&[Pane::Inspector, Pane::History, Pane::TwoRuns], 0.6),
         };
         let right = vec![(tabs(inspector), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), share)];

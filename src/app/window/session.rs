@@ -26,7 +26,7 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::{Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
+use crate::core::run::{Born, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 use worker::Worker;
 
 /// How often progress is reported.
@@ -68,6 +68,7 @@ pub enum SessionNews {
         from: u64,
         steps: Vec<Tracked>,
         samples: Vec<Sample>,
+        born: Born,
         end: bool,
     },
     /// The result of the checks of the whole mesh at a step.

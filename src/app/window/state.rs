@@ -94,18 +94,10 @@ impl State {
         }
     }
 
-    /// The step at which each element was last made, where elements are coloured by it.
+    /// The step that made each quadrilateral, by slot, where elements are coloured by it.
     pub fn births(&self, by: ColourBy, moment: &Moment) -> Vec<u64> {
-        let mut births = vec![0; moment.mesh.element_slots()];
-        if by == ColourBy::Birth {
-            let steps = self.run.track.iter().take(moment.step as usize).zip(1..);
-            for (&(element, _), step) in steps.filter_map(|(step, k)| Some((step.formed.as_ref()?, k))) {
-                if let Some(birth) = births.get_mut(element.index()) {
-                    *birth = step;
-                }
-            }
-        }
-        births
+        let slots = moment.mesh.element_slots();
+        if by == ColourBy::Birth { self.run.born.of_quads(moment.step, slots) } else { vec![0; slots] }
     }
 
     /// The run with all changes of the user.

@@ -38,6 +38,8 @@ impl Behavior<Pane> for Docks<'_> {
             Pane::MetricLens => beside.other(ui, state, Lens::Metric, palette),
             Pane::Parametric => beside.other(ui, state, Lens::Whole, palette),
             Pane::Front => panels::front::show(ui, state, &mut local.front, commands, palette),
+            Pane::Elements => panels::lists::elements(ui, state, &mut local.lists.elements, commands, palette),
+            Pane::Nodes => panels::lists::nodes(ui, state, &mut local.lists.nodes, commands, palette),
             Pane::Breakpoints => panels::breakpoints::show(ui, state, &mut local.breakpoints, commands, palette),
             Pane::Bookmarks => panels::breakpoints::bookmarks(ui, state, commands, palette),
             Pane::Quality => panels::plots::show(ui, state, &mut local.plots, commands, palette),

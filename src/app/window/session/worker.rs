@@ -322,7 +322,13 @@ impl Worker {
         // The first sample is that of step 0.
         let fresh = |sample: &&Sample| sample.step > self.tracked || self.tracked == 0;
         let samples = log.samples().iter().filter(fresh).copied().collect();
-        let told = SessionNews::Track { from: self.tracked, steps: steps.collect(), samples, end };
+        let told = SessionNews::Track {
+            from: self.tracked,
+            steps: steps.collect(),
+            samples,
+            born: log.born().after(self.tracked),
+            end,
+        };
         self.tracked = log.known();
         self.voice.say(told);
     }

@@ -14,13 +14,14 @@ use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
+use crate::app::window::lists::ListKind;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Condition, Edit, EditKind, Watched};
+use crate::core::run::{Condition, Edit, EditKind, Query, Watched};
 use crate::render::scene::Outlined;
 
 impl State {
@@ -58,6 +59,12 @@ impl State {
             Command::Explain(ends) => self.run.asked = self.inquire(Ask::Explain(ends)).map(|step| (step, ends)),
             Command::TellPast(watched) => {
                 self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
+            }
+            Command::List(kind, query) => self.list(kind, query, false),
+            Command::CopyList(kind, query) => self.list(kind, query, true),
+            Command::Find(what) => {
+                self.change(|document| document.picked = Some(what));
+                self.view.look.ask(Look::Near(what));
             }
             Command::Watch(what) => self.watch(watched(what)),
             Command::SwitchWatch(k) => {
@@ -342,6 +349,17 @@ impl State {
         let (moment, session) = (self.run.moment.as_ref()?, self.run.session.as_ref()?);
         session.ask(ask);
         Some(moment.step)
+    }
+
+    /// Has a list of the current state made.
+    fn list(&mut self, kind: ListKind, query: Query, as_text: bool) {
+        let Some(moment) = &self.run.moment else { return };
+        let mesh = moment.mesh.clone();
+        let born = match kind {
+            ListKind::Elements => self.run.born.of_quads(moment.step, mesh.element_slots()),
+            ListKind::Nodes => self.run.born.of_nodes(moment.step, mesh.node_slots()),
+        };
+        self.run.lists.make(kind, query, as_text, mesh, born, self.wake.clone());
     }
 
     fn move_camera(&mut self, view: ViewKind, camera: ViewCamera) {

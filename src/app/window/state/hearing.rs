@@ -26,6 +26,7 @@ impl State {
 
     fn hear_alone(&mut self) {
         self.hear_opening();
+        self.run.lists.hear();
         let Some(session) = &self.run.session else { return };
         let told: Vec<SessionNews> = session.hear().collect();
         told.into_iter().for_each(|told| self.take(told));
@@ -73,11 +74,13 @@ impl State {
             SessionNews::Progress(progress) => run.progress = Some(progress),
             SessionNews::Opened(opened) => run.opened = Some(opened),
             SessionNews::Moment(moment, asks) => self.arrive(moment, asks),
-            SessionNews::Track { from, steps, samples, end } => {
+            SessionNews::Track { from, steps, samples, born, end } => {
                 run.track.truncate(from as usize);
                 run.track.extend(steps);
                 run.samples.retain(|sample| sample.step <= from && from > 0);
                 run.samples.extend(samples);
+                run.born.truncate(from);
+                run.born.append(&born);
                 run.track_epoch += 1;
                 run.recorded = end;
             }
@@ -114,6 +117,7 @@ impl State {
             run.playing = None;
         }
         run.changes.note(&moment.changes, moment.mesh.element_slots());
+        run.lists.note(&moment.changes, &moment.mesh);
         run.verdict = moment.verdict.clone();
         run.moment = Some(moment.clone());
         self.view.lit.clear();

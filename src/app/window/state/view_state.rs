@@ -91,6 +91,8 @@ pub enum Look {
     /// At the decision, from near.
     Decision,
     At(Outlined),
+    /// At something, from near unless it is seen well already.
+    Near(Outlined),
     /// At the whole mesh in space, from a side.
     From(Bearing),
 }
