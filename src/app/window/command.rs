@@ -102,6 +102,12 @@ pub enum Command {
     RemoveBreakpoint(usize),
     /// Set a bookmark at this step, or remove it.
     Bookmark,
+    /// Change the note on a bookmarked step.
+    WriteNote(u64, String),
+    /// Remove the bookmark of a step.
+    RemoveBookmark(u64),
+    /// Export the notes on all bookmarked steps as one page.
+    ExportNotes,
     /// Open a case or a mesh.
     Open(Source),
     /// Open a case or a mesh with its parameters changed.
@@ -311,6 +317,9 @@ impl Command {
             Command::SwitchBreakpoint(_) => "Switch a breakpoint".into(),
             Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
             Command::Bookmark => "Bookmark this step".into(),
+            Command::WriteNote(step, _) => format!("Write a note on step {step}"),
+            Command::RemoveBookmark(step) => format!("Remove the bookmark of step {step}"),
+            Command::ExportNotes => "Export the notes as a page".into(),
             Command::Open(source) | Command::OpenWith(source, _) => format!("Open {}", source.name()),
             Command::Import => "Import settings…".into(),
             Command::SetImport(..) => "Change the import".into(),
@@ -419,6 +428,7 @@ impl Command {
             Command::ResetLayout,
             Command::Import,
             Command::Notes,
+            Command::ExportNotes,
             Command::ShowTimes,
             Command::Measure,
         ]);

@@ -149,7 +149,8 @@ fn seek(response: &Response, axis: &Axis, state: &State, seeking: &mut Option<u6
     let mut step = axis.step(at.x).round().clamp(0.0, state.run().track.len() as f64) as u64;
     if at.y < axis.plot.top() + 24.0 {
         let away = |mark: &u64| (axis.x(*mark as f64) - at.x).abs();
-        let nearest = state.document().bookmarks.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)));
+        let nearest =
+            state.document().bookmarks.iter().map(|mark| mark.step).min_by(|a, b| away(a).total_cmp(&away(b)));
         step = nearest.filter(|mark| away(mark) < NEAR).unwrap_or(step);
     }
     (step != now && seeking.replace(step) != Some(step)).then_some(step)
@@ -256,8 +257,8 @@ impl Drawing<'_> {
             }
             tick += every;
         }
-        for step in &state.document().bookmarks {
-            let x = axis.x(*step as f64);
+        for mark in &state.document().bookmarks {
+            let x = axis.x(mark.step as f64);
             if axis.plot.x_range().contains(x) {
                 self.text(Pos2::new(x, top + 12.0), Align2::CENTER_TOP, icons::BOOKMARK, palette.text);
             }

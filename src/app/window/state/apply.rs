@@ -14,6 +14,7 @@ use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
+use crate::app::window::layout::Pane;
 use crate::app::window::lists::ListKind;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
@@ -21,7 +22,7 @@ use crate::app::window::words;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Condition, Edit, EditKind, Query, Watched};
+use crate::core::run::{Bookmark, Condition, Edit, EditKind, Query, Watched};
 use crate::render::scene::Outlined;
 
 impl State {
@@ -103,6 +104,11 @@ impl State {
                 }
             }),
             Command::Bookmark => self.bookmark(),
+            Command::WriteNote(step, note) => self.workspace.write_note(step, note),
+            Command::RemoveBookmark(step) => {
+                self.change(|document| document.bookmarks.retain(|mark| mark.step != step))
+            }
+            Command::ExportNotes => self.export_notes(),
             Command::Open(source) => self.open(source, Overrides::default()),
             Command::OpenWith(source, overrides) => self.open(source, *overrides),
             Command::Import => match &self.run.source {
@@ -338,9 +344,13 @@ impl State {
     /// Sets a bookmark at the current step, or removes it.
     fn bookmark(&mut self) {
         let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
-        self.change(|document| match document.bookmarks.binary_search(&step) {
+        let is_new = self.document().bookmarks.iter().all(|mark| mark.step != step);
+        if is_new {
+            self.view.reveal.ask(Some(Pane::Bookmarks));
+        }
+        self.change(|document| match document.bookmarks.binary_search_by_key(&step, |mark| mark.step) {
             Ok(k) => drop(document.bookmarks.remove(k)),
-            Err(k) => document.bookmarks.insert(k, step),
+            Err(k) => document.bookmarks.insert(k, Bookmark { step, note: String::new() }),
         });
     }
 

@@ -92,8 +92,7 @@ impl State {
             waiting: 1,
             ..RunState::default()
         };
-        let bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
-        self.workspace.begin(opened.run.edits().to_vec(), bookmarks);
+        self.workspace.begin(opened.run.edits().to_vec(), opened.run.bookmarks.clone());
         self.view.notes = is_figure;
         for view in [&mut self.view.plane, &mut self.view.space] {
             *view = ViewCamera { camera: None, is_fitted: true, ..*view };
