@@ -5,6 +5,7 @@ use eframe::egui::{Key, Modifiers};
 use super::figures::{FigureForm, Formats};
 use super::import::{Gesture, ImportOptions};
 use super::lists::ListKind;
+use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
@@ -169,6 +170,8 @@ pub enum Command {
     ShowTimes,
     /// Close what is open over the window, or clear the selection.
     Escape,
+    /// Do something with two runs.
+    Pair(PairCommand),
 }
 
 worded! {
@@ -238,6 +241,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::E, Command::Export),
         (CTRL, Key::B, Command::Bookmark),
         (CTRL, Key::R, Command::Reopen),
+        (CTRL, Key::K, Command::Pair(PairCommand::Fork)),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
         (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
         (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
@@ -343,6 +347,7 @@ impl Command {
             Command::Arrange(_) => "Arrange the panels".into(),
             Command::ResetLayout => "Reset layout".into(),
             Command::Escape => "Close, or clear the selection".into(),
+            Command::Pair(command) => command.name(),
         }
     }
 
@@ -426,6 +431,7 @@ impl Command {
             Command::Measure,
         ]);
         all.extend(Rules::ALL.map(Command::SetRules));
+        all.extend(PairCommand::all().into_iter().map(Command::Pair));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
         all.extend(KINDS.iter().flat_map(|&kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));

@@ -11,6 +11,7 @@ mod condition_field;
 pub mod breakpoints;
 pub mod inspector;
 pub mod history;
+pub mod two_runs;
 pub mod parameters;
 pub mod layers;
 pub mod plots;

@@ -4,12 +4,14 @@
 //! worker threads report. The parts of [`State`] are private to this module and the two below it, so the compiler holds
 //! everybody else to that.
 
+mod pair;
 mod run_state;
 mod workspace;
 mod view_state;
 mod apply;
 mod hearing;
 
+pub use pair::Pair;
 use run_state::Opening;
 pub use run_state::{Lookup, Progress, RunState};
 pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState};
@@ -29,12 +31,24 @@ pub struct State {
     workspace: Workspace,
     view: ViewState,
     frame: FrameState,
+    /// The pair that this run is the first one of.
+    pair: Option<Pair>,
+    /// Whether it is the second run of a pair.
+    is_second: bool,
 }
 
 impl State {
     /// A window in which nothing is open; `wake` is called from other threads when they have something to report.
     pub fn new(wake: Wake, workspace: Workspace) -> State {
-        State { wake, run: RunState::default(), workspace, view: ViewState::default(), frame: FrameState::default() }
+        State {
+            wake,
+            run: RunState::default(),
+            workspace,
+            view: ViewState::default(),
+            frame: FrameState::default(),
+            pair: None,
+            is_second: false,
+        }
     }
 
     /// The run and the work on it.

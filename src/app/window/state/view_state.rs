@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
+use crate::app::window::layout::Pane;
 use crate::core::run::run;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::scene::Outlined;
@@ -24,6 +25,8 @@ pub struct ViewState {
     pub scroll: Request<Option<Outlined>>,
     /// The docks are to be arranged as the document says.
     pub relayout: Request<()>,
+    /// The panel that is to be shown in its tabs.
+    pub reveal: Request<Option<Pane>>,
     /// What a bar of a plot stands for, lit up in the views until the next state comes.
     pub lit: Vec<Outlined>,
     /// Changes when the mesh is to be drawn in another way.
@@ -103,6 +106,8 @@ pub enum Overlay {
     Help,
     GoTo,
     Path,
+    /// The path of a second run.
+    PathBeside,
     Mesh,
 }
 

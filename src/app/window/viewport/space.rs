@@ -52,7 +52,7 @@ impl Views {
             .and_then(|at| pick::pick_in_space(&self.space.scene, &moment.mesh, &camera, size, frame.inside(at)));
         self.point(ui, &response, state, hovered, commands);
         let hidden = state.workspace().surfaces.hidden.share();
-        paint(ui, 0, &frame, &self.space.scene, palette, Light::on_surfaces(palette.dark), hidden);
+        paint(ui, self.first, &frame, &self.space.scene, palette, Light::on_surfaces(palette.dark), hidden);
         let of = Some((self.space.scene.shape(), camera, size));
         if self.cover.of != of {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
