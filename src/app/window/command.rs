@@ -50,12 +50,16 @@ pub enum Command {
     Explain([NodeId; 2]),
     /// Ask for the history of something.
     TellPast(Watched),
+    /// Ask for the decision chain of a quadrilateral.
+    TellChain(ElementId),
     /// Make a list of elements or nodes.
     List(ListKind, Query),
     /// Copy such a list as comma-separated values.
     CopyList(ListKind, Query),
     /// Select something and bring it into view.
     Find(Outlined),
+    /// Select the quadrilateral of the lowest quality and bring it into view.
+    FindWorst,
     /// Watch something, or stop watching it.
     Watch(Outlined),
     /// Switch a watchpoint on or off.
@@ -226,6 +230,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL_SHIFT, Key::S, Command::Screenshot),
         (CTRL_SHIFT, Key::L, Command::ToggleTheme),
         (CTRL_SHIFT, Key::E, Command::Figures),
+        (CTRL_SHIFT, Key::W, Command::FindWorst),
         (SHIFT, Key::V, Command::ToggleSplit),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
@@ -284,8 +289,10 @@ impl Command {
             Command::Made(_) => "Go to creation".into(),
             Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
             Command::TellPast(_) => "History".into(),
+            Command::TellChain(_) => "Decision chain".into(),
             Command::List(kind, _) => format!("List {}s", kind.name()),
             Command::CopyList(kind, _) => format!("Copy the {}s as CSV", kind.name()),
+            Command::FindWorst => "Worst quadrilateral".into(),
             Command::Find(what) => format!("Find {}", words::thing(*what)),
             Command::Watch(what) => format!("Watch {}", words::thing(*what)),
             Command::SwitchWatch(_) => "Switch a watchpoint".into(),
@@ -389,6 +396,7 @@ impl Command {
             Command::Hover(_)
                 | Command::Explain(_)
                 | Command::TellPast(_)
+                | Command::TellChain(_)
                 | Command::List(..)
                 | Command::MoveCamera(..)
                 | Command::SetFigure(_)

@@ -61,12 +61,16 @@ impl State {
             Command::TellPast(watched) => {
                 self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
             }
+            Command::TellChain(element) => {
+                self.run.asked_chain = self.inquire(Ask::Chain(element)).map(|step| (step, element));
+            }
             Command::List(kind, query) => self.list(kind, query, false),
             Command::CopyList(kind, query) => self.list(kind, query, true),
-            Command::Find(what) => {
-                self.change(|document| document.picked = Some(what));
-                self.view.look.ask(Look::Near(what));
-            }
+            Command::Find(what) => self.find(what),
+            Command::FindWorst => match self.run.moment.as_ref().and_then(|moment| moment.worst) {
+                Some((e, _)) => self.find(Outlined::Element(e)),
+                None => self.notice("There is no quadrilateral yet.".to_owned()),
+            },
             Command::Watch(what) => self.watch(watched(what)),
             Command::SwitchWatch(k) => {
                 self.change(|document| flip(document.watches.get_mut(k).map(|watch| &mut watch.is_on)));
@@ -359,6 +363,12 @@ impl State {
         let (moment, session) = (self.run.moment.as_ref()?, self.run.session.as_ref()?);
         session.ask(ask);
         Some(moment.step)
+    }
+
+    /// Selects something and brings it into view.
+    fn find(&mut self, what: Outlined) {
+        self.change(|document| document.picked = Some(what));
+        self.view.look.ask(Look::Near(what));
     }
 
     /// Has a list of the current state made.
