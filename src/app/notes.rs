@@ -1,4 +1,5 @@
-//! `notes`: the notes on the bookmarked steps of a run as one page: for each step its figure, what it did, and the note.
+//! `notes`: the notes on the bookmarked steps of a run as one page: for each step its figure, what it did, and the
+//! note.
 
 use std::fmt::Write;
 
