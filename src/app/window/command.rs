@@ -120,6 +120,8 @@ pub enum Command {
     Figures,
     /// Change how figures are made.
     SetFigure(Box<FigureForm>),
+    /// Ask for the folder of figures with the system's dialog.
+    ChooseFolder,
     /// Save a figure as the panel for figures says, in these formats.
     SaveFigure(Formats),
     /// Open the file again.
@@ -148,6 +150,8 @@ pub enum Command {
     CloseOverlay,
     /// Close a message.
     CloseFault(usize),
+    /// Show or hide the log of all messages.
+    Messages,
     /// The user has arranged the panels like this.
     Arrange(String),
     /// Move all panels back to their first places.
@@ -309,6 +313,7 @@ impl Command {
             Command::Export => "Save a figure of this state".into(),
             Command::Figures => "Figures: size, ink, layers, strips…".into(),
             Command::SetFigure(_) => "Change the figure".into(),
+            Command::ChooseFolder => "Choose the folder of figures…".into(),
             Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
             Command::Reopen => "Reload".into(),
             Command::Notes => "Notes on this case".into(),
@@ -323,6 +328,7 @@ impl Command {
             Command::Help => "Keys".into(),
             Command::CloseOverlay => "Close".into(),
             Command::CloseFault(_) => "Close the message".into(),
+            Command::Messages => "Messages".into(),
             Command::Arrange(_) => "Arrange the panels".into(),
             Command::ResetLayout => "Reset layout".into(),
             Command::Escape => "Close, or clear the selection".into(),
@@ -369,6 +375,7 @@ impl Command {
                 | Command::SetFigure(_)
                 | Command::CloseOverlay
                 | Command::CloseFault(_)
+                | Command::Messages
                 | Command::Arrange(_)
                 | Command::SetImport(..)
                 | Command::Convert
@@ -403,6 +410,8 @@ impl Command {
             Command::ResetLayout,
             Command::Import,
             Command::Notes,
+            Command::Messages,
+            Command::ChooseFolder,
             Command::ShowTimes,
             Command::Measure,
         ]);
