@@ -1,5 +1,5 @@
-//! Promise: the notes on the bookmarked steps of a run are kept in its file, and become one page with the figure of each
-//! step.
+//! Promise: the notes on the bookmarked steps of a run are kept in its file, and become one page with the figure of
+//! each step.
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;

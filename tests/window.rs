@@ -3,8 +3,12 @@
 //! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
 
+#[path = "window/messages.rs"]
+mod messages;
 #[path = "window/numbers.rs"]
 mod numbers;
+#[path = "window/texts.rs"]
+mod texts;
 #[path = "window_harness/pictures.rs"]
 mod pictures;
 mod window_harness;

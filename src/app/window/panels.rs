@@ -40,6 +40,7 @@ pub struct PanelStates {
     pub breakpoints: breakpoints::BreakpointsState,
     pub parameters: parameters::ParametersState,
     pub plots: plots::PlotsState,
+    pub figure: figure::PreviewState,
     pub over: over::OverState,
 }
 

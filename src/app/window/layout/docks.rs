@@ -116,7 +116,7 @@ impl Behavior<Pane> for Docks<'_> {
     }
 
     fn gap_width(&self, _: &egui::Style) -> f32 {
-        2.0
+        super::GAP
     }
 
     fn min_size(&self) -> f32 {

@@ -54,7 +54,7 @@ fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: 
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 icon_button(ui, icons::X, 13.0, Command::RemoveBreakpoint(k), true, commands);
                 if let Some(hits) = state.run().hits.get(k) {
-                    let text = format!("{} in this run", words::grouped(*hits as u64));
+                    let text = format!("{} in this run", words::grouped(hits.len() as u64));
                     ui.label(note(text, palette)).on_hover_text("How often it holds in the recorded part of the run");
                 }
             });

@@ -21,8 +21,9 @@ impl State {
         let path = files::free_path(&format!("{}-run", run.case.name), "toml");
         match run_file::write(&path, &run) {
             Ok(()) => {
+                let marks = self.marks();
                 if let Some(autosave) = &mut self.run.autosave {
-                    autosave.saved(&run);
+                    autosave.saved(&run, &marks);
                 }
                 self.notice(format!("The run was saved as {}.", path.display()));
                 Some(path)
