@@ -1,7 +1,7 @@
 //! `sweep`: one conversion for each value of a parameter, or for each pair of values of two.
 
 mod outputs;
-mod pool;
+pub(super) mod pool;
 mod shell;
 
 use std::num::NonZeroUsize;
@@ -18,7 +18,8 @@ use crate::core::record::report::figures::{FIGURES, Figure};
 use crate::core::record::sweep::{Axis, Cell, DEFAULT_AXES, DEFAULT_FIGURE, Sweep, TIME};
 use crate::core::run::Run;
 use crate::render::vector::heat_map::{Scale, meaning};
-use outputs::{Adopted, Outputs, SweepLook, adopt};
+use outputs::{Adopted, adopt};
+pub(super) use outputs::{Outputs, SweepLook};
 
 /// Sweeps one or two parameters of a case.
 pub(super) fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Fault> {

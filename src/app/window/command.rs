@@ -6,6 +6,7 @@ use super::figures::{FigureForm, Formats};
 use super::import::{Gesture, ImportOptions};
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
+use super::sweep::SweepCommand;
 use super::view_layer::ViewLayer;
 use super::words;
 use crate::app::command_line::Overrides;
@@ -136,6 +137,8 @@ pub enum Command {
     SaveMesh,
     /// Save the current mesh to a path.
     SaveMeshAs(String),
+    /// Sweep parameters.
+    Sweep(SweepCommand),
     /// Undo the last change.
     Undo,
     /// Redo it.
@@ -317,6 +320,7 @@ impl Command {
             Command::SaveRun => "Save the run".into(),
             Command::SaveMesh => "Save the mesh…".into(),
             Command::SaveMeshAs(path) => format!("Save the mesh as {path}"),
+            Command::Sweep(command) => command.name(),
             Command::Undo => "Undo".into(),
             Command::Redo => "Redo".into(),
             Command::Palette => "All commands by name".into(),
@@ -375,6 +379,7 @@ impl Command {
                 | Command::CancelImport
                 | Command::Escape
                 | Command::Stop
+                | Command::Sweep(SweepCommand::Stop | SweepCommand::Set(_))
                 | Command::Fit
                 | Command::LookFrom(_)
                 | Command::HiddenLines
@@ -406,6 +411,7 @@ impl Command {
             Command::ShowTimes,
             Command::Measure,
         ]);
+        all.extend(SweepCommand::ALL.map(Command::Sweep));
         all.extend(Rules::ALL.map(Command::SetRules));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));

@@ -29,6 +29,7 @@ worded! {
         Bookmarks = "Bookmarks",
         Space = "Space",
         Quality = "Quality",
+        Sweep = "Sweep",
         MetricLens = "Metric lens",
         Parametric = "Parametric",
         Inspector = "Inspector",
@@ -86,6 +87,8 @@ pub struct Layout {
     edited: bool,
     /// The last request to arrange the docks that was carried out.
     relayouts: u64,
+    /// The last request to show a panel that was carried out.
+    revealed: u64,
 }
 
 impl Default for Layout {
@@ -98,6 +101,7 @@ impl Default for Layout {
             arranged: BTreeMap::new(),
             edited: false,
             relayouts: 0,
+            revealed: 0,
         }
     }
 }
@@ -126,6 +130,9 @@ impl Layout {
         }
         self.size = size;
         let Some((tree, _)) = &mut self.tree else { return };
+        if let Some(pane) = state.view().reveal.take(&mut self.revealed).flatten() {
+            tree.make_active(|_, tile| matches!(tile, Tile::Pane(shown) if *shown == pane));
+        }
         tree.ui(docks, ui);
         self.edited |= docks.edited;
         if self.edited && !ui.input(|input| input.pointer.any_down()) {
@@ -157,8 +164,8 @@ impl Layout {
             tiles.insert_tab_tile(panes)
         };
         let view = match room {
-            Room::Wide => tabs(&[Pane::Space, Pane::Quality]),
-            _ => tabs(&[Pane::Space, Pane::Quality, Pane::MetricLens, Pane::Parametric]),
+            Room::Wide => tabs(&[Pane::Space, Pane::Quality, Pane::Sweep]),
+            _ => tabs(&[Pane::Space, Pane::Quality, Pane::Sweep, Pane::MetricLens, Pane::Parametric]),
         };
         let (mut left, mut lens) = (Vec::new(), Vec::new());
         if room != Room::Narrow {

@@ -17,6 +17,7 @@ mod graphics;
 mod autosave;
 mod figures;
 mod mesh_out;
+mod sweep;
 mod state;
 mod viewport;
 mod labels;
@@ -38,6 +39,7 @@ pub use graphics::Lost;
 pub use import::Gesture;
 pub use session::{Direction, Goal, Source};
 pub use state::SurfaceView;
+pub use sweep::{SweepCommand, SweepForm};
 pub use view_layer::ViewLayer;
 
 /// The largest window in points: egui's textures end there.

@@ -3,6 +3,7 @@
 mod opening;
 mod parameters;
 mod saving;
+mod sweeping;
 
 use std::time::{Duration, Instant};
 
@@ -144,6 +145,7 @@ impl State {
                 }
             }
             Command::SaveMeshAs(path) => self.save_mesh(&path),
+            Command::Sweep(command) => self.sweep(command),
             Command::Undo => self.take_back(Direction::Back),
             Command::Redo => self.take_back(Direction::Forward),
             Command::Arrange(layout) => self.change(|document| document.layout = Some(layout)),

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use super::State;
 use crate::app::figure::another_state;
 use crate::app::window::session::{Moment, SessionNews, Source};
+use crate::app::window::sweep::SweepWork;
 use crate::core::convert::Phase;
 use crate::core::run::shown::fingerprint;
 use crate::core::run::{Changes, ShownState};
@@ -20,6 +21,9 @@ impl State {
     /// Takes in what the session reports.
     pub(in crate::app::window) fn hear(&mut self) {
         self.hear_opening();
+        if let Some(fault) = self.run.sweep.as_mut().and_then(SweepWork::hear) {
+            self.complain(&fault);
+        }
         let Some(session) = &self.run.session else { return };
         let told: Vec<SessionNews> = session.hear().collect();
         told.into_iter().for_each(|told| self.take(told));

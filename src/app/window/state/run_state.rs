@@ -9,6 +9,7 @@ use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, Tracked, Verdict};
+use crate::app::window::sweep::SweepWork;
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
@@ -95,6 +96,8 @@ pub struct RunState {
     pub(super) asked_past: Option<(u64, Watched)>,
     /// The file dialog, while it is open.
     pub(super) dialog: Option<Dialog>,
+    /// The sweep, which outlasts the run that it was begun with.
+    pub sweep: Option<SweepWork>,
     /// Figures and meshes that are being written.
     pub(super) figures: Vec<Writing>,
     pub(super) meshes: Vec<Writing>,

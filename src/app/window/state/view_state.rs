@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
+use crate::app::window::layout::Pane;
 use crate::core::run::run;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::scene::Outlined;
@@ -22,6 +23,8 @@ pub struct ViewState {
     pub look: Request<Look>,
     /// The row that the table of the front is to scroll to.
     pub scroll: Request<Option<Outlined>>,
+    /// A panel that is to be seen among its tabs.
+    pub reveal: Request<Option<Pane>>,
     /// The docks are to be arranged as the document says.
     pub relayout: Request<()>,
     /// What a bar of a plot stands for, lit up in the views until the next state comes.
@@ -102,6 +105,7 @@ pub enum Overlay {
     GoTo,
     Path,
     Mesh,
+    Sweep,
 }
 
 /// A request that stands until whoever it is for has taken it, which may be shown only later. Requests are numbered,

@@ -84,6 +84,7 @@ impl State {
             autosave: old.autosave,
             pictures: old.pictures,
             dialog: old.dialog,
+            sweep: old.sweep,
             figures: old.figures,
             meshes: old.meshes,
             session: Some(session),
