@@ -136,11 +136,16 @@ fn tell(response: Response, sweep: &Sweep, cell: usize, palette: &Palette) -> Re
                 ui.label(line(why, palette.text));
             }
             Some(Cell::Figures(_)) => {
-                Grid::new("figures of the cell").num_columns(2).spacing(Vec2::new(14.0, 1.0)).show(ui, |ui| {
-                    for figure in FIGURES {
-                        let scale = Scale::of(sweep, figure);
-                        ui.label(note(figure.name, palette));
-                        ui.label(line(cell_text(sweep, cell, scale.as_ref(), figure), palette.text));
+                // Two columns of figures: one would be higher than a small window.
+                let grid = Grid::new("figures of the cell").num_columns(4).spacing(Vec2::new(14.0, 1.0));
+                grid.min_row_height(0.0).show(ui, |ui| {
+                    let half = FIGURES.len().div_ceil(2);
+                    for k in 0..half {
+                        for figure in FIGURES.iter().skip(k).step_by(half) {
+                            let scale = Scale::of(sweep, figure);
+                            ui.label(note(figure.name, palette));
+                            ui.label(line(cell_text(sweep, cell, scale.as_ref(), figure), palette.text));
+                        }
                         ui.end_row();
                     }
                 });
