@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::Vec2;
 use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
-use quadfront::app::window::{App, Command, Goal, Source, SweepCommand};
+use quadfront::app::window::{App, Command, Goal, PairCommand, Source, SweepCommand, Which};
 use quadfront::core::case::Parameters;
 use quadfront::core::record::report::figures::Figure;
 use quadfront::core::record::sweep::Sweep;
@@ -31,21 +31,40 @@ fn window(size: Vec2) -> Option<Window> {
 }
 
 fn sweep(window: &Window) -> &Sweep {
-    window.state().state.run().sweep.as_ref().unwrap().sweep.as_ref().unwrap()
+    window.state().state.sweep().unwrap().sweep.as_ref().unwrap()
 }
 
 fn is_running(window: &Window) -> bool {
-    window.state().state.run().sweep.as_ref().is_some_and(|sweep| sweep.is_running())
+    window.state().state.sweep().is_some_and(|sweep| sweep.is_running())
 }
 
 fn known(window: &Window) -> usize {
-    let work = window.state().state.run().sweep.as_ref();
+    let work = window.state().state.sweep();
     let sweep = work.and_then(|work| work.sweep.as_ref());
     sweep.map_or(0, |sweep| sweep.cells().len() - sweep.missing().len())
 }
 
 fn value(window: &Window, cell: usize, figure: &str) -> f64 {
     sweep(window).value(cell, Figure::named(figure).unwrap()).unwrap()
+}
+
+/// What the window has at the end of a run is what the cell says.
+fn is_the_run_of(window: &mut Window, cell: usize, which: Which) {
+    apply(window, Command::Go(Goal::End));
+    until(window, "it is at the end", |window| {
+        let run = window.state().state.of(which).run();
+        !run.is_busy() && run.is_at_the_end()
+    });
+    let state = window.state().state.of(which);
+    let parameters: &Parameters = &state.run().opened.as_ref().unwrap().run.parameters;
+    for (key, of_cell) in sweep(window).values(cell) {
+        assert_eq!(parameters.text_of(key).as_deref(), Some(of_cell));
+    }
+    let mesh = &state.run().moment.as_ref().unwrap().mesh;
+    let quads = mesh.elements().filter(|e| mesh.is_quad(*e)).count();
+    assert_eq!(quads as f64, value(window, cell, "quads"));
+    assert_eq!(mesh.nodes().count() as f64, value(window, cell, "nodes"));
+    assert_eq!(window.state().state.sweep().unwrap().at_hand(state), Some(cell), "the cell at hand is outlined");
 }
 
 #[test]
@@ -65,23 +84,24 @@ fn a_cell_of_a_sweep_opens_the_run_with_the_same_figures() {
         // All six have three digits of the largest.
         let largest = (0..6).map(|cell| value(&window, cell, "irregular")).fold(0.0, f64::max);
         let label = format!("{name}: {irregular:.*} %", if largest < 10.0 { 2 } else { 1 });
-        let number = window.state().state.run().number;
+        // A click opens it as the second run.
         window.get_by_label(&label).click();
         window.run_steps(2);
+        until(&mut window, "its run is there", |window| {
+            let state = &window.state().state;
+            let run = state.of(Which::B).run();
+            state.pair().is_some() && run.moment.is_some() && !run.is_busy() && run.recorded
+        });
+        is_the_run_of(&mut window, cell, Which::B);
+        apply(&mut window, Command::Pair(PairCommand::Close));
+        // Or in place of the one that is open.
+        let number = window.state().state.run().number;
+        window.state_mut().apply(Command::Sweep(SweepCommand::Open(cell)));
         until(&mut window, "its run is open", |window| window.state().state.run().number > number);
         settle(&mut window);
-        apply(&mut window, Command::Go(Goal::End));
-        // What the window has at the end is what the cell says.
-        let state = &window.state().state;
-        let parameters: &Parameters = &state.run().opened.as_ref().unwrap().run.parameters;
-        for (key, of_cell) in sweep(&window).values(cell) {
-            assert_eq!(parameters.text_of(key).as_deref(), Some(of_cell));
-        }
-        let mesh = &state.run().moment.as_ref().unwrap().mesh;
-        let quads = mesh.elements().filter(|e| mesh.is_quad(*e)).count();
-        assert_eq!(quads as f64, value(&window, cell, "quads"));
-        assert_eq!(mesh.nodes().count() as f64, value(&window, cell, "nodes"));
-        assert_eq!(state.run().sweep.as_ref().unwrap().at_hand(state), Some(cell), "the cell at hand is outlined");
+        is_the_run_of(&mut window, cell, Which::A);
+        window.state_mut().apply(Command::Sweep(SweepCommand::Show));
+        window.run_steps(2);
     }
     // What is known already is not swept again; the case's own values of the run that is open now are others.
     type_over(&mut window, "Values across", "1.5,2");

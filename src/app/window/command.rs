@@ -4,6 +4,8 @@ use eframe::egui::{Key, Modifiers};
 
 use super::figures::{FigureForm, Formats};
 use super::import::{Gesture, ImportOptions};
+use super::lists::ListKind;
+use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::sweep::SweepCommand;
@@ -14,7 +16,7 @@ use crate::core::case::{Parameters, built_in};
 use crate::core::convert::EventKind;
 use crate::core::kernel::worded::worded;
 use crate::core::mesh::{ElementId, NodeId};
-use crate::core::run::Watched;
+use crate::core::run::{Query, Watched};
 use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 
@@ -49,6 +51,12 @@ pub enum Command {
     Explain([NodeId; 2]),
     /// Ask for the history of something.
     TellPast(Watched),
+    /// Make a list of elements or nodes.
+    List(ListKind, Query),
+    /// Copy such a list as comma-separated values.
+    CopyList(ListKind, Query),
+    /// Select something and bring it into view.
+    Find(Outlined),
     /// Watch something, or stop watching it.
     Watch(Outlined),
     /// Switch a watchpoint on or off.
@@ -161,6 +169,8 @@ pub enum Command {
     ShowTimes,
     /// Close what is open over the window, or clear the selection.
     Escape,
+    /// Do something with two runs.
+    Pair(PairCommand),
 }
 
 worded! {
@@ -229,6 +239,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::E, Command::Export),
         (CTRL, Key::B, Command::Bookmark),
         (CTRL, Key::R, Command::Reopen),
+        (CTRL, Key::K, Command::Pair(PairCommand::Fork)),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
         (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
         (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
@@ -270,6 +281,9 @@ impl Command {
             Command::Made(_) => "Go to creation".into(),
             Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
             Command::TellPast(_) => "History".into(),
+            Command::List(kind, _) => format!("List {}s", kind.name()),
+            Command::CopyList(kind, _) => format!("Copy the {}s as CSV", kind.name()),
+            Command::Find(what) => format!("Find {}", words::thing(*what)),
             Command::Watch(what) => format!("Watch {}", words::thing(*what)),
             Command::SwitchWatch(_) => "Switch a watchpoint".into(),
             Command::Measure => "Measure how long steps take".into(),
@@ -330,6 +344,7 @@ impl Command {
             Command::Arrange(_) => "Arrange the panels".into(),
             Command::ResetLayout => "Reset layout".into(),
             Command::Escape => "Close, or clear the selection".into(),
+            Command::Pair(command) => command.name(),
         }
     }
 
@@ -369,6 +384,7 @@ impl Command {
             Command::Hover(_)
                 | Command::Explain(_)
                 | Command::TellPast(_)
+                | Command::List(..)
                 | Command::MoveCamera(..)
                 | Command::SetFigure(_)
                 | Command::CloseOverlay
@@ -413,6 +429,7 @@ impl Command {
         ]);
         all.extend(SweepCommand::ALL.map(Command::Sweep));
         all.extend(Rules::ALL.map(Command::SetRules));
+        all.extend(PairCommand::all().into_iter().map(Command::Pair));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
         all.extend(KINDS.iter().flat_map(|&kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));

@@ -34,8 +34,10 @@ pub enum SweepCommand {
     Run,
     /// End, and keep the cells that are known.
     Stop,
-    /// Open the run of a cell.
-    OpenCell(usize),
+    /// Open the run of a cell as the second one, beside the run that is open.
+    OpenBeside(usize),
+    /// Open it in place of the run that is open.
+    Open(usize),
     /// Ask where to save it.
     Save,
     /// Save it to a path.
@@ -53,7 +55,8 @@ impl SweepCommand {
             SweepCommand::Set(_) => "Change the sweep".into(),
             SweepCommand::Run => "Run the sweep".into(),
             SweepCommand::Stop => "Stop the sweep".into(),
-            SweepCommand::OpenCell(cell) => format!("Open run {} of the sweep", cell + 1),
+            SweepCommand::OpenBeside(cell) => format!("Open run {} of the sweep as second run", cell + 1),
+            SweepCommand::Open(cell) => format!("Open run {} of the sweep", cell + 1),
             SweepCommand::Save => "Save the sweep…".into(),
             SweepCommand::SaveAs(path) => format!("Save the sweep as {path}"),
         }
@@ -213,7 +216,7 @@ impl SweepWork {
         Some((self.source.clone(), overrides, sweep.run_of(cell, &self.run)))
     }
 
-    /// The cell whose run is open.
+    /// The cell whose run is open in a state.
     pub fn at_hand(&self, state: &State) -> Option<usize> {
         let (sweep, opened) = (self.sweep.as_ref()?, state.run().opened.as_ref()?);
         let is_same = opened.run.case.text == self.run.case.text

@@ -4,6 +4,7 @@ use eframe::egui::{self, Align2, Area, Button, Context, Key, Label, Order, RichT
 
 use crate::app::window::command::{Command, keys};
 use crate::app::window::mesh_out;
+use crate::app::window::pair::PairCommand;
 use crate::app::window::session::Source;
 use crate::app::window::state::{Overlay, State};
 use crate::app::window::sweep::{SweepCommand, SweepWork};
@@ -27,8 +28,8 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
     let over = state.view().overlay;
     if over != local.shown {
         local.field = match over {
-            Overlay::Mesh => mesh_out::suggested_path(state),
-            Overlay::Sweep => state.run().sweep.as_ref().map_or_else(String::new, SweepWork::suggested_path),
+            Overlay::Mesh => mesh_out::suggested_path(state.active()),
+            Overlay::Sweep => state.sweep().map_or_else(String::new, SweepWork::suggested_path),
             _ => String::new(),
         };
         local.shown = over;
@@ -58,12 +59,20 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
                         commands.extend([Command::CloseOverlay, Command::Open(source)]);
                     }
                 }
+                Overlay::PathBeside => {
+                    let hint = "The path of a case, a run or a mesh, or the name of a built-in case";
+                    if field(ui, &mut local.field, hint, "Path of the second run") {
+                        let source = Source::named(local.field.trim());
+                        let open = PairCommand::OpenBeside(source, Box::default());
+                        commands.extend([Command::CloseOverlay, Command::Pair(open)]);
+                    }
+                }
                 Overlay::Mesh => {
                     let hint = "A name such as part.vtu; its extension chooses the format";
                     if field(ui, &mut local.field, hint, "Path of the mesh") {
                         commands.push(Command::SaveMeshAs(local.field.clone()));
                     }
-                    about_the_mesh(ui, state.run().is_at_the_end(), palette);
+                    about_the_mesh(ui, state.active().run().is_at_the_end(), palette);
                 }
                 Overlay::Sweep => {
                     let hint = "A name such as sweep.svg; its extension chooses the format";
@@ -113,7 +122,7 @@ fn about_the_sweep(ui: &mut Ui, state: &State, palette: &Palette) {
     let mut lines = vec![format!(
         "Enter saves a heat map of {figure} as .svg or .png, and all figures of each run as .csv or .json"
     )];
-    if state.run().sweep.as_ref().is_some_and(SweepWork::is_running) {
+    if state.sweep().is_some_and(SweepWork::is_running) {
         lines.push("The sweep goes on: runs that are not there yet are left empty".to_owned());
     }
     tell(ui, lines, palette);

@@ -31,19 +31,20 @@ pub struct SweepPanel {
     read: Option<(SweepForm, Result<usize, Fault>)>,
 }
 
-/// Shows the panel.
-pub fn show(ui: &mut Ui, state: &State, local: &mut SweepPanel, commands: &mut Vec<Command>, palette: &Palette) {
+/// Shows the panel. The sweep belongs to the window, and what is swept next is the run that the panels show.
+pub fn show(ui: &mut Ui, window: &State, local: &mut SweepPanel, commands: &mut Vec<Command>, palette: &Palette) {
     inset().show(ui, |ui| {
-        let mut form = state.workspace().sweep.clone();
+        let mut form = window.workspace().sweep.clone();
+        let state = window.active();
         fields(ui, state, &mut form, palette);
         let read = local.read.take().filter(|read| read.0 == form).unwrap_or_else(|| {
             let count = form.axes().map(|axes| axes.iter().map(|axis| axis.values.len()).product());
             (form.clone(), count)
         });
-        let work = state.run().sweep.as_ref();
+        let work = window.sweep();
         buttons(ui, state, work, &read.1, commands, palette);
         local.read = Some(read);
-        if form != state.workspace().sweep {
+        if form != window.workspace().sweep {
             commands.push(Command::Sweep(SweepCommand::Set(Box::new(form))));
         }
         let Some(work) = work else {
@@ -53,9 +54,9 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut SweepPanel, commands: &mut V
             return;
         };
         if let Some(sweep) = &work.sweep {
-            let figure = state.workspace().sweep.figure();
+            let figure = window.workspace().sweep.figure();
             notes(ui, work, sweep, palette);
-            map::show(ui, state, work, sweep, figure, commands, palette);
+            map::show(ui, window, work, sweep, figure, commands, palette);
         }
     });
 }

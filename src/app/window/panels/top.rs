@@ -7,6 +7,7 @@ use eframe::egui::{
 use super::on_click;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
+use crate::app::window::pair::PairCommand;
 use crate::app::window::session::{Goal, Source};
 use crate::app::window::state::{State, SurfaceView};
 use crate::app::window::sweep::SweepCommand;
@@ -79,6 +80,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     ui.menu_button("Case", |ui| {
         items(ui, [Command::OpenDialog, Command::OpenPath, Command::Reopen, Command::Import], commands);
         items(ui, [Command::SaveRun, Command::SaveMesh, Command::Notes], commands);
+        ui.separator();
+        items(ui, [PairCommand::Fork, PairCommand::AskBeside].map(Command::Pair), commands);
         ui.separator();
         let mut open = |ui: &mut Ui, cases: &[(&str, &str)]| {
             for (name, _) in cases {

@@ -7,13 +7,13 @@ use crate::app::command_line::Overrides;
 use crate::app::window::autosave::Autosave;
 use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
+use crate::app::window::lists::Lists;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, Tracked, Verdict};
-use crate::app::window::sweep::SweepWork;
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
-use crate::core::run::{Sample, ShownState, Watched};
+use crate::core::run::{Born, Sample, ShownState, Watched};
 
 /// How far some work is.
 #[derive(Clone, Debug)]
@@ -59,7 +59,9 @@ pub struct RunState {
     pub track: Vec<Tracked>,
     /// Invariants and sizes along it.
     pub samples: Vec<Sample>,
-    /// Changes with both.
+    /// The steps that made quadrilaterals and nodes.
+    pub born: Born,
+    /// Changes with all of them.
     pub track_epoch: u64,
     /// Whether all steps have been recorded.
     pub recorded: bool,
@@ -71,6 +73,8 @@ pub struct RunState {
     /// Set while the run is played: when it went on last.
     pub playing: Option<Instant>,
     pub measuring: Option<Measuring>,
+    /// The lists of elements and nodes.
+    pub lists: Lists,
     /// The mesh that is about to be converted.
     pub import: Option<Import>,
     /// Saves the run while the user works on it.
@@ -96,8 +100,6 @@ pub struct RunState {
     pub(super) asked_past: Option<(u64, Watched)>,
     /// The file dialog, while it is open.
     pub(super) dialog: Option<Dialog>,
-    /// The sweep, which outlasts the run that it was begun with.
-    pub sweep: Option<SweepWork>,
     /// Figures and meshes that are being written.
     pub(super) figures: Vec<Writing>,
     pub(super) meshes: Vec<Writing>,

@@ -23,10 +23,10 @@ pub struct ViewState {
     pub look: Request<Look>,
     /// The row that the table of the front is to scroll to.
     pub scroll: Request<Option<Outlined>>,
-    /// A panel that is to be seen among its tabs.
-    pub reveal: Request<Option<Pane>>,
     /// The docks are to be arranged as the document says.
     pub relayout: Request<()>,
+    /// The panel that is to be shown in its tabs.
+    pub reveal: Request<Option<Pane>>,
     /// What a bar of a plot stands for, lit up in the views until the next state comes.
     pub lit: Vec<Outlined>,
     /// Changes when the mesh is to be drawn in another way.
@@ -91,6 +91,8 @@ pub enum Look {
     /// At the decision, from near.
     Decision,
     At(Outlined),
+    /// At something, from near unless it is seen well already.
+    Near(Outlined),
     /// At the whole mesh in space, from a side.
     From(Bearing),
 }
@@ -104,6 +106,8 @@ pub enum Overlay {
     Help,
     GoTo,
     Path,
+    /// The path of a second run.
+    PathBeside,
     Mesh,
     Sweep,
 }

@@ -51,7 +51,7 @@ impl Places {
 /// Shows the map.
 pub fn show(
     ui: &mut Ui,
-    state: &State,
+    window: &State,
     work: &SweepWork,
     sweep: &Sweep,
     figure: &Figure,
@@ -84,11 +84,18 @@ pub fn show(
                 outline(&painter, rect, ink(palette.hover));
             }
             let response = tell(response, sweep, k, palette);
-            on_click(&response, Command::Sweep(SweepCommand::OpenCell(k)), commands);
+            let in_place = ui.input(|input| input.modifiers.shift);
+            let open = if in_place { SweepCommand::Open } else { SweepCommand::OpenBeside };
+            on_click(&response, Command::Sweep(open(k)), commands);
         }
         marks(&painter, &places, sweep, figure);
-        if let Some(at_hand) = work.at_hand(state) {
-            outline(&painter, places.of(at_hand), ink(palette.selection));
+        // Of two runs, the one that the panels show has the stronger outline.
+        let active = window.active_run();
+        for (which, colour) in [(active.other(), palette.hover), (active, palette.selection)] {
+            let is_there = which == active || window.pair().is_some();
+            if let Some(cell) = work.at_hand(window.of(which)).filter(|_| is_there) {
+                outline(&painter, places.of(cell), ink(colour));
+            }
         }
         axes(&painter, &places, sweep, palette);
         if let Some(scale) = &scale {
@@ -154,7 +161,10 @@ fn tell(response: Response, sweep: &Sweep, cell: usize, palette: &Palette) -> Re
                 ui.label(note("not computed", palette));
             }
         }
-        ui.label(note("A click opens this run.", palette));
+        ui.label(note(
+            "A click opens this run as the second one, Shift and click in place of the one that is open.",
+            palette,
+        ));
     })
 }
 
