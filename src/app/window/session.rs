@@ -26,7 +26,7 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::{Born, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
+use crate::core::run::{Born, Chain, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 use worker::Worker;
 
 /// How often progress is reported.
@@ -44,6 +44,8 @@ pub enum Ask {
     Made(ElementId),
     /// Report the history of something up to the current step.
     Past(Watched),
+    /// Report the decision chain of a quadrilateral.
+    Chain(ElementId),
     /// Count how often conditions hold.
     Count(Vec<Condition>),
     /// Report why a segment of the front was or was not chosen.
@@ -63,6 +65,8 @@ pub enum SessionNews {
     Opened(Arc<Opened>),
     /// A state, with the number of requests that it answers.
     Moment(Arc<Moment>, usize),
+    /// The state before this was reached because a breakpoint was met, or because this was touched.
+    Stopped(Option<Watched>),
     /// More of the run: steps after `from`, which replace those known before; `end`: they include the last one.
     Track {
         from: u64,
@@ -75,8 +79,10 @@ pub enum SessionNews {
     Checked(u64, Verdict),
     /// The history of something up to a step.
     Past(Arc<Past>),
-    /// How often each condition holds in the recorded part of the run.
-    Hits(Vec<usize>),
+    /// The decision chain of a quadrilateral.
+    Chain(Arc<ToldChain>),
+    /// The steps of the recorded part of the run at which each condition holds.
+    Hits(Vec<Vec<u64>>),
     /// Why a segment of the front was or was not chosen, at a step.
     Explained(u64, Arc<Explained>),
     /// There is no such step, with the number of requests that this answers.
@@ -130,6 +136,15 @@ pub struct Past {
     pub made: Option<(u64, Vec<ElementId>)>,
     /// The step after which the edge was no longer live on both sides.
     pub killed: Option<u64>,
+}
+
+/// The decision chain of a quadrilateral at a step.
+#[derive(Clone, Debug)]
+pub struct ToldChain {
+    pub step: u64,
+    pub element: ElementId,
+    /// None for a quadrilateral that the background mesh has.
+    pub chain: Option<Chain>,
 }
 
 /// A run on its threads.

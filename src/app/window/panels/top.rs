@@ -102,7 +102,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         items(ui, SweepCommand::ALL.map(Command::Sweep), commands);
     });
     ui.menu_button("View", |ui| {
-        let view = [Command::Fit, Command::ShowDecision, Command::ToggleTheme, Command::ResetLayout];
+        let view =
+            [Command::Fit, Command::ShowDecision, Command::FindWorst, Command::ToggleTheme, Command::ResetLayout];
         items(ui, view, commands);
         ui.separator();
         ui.menu_button("Surfaces", |ui| {
@@ -123,7 +124,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         });
     });
     ui.menu_button("Help", |ui| {
-        items(ui, [Command::Help, Command::Palette, Command::Go(Goal::Step(0))], commands);
+        items(ui, [Command::Help, Command::Palette, Command::Messages, Command::Go(Goal::Step(0))], commands);
     });
 }
 

@@ -3,6 +3,7 @@
 mod files;
 mod opening;
 mod pair;
+mod stopping;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -78,6 +79,12 @@ impl State {
             SessionNews::Progress(progress) => run.progress = Some(progress),
             SessionNews::Opened(opened) => run.opened = Some(opened),
             SessionNews::Moment(moment, asks) => self.arrive(moment, asks),
+            SessionNews::Stopped(watched) => {
+                let subject = run.moment.as_ref().and_then(|moment| stopping::subject(moment, watched));
+                if subject.is_some() {
+                    self.change(|document| document.picked = subject);
+                }
+            }
             SessionNews::Track { from, steps, samples, born, end } => {
                 run.track.truncate(from as usize);
                 run.track.extend(steps);
@@ -94,6 +101,7 @@ impl State {
                 }
             }
             SessionNews::Past(past) => run.past = Some(past),
+            SessionNews::Chain(told) => run.chain = Some(told),
             SessionNews::Hits(hits) => run.hits = hits,
             SessionNews::Explained(step, told) => run.explained = Some((step, told)),
             SessionNews::Nothing(words, asks) => {
@@ -123,6 +131,7 @@ impl State {
         run.changes.note(&moment.changes, moment.mesh.element_slots());
         run.lists.note(&moment.changes, &moment.mesh);
         run.verdict = moment.verdict.clone();
+        run.forget_answers();
         run.moment = Some(moment.clone());
         self.view.lit.clear();
         self.view.over_epoch += 1;
