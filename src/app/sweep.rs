@@ -7,11 +7,12 @@ mod shell;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use super::command_line::SweepArguments;
 use super::input;
 use super::output::Stream;
-use super::progress::{INTERRUPT, counting};
+use super::progress::{INTERRUPT, KEEPS, counting};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::number::counted;
 use crate::core::record::report::figures::{FIGURES, Figure};
@@ -45,6 +46,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Fault> {
     let write = |sweep: &Sweep| outputs.write(&input.run.case, sweep, look);
     write(&sweep)?;
     if collect.is_none() {
+        KEEPS.store(true, Ordering::Relaxed);
         let threads = jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
         convert(&input.run, &mut sweep, threads, source.quiet, &write)?;
     }
