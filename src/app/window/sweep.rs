@@ -1,5 +1,5 @@
 //! The sweep of the window: conversions of the run that is open for values of one or two of its parameters, on threads
-//! of their own. They leave two processors, where there are as many, to the window and its session.
+//! of their own, one for each processor.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -19,9 +19,6 @@ use crate::core::run::Run;
 
 /// The largest number of cells in the window, each of which is something to click.
 pub const MOST_CELLS: usize = 2000;
-
-/// The processors that a sweep leaves to the rest of the window.
-const LEFT: usize = 2;
 
 /// What can be done with the sweep.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,8 +133,7 @@ impl SweepWork {
         earlier: Option<Sweep>,
         wake: Wake,
     ) -> SweepWork {
-        let processors = std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = processors.saturating_sub(LEFT).max(1);
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let (tell, news) = channel();
         let cancel = Cancel::new();
         let (own, stop) = (run.clone(), cancel.clone());
