@@ -46,6 +46,8 @@ pub enum Ask {
     Past(Watched),
     /// Report the decision chain of a quadrilateral.
     Chain(ElementId),
+    /// Report the step that ended something.
+    Ended(Watched),
     /// Count how often conditions hold.
     Count(Vec<Condition>),
     /// Report why a segment of the front was or was not chosen.
@@ -79,6 +81,8 @@ pub enum SessionNews {
     Past(Arc<Past>),
     /// The decision chain of a quadrilateral.
     Chain(Arc<ToldChain>),
+    /// The step that ended something, seen from a step.
+    Ended(u64, Watched, Option<u64>),
     /// How often each condition holds in the recorded part of the run.
     Hits(Vec<usize>),
     /// Why a segment of the front was or was not chosen, at a step.

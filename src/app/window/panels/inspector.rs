@@ -57,12 +57,6 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                 step::show(ui, moment, palette);
                 step::next(ui, moment, palette);
             }
-            if let Some(Outlined::Element(e)) = shown
-                && moment.mesh.has_element(e)
-                && moment.mesh.is_quad(e)
-            {
-                chain::show(ui, state, e, commands, palette);
-            }
             if let Some(what) = shown {
                 past::show(ui, state, what, commands, palette);
             }
