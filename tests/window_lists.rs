@@ -9,8 +9,9 @@ mod window_harness;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
-use quadfront::app::window::{App, Command, Goal, Source};
-use quadfront::core::convert::Event;
+use quadfront::app::window::{App, Command, Direction, Goal, Source};
+use quadfront::core::convert::{Event, EventKind};
+use quadfront::core::kernel::number::grouped;
 use quadfront::core::mesh::{ElementId, Mesh, NodeId};
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
@@ -226,4 +227,25 @@ fn what_is_looked_for_by_number_is_selected_and_framed_and_what_is_gone_is_found
     assert!(mesh(&window).is_quad(quad));
     look_for(&mut window, "lamp 12");
     assert!(window.state().state.view().faults[0].contains("quad 467"));
+}
+
+#[test]
+fn attempts_that_were_taken_back_are_a_tree_with_links_and_reasons() {
+    let Some(mut window) = at_the_end("Front") else { return };
+    let run = |window: &Window| window.state().state.run().moment.clone().unwrap();
+    apply(&mut window, Command::Go(Goal::Step(0)));
+    let back = Goal::Kind(EventKind::RolledBack, Direction::Forward);
+    while run(&window).attempts.len() < 3 {
+        apply(&mut window, Command::Go(back));
+    }
+    window.get_by_label("Attempt 1: sides by the rules");
+    assert!(window.query_all_by_label_contains("Taken back: ").count() >= 2);
+    // The first one is folded; its steps are links.
+    let first = run(&window).attempts[0].steps[0].0;
+    window.get_by_label("Attempt 1: sides by the rules").click_accesskit();
+    window.run_steps(30);
+    let link = format!("step {}  ", grouped(first));
+    window.get_all_by_label_contains(&link).next().unwrap().click_accesskit();
+    settle(&mut window);
+    assert_eq!(run(&window).step, first);
 }

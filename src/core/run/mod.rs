@@ -15,6 +15,7 @@
 //! | elements and nodes with their measures, filtered and sorted | [`ElementTable`], [`NodeTable`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`Watched`] |
 //! | what a person looks for by number or coordinates | [`Sought`] |
+//! | the attempts at the quadrilateral under way | [`Tried`] |
 //! | the decision chain of a quadrilateral | [`Chain`] |
 //! | why a segment is chosen, what a node is | [`Selecting`], [`SegmentFacts`], [`NodeFacts`], [`FrontTable`] |
 //! | what a step did and looked at, by which rule, and what comes next, in words | [`explain`] |
@@ -39,6 +40,7 @@ mod worst_quality;
 pub mod breakpoint;
 mod watch;
 mod chain;
+mod attempts;
 mod find;
 pub mod front_table;
 pub mod explain;
@@ -46,6 +48,7 @@ mod listing;
 mod element_table;
 mod node_table;
 
+pub use attempts::Tried;
 pub use births::{Births, Born};
 pub use breakpoint::Condition;
 pub use chain::{Chain, Link};

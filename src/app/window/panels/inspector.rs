@@ -8,6 +8,7 @@ mod element;
 mod step;
 pub mod past;
 mod chain;
+mod attempts;
 
 use eframe::egui::{Align, Label, Layout, Rect, Response, RichText, ScrollArea, Sense, Ui, UiBuilder, Vec2};
 

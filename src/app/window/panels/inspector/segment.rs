@@ -2,7 +2,9 @@
 
 use eframe::egui::Ui;
 
-use super::{ends, formula, heading, length, note, sentence, stands_for, step, table_head, table_row, title, why};
+use super::{
+    attempts, ends, formula, heading, length, note, sentence, stands_for, step, table_head, table_row, title, why,
+};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -65,7 +67,11 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         candidates(ui, moment, tried, s, commands, palette);
     }
     if is_base {
-        step::so_far(ui, moment, commands, palette);
+        if moment.attempts.is_empty() {
+            step::so_far(ui, moment, commands, palette);
+        } else {
+            attempts::show(ui, moment, commands, palette);
+        }
     }
     length(ui, s.length_metric, s.length_physical, palette);
     heading(ui, "Ends", "sizes of their metrics", palette);
