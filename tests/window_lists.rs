@@ -168,7 +168,7 @@ fn three_actions_lead_from_a_cold_start_to_the_decision_that_made_the_worst_quad
     });
     // Its last quality is the one that it has, and one step cost most.
     assert!(window.query_all_by_label_contains(&format!("\u{2192} {quality:.2}")).next().is_some());
-    window.get_by_label("largest loss");
+    window.get_by_label("lost most");
     assert!(window.query_by_label_contains("Largest loss: step ").is_some());
     let links: Vec<String> = window.get_all_by_label_contains("Chain, step ").map(|node| label(&node)).collect();
     assert!(links.len() > 3 && links.is_sorted_by_key(|label| step_of(label)), "{links:?}");

@@ -11,7 +11,7 @@ use super::command::{Command, keys};
 use super::figures::carried;
 use super::files::{free_path, write_png};
 use super::graphics::{self, Lost};
-use super::layout::{Docks, Layout, TIMELINE_HEIGHTS};
+use super::layout::{Docks, Layout, Pane, TIMELINE_HEIGHTS};
 use super::panels::{self, PanelStates};
 use super::session::Source;
 use super::settings::Settings;
@@ -261,9 +261,8 @@ impl App {
         let (window, state) = (&self.state, self.state.active());
         let (local, asked) = (&mut self.panels[window.active_run() as usize], &mut commands);
         Panel::top("menus").frame(plain).exact_size(32.0).show(ui, |ui| panels::top::show(ui, window, asked, palette));
+        let mut views = ui.available_rect_before_wrap();
         if window.run().import.is_some() {
-            panels::messages::offer(ui, window, asked, palette);
-            panels::messages::show(ui, window, asked, palette);
             panels::import::show(ui, window, plain, asked, palette);
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
                 self.views[0].given(ui, window, asked, palette);
@@ -281,16 +280,18 @@ impl App {
             if !squashed {
                 *height = time.response.rect.height();
             }
-            panels::messages::offer(ui, window, asked, palette);
-            panels::messages::show(ui, window, asked, palette);
+            views = ui.available_rect_before_wrap();
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
                 let views = &mut self.views;
                 let mut docks = Docks { window, state, local, views, commands: asked, palette, edited: false };
                 self.layout.show(ui, &mut docks);
             });
-            panels::notes::show(&context, state, asked, palette);
-            panels::figure::show(&context, state, asked, palette);
+            // The notes cover neither the mesh nor the breakpoints.
+            let place = self.layout.place_of(Pane::Front).unwrap_or(views);
+            panels::notes::show(&context, place, state, asked, palette);
+            panels::figure::show(&context, state, &mut local.figure, asked, palette);
         }
+        panels::messages::show(&context, views, window, asked, palette);
         panels::over::show(&context, window, &mut local.over, asked, palette);
         self.state.end_frame(commands)
     }

@@ -1,5 +1,6 @@
 //! Everything that can be done in the window, as a value: menus, keys, panels, the palette and tests all use it.
 
+mod name;
 mod rules;
 
 use eframe::egui::{Key, Modifiers};
@@ -13,7 +14,6 @@ use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
-use super::words;
 use crate::app::command_line::Overrides;
 use crate::core::case::built_in;
 use crate::core::convert::EventKind;
@@ -109,6 +109,12 @@ pub enum Command {
     RemoveBreakpoint(usize),
     /// Set a bookmark at this step, or remove it.
     Bookmark,
+    /// Change the note on a bookmarked step.
+    WriteNote(u64, String),
+    /// Remove the bookmark of a step.
+    RemoveBookmark(u64),
+    /// Export the notes on all bookmarked steps as one page.
+    ExportNotes,
     /// Open a case or a mesh.
     Open(Source),
     /// Open a case or a mesh with its parameters changed.
@@ -139,6 +145,8 @@ pub enum Command {
     Figures,
     /// Change how figures are made.
     SetFigure(Box<FigureForm>),
+    /// Ask for the folder of figures with the system's dialog.
+    ChooseFolder,
     /// Save a figure as the panel for figures says, in these formats.
     SaveFigure(Formats),
     /// Open the file again.
@@ -167,6 +175,8 @@ pub enum Command {
     CloseOverlay,
     /// Close a message.
     CloseFault(usize),
+    /// Show or hide the log of all messages.
+    Messages,
     /// The user has arranged the panels like this.
     Arrange(String),
     /// Move all panels back to their first places.
@@ -252,94 +262,6 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
 }
 
 impl Command {
-    /// Its name in the palette, in menus and in tooltips.
-    pub fn name(&self) -> String {
-        match self {
-            Command::Go(goal) => go_name(*goal),
-            Command::GoToText(text) => format!("Go to {text}"),
-            Command::ToBreakpoint(Direction::Forward) => "To the next breakpoint".into(),
-            Command::ToBreakpoint(Direction::Back) => "Back to a breakpoint".into(),
-            Command::Play => "Play or pause".into(),
-            Command::Speed(speed) => format!("Play {speed} quads a second"),
-            Command::Stop => "Stop".into(),
-            Command::Hover(what) => format!("Point at {}", words::thing(*what)),
-            Command::Pick(_) => "Select".into(),
-            Command::Show(_) => "Show in the middle".into(),
-            Command::LightUp(..) => "Highlight".into(),
-            Command::LastTouch(_) => "Last change".into(),
-            Command::Made(_) => "Go to creation".into(),
-            Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
-            Command::TellPast(_) => "History".into(),
-            Command::TellChain(_) => "Decision chain".into(),
-            Command::List(kind, _) => format!("List {}s", kind.name()),
-            Command::CopyList(kind, _) => format!("Copy the {}s as CSV", kind.name()),
-            Command::FindWorst => "Worst quadrilateral".into(),
-            Command::Find(what) => format!("Find {}", words::thing(*what)),
-            Command::Watch(what) => format!("Watch {}", words::thing(*what)),
-            Command::SwitchWatch(_) => "Switch a watchpoint".into(),
-            Command::Measure => "Measure how long steps take".into(),
-            Command::ShowTimes => "Show how long states and frames take".into(),
-            Command::Fit => "Fit the mesh to the view".into(),
-            Command::ShowDecision => "Zoom to the decision".into(),
-            Command::LookFrom(Bearing::Iso) => "Look from front, right and above".into(),
-            Command::LookFrom(Bearing::X) => "Look from +x".into(),
-            Command::LookFrom(Bearing::Y) => "Look from +y".into(),
-            Command::LookFrom(Bearing::Z) => "Look from +z".into(),
-            Command::LookFrom(bearing) => format!("Look from {bearing}"),
-            Command::MoveCamera(..) => "Move the camera".into(),
-            Command::SurfaceView(view) => view.name().into(),
-            Command::TogglePlane => "Space or parametric plane".into(),
-            Command::ToggleSplit => "Space and parametric plane side by side".into(),
-            Command::HiddenLines => "Hidden lines: off, faint, shown".into(),
-            Command::ToggleCurved => "Curved or flat elements".into(),
-            Command::Set(key, value) => format!("Set {key} = {value}"),
-            Command::ChooseBase([a, b]) => format!("Choose {} as base", words::segment([*a, *b])),
-            Command::ResetParameters => "Reset all parameters to the case".into(),
-            Command::SetRules(Rules::Paper) => "Set all parameters to the paper's from this step on".into(),
-            Command::SetRules(Rules::Default) => "Set all parameters to the defaults from this step on".into(),
-            Command::SetForCase(key, value) => format!("Open again with {key} = {value}"),
-            Command::Layer(layer) => format!("Layer: {}", layer.name()),
-            Command::ColourBy(by) => format!("Colour by {}", by.name()),
-            Command::ToggleTheme => "Dark or light theme".into(),
-            Command::AddBreakpoint(text) => format!("Break where {text}"),
-            Command::SwitchBreakpoint(_) => "Switch a breakpoint".into(),
-            Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
-            Command::Bookmark => "Bookmark this step".into(),
-            Command::Open(source) | Command::OpenWith(source, _) => format!("Open {}", source.name()),
-            Command::Import => "Import settings…".into(),
-            Command::SetImport(..) => "Change the import".into(),
-            Command::Convert => "Convert".into(),
-            Command::CancelImport => "Cancel".into(),
-            Command::OpenDialog => "Open with a dialog…".into(),
-            Command::OpenPath => "Open by path…".into(),
-            Command::GoTo => "Go to a step or NQ…".into(),
-            Command::FindField => "Find by number or coordinates…".into(),
-            Command::FindAt(step, what) => format!("Find {} at step {step}", words::thing(*what)),
-            Command::Screenshot => "Save a picture of the window".into(),
-            Command::Export => "Save a figure of this state".into(),
-            Command::Figures => "Figures: size, ink, layers, strips…".into(),
-            Command::SetFigure(_) => "Change the figure".into(),
-            Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
-            Command::Reopen => "Reload".into(),
-            Command::Notes => "Notes on this case".into(),
-            Command::OpenKept => "Recover the unsaved run".into(),
-            Command::DiscardKept => "Discard the unsaved run".into(),
-            Command::SaveRun => "Save the run".into(),
-            Command::SaveMesh => "Save the mesh…".into(),
-            Command::SaveMeshAs(path) => format!("Save the mesh as {path}"),
-            Command::Undo => "Undo".into(),
-            Command::Redo => "Redo".into(),
-            Command::Palette => "All commands by name".into(),
-            Command::Help => "Keys".into(),
-            Command::CloseOverlay => "Close".into(),
-            Command::CloseFault(_) => "Close the message".into(),
-            Command::Arrange(_) => "Arrange the panels".into(),
-            Command::ResetLayout => "Reset layout".into(),
-            Command::Escape => "Close, or clear the selection".into(),
-            Command::Pair(command) => command.name(),
-        }
-    }
-
     /// Its key as text, if it has one.
     pub fn key(&self) -> Option<String> {
         if *self == Command::Help {
@@ -382,6 +304,7 @@ impl Command {
                 | Command::SetFigure(_)
                 | Command::CloseOverlay
                 | Command::CloseFault(_)
+                | Command::Messages
                 | Command::Arrange(_)
                 | Command::SetImport(..)
                 | Command::Convert
@@ -416,6 +339,9 @@ impl Command {
             Command::ResetLayout,
             Command::Import,
             Command::Notes,
+            Command::ExportNotes,
+            Command::Messages,
+            Command::ChooseFolder,
             Command::ShowTimes,
             Command::Measure,
         ]);
@@ -433,25 +359,6 @@ impl Command {
             new
         });
         all
-    }
-}
-
-fn go_name(goal: Goal) -> String {
-    let kind = words::kind;
-    match goal {
-        Goal::Step(0) => "To the beginning".into(),
-        Goal::Step(step) => format!("To step {step}"),
-        Goal::Steps(1) => "Step forward (operation)".into(),
-        Goal::Steps(-1) => "Step back (operation)".into(),
-        Goal::Steps(by) => format!("{by} operations"),
-        Goal::Quads(1) => "Step forward (quadrilateral)".into(),
-        Goal::Quads(-1) => "Step back (quadrilateral)".into(),
-        Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals forward"),
-        Goal::Quads(by) => format!("{} quadrilaterals back", -by),
-        Goal::ToQuads(quads) => format!("To NQ = {quads}"),
-        Goal::Kind(event, Direction::Forward) => format!("Next event: {}", kind(event)),
-        Goal::Kind(event, Direction::Back) => format!("Previous event: {}", kind(event)),
-        Goal::End => "To the end".into(),
     }
 }
 

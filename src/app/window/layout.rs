@@ -5,7 +5,7 @@ mod written;
 
 use std::collections::BTreeMap;
 
-use eframe::egui::{self, Ui, Vec2};
+use eframe::egui::{self, Rect, Ui, Vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde_json::Value;
 
@@ -42,6 +42,9 @@ worded! {
         TwoRuns = "Two runs",
     }
 }
+
+/// The gap between docks in points.
+const GAP: f32 = 2.0;
 
 /// How many columns there is room for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,6 +133,7 @@ impl Layout {
                 Some((tree, middle)) => {
                     (self.tree, self.middle) = (Some((tree, room)), Some(middle));
                     self.size = size;
+                    self.keep_sides(size);
                 }
                 None => self.build(room, size),
             }
@@ -145,9 +149,22 @@ impl Layout {
         self.edited |= docks.edited;
         if self.edited && !ui.input(|input| input.pointer.any_down()) {
             self.edited = false;
+            if let Some(row) = row_of(tree) {
+                let all = size.x - gaps(row);
+                let sum: f32 = row.children.iter().map(|id| row.shares[*id]).sum();
+                let Linear { children, shares, .. } = row;
+                children.iter().for_each(|id| shares[*id] *= all / sum);
+            }
             self.arranged.insert(room.name().to_owned(), written::write(tree));
             docks.commands.push(Command::Arrange(self.arranged().to_string()));
         }
+    }
+
+    /// Where a panel is, if it is seen.
+    pub fn place_of(&self, pane: Pane) -> Option<Rect> {
+        let (tree, _) = self.tree.as_ref()?;
+        let tile = tree.tiles.find_pane(&pane)?;
+        tree.tiles.rect(tile).filter(|_| tree.active_tiles().contains(&tile))
     }
 
     /// How the user has arranged the docks, by the room for columns.
@@ -229,8 +246,8 @@ impl Layout {
             };
             columns.push((id, width));
         }
-        let rest = size.x - columns.iter().map(|c| c.1).sum::<f32>();
         let mut row = Linear::new(LinearDir::Horizontal, columns.iter().map(|c| c.0).collect());
+        let rest = size.x - gaps(&row) - columns.iter().map(|c| c.1).sum::<f32>();
         for (id, width) in columns {
             row.shares.set_share(id, if width > 0.0 { width } else { rest.max(1.0) });
         }
@@ -239,21 +256,25 @@ impl Layout {
         self.tree = Some((Tree::new(egui::Id::unique("docks"), root, tiles), room));
     }
 
-    /// Keeps the widths of the side columns when the window's size changes.
+    /// Keeps the widths of the side columns when the window's size changes. The shares of the row are points.
     fn keep_sides(&mut self, size: Vec2) {
         let (Some((tree, _)), Some(middle)) = (&mut self.tree, self.middle) else { return };
-        let Some(root) = tree.root() else { return };
-        let Some(Tile::Container(Container::Linear(row))) = tree.tiles.get(root) else { return };
-        let children = row.children.clone();
-        let widths: Vec<_> = children.iter().map(|id| (*id, tree.tiles.rect(*id).map_or(0.0, |r| r.width()))).collect();
-        if row.dir != LinearDir::Horizontal || !children.contains(&middle) || widths.iter().any(|w| w.1 <= 0.0) {
-            return;
-        }
-        let sides: f32 = widths.iter().filter(|w| w.0 != middle).map(|w| w.1).sum();
-        if let Some(Tile::Container(Container::Linear(row))) = tree.tiles.get_mut(root) {
-            for (id, width) in widths {
-                row.shares.set_share(id, if id == middle { (size.x - sides).max(1.0) } else { width });
-            }
-        }
+        let Some(row) = row_of(tree).filter(|row| row.children.contains(&middle)) else { return };
+        let sides: f32 = row.children.iter().filter(|id| **id != middle).map(|id| row.shares[*id]).sum();
+        row.shares.set_share(middle, (size.x - gaps(row) - sides).max(1.0));
     }
+}
+
+/// The row of columns.
+fn row_of(tree: &mut Tree<Pane>) -> Option<&mut Linear> {
+    let root = tree.root()?;
+    match tree.tiles.get_mut(root)? {
+        Tile::Container(Container::Linear(row)) if row.dir == LinearDir::Horizontal => Some(row),
+        _ => None,
+    }
+}
+
+/// The width of all gaps between the columns of a row.
+fn gaps(row: &Linear) -> f32 {
+    GAP * (row.children.len().max(1) - 1) as f32
 }

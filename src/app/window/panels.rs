@@ -8,6 +8,7 @@ pub mod timeline;
 pub mod front;
 pub mod lists;
 mod condition_field;
+pub mod bookmarks;
 pub mod breakpoints;
 pub mod inspector;
 pub mod history;
@@ -39,6 +40,7 @@ pub struct PanelStates {
     pub breakpoints: breakpoints::BreakpointsState,
     pub parameters: parameters::ParametersState,
     pub plots: plots::PlotsState,
+    pub figure: figure::PreviewState,
     pub over: over::OverState,
 }
 

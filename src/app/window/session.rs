@@ -67,6 +67,8 @@ pub enum SessionNews {
     Opened(Arc<Opened>),
     /// A state, with the number of requests that it answers.
     Moment(Arc<Moment>, usize),
+    /// The state before this was reached because a breakpoint was met, or because this was touched.
+    Stopped(Option<Watched>),
     /// More of the run: steps after `from`, which replace those known before; `end`: they include the last one.
     Track {
         from: u64,
@@ -83,8 +85,8 @@ pub enum SessionNews {
     Chain(Arc<ToldChain>),
     /// The step that ended something, seen from a step.
     Ended(u64, Watched, Option<u64>),
-    /// How often each condition holds in the recorded part of the run.
-    Hits(Vec<usize>),
+    /// The steps of the recorded part of the run at which each condition holds.
+    Hits(Vec<Vec<u64>>),
     /// Why a segment of the front was or was not chosen, at a step.
     Explained(u64, Arc<Explained>),
     /// There is no such step, with the number of requests that this answers.

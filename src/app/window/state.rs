@@ -4,6 +4,7 @@
 //! worker threads report. The parts of [`State`] are private to this module and the two below it, so the compiler holds
 //! everybody else to that.
 
+mod log;
 mod pair;
 mod run_state;
 mod workspace;
@@ -17,10 +18,11 @@ pub use run_state::{Lookup, Missing, Progress, RunState};
 pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState};
 pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint, Workspace};
 
+use super::autosave::Marks;
 use super::session::{Moment, Stops, Wake};
 use crate::core::case::Parameters;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Bookmark, Condition, Run, Watched, run};
+use crate::core::run::{Condition, Run, Watched, run};
 use crate::render::scene::{ColourBy, Outlined};
 
 /// Everything that the window knows.
@@ -49,6 +51,11 @@ impl State {
             pair: None,
             is_second: false,
         }
+    }
+
+    /// Called from other threads, it has the next frame drawn.
+    pub fn wake(&self) -> Wake {
+        self.wake.clone()
     }
 
     /// The run and the work on it.
@@ -105,12 +112,16 @@ impl State {
         let mut run = self.run.opened.as_ref()?.run.clone();
         run.shown = None;
         run.set_edits(self.document().edits.clone());
-        let name = |step: u64| run.bookmarks.iter().find(|mark| mark.step == step).map(|mark| mark.name.clone());
-        let marks = self.document().bookmarks.iter();
-        let marks = marks.map(|step| Bookmark { step: *step, name: name(*step).unwrap_or_default() });
-        run.bookmarks = marks.collect();
+        run.bookmarks.clone_from(&self.document().bookmarks);
         run.camera = self.moved_camera().or(run.camera);
         Some(run)
+    }
+
+    /// What the user has set beside the run.
+    fn marks(&self) -> Marks {
+        let Document { breakpoints, watches, .. } = self.document();
+        let step = self.run.moment.as_ref().map_or(0, |moment| moment.step);
+        Marks { step, breakpoints: breakpoints.clone(), watches: watches.clone() }
     }
 
     /// Whether the mesh lies on surfaces and is shown in space.

@@ -55,6 +55,9 @@ pub struct Light {
 impl Light {
     /// Unlit colours, for the plane.
     pub const NONE: Light = Light { even: 1.0, lit: 0.0, shine: 0.0 };
+    /// The light of surfaces whose colours are read off a scale: it changes their lightness so little that they are not
+    /// taken for others.
+    pub const ON_DATA: Light = Light { even: 0.9, lit: 0.12, shine: 0.0 };
 
     /// For surfaces, in the dark or light theme.
     pub fn on_surfaces(dark: bool) -> Light {

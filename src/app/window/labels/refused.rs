@@ -17,7 +17,7 @@ impl Labels<'_> {
             let Some((from, top)) = from.zip(top).filter(|(from, top)| from.distance(*top) >= LEAST) else { continue };
             let at = from + 0.62 * (top - from) + Vec2::new(0.0, -2.0);
             let (font, colour) = (theme::regular(11.0), ink(self.palette.label));
-            self.label(at, Align2::CENTER_CENTER, &candidate.reason, font, colour, true);
+            self.label(at, Align2::CENTER_CENTER, &candidate.reason, font, colour);
         }
     }
 }

@@ -20,6 +20,8 @@ const LABELS: f32 = 118.0;
 const COUNTS: f32 = 104.0;
 const LANE: f32 = 12.0;
 const GAP: f32 = 2.0;
+/// Height of the ruler with bookmarks and breakpoints.
+const RULER: f32 = 24.0;
 /// Height of a curve.
 const CURVE: f32 = 24.0;
 /// Opacity before and after the current step.
@@ -62,13 +64,17 @@ pub fn show(ui: &mut Ui, window: &State, local: &mut TimelineState, commands: &m
     let other = window.pair().map(|pair| window.of(pair.active.other()));
     let all = [Some(state), other].into_iter().flatten().map(|state| state.run().track.len()).max();
     let axis = Axis { plot, span: turn(ui, &response, plot, all.unwrap_or(0), local) };
-    let step = seek(&response, &axis, state, &mut local.seeking, moment.step);
+    local.columns.update(state, local.open_row, axis.span, plot.width());
+    let mut lanes = plot.top() + RULER;
+    if let Some(other) = other {
+        local.others.update(other, None, axis.span, plot.width());
+        if window.active_run() == Which::B {
+            lanes += local.others.lanes().len() as f32 * (LANE + GAP) + GAP;
+        }
+    }
+    let step = seek(&response, &axis, lanes, state, local, moment.step);
     commands.extend(step.map(|step| Command::Go(Goal::Step(step))));
     let TimelineState { columns, others, open_row, .. } = local;
-    columns.update(state, *open_row, axis.span, plot.width());
-    if let Some(other) = other {
-        others.update(other, None, axis.span, plot.width());
-    }
     let painter = ui.painter_at(rect);
     let worst = moment.worst.map(|worst| worst.1);
     let drawing = Drawing { painter, axis, palette, now: moment.step, worst };
@@ -139,20 +145,53 @@ fn turn(ui: &Ui, response: &Response, plot: Rect, all: usize, local: &mut Timeli
     span
 }
 
-/// The step to go to: a click or a drag goes to the step under the pointer; a click near a bookmark goes to the
-/// bookmark.
-fn seek(response: &Response, axis: &Axis, state: &State, seeking: &mut Option<u64>, now: u64) -> Option<u64> {
+/// The step to go to: a click or a drag goes to the step under the pointer; a click near a bookmark or a breakpoint
+/// goes there, and one in a row of events to an event of the row. `lanes`: where the rows of this run begin.
+fn seek(
+    response: &Response,
+    axis: &Axis,
+    lanes: f32,
+    state: &State,
+    local: &mut TimelineState,
+    now: u64,
+) -> Option<u64> {
     let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) else {
-        *seeking = None;
+        local.seeking = None;
         return None;
     };
     let mut step = axis.step(at.x).round().clamp(0.0, state.run().track.len() as f64) as u64;
-    if at.y < axis.plot.top() + 24.0 {
-        let away = |mark: &u64| (axis.x(*mark as f64) - at.x).abs();
-        let nearest = state.document().bookmarks.iter().copied().min_by(|a, b| away(a).total_cmp(&away(b)));
-        step = nearest.filter(|mark| away(mark) < NEAR).unwrap_or(step);
-    }
-    (step != now && seeking.replace(step) != Some(step)).then_some(step)
+    let away = |mark: &u64| (axis.x(*mark as f64) - at.x).abs();
+    let reach = [-NEAR, NEAR].map(|by| axis.step(at.x + by).clamp(0.0, state.run().track.len() as f64) as u64);
+    let row = (at.y - lanes).div_euclid(LANE + GAP);
+    let nearest = if at.y < axis.plot.top() + RULER {
+        let marks = state
+            .document()
+            .bookmarks
+            .iter()
+            .map(|mark| mark.step)
+            .chain(stops(state).flat_map(|hits| within(hits, reach)));
+        marks.min_by(|a, b| away(a).total_cmp(&away(b)))
+    } else if let Some(lane) = local.columns.lanes().get(row as usize).filter(|_| response.clicked() && row >= 0.0) {
+        let steps = (reach[0].max(1)..=reach[1]).filter(|step| {
+            state.run().track.get(*step as usize - 1).is_some_and(|tracked| lane.kinds.contains(&tracked.kind))
+        });
+        steps.min_by(|a, b| away(a).total_cmp(&away(b)))
+    } else {
+        None
+    };
+    step = nearest.filter(|mark| away(mark) < NEAR).unwrap_or(step);
+    (step != now && local.seeking.replace(step) != Some(step)).then_some(step)
+}
+
+/// The steps at which each breakpoint that is on is met.
+fn stops(state: &State) -> impl Iterator<Item = &[u64]> {
+    let on = state.document().breakpoints.iter().zip(&state.run().hits);
+    on.filter(|(breakpoint, _)| breakpoint.is_on).map(|(_, hits)| hits.as_slice())
+}
+
+/// Those of some steps in order that lie in a range.
+fn within(steps: &[u64], [low, high]: [u64; 2]) -> impl Iterator<Item = u64> + '_ {
+    steps[steps.partition_point(|step| *step < low)..].iter().copied().take_while(move |step| *step <= high)
 }
 
 /// The text for the step under the pointer.
@@ -162,6 +201,10 @@ fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
         return "step 0".to_owned();
     };
     let mut text = format!("step {}  \u{b7}  {}", words::grouped(step), words::kind(tracked.kind));
+    let all = state.document().breakpoints.iter().zip(&state.run().hits);
+    for (breakpoint, _) in all.filter(|(breakpoint, hits)| breakpoint.is_on && hits.binary_search(&step).is_ok()) {
+        text += &format!("\nbreakpoint: {}", breakpoint.condition);
+    }
     let [loops, odd] = tracked.loops;
     let [segments, loops] =
         [(tracked.front.into(), "segment"), (loops.into(), "loop")].map(|(n, one)| words::counted(n, one));
@@ -256,13 +299,22 @@ impl Drawing<'_> {
             }
             tick += every;
         }
-        for step in &state.document().bookmarks {
-            let x = axis.x(*step as f64);
+        for mark in &state.document().bookmarks {
+            let x = axis.x(mark.step as f64);
             if axis.plot.x_range().contains(x) {
                 self.text(Pos2::new(x, top + 12.0), Align2::CENTER_TOP, icons::BOOKMARK, palette.text);
             }
         }
-        top + 24.0
+        // Breakpoints stand where they hold: one mark for all steps of a pixel.
+        for hits in stops(state) {
+            let mut rest = &hits[hits.partition_point(|step| (*step as f64) < axis.span[0])..];
+            while let Some(&step) = rest.first().filter(|step| **step as f64 <= axis.span[1]) {
+                let x = axis.x(step as f64);
+                self.painter.circle_filled(Pos2::new(x, top + 19.0), 2.2, ink(palette.strong));
+                rest = &rest[rest.partition_point(|step| axis.x(*step as f64) < x + 1.0)..];
+            }
+        }
+        top + RULER
     }
 
     fn label(&self, y: f32, name: &str, count: &str, colour: Rgba) {

@@ -121,7 +121,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         });
     });
     ui.menu_button("Help", |ui| {
-        items(ui, [Command::Help, Command::Palette, Command::Go(Goal::Step(0))], commands);
+        items(ui, [Command::Help, Command::Palette, Command::Messages, Command::Go(Goal::Step(0))], commands);
     });
 }
 

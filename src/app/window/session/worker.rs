@@ -252,10 +252,10 @@ impl Worker {
         Some((step, why))
     }
 
-    /// Counts how often the conditions hold in the recorded events.
+    /// Finds the steps of the recorded events at which the conditions hold.
     fn count(&self) {
         let log = self.history.log();
-        let mut hits = vec![0; self.conditions.len()];
+        let mut hits = vec![Vec::new(); self.conditions.len()];
         for step in (1..=log.known()).filter(|_| !self.conditions.is_empty()) {
             let Some(event) = log.event(step) else { continue };
             let moment = breakpoint::StepFacts {
@@ -266,7 +266,9 @@ impl Worker {
                 angles: log.angles(step),
             };
             for (hit, condition) in hits.iter_mut().zip(&self.conditions) {
-                *hit += usize::from(condition.holds(&moment));
+                if condition.holds(&moment) {
+                    hit.push(step);
+                }
             }
         }
         self.voice.say(SessionNews::Hits(hits));
@@ -352,7 +354,8 @@ impl Worker {
         let found = match &aim {
             Aim::Goals(goals) => {
                 let log = self.history.log();
-                goals.iter().try_fold(self.history.step(), |step, goal| goal.resolve(log, step, end))
+                let step = goals.iter().try_fold(self.history.step(), |step, goal| goal.resolve(log, step, end));
+                step.map(|step| (step, None))
             }
             Aim::Break(stops, direction) => match self.stop_at(stops, *direction) {
                 Ok(None) if end.is_some() || *direction == Direction::Back => {
@@ -362,34 +365,39 @@ impl Worker {
                 Err(fault) => return self.voice.say(SessionNews::Fault(fault, asks)),
             },
         };
-        let Some(step) = found else {
+        let Some((step, watched)) = found else {
             self.pending = Some(Pending { aim, asks, since });
             let words = "Converting: quad";
             return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
         };
         let moment = self.moment(step, since);
+        let has_arrived = moment.is_ok();
         self.report(moment.map(|moment| SessionNews::Moment(Arc::new(moment), asks)), asks);
+        if has_arrived && matches!(aim, Aim::Break(..)) {
+            self.voice.say(SessionNews::Stopped(watched));
+        }
     }
 
-    /// The nearest step at which a breakpoint is met or something that is watched is touched.
-    fn stop_at(&mut self, stops: &Stops, direction: Direction) -> Result<Option<u64>, Fault> {
+    /// The nearest step at which a breakpoint is met or something that is watched is touched, with the latter.
+    fn stop_at(&mut self, stops: &Stops, direction: Direction) -> Result<Option<(u64, Option<Watched>)>, Fault> {
         let mut found = Vec::new();
         if !stops.conditions.is_empty() {
             let met = match direction {
                 Direction::Forward => self.history.next_break(&stops.conditions)?,
                 Direction::Back => self.history.previous_break(&stops.conditions)?,
             };
-            found.extend(met.map(|met| met.0));
+            found.extend(met.map(|met| (met.0, None)));
         }
         for &watched in &stops.watched {
-            found.extend(match direction {
+            let touched = match direction {
                 Direction::Forward => self.history.next_touch(watched)?,
                 Direction::Back => self.history.last_touch(watched)?,
-            });
+            };
+            found.extend(touched.map(|step| (step, Some(watched))));
         }
         Ok(match direction {
-            Direction::Forward => found.into_iter().min(),
-            Direction::Back => found.into_iter().max(),
+            Direction::Forward => found.into_iter().min_by_key(|stop| stop.0),
+            Direction::Back => found.into_iter().max_by_key(|stop| stop.0),
         })
     }
 }

@@ -15,6 +15,7 @@ use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
+use crate::app::window::layout::Pane;
 use crate::app::window::lists::ListKind;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
@@ -22,7 +23,7 @@ use crate::app::window::words;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Condition, Edit, EditKind, Query, Watched};
+use crate::core::run::{Bookmark, Condition, Edit, EditKind, Query, Watched};
 use crate::render::scene::Outlined;
 
 impl State {
@@ -106,6 +107,11 @@ impl State {
                 }
             }),
             Command::Bookmark => self.bookmark(),
+            Command::WriteNote(step, note) => self.workspace.write_note(step, note),
+            Command::RemoveBookmark(step) => {
+                self.change(|document| document.bookmarks.retain(|mark| mark.step != step))
+            }
+            Command::ExportNotes => self.export_notes(),
             Command::Open(source) => self.open(source, Overrides::default()),
             Command::OpenWith(source, overrides) => self.open(source, *overrides),
             Command::Import => match &self.run.source {
@@ -140,8 +146,12 @@ impl State {
                     self.view.faults.remove(k);
                 }
             }
+            Command::Messages => self.view.messages = !self.view.messages,
             Command::Screenshot => self.frame.screenshot = true,
             Command::Figures => self.view.figure_panel = !self.view.figure_panel,
+            Command::ChooseFolder => {
+                self.run.folder_dialog.get_or_insert_with(|| Dialog::choose_folder(self.wake.clone()));
+            }
             Command::SetFigure(form) => self.workspace.figure = *form,
             Command::Export => self.save_figure(Formats::Both),
             Command::SaveFigure(formats) => self.save_figure(formats),
@@ -236,15 +246,27 @@ impl State {
 
     /// Shows a fault until the user closes it.
     pub(in crate::app::window) fn complain(&mut self, fault: &Fault) {
-        let text = fault.to_string();
-        if !self.view.faults.contains(&text) {
-            self.view.faults.push(text);
-        }
+        self.warn(fault.to_string());
+    }
+
+    /// Shows what went wrong until the user closes it.
+    fn warn(&mut self, text: String) {
+        self.view.log.keep(text.clone(), true, self.step());
+        // The latest one is shown.
+        self.view.notice = None;
+        self.view.faults.retain(|old| *old != text);
+        self.view.faults.push(text);
     }
 
     /// Shows for a while what was done.
     pub(in crate::app::window) fn notice(&mut self, text: String) {
+        self.view.log.keep(text.clone(), false, self.step());
         self.view.notice = Some((text, Instant::now()));
+    }
+
+    /// The step that is shown.
+    fn step(&self) -> Option<u64> {
+        self.run.moment.as_ref().map(|moment| moment.step)
     }
 
     /// Asks the session to go somewhere.
@@ -261,7 +283,7 @@ impl State {
     }
 
     /// Changes the document, so that undo takes it back.
-    fn change(&mut self, change: impl FnOnce(&mut Document)) {
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut Document)) {
         if let Some(before) = self.workspace.change(change) {
             self.follow(&before);
         }
@@ -285,13 +307,10 @@ impl State {
         if document.layers != before.layers || document.colour_by != before.colour_by {
             self.view.style_epoch += 1;
         }
-        if document.breakpoints != before.breakpoints
-            && let Some(session) = &self.run.session
-        {
-            // Switched off, a breakpoint keeps its count.
-            let all = document.breakpoints.iter().filter_map(|b| Condition::parse(&b.condition).ok());
-            session.ask(Ask::Count(all.collect()));
+        if document.breakpoints != before.breakpoints {
+            self.count_breakpoints();
         }
+        let document = &self.workspace.document;
         if document.picked != before.picked {
             self.view.scroll.ask(document.picked);
         }
@@ -299,6 +318,14 @@ impl State {
         if document.edits != before.edits {
             self.run.recorded = false;
             self.ask(Ask::Edits(document.edits.clone()));
+        }
+    }
+
+    /// Has the session find where the breakpoints hold; switched off, one keeps its count.
+    pub(super) fn count_breakpoints(&self) {
+        let all = self.document().breakpoints.iter().filter_map(|b| Condition::parse(&b.condition).ok());
+        if let Some(session) = &self.run.session {
+            session.ask(Ask::Count(all.collect()));
         }
     }
 
@@ -342,9 +369,13 @@ impl State {
     /// Sets a bookmark at the current step, or removes it.
     fn bookmark(&mut self) {
         let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
-        self.change(|document| match document.bookmarks.binary_search(&step) {
+        let is_new = self.document().bookmarks.iter().all(|mark| mark.step != step);
+        if is_new {
+            self.view.reveal.ask(Some(Pane::Bookmarks));
+        }
+        self.change(|document| match document.bookmarks.binary_search_by_key(&step, |mark| mark.step) {
             Ok(k) => drop(document.bookmarks.remove(k)),
-            Err(k) => document.bookmarks.insert(k, step),
+            Err(k) => document.bookmarks.insert(k, Bookmark { step, note: String::new() }),
         });
     }
 
@@ -388,9 +419,9 @@ impl State {
             self.view.overlay = Overlay::Nothing;
         } else if self.run.import.is_some() {
             self.cancel_import();
-        } else if self.view.figure_panel || self.view.notes {
+        } else if self.view.figure_panel || self.view.notes || self.view.messages {
             // What lies over the views is closed before what is selected behind it is let go.
-            (self.view.figure_panel, self.view.notes) = (false, false);
+            (self.view.figure_panel, self.view.notes, self.view.messages) = (false, false, false);
         } else if self.run.playing.is_some() {
             self.run.playing = None;
         } else {

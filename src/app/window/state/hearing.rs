@@ -3,6 +3,7 @@
 mod files;
 mod opening;
 mod pair;
+mod stopping;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -74,6 +75,12 @@ impl State {
             SessionNews::Progress(progress) => run.progress = Some(progress),
             SessionNews::Opened(opened) => run.opened = Some(opened),
             SessionNews::Moment(moment, asks) => self.arrive(moment, asks),
+            SessionNews::Stopped(watched) => {
+                let subject = run.moment.as_ref().and_then(|moment| stopping::subject(moment, watched));
+                if subject.is_some() {
+                    self.change(|document| document.picked = subject);
+                }
+            }
             SessionNews::Track { from, steps, samples, born, end } => {
                 run.track.truncate(from as usize);
                 run.track.extend(steps);

@@ -82,8 +82,8 @@ pub struct RunState {
     pub track_epoch: u64,
     /// Whether all steps have been recorded.
     pub recorded: bool,
-    /// How often each breakpoint is met.
-    pub hits: Vec<usize>,
+    /// The steps at which each breakpoint is met, in order.
+    pub hits: Vec<Vec<u64>>,
     /// Since when the session owes an answer.
     pub since: Option<Instant>,
     pub progress: Option<Progress>,
@@ -124,6 +124,8 @@ pub struct RunState {
     pub(super) find_at: Option<(u64, Outlined)>,
     /// The file dialog, while it is open.
     pub(super) dialog: Option<Dialog>,
+    /// The dialog for the folder of figures, while it is open.
+    pub(super) folder_dialog: Option<Dialog>,
     /// Figures and meshes that are being written.
     pub(super) figures: Vec<Writing>,
     pub(super) meshes: Vec<Writing>,
@@ -142,7 +144,7 @@ impl RunState {
 
     /// Whether a file dialog is open.
     pub fn is_asking_for_file(&self) -> bool {
-        self.dialog.is_some()
+        self.dialog.is_some() || self.folder_dialog.is_some()
     }
 
     /// Whether a figure is being made.

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
+use super::log::MessageLog;
 use crate::app::window::layout::Pane;
 use crate::core::run::run;
 use crate::render::camera::{Bearing, Camera};
@@ -38,8 +39,11 @@ pub struct ViewState {
     pub notes: bool,
     /// Whether the panel for figures is shown.
     pub figure_panel: bool,
+    /// Whether the log of messages is shown.
+    pub messages: bool,
     /// Whether the status line tells how long states and frames take.
     pub times: bool,
+    pub log: MessageLog,
     /// What went wrong; each message stays until it is closed.
     pub faults: Vec<String>,
     /// What was done last, and when.

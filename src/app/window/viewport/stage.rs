@@ -88,6 +88,7 @@ impl Stage {
                 front: &moment.front,
                 changed: &moment.changed,
                 decision: Decision::of(&moment.phase),
+                is_coloured: state.document().colour_by != ColourBy::State,
                 refused: &refused(moment).iter().map(|candidate| candidate.ends).collect::<Vec<_>>(),
                 picked: state.document().picked,
                 hovered: state.frame().hovered,

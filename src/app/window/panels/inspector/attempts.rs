@@ -3,7 +3,7 @@
 use eframe::egui::{CollapsingHeader, Role, Ui, WidgetInfo};
 
 use super::past::step_link;
-use super::{heading, line, sentence};
+use super::{line, section, sentence};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::words;
@@ -12,7 +12,9 @@ use crate::render::palette::Palette;
 
 pub fn show(ui: &mut Ui, moment: &Moment, commands: &mut Vec<Command>, palette: &Palette) {
     let count = words::counted(moment.attempts.len() as u64, "attempt");
-    heading(ui, "Attempts at this quadrilateral", &count, palette);
+    if !section(ui, "Attempts at this quadrilateral", &count, palette) {
+        return;
+    }
     let last = moment.attempts.len().saturating_sub(1);
     for (k, tried) in moment.attempts.iter().enumerate() {
         let name = format!("Attempt {}: {}", u32::from(tried.attempt.number) + 1, explain::attempt(&tried.attempt));

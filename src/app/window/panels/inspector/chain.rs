@@ -2,7 +2,7 @@
 
 use eframe::egui::{CursorIcon, Label, RichText, Role, Sense, Ui, WidgetInfo};
 
-use super::{heading, note, sentence};
+use super::{note, section, sentence};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::{Lookup, State};
@@ -18,7 +18,9 @@ pub fn show(ui: &mut Ui, state: &State, element: ElementId, commands: &mut Vec<C
         Lookup::Pending => return,
         Lookup::Unasked => return commands.push(Command::TellChain(element)),
     };
-    heading(ui, "Decision chain", "up to this step", palette);
+    if !section(ui, "Decision chain", "up to this step", palette) {
+        return;
+    }
     let Some(chain) = &told.chain else {
         ui.label(note("It is part of the background mesh.", palette));
         return;
@@ -71,7 +73,7 @@ fn step(
             ui.label(note(text, palette));
         }
         if is_costliest {
-            let text = RichText::new("largest loss").font(theme::medium(theme::TABLE)).color(ink(palette.strong));
+            let text = RichText::new("lost most").font(theme::medium(theme::TABLE)).color(ink(palette.strong));
             ui.label(text.background_color(ink(palette.button)))
                 .on_hover_text("Of all these steps, this one cost the quadrilateral most quality");
         }
