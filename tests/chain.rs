@@ -164,7 +164,7 @@ fn the_attempts_of_a_state_are_those_of_the_raw_events_since_its_base() {
         } else {
             expected.clear();
         }
-        if expected.len() < 2 || step % 3 > 0 {
+        if expected.len() < 2 || !step.is_multiple_of(3) {
             continue;
         }
         history.seek(step).unwrap();
