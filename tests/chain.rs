@@ -7,7 +7,7 @@ use quadfront::core::case::built_in;
 use quadfront::core::convert::{Converter, Event, EventKind, Phase};
 use quadfront::core::mesh::ElementId;
 use quadfront::core::progress::Nobody;
-use quadfront::core::run::{History, Run, Selecting};
+use quadfront::core::run::{History, Run, Selecting, explain};
 
 /// What a quadrilateral looks like: its nodes with the bits of their positions.
 type Look = Vec<(u32, [u64; 2])>;
@@ -137,4 +137,48 @@ fn a_triangle_has_no_chain() {
     let triangle = history.state().mesh.elements().find(|e| history.state().mesh.is_triangle(*e)).unwrap();
     assert_eq!(history.chain(triangle).unwrap(), None);
     assert_eq!(history.chain(ElementId(1_000_000)).unwrap(), None);
+}
+
+#[test]
+fn the_attempts_of_a_state_are_those_of_the_raw_events_since_its_base() {
+    let mut run = Run::of(built_in::named("example1").unwrap().unwrap());
+    run.parameters.size_scale = 2.0;
+    let background = run.background(&mut Nobody).unwrap();
+    let mut history = History::open(run.clone(), &mut Nobody).unwrap();
+    history.seek(u64::MAX).unwrap();
+    let mut state = run.start(&background).unwrap();
+    // What has been tried since the last base: the attempts as the phases have them, with the steps of each.
+    let mut expected = Vec::new();
+    let (mut seen, mut most) = (0, 0);
+    while *state.phase() != Phase::Done {
+        let event = state.step().unwrap();
+        let step = state.counts.steps;
+        if event.kind() == EventKind::BaseSelected {
+            expected = vec![(state.phase().attempt().copied().unwrap(), Vec::new())];
+        } else if state.phase().base().is_some() {
+            let last = expected.len() - 1;
+            expected[last].1.push((step, event));
+            if event.kind() == EventKind::RolledBack {
+                expected.extend(state.phase().attempt().map(|attempt| (*attempt, Vec::new())));
+            }
+        } else {
+            expected.clear();
+        }
+        if expected.len() < 2 || !step.is_multiple_of(3) {
+            continue;
+        }
+        history.seek(step).unwrap();
+        let found = history.attempts().unwrap();
+        let told: Vec<_> =
+            found.iter().map(|t| (t.attempt.number, t.attempt.divide, t.attempt.tops, &t.steps)).collect();
+        let known: Vec<_> = expected.iter().map(|(a, steps)| (a.number, a.divide, a.tops, steps)).collect();
+        assert_eq!(told, known, "step {step}");
+        for (k, tried) in found.iter().enumerate() {
+            assert_eq!(tried.failed().is_some(), k + 1 < found.len() || state.phase().attempt().is_none());
+            let is_plain = explain::attempt(&tried.attempt) == "sides by the rules";
+            assert_eq!(is_plain, tried.attempt.number == 0, "step {step}");
+        }
+        (seen, most) = (seen + 1, most.max(found.len()));
+    }
+    assert!(seen > 10 && most > 3, "{seen} {most}");
 }

@@ -9,9 +9,10 @@ mod window_harness;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
-use quadfront::app::window::{App, Command, Goal, Source};
-use quadfront::core::convert::Event;
-use quadfront::core::mesh::{ElementId, Mesh};
+use quadfront::app::window::{App, Command, Direction, Goal, Source};
+use quadfront::core::convert::{Event, EventKind};
+use quadfront::core::kernel::number::grouped;
+use quadfront::core::mesh::{ElementId, Mesh, NodeId};
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -168,6 +169,7 @@ fn three_actions_lead_from_a_cold_start_to_the_decision_that_made_the_worst_quad
     // Its last quality is the one that it has, and one step cost most.
     assert!(window.query_all_by_label_contains(&format!("\u{2192} {quality:.2}")).next().is_some());
     window.get_by_label("lost most");
+    assert!(window.query_by_label_contains("Largest loss: step ").is_some());
     let links: Vec<String> = window.get_all_by_label_contains("Chain, step ").map(|node| label(&node)).collect();
     assert!(links.len() > 3 && links.is_sorted_by_key(|label| step_of(label)), "{links:?}");
     assert!(links[0].contains("base selected"), "{links:?}");
@@ -177,4 +179,73 @@ fn three_actions_lead_from_a_cold_start_to_the_decision_that_made_the_worst_quad
     let moment = window.state().state.run().moment.as_ref().unwrap();
     assert_eq!(moment.step, step_of(&links[0]));
     assert!(matches!(moment.event, Some(Event::BaseSelected { .. })));
+}
+
+/// Opens the field and enters a text.
+fn look_for(window: &mut Window, text: &str) {
+    window.key_press_modifiers(Modifiers::COMMAND, Key::F);
+    window.run_steps(3);
+    type_over(window, "Number or coordinates", text);
+    settle(window);
+}
+
+#[test]
+fn what_is_looked_for_by_number_is_selected_and_framed_and_what_is_gone_is_found_where_it_was() {
+    let Some(mut window) = at_the_end("Nodes") else { return };
+    let quad = mesh(&window).elements().nth(60).unwrap();
+    look_for(&mut window, &format!("quad {}", quad.0));
+    assert_eq!(picked(&window), Some(Outlined::Element(quad)));
+    assert!(window.query_by_label("Number or coordinates").is_none(), "the field is closed");
+    let [a, b] = mesh(&window).ends(mesh(&window).edges().nth(40).unwrap());
+    look_for(&mut window, &format!("edge {}-{}", b.0, a.0));
+    assert_eq!(picked(&window), Some(Outlined::Edge([b, a])));
+    let p = mesh(&window).centroid(quad);
+    look_for(&mut window, &format!("{} {}", p.x, p.y));
+    assert_eq!(picked(&window), Some(Outlined::Element(quad)));
+    look_for(&mut window, "step 40");
+    assert_eq!(window.state().state.run().moment.as_ref().unwrap().step, 40);
+    // A node of the background mesh that the run removes.
+    let before: Vec<NodeId> = mesh(&window).nodes().collect();
+    apply(&mut window, Command::Go(Goal::End));
+    let gone = before.into_iter().find(|n| !mesh(&window).has_node(*n)).unwrap();
+    look_for(&mut window, &format!("node {}", gone.0));
+    window.get_by_label(&format!("Node {} does not exist at this step.", gone.0));
+    until(&mut window, "the step is known", |window| {
+        window.query_by_label_contains("removed it: go to the step before").is_some()
+    });
+    window.get_by_label_contains("removed it: go to the step before").click();
+    settle(&mut window);
+    assert!(mesh(&window).has_node(gone));
+    assert_eq!(picked(&window), Some(Outlined::Node(gone)));
+    apply(&mut window, Command::Go(Goal::Steps(1)));
+    assert!(!mesh(&window).has_node(gone), "the next step removes it");
+    // A quadrilateral that is still to come.
+    apply(&mut window, Command::Go(Goal::Step(0)));
+    look_for(&mut window, &format!("quad {}", quad.0));
+    window.get_by_label_contains("makes it: go there").click();
+    settle(&mut window);
+    assert!(mesh(&window).is_quad(quad));
+    look_for(&mut window, "lamp 12");
+    assert!(window.state().state.view().faults[0].contains("quad 467"));
+}
+
+#[test]
+fn attempts_that_were_taken_back_are_a_tree_with_links_and_reasons() {
+    let Some(mut window) = at_the_end("Front") else { return };
+    let run = |window: &Window| window.state().state.run().moment.clone().unwrap();
+    apply(&mut window, Command::Go(Goal::Step(0)));
+    let back = Goal::Kind(EventKind::RolledBack, Direction::Forward);
+    while run(&window).attempts.len() < 3 {
+        apply(&mut window, Command::Go(back));
+    }
+    window.get_by_label("Attempt 1: sides by the rules");
+    assert!(window.query_all_by_label_contains("Taken back: ").count() >= 2);
+    // The first one is folded; its steps are links.
+    let first = run(&window).attempts[0].steps[0].0;
+    window.get_by_label("Attempt 1: sides by the rules").click_accesskit();
+    window.run_steps(30);
+    let link = format!("step {}  ", grouped(first));
+    window.get_all_by_label_contains(&link).next().unwrap().click_accesskit();
+    settle(&mut window);
+    assert_eq!(run(&window).step, first);
 }

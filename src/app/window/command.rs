@@ -1,8 +1,11 @@
 //! Everything that can be done in the window, as a value: menus, keys, panels, the palette and tests all use it.
 
 mod name;
+mod rules;
 
 use eframe::egui::{Key, Modifiers};
+
+pub use rules::Rules;
 
 use super::figures::{FigureForm, Formats};
 use super::import::{Gesture, ImportOptions};
@@ -13,9 +16,8 @@ use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::sweep::SweepCommand;
 use super::view_layer::ViewLayer;
 use crate::app::command_line::Overrides;
-use crate::core::case::{Parameters, built_in};
+use crate::core::case::built_in;
 use crate::core::convert::EventKind;
-use crate::core::kernel::worded::worded;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::{Query, Watched};
 use crate::render::camera::Bearing;
@@ -26,7 +28,7 @@ use crate::render::scene::{ColourBy, Outlined};
 pub enum Command {
     /// Go to another step.
     Go(Goal),
-    /// Go where a text says: a step, or nq=N.
+    /// Go where a text says: to a step, or to something by number or coordinates.
     GoToText(String),
     /// Go to the next breakpoint, or to the one before.
     ToBreakpoint(Direction),
@@ -132,6 +134,10 @@ pub enum Command {
     OpenPath,
     /// Show the field for a step or a number of quadrilaterals.
     GoTo,
+    /// Show the field for what is looked for by number or coordinates.
+    FindField,
+    /// Go to a step, and select something there and bring it into view.
+    FindAt(u64, Outlined),
     /// Save a picture of the window.
     Screenshot,
     /// Save a figure of the state, as the panel for figures says.
@@ -188,27 +194,6 @@ pub enum Command {
     Pair(PairCommand),
 }
 
-worded! {
-    /// Values of all parameters at once.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Rules by name {
-        /// As `--paper` sets them.
-        Paper = "Paper",
-        /// The defaults of the program.
-        Default = "Default",
-    }
-}
-
-impl Rules {
-    /// The parameters; those that belong to a case have no meaning.
-    pub fn parameters(self) -> Parameters {
-        match self {
-            Rules::Paper => Parameters::paper(),
-            Rules::Default => Parameters::default(),
-        }
-    }
-}
-
 /// Kinds of events that one can go to.
 pub const KINDS: [EventKind; 13] = [
     EventKind::BaseSelected,
@@ -246,6 +231,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (SHIFT, Key::ArrowLeft, Command::Go(Goal::Quads(-10))),
         (Modifiers::ALT, Key::F5, Command::ToBreakpoint(Direction::Back)),
         (CTRL, Key::G, Command::GoTo),
+        (CTRL, Key::F, Command::FindField),
         (CTRL, Key::P, Command::Palette),
         (CTRL, Key::Z, Command::Undo),
         (CTRL, Key::Y, Command::Redo),

@@ -4,6 +4,7 @@
 mod corners;
 mod far_base;
 mod measures;
+mod refused;
 
 use std::collections::BTreeMap;
 
@@ -14,7 +15,7 @@ pub use measures::shading;
 use super::session::Moment;
 use super::state::State;
 use super::theme::{self, ink};
-use super::viewport::{ViewFrame, class_colour};
+use super::viewport::{ViewFrame, class_colour, refused};
 use super::words;
 use crate::core::front::Segment;
 use crate::core::mesh::NodeId;
@@ -112,6 +113,9 @@ pub fn show(
     }
     if state.document().layers.labels && which != ViewRole::Whole {
         over.base(&decision, which);
+    }
+    if which != ViewRole::Whole {
+        over.refused();
     }
     if state.document().layers.arcs && !small {
         over.wedges_and_arcs(&decision, which);
@@ -250,6 +254,8 @@ impl Labels<'_> {
                 Outlined::Element(e) if self.moment.mesh.is_quad(e) => format!("quadrilateral {}", e.0),
                 Outlined::Element(e) => format!("triangle {}", e.0),
             };
+            let why = refused(self.moment).into_iter().find(|candidate| candidate.is(what));
+            let text = why.map_or(text.clone(), |candidate| format!("{text}  ·  {}", candidate.reason));
             let font = if strong { theme::semibold(12.5) } else { theme::regular(12.0) };
             let Some(at) = self.on_screen(self.lifted(p)) else { continue };
             let at = at + Vec2::new(0.0, -16.0);

@@ -46,6 +46,8 @@ pub enum Ask {
     Past(Watched),
     /// Report the decision chain of a quadrilateral.
     Chain(ElementId),
+    /// Report the step that ended something.
+    Ended(Watched),
     /// Count how often conditions hold.
     Count(Vec<Condition>),
     /// Report why a segment of the front was or was not chosen.
@@ -81,6 +83,8 @@ pub enum SessionNews {
     Past(Arc<Past>),
     /// The decision chain of a quadrilateral.
     Chain(Arc<ToldChain>),
+    /// The step that ended something, seen from a step.
+    Ended(u64, Watched, Option<u64>),
     /// The steps of the recorded part of the run at which each condition holds.
     Hits(Vec<Vec<u64>>),
     /// Why a segment of the front was or was not chosen, at a step.

@@ -14,7 +14,7 @@ mod hearing;
 
 pub use pair::Pair;
 use run_state::Opening;
-pub use run_state::{Lookup, Progress, RunState};
+pub use run_state::{Lookup, Missing, Progress, RunState};
 pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState};
 pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint, Workspace};
 
@@ -162,5 +162,14 @@ pub fn watched(what: Outlined) -> Watched {
         Outlined::Node(node) => Watched::Node(node),
         Outlined::Edge([a, b]) => Watched::Edge(a.min(b), a.max(b)),
         Outlined::Element(element) => Watched::Element(element),
+    }
+}
+
+/// Something that is watched or found, as the views know it.
+pub fn outlined(watched: Watched) -> Outlined {
+    match watched {
+        Watched::Node(node) => Outlined::Node(node),
+        Watched::Edge(a, b) => Outlined::Edge([a, b]),
+        Watched::Element(element) => Outlined::Element(element),
     }
 }

@@ -3,6 +3,7 @@
 mod cameras;
 mod faces;
 mod given;
+mod refused;
 pub mod pair;
 mod space;
 mod stage;
@@ -17,6 +18,7 @@ use glam::{DVec2, DVec3};
 
 use cameras::{aim, metric_lens, other_end, steer};
 pub use cameras::{lens_node, middle};
+pub use refused::refused;
 
 use super::command::Command;
 use super::labels;

@@ -13,7 +13,7 @@ mod side;
 mod event;
 mod next;
 
-pub use event::{about, event, why_rolled_back};
+pub use event::{about, attempt, event, why_rolled_back};
 pub use next::next;
 pub use numbers::{angles_apart, apart, capital, edge, plain, segment};
 pub use segment::{SegmentFacts, Verdict};

@@ -14,6 +14,8 @@
 //! | the step that made each quadrilateral, without a history | [`Births`] |
 //! | elements and nodes with their measures, filtered and sorted | [`ElementTable`], [`NodeTable`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`Watched`] |
+//! | what a person looks for by number or coordinates | [`Sought`] |
+//! | the attempts at the quadrilateral under way | [`Tried`] |
 //! | the decision chain of a quadrilateral | [`Chain`] |
 //! | why a segment is chosen, what a node is | [`Selecting`], [`SegmentFacts`], [`NodeFacts`], [`FrontTable`] |
 //! | what a step did and looked at, by which rule, and what comes next, in words | [`explain`] |
@@ -38,12 +40,15 @@ mod worst_quality;
 pub mod breakpoint;
 mod watch;
 mod chain;
+mod attempts;
+mod find;
 pub mod front_table;
 pub mod explain;
 mod listing;
 mod element_table;
 mod node_table;
 
+pub use attempts::Tried;
 pub use births::{Births, Born};
 pub use breakpoint::Condition;
 pub use chain::{Chain, Link};
@@ -52,6 +57,7 @@ pub use element_table::{ElementRow, ElementTable};
 pub use explain::{
     Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, SelectedBase, Selecting, Verdict,
 };
+pub use find::Sought;
 pub use front_count::FrontCount;
 pub use front_table::FrontTable;
 pub use history::{Changes, History};

@@ -176,6 +176,15 @@ impl History {
         self.last_turn(Watched::Element(element), self.step(), &|a, b| !a.is_quad() && b.is_quad())
     }
 
+    /// The last step up to the current state after which it no longer existed.
+    ///
+    /// # Errors
+    /// A step of the replay failed.
+    pub fn ended(&self, watched: Watched) -> Result<Option<u64>, Fault> {
+        let gone = Appearance::Absent;
+        self.last_turn(watched, self.step(), &|before, after| *before != gone && *after == gone)
+    }
+
     /// The step up to the current state that killed an edge: since then it is no longer live on both sides.
     ///
     /// # Errors

@@ -69,6 +69,8 @@ impl Command {
             Command::CancelImport => "Cancel".into(),
             Command::OpenDialog => "Open with a dialog…".into(),
             Command::OpenPath => "Open by path…".into(),
+            Command::FindField => "Find by number or coordinates…".into(),
+            Command::FindAt(step, what) => format!("Find {} at step {step}", words::thing(*what)),
             Command::GoTo => "Go to a step or NQ…".into(),
             Command::Screenshot => "Save a picture of the window".into(),
             Command::Export => "Save a figure of this state".into(),

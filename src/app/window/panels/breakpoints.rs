@@ -5,13 +5,11 @@ use eframe::egui::{self, Align, Label, Layout, RichText, Role, ScrollArea, Sense
 use super::condition_field::ConditionField;
 use super::{icon_button, inset, note, on_click};
 use crate::app::window::command::Command;
-use crate::app::window::state::State;
+use crate::app::window::state::{State, outlined};
 use crate::app::window::theme;
 use crate::app::window::{icons, words};
-use crate::core::run::Watched;
 use crate::core::run::breakpoint::FIELDS;
 use crate::render::palette::Palette;
-use crate::render::scene::Outlined;
 
 /// What the panel keeps for itself.
 #[derive(Default)]
@@ -59,15 +57,6 @@ fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: 
                 }
             });
         });
-    }
-}
-
-/// Something that is watched, as the views know it.
-pub fn outlined(watched: Watched) -> Outlined {
-    match watched {
-        Watched::Node(node) => Outlined::Node(node),
-        Watched::Edge(a, b) => Outlined::Edge([a, b]),
-        Watched::Element(element) => Outlined::Element(element),
     }
 }
 

@@ -2,13 +2,15 @@
 
 use eframe::egui::{self, Align2, Area, Button, Context, Key, Label, Order, RichText, ScrollArea, TextEdit, Ui, Vec2};
 
+use super::on_click;
 use crate::app::window::command::{Command, keys};
 use crate::app::window::mesh_out;
 use crate::app::window::pair::PairCommand;
 use crate::app::window::session::Source;
-use crate::app::window::state::{Overlay, State};
+use crate::app::window::state::{Overlay, State, outlined};
 use crate::app::window::sweep::{SweepCommand, SweepWork};
 use crate::app::window::theme::{self, ink};
+use crate::app::window::words;
 use crate::core::formats::Format;
 use crate::render::palette::Palette;
 
@@ -51,6 +53,14 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
                     if field(ui, &mut local.field, "A step such as 812, or nq=100", "Step or NQ") {
                         commands.push(Command::GoToText(local.field.clone()));
                     }
+                    missing(ui, state.active(), &local.field, commands, palette);
+                }
+                Overlay::Find => {
+                    let hint = "quad 467, node 12, edge 12-40, segment 104-105, .5 .3, step 812 or nq 100";
+                    if field(ui, &mut local.field, hint, "Number or coordinates") {
+                        commands.push(Command::GoToText(local.field.clone()));
+                    }
+                    missing(ui, state.active(), &local.field, commands, palette);
                 }
                 Overlay::Path => {
                     let hint = "The path of a case (.toml) or a mesh, or the name of a built-in case";
@@ -103,6 +113,21 @@ fn field(ui: &mut Ui, text: &mut String, hint: &str, name: &str) -> bool {
         response.request_focus();
     }
     entered
+}
+
+/// Why what was looked for is not there, and where it is.
+fn missing(ui: &mut Ui, state: &State, text: &str, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(missing) = state.run().missing.as_ref().filter(|missing| missing.text == text) else { return };
+    ui.add_space(4.0);
+    ui.add(Label::new(RichText::new(&missing.why).color(ink(palette.text))).wrap());
+    let Some(what) = missing.sought.named().map(outlined) else { return };
+    let ended = missing
+        .ended
+        .map(|step| (step - 1, format!("Step {} removed it: go to the step before", words::grouped(step))));
+    let begins = missing.begins.map(|step| (step, format!("Step {} makes it: go there", words::grouped(step))));
+    for (step, text) in ended.into_iter().chain(begins) {
+        on_click(&ui.button(text), Command::FindAt(step, what), commands);
+    }
 }
 
 /// What is saved, in which format and where.

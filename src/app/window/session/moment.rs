@@ -8,7 +8,7 @@ use crate::core::convert::{Candidates, Event, Narrow, Phase};
 use crate::core::front::Segment;
 use crate::core::mesh::{ElementId, Mesh};
 use crate::core::run::front_table::{Loop, Row};
-use crate::core::run::{Changes, SegmentFacts, Selecting};
+use crate::core::run::{Changes, SegmentFacts, Selecting, Tried};
 
 /// Whether the invariants hold.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -54,6 +54,8 @@ pub struct Moment {
     pub base: Option<SegmentFacts>,
     /// The steps since the selection of the base under way, this one included.
     pub so_far: Vec<(u64, Event)>,
+    /// The attempts at it, where one was taken back.
+    pub attempts: Vec<Tried>,
     /// What comes next.
     pub next: String,
     /// Whether the invariants hold.

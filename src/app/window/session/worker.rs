@@ -143,6 +143,11 @@ impl Worker {
                 Ask::Made(element) => self.go_back(self.history.made(element), "It exists from the beginning."),
                 Ask::Past(watched) => self.past(watched),
                 Ask::Chain(element) => self.chain(element),
+                Ask::Ended(watched) => {
+                    let step = self.history.step();
+                    let ended = self.history.ended(watched);
+                    self.report(ended.map(|ended| SessionNews::Ended(step, watched, ended)), 0);
+                }
                 Ask::Count(conditions) => {
                     self.conditions = conditions;
                     self.count();

@@ -1,5 +1,6 @@
 //! Does what the user asks for. With `hearing` this is the only place that changes [`State`].
 
+mod finding;
 mod opening;
 mod pair;
 mod parameters;
@@ -68,10 +69,8 @@ impl State {
             Command::List(kind, query) => self.list(kind, query, false),
             Command::CopyList(kind, query) => self.list(kind, query, true),
             Command::Find(what) => self.find(what),
-            Command::FindWorst => match self.run.moment.as_ref().and_then(|moment| moment.worst) {
-                Some((e, _)) => self.find(Outlined::Element(e)),
-                None => self.notice("There is no quadrilateral yet.".to_owned()),
-            },
+            Command::FindWorst => self.find_worst(),
+            Command::FindAt(step, what) => self.find_at(step, what),
             Command::Watch(what) => self.watch(watched(what)),
             Command::SwitchWatch(k) => {
                 self.change(|document| flip(document.watches.get_mut(k).map(|watch| &mut watch.is_on)));
@@ -139,6 +138,7 @@ impl State {
             }
             Command::OpenPath => self.toggle(Overlay::Path),
             Command::GoTo => self.toggle(Overlay::GoTo),
+            Command::FindField => self.toggle(Overlay::Find),
             Command::Palette => self.toggle(Overlay::Palette),
             Command::Help => self.toggle(Overlay::Help),
             Command::CloseOverlay => self.view.overlay = Overlay::Nothing,
@@ -388,12 +388,6 @@ impl State {
         Some(moment.step)
     }
 
-    /// Selects something and brings it into view.
-    fn find(&mut self, what: Outlined) {
-        self.change(|document| document.picked = Some(what));
-        self.view.look.ask(Look::Near(what));
-    }
-
     /// Has a list of the current state made.
     fn list(&mut self, kind: ListKind, query: Query, as_text: bool) {
         let Some(moment) = &self.run.moment else { return };
@@ -443,25 +437,6 @@ impl State {
         self.stop_opening();
         if let Some(session) = &self.run.session {
             session.stop();
-        }
-    }
-
-    /// Goes where a text says: to a step, or to nq=N.
-    fn go_to_text(&mut self, text: &str) {
-        let short = text.trim().replace(['\u{2009}', ' '], "");
-        let goal = match short.to_lowercase().strip_prefix("nq=") {
-            Some(quads) => quads.parse().map(Goal::ToQuads),
-            None => short.trim_start_matches("step=").parse().map(Goal::Step),
-        };
-        match goal {
-            Ok(goal) => {
-                self.view.overlay = Overlay::Nothing;
-                self.go(goal);
-            }
-            Err(_) => {
-                let fault = Fault::new(format!("\"{text}\" is not a step"));
-                self.complain(&fault.remedy("Write a step such as 812, or nq=100"));
-            }
         }
     }
 }

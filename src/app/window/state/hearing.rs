@@ -101,6 +101,12 @@ impl State {
                 }
             }
             SessionNews::Past(past) => run.past = Some(past),
+            SessionNews::Ended(step, watched, ended) => {
+                let missing = run.missing.as_mut();
+                if let Some(missing) = missing.filter(|m| (m.step, m.sought.named()) == (step, Some(watched))) {
+                    missing.ended = ended;
+                }
+            }
             SessionNews::Chain(told) => run.chain = Some(told),
             SessionNews::Hits(hits) => run.hits = hits,
             SessionNews::Explained(step, told) => run.explained = Some((step, told)),
@@ -136,6 +142,9 @@ impl State {
         self.view.lit.clear();
         self.view.over_epoch += 1;
         self.answered(asks);
+        if let Some(what) = self.run.find_at.take_if(|at| at.0 == moment.step).map(|at| at.1) {
+            self.find(what);
+        }
         self.compare(&moment);
     }
 

@@ -13,7 +13,8 @@ use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Sour
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
-use crate::core::run::{Born, Sample, ShownState, Watched};
+use crate::core::run::{Born, Sample, ShownState, Sought, Watched};
+use crate::render::scene::Outlined;
 
 /// How far some work is.
 #[derive(Clone, Debug)]
@@ -31,6 +32,22 @@ pub enum Lookup<T> {
     Pending,
     /// Nobody has asked yet.
     Unasked,
+}
+
+/// Something that was looked for and is not there.
+#[derive(Clone, Debug)]
+pub struct Missing {
+    /// As it was written.
+    pub text: String,
+    pub sought: Sought,
+    /// The step at which it was looked for.
+    pub step: u64,
+    /// Why it is not there, a sentence.
+    pub why: String,
+    /// The step that ended it, once it is known.
+    pub ended: Option<u64>,
+    /// The next step that makes it, as far as the run is recorded.
+    pub begins: Option<u64>,
 }
 
 /// What is being opened.
@@ -101,6 +118,10 @@ pub struct RunState {
     /// The decision chain of the selected quadrilateral; and the question asked last.
     pub(super) chain: Option<Arc<ToldChain>>,
     pub(super) asked_chain: Option<(u64, ElementId)>,
+    /// What was looked for last, where it is not in the current state.
+    pub missing: Option<Missing>,
+    /// What is to be found when the run gets to a step.
+    pub(super) find_at: Option<(u64, Outlined)>,
     /// The file dialog, while it is open.
     pub(super) dialog: Option<Dialog>,
     /// The dialog for the folder of figures, while it is open.

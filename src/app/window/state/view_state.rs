@@ -109,6 +109,7 @@ pub enum Overlay {
     Palette,
     Help,
     GoTo,
+    Find,
     Path,
     /// The path of a second run.
     PathBeside,

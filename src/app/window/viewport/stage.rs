@@ -2,12 +2,9 @@
 
 use std::sync::Arc;
 
-use super::ViewFrame;
+use super::{ViewFrame, refused};
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
-use crate::core::convert::Passed;
-use crate::core::front::Side;
-use crate::core::mesh::NodeId;
 use crate::core::run::Changes;
 use crate::core::run::copies::Since;
 use crate::render::palette::Palette;
@@ -92,7 +89,7 @@ impl Stage {
                 changed: &moment.changed,
                 decision: Decision::of(&moment.phase),
                 is_coloured: state.document().colour_by != ColourBy::State,
-                refused: &refused(moment),
+                refused: &refused(moment).iter().map(|candidate| candidate.ends).collect::<Vec<_>>(),
                 picked: state.document().picked,
                 hovered: state.frame().hovered,
                 lit: &state.view().lit,
@@ -102,12 +99,4 @@ impl Stage {
             self.over = Some(state.view().over_epoch);
         }
     }
-}
-
-/// Candidates that were not chosen as the side, while a side is chosen.
-fn refused(moment: &Moment) -> Vec<[NodeId; 2]> {
-    let (Some(tried), Some([a, b])) = (&moment.candidates, Decision::of(&moment.phase).base) else { return Vec::new() };
-    let from = if tried.side == Side::Left { a } else { b };
-    let edges = tried.edges.iter().filter(|edge| edge.swap.is_none() && edge.passed == Some(Passed::Farther));
-    edges.map(|edge| [from, edge.node]).collect()
 }

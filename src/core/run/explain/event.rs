@@ -3,10 +3,26 @@
 use super::numbers::{angles_apart, apart, count, edge, segment};
 use super::side::{name, side_rule};
 use crate::core::convert::{
-    AROUND, Candidates, Event, LEAST_PART, MOST_UNLIKE, Mending, Narrow, NotSlender, OnFront, Purpose, SHORT,
+    AROUND, Attempt, Candidates, Event, LEAST_PART, MOST_UNLIKE, Mending, Narrow, NotSlender, OnFront, Purpose, SHORT,
     SeamCorner, SideToCollapse, Slender, Unmerged, Why,
 };
+use crate::core::front::Side;
 use crate::core::kernel::number::{degrees, fixed, grouped, size};
+use crate::core::mesh::NodeId;
+
+/// What an attempt at a quadrilateral tries, in a phrase.
+pub fn attempt(attempt: &Attempt) -> String {
+    let side = |side: Side, node: NodeId| format!("{} side set to node {}", name(side), node.0);
+    match (attempt.divide, attempt.tops) {
+        ([true, true], _) => "both sides divided".to_owned(),
+        ([true, false], _) => "left side divided".to_owned(),
+        ([false, true], _) => "right side divided".to_owned(),
+        (_, [Some(c), Some(d)]) => format!("triangles paired: left top {}, right top {}", c.0, d.0),
+        (_, [Some(c), None]) => side(Side::Left, c),
+        (_, [None, Some(d)]) => side(Side::Right, d),
+        (_, [None, None]) => "sides by the rules".to_owned(),
+    }
+}
 
 /// What a step did, in one line.
 pub fn event(event: &Event) -> String {

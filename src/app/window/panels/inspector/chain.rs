@@ -26,6 +26,15 @@ pub fn show(ui: &mut Ui, state: &State, element: ElementId, commands: &mut Vec<C
         return;
     };
     let costliest = chain.costliest();
+    if let Some(link) = costliest.map(|k| &chain.links[k]) {
+        let name = format!("Largest loss: step {}", words::grouped(link.step));
+        let tip = format!(
+            "{}. It cost {} of quality",
+            words::capital(&words::event(&link.event)),
+            words::fixed(link.loss, 2)
+        );
+        super::on_click(&ui.button(name).on_hover_text(tip), Command::Go(Goal::Step(link.step)), commands);
+    }
     let mut before = None;
     for (k, link) in chain.links.iter().enumerate() {
         if k == chain.made + 1 && chain.is_cut {

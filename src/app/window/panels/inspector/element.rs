@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{actions, ends, formula, gone, note, section, title};
+use super::{actions, chain, ends, formula, gone, note, section, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -23,6 +23,9 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands:
     actions(ui, state, Outlined::Element(e), commands);
     if section(ui, "Quality", "0 to 1, in the metric", palette) {
         formula(ui, &format!("**{}**", words::fixed(told.quality, 2)), palette);
+    }
+    if !told.is_live {
+        chain::show(ui, state, e, commands, palette);
     }
     let list = |angles: &[f64]| angles.iter().map(|a| words::fixed(*a, 1)).collect::<Vec<_>>().join("   ");
     if section(ui, "Angles", "degrees, at its nodes", palette) {

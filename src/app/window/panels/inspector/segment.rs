@@ -3,7 +3,7 @@
 use eframe::egui::Ui;
 
 use super::rows::{self, Last, TableRow};
-use super::{ends, formula, length, note, section, sentence, stands_for, step, title, why};
+use super::{attempts, ends, formula, length, note, section, sentence, stands_for, step, title, why};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -65,7 +65,11 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         step::next(ui, moment, palette);
     }
     if is_base {
-        step::so_far(ui, moment, commands, palette);
+        if moment.attempts.is_empty() {
+            step::so_far(ui, moment, commands, palette);
+        } else {
+            attempts::show(ui, moment, commands, palette);
+        }
     }
     if section(ui, "Frontal angles", "metric of the node", palette) {
         for (side, name) in Side::BOTH.into_iter().zip(["A", "B"]) {

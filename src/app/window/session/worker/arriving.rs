@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::super::SessionNews;
 use super::super::moment::{Moment, Verdict, segment};
 use super::{RECENT, Worker};
-use crate::core::convert::{Candidates, Narrow};
+use crate::core::convert::{Candidates, Event, EventKind, Narrow};
 use crate::core::fault::Fault;
 use crate::core::mesh::ElementId;
 use crate::core::run::front_table::Row;
@@ -74,10 +74,12 @@ impl Worker {
         recent.retain(|r| r.0 + RECENT > step);
         let changed = std::array::from_fn(|k| recent.get(k).map_or_else(|| Arc::new([]) as _, |r| r.1.clone()));
         let event = self.history.event(step)?;
-        let so_far = match &selecting.base {
+        let so_far: Vec<(u64, Event)> = match &selecting.base {
             Some(base) => (base.step..).zip(self.history.events(base.step, step)?).collect(),
             None => Vec::new(),
         };
+        let is_rolled_back = |told: &(u64, Event)| told.1.kind() == EventKind::RolledBack;
+        let attempts = if so_far.iter().any(is_rolled_back) { self.history.attempts()? } else { Vec::new() };
         let state = self.history.state();
         let table = &selecting.table;
         let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
@@ -117,6 +119,7 @@ impl Worker {
             worst: self.qualities.worst(),
             base,
             so_far,
+            attempts,
             next: explain::next(state, &selecting),
             selecting,
             verdict,

@@ -1,0 +1,74 @@
+//! Finds things by number or coordinates, selects them and brings them into view.
+
+use crate::app::window::session::{Ask, Goal};
+use crate::app::window::state::{Look, Missing, Overlay, State, outlined};
+use crate::core::run::Sought;
+use crate::render::scene::Outlined;
+
+impl State {
+    /// Goes where a text says: to a step, to a number of quadrilaterals, or to something in the current state. What is
+    /// not there is said below the field.
+    pub(super) fn go_to_text(&mut self, text: &str) {
+        self.run.missing = None;
+        let sought = match Sought::parse(text) {
+            Ok(sought) => sought,
+            Err(fault) => return self.complain(&fault),
+        };
+        let goal = match sought {
+            Sought::Step(step) => Some(Goal::Step(step)),
+            Sought::Quads(quads) => Some(Goal::ToQuads(quads)),
+            _ => None,
+        };
+        if let Some(goal) = goal {
+            self.view.overlay = Overlay::Nothing;
+            return self.go(goal);
+        }
+        let Some(moment) = &self.run.moment else { return };
+        match sought.find(&moment.mesh) {
+            Ok(found) => {
+                self.view.overlay = Overlay::Nothing;
+                self.find(outlined(found));
+            }
+            Err(why) => {
+                let (step, begins) = (moment.step, self.begins(&sought, moment.step));
+                self.run.missing = Some(Missing { text: text.to_owned(), sought, step, why, ended: None, begins });
+                if let Some(watched) = sought.named() {
+                    self.inquire(Ask::Ended(watched));
+                }
+            }
+        }
+    }
+
+    /// The next recorded step that makes something.
+    fn begins(&self, sought: &Sought, step: u64) -> Option<u64> {
+        let born = &self.run.born;
+        match *sought {
+            Sought::Quad(e) | Sought::Element(e) => {
+                born.quads.iter().find(|made| made.0 > step && made.1 == e)?.0.into()
+            }
+            Sought::Node(n) => born.nodes.iter().find(|made| made.0 > step && made.1 == n)?.0.into(),
+            _ => None,
+        }
+    }
+
+    /// Selects something and brings it into view.
+    pub(in crate::app::window::state) fn find(&mut self, what: Outlined) {
+        self.change(|document| document.picked = Some(what));
+        self.view.look.ask(Look::Near(what));
+    }
+
+    /// The same for the quadrilateral of the lowest quality.
+    pub(super) fn find_worst(&mut self) {
+        match self.run.moment.as_ref().and_then(|moment| moment.worst) {
+            Some((e, _)) => self.find(Outlined::Element(e)),
+            None => self.notice("There is no quadrilateral yet.".to_owned()),
+        }
+    }
+
+    /// Goes to a step and finds something there.
+    pub(super) fn find_at(&mut self, step: u64, what: Outlined) {
+        self.view.overlay = Overlay::Nothing;
+        self.run.find_at = Some((step, what));
+        self.go(Goal::Step(step));
+    }
+}
