@@ -297,6 +297,14 @@ pub fn embedded(run: &Run) -> Result<String, Fault> {
     Ok(text(run, &Links::of(run)?, Path::new("")))
 }
 
+/// The text of a run for a file in a folder, with paths of meshes relative to it.
+///
+/// # Errors
+/// A mesh of the run that cannot be read.
+pub fn written_in(run: &Run, folder: &Path) -> Result<String, Fault> {
+    Ok(text(run, &Links::of(run)?, folder))
+}
+
 fn text(run: &Run, links: &Links, folder: &Path) -> String {
     let mut text = format!(
         "run = {VERSION}\nprogram = \"{} {}\"\n\n[case]\nname = {}\n",
