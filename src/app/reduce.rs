@@ -11,6 +11,7 @@ use super::command_line::{ReduceArguments, Source};
 use super::input;
 use super::output::Stream;
 use super::progress::{INTERRUPT, Progress};
+use crate::core::case::ImportOptions;
 use crate::core::fault::Fault;
 use crate::core::kernel::number::counted;
 use crate::core::progress::Cancel;
@@ -110,7 +111,19 @@ fn reduced(
         format!("{} tried; more tries may leave out more.", counted(done.tests, "smaller case"))
     };
     written.write(&done.draft, &done.finding, &how)?;
-    Ok(done)
+    let shows = if question.asks_for_a_panic() {
+        panics(written.path(), &cancel)?
+    } else {
+        let file = Source { input: written.path().display().to_string(), quiet: true, ..Source::default() };
+        let found = question.find(&input::read(&file, &ImportOptions::default())?.run, budget, &cancel)?;
+        found.is_some_and(|found| found.is_like(&first))
+    };
+    if shows {
+        return Ok(done);
+    }
+    Err(Fault::new("The case that was written does not show it, though it did in memory")
+        .at(written.path().display().to_string())
+        .remedy("Report this as a bug, with the case that was reduced"))
 }
 
 fn bar(quiet: bool) -> ProgressBar {

@@ -8,8 +8,8 @@
 //! | the files of the smallest case | [`Written`] |
 //! | parts that can be left out; simpler curves, metrics and meshes | `parts`, `shapes`, `sizes`, `mesh` |
 //!
-//! A draft is judged by its text, as it will be written. What costs much more than the original is abandoned, by steps and
-//! triangles and not by time, so that the same case gives the same smallest case on every machine.
+//! A draft is judged by its text, as it will be written. What costs much more than the original is abandoned, by steps
+//! and triangles and not by time, so that the same case gives the same smallest case on every machine.
 
 mod document;
 mod draft;
@@ -19,6 +19,7 @@ mod corners;
 mod parts;
 mod shapes;
 mod sizes;
+mod mesh;
 mod written;
 
 pub use draft::{Draft, Size};
@@ -62,6 +63,7 @@ pub fn reduce<'s>(
     for _ in 0..ROUNDS {
         let before = search.best.clone();
         parts::reduce(&mut search)?;
+        mesh::reduce(&mut search)?;
         shapes::reduce(&mut search)?;
         sizes::reduce(&mut search)?;
         if search.best == before {
@@ -69,6 +71,7 @@ pub fn reduce<'s>(
         }
     }
     sizes::shorten_numbers(&mut search)?;
+    mesh::shorten_numbers(&mut search)?;
     let is_least = !search.is_over();
     Ok(Reduced { draft: search.best, finding: search.finding, tests: search.tests, is_least })
 }

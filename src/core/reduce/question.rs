@@ -333,7 +333,10 @@ fn find_end(
     if !condition.holds(|field| end.value(&fields, field)) {
         return Ok(None);
     }
-    let places = end.fault.iter().flat_map(|fault| fault.shapes.iter().flatten().copied()).collect();
+    let mut places: Vec<DVec3> = end.fault.iter().flat_map(|fault| fault.shapes.iter().flatten().copied()).collect();
+    if places.is_empty() {
+        places = cost.worst;
+    }
     Ok(Some(Finding {
         step: None,
         sentence: end.sentence(text),
@@ -350,6 +353,22 @@ struct Cost {
     steps: u64,
     triangles: Option<u64>,
     extent: f64,
+    /// The corners of the element with the sharpest corner.
+    worst: Vec<DVec3>,
+}
+
+/// The corners of the element with the sharpest corner in space.
+fn worst(mesh: &Mesh) -> Vec<DVec3> {
+    let corners = |e| mesh.corners(e).map(|n| mesh.xyz(n)).collect::<Vec<_>>();
+    let sharpness = |corners: &[DVec3]| {
+        let n = corners.len();
+        let cosine = |i: usize| {
+            let (a, b) = (corners[(i + 1) % n] - corners[i], corners[(i + n - 1) % n] - corners[i]);
+            a.normalize_or(DVec3::ZERO).dot(b.normalize_or(DVec3::ZERO))
+        };
+        (0..n).map(cosine).fold(f64::NEG_INFINITY, f64::max)
+    };
+    mesh.elements().map(corners).max_by(|a, b| sharpness(a).total_cmp(&sharpness(b))).unwrap_or_default()
 }
 
 /// The number of elements of a mesh, and its extent.
@@ -363,7 +382,7 @@ fn measured(mesh: &Mesh) -> (u64, f64) {
 /// # Errors
 /// The work was cancelled, or cost more than the budget.
 fn ended(run: &Run, budget: Budget, cancel: &Cancel) -> Result<(End, Cost), Fault> {
-    let mut cost = Cost { steps: 0, triangles: None, extent: 1.0 };
+    let mut cost = Cost { steps: 0, triangles: None, extent: 1.0, worst: Vec::new() };
     let mut is_over = false;
     let case = run.case_in_force();
     let converted = conversion::convert_by(&case, &mut Quiet(cancel.clone()), &mut |converter, watch| {
@@ -384,6 +403,7 @@ fn ended(run: &Run, budget: Budget, cancel: &Cancel) -> Result<(End, Cost), Faul
         Err(fault) if fault.is_stop() || is_over => return Err(fault),
         Err(fault) => End { fault: Some(fault), report: None },
         Ok(converted) => {
+            cost.worst = worst(&converted.mesh);
             let export = Export::of(&converted.mesh, &converted.names);
             let flaw = export.flaw(&converted.mesh, false);
             let report = Report::of_export(&case, &converted, &export, flaw.is_none())?;
