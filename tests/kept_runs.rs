@@ -12,6 +12,9 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
 use quadfront::app::window::{App, Command, Goal, Source};
+use quadfront::core::mesh::NodeId;
+use quadfront::core::run::Watched;
+use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
 /// Set for the child that works until it is killed: where runs are kept.
@@ -46,6 +49,8 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
         apply(&mut harness, Command::Set("c", "1.5".to_owned()));
         apply(&mut harness, Command::Go(Goal::Step(90)));
         apply(&mut harness, Command::Set("theta_rect", "120".to_owned()));
+        apply(&mut harness, Command::AddBreakpoint("kind == rolled_back".to_owned()));
+        apply(&mut harness, Command::Watch(Outlined::Node(NodeId(3))));
         apply(&mut harness, Command::Bookmark);
         loop {
             harness.run_steps(1);
@@ -62,11 +67,11 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
         .unwrap();
     // The bookmark is what it does last.
     let begin = Instant::now();
-    let has_all = || {
-        std::fs::read_dir(folder.path())
-            .unwrap()
-            .any(|entry| std::fs::read_to_string(entry.unwrap().path()).is_ok_and(|text| text.contains("[[bookmark]]")))
+    let has = |what: &str| {
+        let mut files = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
+        files.any(|path| std::fs::read_to_string(path).is_ok_and(|text| text.contains(what)))
     };
+    let has_all = || has("[[bookmark]]") && has("\"node\":3");
     while !has_all() {
         assert!(begin.elapsed() < Duration::from_secs(120), "the child keeps nothing");
         std::thread::sleep(Duration::from_millis(5));
@@ -89,8 +94,18 @@ fn a_window_that_is_killed_loses_nothing_and_its_run_is_offered_at_the_next_star
     until(&mut harness, "the run is opened", |harness| harness.state().state.document().edits.len() == 2);
     settle(&mut harness);
     let kept = &harness.state().state.document();
-    assert_eq!(kept.bookmarks, [90]);
+    assert_eq!(kept.bookmarks.iter().map(|mark| mark.step).collect::<Vec<_>>(), [90]);
+    assert_eq!((kept.breakpoints[0].condition.as_str(), kept.breakpoints[0].is_on), ("kind == rolled_back", true));
+    assert_eq!(kept.watches[0].watched, Watched::Node(NodeId(3)));
+    assert_eq!(harness.state().state.run().moment.as_ref().unwrap().step, 90);
+    assert!(!harness.state().state.run().hits[0].is_empty(), "the breakpoint is counted");
     assert!(harness.query_by_label("Recover").is_none());
+    // One sentence says so, and no other one comes, though the file of the run is written again.
+    apply(&mut harness, Command::Go(Goal::Steps(1)));
+    std::thread::sleep(Duration::from_millis(2500));
+    harness.run_steps(5);
+    let said: Vec<_> = harness.state().state.view().log.messages.iter().map(|message| message.text.as_str()).collect();
+    assert_eq!(said, ["example1 is recovered at step 90, with 2 edits, 1 bookmark, 1 breakpoint, 1 watchpoint."]);
     // It goes on being kept, and is still there when the window is closed without saving.
     apply(&mut harness, Command::Go(Goal::Step(200)));
     apply(&mut harness, Command::Set("c", "1.7".to_owned()));

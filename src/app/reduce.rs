@@ -87,22 +87,23 @@ fn reduced(
             if question.asks_for_a_panic() { child(draft, written)? } else { question.find(&run, budget, &cancel)? };
         Ok(found.filter(|found| found.is_like(&first)))
     };
-    let mut smallest = (draft.clone(), first.clone());
+    let mut smallest = None;
     let mut tell = |tries: u64, draft: &Draft, finding: &Finding, is_new: bool| {
         bar.set_message(format!("Reducing: {} tried; now {}", counted(tries, "case"), draft.size()));
         bar.tick();
         if is_new {
-            smallest = (draft.clone(), finding.clone());
             written.write(draft, finding, "The reduction has not ended: more may be left out.")?;
+            smallest = Some(draft.size());
         }
         Ok(())
     };
     let done = search(draft, first.clone(), tries, &mut judge, &mut tell);
     bar.finish_and_clear();
     if cancel.is_asked() {
-        let message =
-            format!("Stopped. {} has the smallest case so far: {}\n", written.path().display(), smallest.0.size());
-        Stream::Error.print(&message);
+        Stream::Error.print(&match &smallest {
+            Some(size) => format!("Stopped. {} has the smallest case so far: {size}\n", written.path().display()),
+            None => "Stopped before anything could be left out. Nothing was written.\n".to_owned(),
+        });
     }
     let done = done?;
     let how = if done.is_least {

@@ -51,6 +51,14 @@ impl Rgba {
     }
 }
 
+/// As figures write it: `#RRGGBB`, without the opacity.
+impl std::fmt::Display for Rgba {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [r, g, b, _] = self.0;
+        write!(f, "#{r:02X}{g:02X}{b:02X}")
+    }
+}
+
 /// All colours of the window: amber for the current step, neutral for the selection, cool for the front, quiet for the
 /// mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]

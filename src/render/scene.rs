@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 pub use form::{Form, Spot};
 pub use given::{Given, feature_line, seam_line};
 pub use mesh::Drawn;
-pub use overlay::{Decision, Outlined, Overlay, front};
+pub use overlay::{Decision, FRONT, Outlined, Overlay, front};
 pub use placed::{Placed, STRETCH};
 pub use shading::{ColourBy, Shading, metric_angles, metric_area, space_angles};
 

@@ -4,6 +4,7 @@
 //! A window holds a lock beside its file as long as it is open; the system releases it however the window ends. So two
 //! windows never take each other's runs, and a run whose lock is free was abandoned.
 
+mod marks;
 mod slot;
 
 use std::path::{Path, PathBuf};
@@ -12,23 +13,25 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+pub use marks::Marks;
 pub use slot::{Offer, folder};
 use slot::{RunSlot, left_behind};
 
 use super::files::work;
 use super::import::ImportOptions;
 use super::session::{Opened, Source, Wake};
+use super::state::{Breakpoint, Watchpoint};
 use crate::core::fault::Fault;
 use crate::core::record::Keeper;
 use crate::core::run::{Bookmark, Camera, Edit, Run};
 
 /// How long to wait after a failure before the next attempt.
 const AGAIN: Duration = Duration::from_secs(10);
-/// How often a moving camera is saved.
-const CAMERA: Duration = Duration::from_secs(2);
+/// How often a moving camera and the step are saved.
+const PLACE: Duration = Duration::from_secs(2);
 
 enum Ask {
-    Keep(Box<Run>),
+    Keep(Box<(Run, Marks)>),
     Forget,
 }
 
@@ -76,7 +79,7 @@ struct Work {
     slot: Option<RunSlot>,
     keeper: Option<Keeper>,
     /// The run that could not be written.
-    pending: Option<Box<Run>>,
+    pending: Option<Box<(Run, Marks)>>,
     complained: bool,
 }
 
@@ -116,12 +119,16 @@ impl Work {
         }
     }
 
-    fn keep(&mut self, run: &Run) -> Result<(), Fault> {
+    fn keep(&mut self, (run, marks): &(Run, Marks)) -> Result<(), Fault> {
         let slot = self.slot.take().map_or_else(|| RunSlot::new(&self.folder), Ok)?;
         let slot = self.slot.insert(slot);
         let keeper = self.keeper.take().map_or_else(|| Keeper::new(slot.path.clone(), run), Ok)?;
-        let kept = self.keeper.insert(keeper).keep(run);
-        kept.map(drop).map_err(|mut fault| {
+        let beside = slot.marks();
+        let kept = self.keeper.insert(keeper).keep(run).and_then(|_| match *marks == Marks::read(&beside) {
+            true => Ok(()),
+            false => marks.write(&beside),
+        });
+        kept.map_err(|mut fault| {
             fault.what = format!("The run cannot be autosaved: {}", fault.what);
             fault.remedy += "; autosave tries again, and Ctrl+S saves the run elsewhere";
             fault
@@ -134,13 +141,23 @@ impl Work {
 struct Changes {
     edits: Vec<Edit>,
     bookmarks: Vec<Bookmark>,
+    breakpoints: Vec<Breakpoint>,
+    watches: Vec<Watchpoint>,
 }
 
 impl Changes {
-    fn of(run: &Run) -> Changes {
-        Changes { edits: run.edits().to_vec(), bookmarks: run.bookmarks.clone() }
+    fn of(run: &Run, marks: &Marks) -> Changes {
+        Changes {
+            edits: run.edits().to_vec(),
+            bookmarks: run.bookmarks.clone(),
+            breakpoints: marks.breakpoints.clone(),
+            watches: marks.watches.clone(),
+        }
     }
 }
+
+/// Where the window is: its camera and its step.
+type Place = (Option<Camera>, u64);
 
 /// Autosaves the run of a window, and offers abandoned runs.
 pub struct Autosave {
@@ -154,7 +171,7 @@ pub struct Autosave {
     /// Its changes when it was opened or last saved by the user; none for a recovered run.
     saved: Option<Changes>,
     /// What is on the disk, and since when.
-    kept: Option<(Changes, Option<Camera>, Instant)>,
+    kept: Option<(Changes, Place, Instant)>,
     /// The offer that is being opened.
     opening: Option<Offer>,
 }
@@ -165,6 +182,19 @@ impl Autosave {
         let saver = Saver::new(folder.clone(), None, wake.clone());
         let scan = scan(&folder, &wake);
         Autosave { folder, wake, saver, offers: Vec::new(), scan, opened: None, saved: None, kept: None, opening: None }
+    }
+
+    /// Autosaves a second run of this window, and offers nothing.
+    pub fn beside(&self) -> Autosave {
+        let (folder, wake) = (self.folder.clone(), self.wake.clone());
+        let saver = Saver::new(folder.clone(), None, wake.clone());
+        let scan = channel().1;
+        Autosave { folder, wake, saver, offers: Vec::new(), scan, opened: None, saved: None, kept: None, opening: None }
+    }
+
+    /// Searches again for abandoned runs.
+    pub fn search(&mut self) {
+        self.scan = scan(&self.folder, &self.wake);
     }
 
     /// The run on offer, and how many more there are.
@@ -191,9 +221,14 @@ impl Autosave {
         }
     }
 
+    /// What was set in the window of the run that is being recovered from `source`; none for other sources.
+    pub fn recovered(&self, source: &Source) -> Option<&Marks> {
+        self.opening.as_ref().filter(|offer| *source == Source::File(offer.slot.path.clone())).map(|offer| &offer.marks)
+    }
+
     /// The user has saved the run as it is.
-    pub fn saved(&mut self, run: &Run) {
-        self.saved = Some(Changes::of(run));
+    pub fn saved(&mut self, run: &Run, marks: &Marks) {
+        self.saved = Some(Changes::of(run, marks));
     }
 
     /// Saves the window's run if it has changed. Returns what went wrong, and when to look again.
@@ -201,7 +236,7 @@ impl Autosave {
         &mut self,
         opened: Option<&Arc<Opened>>,
         source: Option<&Source>,
-        run: impl Fn() -> Option<Run>,
+        run: impl Fn() -> Option<(Run, Marks)>,
     ) -> (Vec<Fault>, Option<Duration>) {
         if let Ok(found) = self.scan.try_recv() {
             self.offers.extend(found);
@@ -211,27 +246,27 @@ impl Autosave {
         if self.opened.as_ref().is_none_or(|old| !Arc::ptr_eq(old, opened)) {
             self.begin(opened, source);
         }
-        let Some(run) = run() else { return (faults, None) };
-        let now = Changes::of(&run);
+        let Some((run, marks)) = run() else { return (faults, None) };
+        let (now, place) = (Changes::of(&run, &marks), (run.camera, marks.step));
         if self.saved.as_ref() == Some(&now) {
             if self.kept.take().is_some() {
                 self.saver.ask(Ask::Forget);
             }
             return (faults, None);
         }
-        if let Some((changes, camera, since)) = &self.kept
+        if let Some((changes, before, since)) = &self.kept
             && *changes == now
         {
-            if *camera == run.camera {
+            if *before == place {
                 return (faults, None);
             }
-            // A moving camera is not written at every frame.
-            if let Some(left) = CAMERA.checked_sub(since.elapsed()).filter(|left| !left.is_zero()) {
+            // A moving camera is not written at every frame, nor the step while playing.
+            if let Some(left) = PLACE.checked_sub(since.elapsed()).filter(|left| !left.is_zero()) {
                 return (faults, Some(left));
             }
         }
-        self.kept = Some((now, run.camera, Instant::now()));
-        self.saver.ask(Ask::Keep(Box::new(run)));
+        self.kept = Some((now, place, Instant::now()));
+        self.saver.ask(Ask::Keep(Box::new((run, marks))));
         (faults, None)
     }
 
@@ -248,12 +283,12 @@ impl Autosave {
         // How a mesh was imported is stored nowhere but in the run.
         let was_taken = matches!(source, Some(Source::Mesh(_, options)) if *options != ImportOptions::default());
         let is_unsaved = adopted.is_some() || was_taken;
-        self.saved = (!is_unsaved).then(|| Changes::of(&opened.run));
+        self.saved = (!is_unsaved).then(|| Changes::of(&opened.run, &Marks::default()));
         let slot = adopted.map(|offer| offer.slot);
         // The old one ends first and releases its lock.
         drop(std::mem::replace(&mut self.saver, Saver::new(self.folder.clone(), slot, self.wake.clone())));
         if was_unsaved {
-            self.scan = scan(&self.folder, &self.wake);
+            self.search();
         }
         self.opened = Some(opened.clone());
     }
@@ -271,10 +306,10 @@ mod tests {
     use crate::core::case::built_in;
     use crate::core::run::EditKind;
 
-    fn run(edits: u64) -> Run {
+    fn run(edits: u64) -> (Run, Marks) {
         let mut run = Run::of(built_in::named("example1").unwrap().unwrap());
         run.set_edits((0..edits).map(|step| Edit { step, kind: EditKind::parameter("c", "1.5").unwrap() }).collect());
-        run
+        (run, Marks::default())
     }
 
     fn saver(folder: &Path) -> Saver {

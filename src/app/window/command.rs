@@ -1,19 +1,22 @@
 //! Everything that can be done in the window, as a value: menus, keys, panels, the palette and tests all use it.
 
+mod name;
+
 use eframe::egui::{Key, Modifiers};
 
 use super::figures::{FigureForm, Formats};
 use super::import::{Gesture, ImportOptions};
+use super::lists::ListKind;
+use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
-use super::words;
 use crate::app::command_line::Overrides;
 use crate::core::case::{Parameters, built_in};
 use crate::core::convert::EventKind;
 use crate::core::kernel::worded::worded;
 use crate::core::mesh::{ElementId, NodeId};
-use crate::core::run::Watched;
+use crate::core::run::{Query, Watched};
 use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 
@@ -48,6 +51,16 @@ pub enum Command {
     Explain([NodeId; 2]),
     /// Ask for the history of something.
     TellPast(Watched),
+    /// Ask for the decision chain of a quadrilateral.
+    TellChain(ElementId),
+    /// Make a list of elements or nodes.
+    List(ListKind, Query),
+    /// Copy such a list as comma-separated values.
+    CopyList(ListKind, Query),
+    /// Select something and bring it into view.
+    Find(Outlined),
+    /// Select the quadrilateral of the lowest quality and bring it into view.
+    FindWorst,
     /// Watch something, or stop watching it.
     Watch(Outlined),
     /// Switch a watchpoint on or off.
@@ -94,6 +107,12 @@ pub enum Command {
     RemoveBreakpoint(usize),
     /// Set a bookmark at this step, or remove it.
     Bookmark,
+    /// Change the note on a bookmarked step.
+    WriteNote(u64, String),
+    /// Remove the bookmark of a step.
+    RemoveBookmark(u64),
+    /// Export the notes on all bookmarked steps as one page.
+    ExportNotes,
     /// Open a case or a mesh.
     Open(Source),
     /// Open a case or a mesh with its parameters changed.
@@ -120,6 +139,8 @@ pub enum Command {
     Figures,
     /// Change how figures are made.
     SetFigure(Box<FigureForm>),
+    /// Ask for the folder of figures with the system's dialog.
+    ChooseFolder,
     /// Save a figure as the panel for figures says, in these formats.
     SaveFigure(Formats),
     /// Open the file again.
@@ -148,6 +169,8 @@ pub enum Command {
     CloseOverlay,
     /// Close a message.
     CloseFault(usize),
+    /// Show or hide the log of all messages.
+    Messages,
     /// The user has arranged the panels like this.
     Arrange(String),
     /// Move all panels back to their first places.
@@ -158,6 +181,8 @@ pub enum Command {
     ShowTimes,
     /// Close what is open over the window, or clear the selection.
     Escape,
+    /// Do something with two runs.
+    Pair(PairCommand),
 }
 
 worded! {
@@ -210,6 +235,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL_SHIFT, Key::S, Command::Screenshot),
         (CTRL_SHIFT, Key::L, Command::ToggleTheme),
         (CTRL_SHIFT, Key::E, Command::Figures),
+        (CTRL_SHIFT, Key::W, Command::FindWorst),
         (SHIFT, Key::V, Command::ToggleSplit),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
@@ -226,6 +252,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::E, Command::Export),
         (CTRL, Key::B, Command::Bookmark),
         (CTRL, Key::R, Command::Reopen),
+        (CTRL, Key::K, Command::Pair(PairCommand::Fork)),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
         (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
         (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
@@ -249,86 +276,6 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
 }
 
 impl Command {
-    /// Its name in the palette, in menus and in tooltips.
-    pub fn name(&self) -> String {
-        match self {
-            Command::Go(goal) => go_name(*goal),
-            Command::GoToText(text) => format!("Go to {text}"),
-            Command::ToBreakpoint(Direction::Forward) => "To the next breakpoint".into(),
-            Command::ToBreakpoint(Direction::Back) => "Back to a breakpoint".into(),
-            Command::Play => "Play or pause".into(),
-            Command::Speed(speed) => format!("Play {speed} quads a second"),
-            Command::Stop => "Stop".into(),
-            Command::Hover(what) => format!("Point at {}", words::thing(*what)),
-            Command::Pick(_) => "Select".into(),
-            Command::Show(_) => "Show in the middle".into(),
-            Command::LightUp(..) => "Highlight".into(),
-            Command::LastTouch(_) => "Last change".into(),
-            Command::Made(_) => "Go to creation".into(),
-            Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
-            Command::TellPast(_) => "History".into(),
-            Command::Watch(what) => format!("Watch {}", words::thing(*what)),
-            Command::SwitchWatch(_) => "Switch a watchpoint".into(),
-            Command::Measure => "Measure how long steps take".into(),
-            Command::ShowTimes => "Show how long states and frames take".into(),
-            Command::Fit => "Fit the mesh to the view".into(),
-            Command::ShowDecision => "Zoom to the decision".into(),
-            Command::LookFrom(Bearing::Iso) => "Look from front, right and above".into(),
-            Command::LookFrom(Bearing::X) => "Look from +x".into(),
-            Command::LookFrom(Bearing::Y) => "Look from +y".into(),
-            Command::LookFrom(Bearing::Z) => "Look from +z".into(),
-            Command::LookFrom(bearing) => format!("Look from {bearing}"),
-            Command::MoveCamera(..) => "Move the camera".into(),
-            Command::SurfaceView(view) => view.name().into(),
-            Command::TogglePlane => "Space or parametric plane".into(),
-            Command::ToggleSplit => "Space and parametric plane side by side".into(),
-            Command::HiddenLines => "Hidden lines: off, faint, shown".into(),
-            Command::ToggleCurved => "Curved or flat elements".into(),
-            Command::Set(key, value) => format!("Set {key} = {value}"),
-            Command::ChooseBase([a, b]) => format!("Choose {} as base", words::segment([*a, *b])),
-            Command::ResetParameters => "Reset all parameters to the case".into(),
-            Command::SetRules(Rules::Paper) => "Set all parameters to the paper's from this step on".into(),
-            Command::SetRules(Rules::Default) => "Set all parameters to the defaults from this step on".into(),
-            Command::SetForCase(key, value) => format!("Open again with {key} = {value}"),
-            Command::Layer(layer) => format!("Layer: {}", layer.name()),
-            Command::ColourBy(by) => format!("Colour by {}", by.name()),
-            Command::ToggleTheme => "Dark or light theme".into(),
-            Command::AddBreakpoint(text) => format!("Break where {text}"),
-            Command::SwitchBreakpoint(_) => "Switch a breakpoint".into(),
-            Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
-            Command::Bookmark => "Bookmark this step".into(),
-            Command::Open(source) | Command::OpenWith(source, _) => format!("Open {}", source.name()),
-            Command::Import => "Import settings…".into(),
-            Command::SetImport(..) => "Change the import".into(),
-            Command::Convert => "Convert".into(),
-            Command::CancelImport => "Cancel".into(),
-            Command::OpenDialog => "Open with a dialog…".into(),
-            Command::OpenPath => "Open by path…".into(),
-            Command::GoTo => "Go to a step or NQ…".into(),
-            Command::Screenshot => "Save a picture of the window".into(),
-            Command::Export => "Save a figure of this state".into(),
-            Command::Figures => "Figures: size, ink, layers, strips…".into(),
-            Command::SetFigure(_) => "Change the figure".into(),
-            Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
-            Command::Reopen => "Reload".into(),
-            Command::Notes => "Notes on this case".into(),
-            Command::OpenKept => "Recover the unsaved run".into(),
-            Command::DiscardKept => "Discard the unsaved run".into(),
-            Command::SaveRun => "Save the run".into(),
-            Command::SaveMesh => "Save the mesh…".into(),
-            Command::SaveMeshAs(path) => format!("Save the mesh as {path}"),
-            Command::Undo => "Undo".into(),
-            Command::Redo => "Redo".into(),
-            Command::Palette => "All commands by name".into(),
-            Command::Help => "Keys".into(),
-            Command::CloseOverlay => "Close".into(),
-            Command::CloseFault(_) => "Close the message".into(),
-            Command::Arrange(_) => "Arrange the panels".into(),
-            Command::ResetLayout => "Reset layout".into(),
-            Command::Escape => "Close, or clear the selection".into(),
-        }
-    }
-
     /// Its key as text, if it has one.
     pub fn key(&self) -> Option<String> {
         if *self == Command::Help {
@@ -365,10 +312,13 @@ impl Command {
             Command::Hover(_)
                 | Command::Explain(_)
                 | Command::TellPast(_)
+                | Command::TellChain(_)
+                | Command::List(..)
                 | Command::MoveCamera(..)
                 | Command::SetFigure(_)
                 | Command::CloseOverlay
                 | Command::CloseFault(_)
+                | Command::Messages
                 | Command::Arrange(_)
                 | Command::SetImport(..)
                 | Command::Convert
@@ -403,10 +353,14 @@ impl Command {
             Command::ResetLayout,
             Command::Import,
             Command::Notes,
+            Command::ExportNotes,
+            Command::Messages,
+            Command::ChooseFolder,
             Command::ShowTimes,
             Command::Measure,
         ]);
         all.extend(Rules::ALL.map(Command::SetRules));
+        all.extend(PairCommand::all().into_iter().map(Command::Pair));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
         all.extend(KINDS.iter().flat_map(|&kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));
@@ -419,25 +373,6 @@ impl Command {
             new
         });
         all
-    }
-}
-
-fn go_name(goal: Goal) -> String {
-    let kind = words::kind;
-    match goal {
-        Goal::Step(0) => "To the beginning".into(),
-        Goal::Step(step) => format!("To step {step}"),
-        Goal::Steps(1) => "Step forward (operation)".into(),
-        Goal::Steps(-1) => "Step back (operation)".into(),
-        Goal::Steps(by) => format!("{by} operations"),
-        Goal::Quads(1) => "Step forward (quadrilateral)".into(),
-        Goal::Quads(-1) => "Step back (quadrilateral)".into(),
-        Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals forward"),
-        Goal::Quads(by) => format!("{} quadrilaterals back", -by),
-        Goal::ToQuads(quads) => format!("To NQ = {quads}"),
-        Goal::Kind(event, Direction::Forward) => format!("Next event: {}", kind(event)),
-        Goal::Kind(event, Direction::Back) => format!("Previous event: {}", kind(event)),
-        Goal::End => "To the end".into(),
     }
 }
 

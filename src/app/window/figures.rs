@@ -1,7 +1,11 @@
 //! Figures from the window: the current state, or several steps as a strip, made in the background by the code of
 //! `render`.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use eframe::egui::ColorImage;
 
 use super::files::{self, Writing, free_path};
 use super::session::{Moment, Opened, Wake};
@@ -9,6 +13,7 @@ use super::state::{State, ViewCamera};
 use crate::core::kernel::worded::worded;
 
 use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Size, Wanted};
+use crate::app::notes;
 use crate::app::work::{self, FigureFrame};
 use crate::core::convert::Stop;
 use crate::core::fault::Fault;
@@ -17,11 +22,12 @@ use crate::core::mesh::Names;
 use crate::core::progress::Nobody;
 use crate::core::record::{Export, run_file};
 use crate::core::run::shown::fingerprint;
-use crate::core::run::{Run, Shown, ShownState};
+use crate::core::run::{Bookmark, Run, Shown, ShownState};
 use crate::render::camera::Bearing;
 use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers};
 use crate::render::orthographic::View;
 use crate::render::picture::{Picture, Seen};
+use crate::render::vector::png;
 
 worded! {
     /// The formats of a figure.
@@ -33,6 +39,17 @@ worded! {
         Png = "PNG",
         /// Both.
         Both = "SVG and PNG",
+    }
+}
+
+impl Formats {
+    /// The extensions of its files.
+    fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Formats::Svg => &["svg"],
+            Formats::Png => &["png"],
+            Formats::Both => &["svg", "png"],
+        }
     }
 }
 
@@ -71,6 +88,8 @@ pub struct FigureForm {
     pub changed: Vec<(Layer, bool)>,
     /// Whether only the part in view is drawn.
     pub in_view: bool,
+    /// The folder; empty: the working folder.
+    pub folder: String,
     /// Name without its extension; empty: from case and step.
     pub name: String,
 }
@@ -86,6 +105,7 @@ impl Default for FigureForm {
             transparent: false,
             changed: Vec::new(),
             in_view: false,
+            folder: String::new(),
             name: String::new(),
         }
     }
@@ -154,12 +174,12 @@ impl FigureForm {
     }
 
     /// The steps of a strip.
-    fn wanted(&self, bookmarks: &[u64]) -> Result<Vec<Wanted>, Fault> {
+    fn wanted(&self, bookmarks: &[Bookmark]) -> Result<Vec<Wanted>, Fault> {
         if self.content == Content::Bookmarks {
             if bookmarks.is_empty() {
                 return Err(Fault::new("There are no bookmarks").remedy("Ctrl+B bookmarks the current step"));
             }
-            return Ok(bookmarks.iter().map(|step| Wanted::at(Some(Stop::Step(*step)))).collect());
+            return Ok(bookmarks.iter().map(|mark| Wanted::at(Some(Stop::Step(mark.step)))).collect());
         }
         let stops = crate::app::input::stops(&format!("nq={}", self.stops.replace(' ', "")));
         let stops =
@@ -168,12 +188,57 @@ impl FigureForm {
     }
 }
 
-/// Starts to make the figure that the panel describes, on a thread of its own, in the working folder; does nothing if
-/// nothing is open. The thread calls `wake` when it is done.
+/// Starts to make the figure that the panel describes and to write it, on a thread of its own; does nothing if nothing
+/// is open. The thread calls `wake` when it is done.
 ///
 /// # Errors
 /// If the form has no meaning.
 pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writing>, Fault> {
+    let stem = stem(state);
+    let make = maker(state)?;
+    Ok(make.map(|make| files::work(wake, move || write(&make()?, &stem, formats))))
+}
+
+/// Starts to draw the figure in at most so many pixels, on a thread of its own.
+///
+/// # Errors
+/// If the form has no meaning.
+pub fn preview(state: &State, most: [f32; 2]) -> Result<Option<Receiver<Result<ColorImage, Fault>>>, Fault> {
+    let make = maker(state)?;
+    Ok(make.map(|make| {
+        files::work(state.wake(), move || {
+            let ([width, height], pixels) = png::fitted(&make()?.svg, most)?;
+            Ok(ColorImage::from_rgba_unmultiplied([width as usize, height as usize], &pixels))
+        })
+    }))
+}
+
+/// The files that are written next.
+pub fn names(state: &State, formats: Formats) -> Vec<PathBuf> {
+    let stem = stem(state);
+    formats.extensions().iter().map(|extension| free_path(&stem, extension)).collect()
+}
+
+/// The path of the figure without its extension.
+fn stem(state: &State) -> String {
+    let form = &state.workspace().figure;
+    let step = state.run().moment.as_ref().map_or(0, |moment| moment.step);
+    let case = state.run().opened.as_ref().map_or("figure", |opened| opened.run.case.name.as_str());
+    let name = match (form.name.trim(), form.content) {
+        ("", Content::State) => format!("{case}-step-{step}"),
+        ("", Content::Lengths) => format!("{case}-step-{step}-lengths"),
+        ("", Content::Angles) => format!("{case}-step-{step}-angles"),
+        ("", Content::Bookmarks | Content::Stops) => format!("{case}-strip"),
+        (name, _) => name.to_owned(),
+    };
+    Path::new(form.folder.trim()).join(name).display().to_string()
+}
+
+/// Makes a figure, on any thread.
+type Maker = Box<dyn FnOnce() -> Result<Figure, Fault> + Send>;
+
+/// What makes the figure that the panel describes; none if nothing is open.
+fn maker(state: &State) -> Result<Option<Maker>, Fault> {
     let (run, form) = (state.run(), &state.workspace().figure);
     let (Some(moment), Some(opened), Some(current)) = (run.moment.clone(), run.opened.clone(), state.current_run())
     else {
@@ -193,24 +258,35 @@ pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writi
     });
     let options = form.options(part, side.map(|side| (side, state.workspace().surfaces.hidden)))?;
     let wanted = if form.is_strip() { Some(form.wanted(&state.document().bookmarks)?) } else { None };
-    let what = match form.content {
-        Content::State => format!("-step-{}", moment.step),
-        Content::Lengths => format!("-step-{}-lengths", moment.step),
-        Content::Angles => format!("-step-{}-angles", moment.step),
-        Content::Bookmarks | Content::Stops => "-strip".to_owned(),
-    };
-    let name = form.name.trim();
-    let stem = if name.is_empty() { format!("{}{what}", current.case.name) } else { name.to_owned() };
+    Ok(Some(Box::new(move || match wanted {
+        Some(wanted) => {
+            let mut run = current;
+            run.case.parameters = run.parameters.clone();
+            Ok(figure::make(&run, &wanted, &options, true, &mut Nobody)?.0)
+        }
+        None => of_state(&moment, &opened, &current, &options),
+    })))
+}
+
+/// Starts to write the page with the notes on bookmarked steps, on a thread of its own, in the working folder; does
+/// nothing if nothing is open. The figures look as the panel says.
+///
+/// # Errors
+/// If there is no bookmark, or the form has no meaning.
+pub fn begin_notes(state: &State, wake: Wake) -> Result<Option<Writing>, Fault> {
+    let Some(mut run) = state.current_run() else { return Ok(None) };
+    if run.bookmarks.is_empty() {
+        return Err(Fault::new("There are no bookmarks").remedy("Ctrl+B bookmarks the current step"));
+    }
+    let form = FigureForm { content: Content::State, in_view: false, ..state.workspace().figure.clone() };
+    let side = state.view().space.camera.filter(|_| state.is_in_space()).map(|camera| Bearing::of_turn(camera.turn));
+    let options = form.options(None, side.map(|side| (side, state.workspace().surfaces.hidden)))?;
     Ok(Some(files::work(wake, move || {
-        let figure = match wanted {
-            Some(wanted) => {
-                let mut run = current;
-                run.case.parameters = run.parameters.clone();
-                figure::make(&run, &wanted, &options, true, &mut Nobody)?.0
-            }
-            None => of_state(&moment, &opened, &current, &options)?,
-        };
-        write(&figure, &stem, formats)
+        run.case.parameters = run.parameters.clone();
+        let page = notes::page(&run, &options, true, &mut Nobody)?;
+        let path = free_path(&format!("{}-notes", run.case.name), "html");
+        save::save(&path, |file| file.write_all(page.as_bytes()))?;
+        Ok(format!("The notes were saved as {}.", path.display()))
     })))
 }
 

@@ -105,6 +105,12 @@ impl Dialog {
         Dialog { answer, since: Instant::now() }
     }
 
+    /// The dialog for a folder.
+    pub fn choose_folder(wake: Wake) -> Dialog {
+        let answer = work(wake, || rfd::FileDialog::new().set_title("The folder of figures").pick_folder());
+        Dialog { answer, since: Instant::now() }
+    }
+
     /// Its answer, if there is one.
     pub fn answer(&self) -> Answer {
         match self.answer.try_recv() {

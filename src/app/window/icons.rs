@@ -18,6 +18,7 @@ pub const CHECK_CIRCLE: &str = "\u{e184}";
 pub const X_CIRCLE: &str = "\u{e4f8}";
 pub const MAGNIFYING_GLASS: &str = "\u{e30c}";
 pub const RESET: &str = "\u{e038}";
+pub const LIST: &str = "\u{e2f2}";
 pub const X: &str = "\u{e4f6}";
 pub const CARET_UP: &str = "\u{e13c}";
 pub const CARET_DOWN: &str = "\u{e136}";

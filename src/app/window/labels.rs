@@ -2,6 +2,7 @@
 //! details are left out; a label that would cover an earlier one is dropped.
 
 mod corners;
+mod far_base;
 mod measures;
 
 use std::collections::BTreeMap;
@@ -72,7 +73,9 @@ pub fn show(
     let painter = ui.painter_at(frame.rect);
     let now = ui.input(|input| input.time);
     let scale = frame.camera.points_per_unit();
-    if scale != memory.scale {
+    // The other views have another scale at every step: their labels do not fade in, or they would be dark while
+    // playing.
+    if scale != memory.scale && which == ViewRole::Main {
         (memory.scale, memory.zoomed) = (scale, now);
     }
     let before = std::mem::take(&mut memory.labels);
@@ -119,6 +122,7 @@ pub fn show(
         over.node_ids(&decision);
     }
     if which == ViewRole::Main {
+        over.far_base(&decision);
         over.scale_bar();
         over.axes();
     }
@@ -179,7 +183,7 @@ impl Labels<'_> {
     }
 
     /// Adds a label, unless it would cover another one; its plate is drawn first.
-    fn label(&mut self, at: Pos2, anchor: Align2, text: &str, font: FontId, colour: Color32, plate: bool) -> bool {
+    fn label(&mut self, at: Pos2, anchor: Align2, text: &str, font: FontId, colour: Color32) -> bool {
         if self.taken.len() >= MOST_LABELS {
             return false;
         }
@@ -192,9 +196,7 @@ impl Labels<'_> {
         let since = self.before.get(text).copied().or(self.is_new).unwrap_or(f64::NEG_INFINITY);
         self.labels.insert(text.to_owned(), since);
         let share = ((self.now - since) / COMING).clamp(0.05, 1.0) as f32;
-        if plate {
-            self.painter.rect_filled(ground, 3.0, ink(self.palette.label_plate).gamma_multiply(share));
-        }
+        self.painter.rect_filled(ground, 3.0, ink(self.palette.label_plate).gamma_multiply(share));
         self.painter.add(eframe::egui::epaint::TextShape::new(rect.min, galley, colour).with_opacity_factor(share));
         self.taken.push(ground);
         true
@@ -212,7 +214,7 @@ impl Labels<'_> {
             let away = (at - middle).normalized();
             let away = if away.x.is_nan() || away == Vec2::ZERO { Vec2::new(0.0, -1.0) } else { away };
             let (text, font, colour) = (letter.to_string(), theme::semibold(13.0), ink(self.palette.accent));
-            self.label(at + 17.0 * away, Align2::CENTER_CENTER, &text, font, colour, true);
+            self.label(at + 17.0 * away, Align2::CENTER_CENTER, &text, font, colour);
         }
     }
 
@@ -230,7 +232,7 @@ impl Labels<'_> {
         };
         if p.distance(q) > 44.0 {
             let anchor = Align2::CENTER_CENTER;
-            self.label(at, anchor, &text, theme::semibold(12.5), ink(self.palette.accent), true);
+            self.label(at, anchor, &text, theme::semibold(12.5), ink(self.palette.accent));
         }
     }
 
@@ -251,7 +253,7 @@ impl Labels<'_> {
             let font = if strong { theme::semibold(12.5) } else { theme::regular(12.0) };
             let Some(at) = self.on_screen(self.lifted(p)) else { continue };
             let at = at + Vec2::new(0.0, -16.0);
-            self.label(at, Align2::CENTER_BOTTOM, &text, font, ink(self.palette.label), true);
+            self.label(at, Align2::CENTER_BOTTOM, &text, font, ink(self.palette.label));
         }
     }
 
@@ -277,7 +279,7 @@ impl Labels<'_> {
             }
             let text = format!("{}  {}", segment.class, words::size(segment.h_value));
             let colour = ink(class_colour(self.palette, segment.class));
-            self.label(p + 0.5 * (q - p), Align2::CENTER_CENTER, &text, theme::medium(11.5), colour, true);
+            self.label(p + 0.5 * (q - p), Align2::CENTER_CENTER, &text, theme::medium(11.5), colour);
         }
     }
 
@@ -296,7 +298,7 @@ impl Labels<'_> {
                 continue;
             }
             let (text, font, colour) = (node.0.to_string(), theme::regular(11.0), ink(self.palette.weak));
-            let is_shown = self.label(at + Vec2::new(7.0, -9.0), Align2::LEFT_CENTER, &text, font, colour, false);
+            let is_shown = self.label(at + Vec2::new(7.0, -9.0), Align2::LEFT_CENTER, &text, font, colour);
             if !is_shown && self.taken.len() >= MOST_LABELS {
                 break;
             }

@@ -5,7 +5,7 @@ mod written;
 
 use std::collections::BTreeMap;
 
-use eframe::egui::{self, Ui, Vec2};
+use eframe::egui::{self, Rect, Ui, Vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde_json::Value;
 
@@ -18,6 +18,8 @@ const LEFT: f32 = 420.0;
 const LENS: f32 = 263.0;
 const RIGHT: f32 = 332.0;
 const VIEW: f32 = 404.0;
+/// The width of the panels beside two runs.
+const BESIDE: f32 = 400.0;
 
 worded! {
     /// A panel.
@@ -25,6 +27,8 @@ worded! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Pane by name {
         Front = "Front",
+        Elements = "Elements",
+        Nodes = "Nodes",
         Breakpoints = "Breakpoints",
         Bookmarks = "Bookmarks",
         Space = "Space",
@@ -35,8 +39,12 @@ worded! {
         History = "History",
         Parameters = "Parameters",
         Layers = "Layers",
+        TwoRuns = "Two runs",
     }
 }
+
+/// The gap between docks in points.
+const GAP: f32 = 2.0;
 
 /// How many columns there is room for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +55,8 @@ enum Room {
     Middle,
     /// One side column.
     Narrow,
+    /// Two runs: all that is left of the middle is the view, for both of them.
+    Pair,
 }
 
 impl Room {
@@ -55,11 +65,14 @@ impl Room {
             Room::Wide => "wide",
             Room::Middle => "middle",
             Room::Narrow => "narrow",
+            Room::Pair => "pair",
         }
     }
 
-    fn of(width: f32) -> Room {
-        if width >= LEFT + LENS + RIGHT + VIEW {
+    fn of(width: f32, is_pair: bool) -> Room {
+        if is_pair && width >= VIEW + BESIDE {
+            Room::Pair
+        } else if width >= LEFT + LENS + RIGHT + VIEW {
             Room::Wide
         } else if width >= 1100.0 {
             Room::Middle
@@ -84,8 +97,9 @@ pub struct Layout {
     arranged: BTreeMap<String, Value>,
     /// Whether the user is moving something.
     edited: bool,
-    /// The last request to arrange the docks that was carried out.
+    /// The last requests that were carried out: to arrange the docks, and to show a panel.
     relayouts: u64,
+    reveals: u64,
 }
 
 impl Default for Layout {
@@ -98,6 +112,7 @@ impl Default for Layout {
             arranged: BTreeMap::new(),
             edited: false,
             relayouts: 0,
+            reveals: 0,
         }
     }
 }
@@ -105,9 +120,9 @@ impl Default for Layout {
 impl Layout {
     /// Shows all panels.
     pub fn show(&mut self, ui: &mut Ui, docks: &mut Docks<'_>) {
-        let state = docks.state;
+        let state = docks.window;
         let size = ui.available_size();
-        let room = Room::of(size.x);
+        let room = Room::of(size.x, state.pair().is_some());
         if state.view().relayout.take(&mut self.relayouts).is_some() {
             let kept = state.document().layout.as_ref().and_then(|text| serde_json::from_str::<Value>(text).ok());
             self.arrange(kept.as_ref());
@@ -118,6 +133,7 @@ impl Layout {
                 Some((tree, middle)) => {
                     (self.tree, self.middle) = (Some((tree, room)), Some(middle));
                     self.size = size;
+                    self.keep_sides(size);
                 }
                 None => self.build(room, size),
             }
@@ -126,13 +142,29 @@ impl Layout {
         }
         self.size = size;
         let Some((tree, _)) = &mut self.tree else { return };
+        if let Some(Some(pane)) = state.view().reveal.take(&mut self.reveals) {
+            tree.make_active(|_, tile| matches!(tile, Tile::Pane(shown) if *shown == pane));
+        }
         tree.ui(docks, ui);
         self.edited |= docks.edited;
         if self.edited && !ui.input(|input| input.pointer.any_down()) {
             self.edited = false;
+            if let Some(row) = row_of(tree) {
+                let all = size.x - gaps(row);
+                let sum: f32 = row.children.iter().map(|id| row.shares[*id]).sum();
+                let Linear { children, shares, .. } = row;
+                children.iter().for_each(|id| shares[*id] *= all / sum);
+            }
             self.arranged.insert(room.name().to_owned(), written::write(tree));
             docks.commands.push(Command::Arrange(self.arranged().to_string()));
         }
+    }
+
+    /// Where a panel is, if it is seen.
+    pub fn place_of(&self, pane: Pane) -> Option<Rect> {
+        let (tree, _) = self.tree.as_ref()?;
+        let tile = tree.tiles.find_pane(&pane)?;
+        tree.tiles.rect(tile).filter(|_| tree.active_tiles().contains(&tile))
     }
 
     /// How the user has arranged the docks, by the room for columns.
@@ -161,22 +193,48 @@ impl Layout {
             _ => tabs(&[Pane::Space, Pane::Quality, Pane::MetricLens, Pane::Parametric]),
         };
         let (mut left, mut lens) = (Vec::new(), Vec::new());
-        if room != Room::Narrow {
-            left = vec![(tabs(&[Pane::Front]), 1.0), (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42)];
+        if matches!(room, Room::Wide | Room::Middle) {
+            left = vec![
+                (tabs(&[Pane::Front, Pane::Elements, Pane::Nodes]), 1.0),
+                (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42),
+            ];
         }
         if room == Room::Wide {
             lens = vec![(tabs(&[Pane::MetricLens]), 1.0), (tabs(&[Pane::Parametric]), 1.0)];
         }
         let (inspector, share): (&[Pane], f32) = match room {
             Room::Narrow => (
-                &[Pane::Inspector, Pane::Front, Pane::Breakpoints, Pane::Bookmarks, Pane::History],
+                &[
+                    Pane::Inspector,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                    Pane::History,
+                    Pane::TwoRuns,
+                ],
                 210.0 / size.y.max(420.0),
             ),
-            _ => (&[Pane::Inspector, Pane::History], 0.6),
+            Room::Pair => (
+                &[
+                    Pane::TwoRuns,
+                    Pane::Inspector,
+                    Pane::History,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                ],
+                0.42,
+            ),
+            _ => (&[Pane::Inspector, Pane::History, Pane::TwoRuns], 0.6),
         };
         let right = vec![(tabs(inspector), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), share)];
         let mut columns = Vec::new();
-        for (column, width) in [(left, LEFT), (vec![(view, 1.0)], 0.0), (lens, LENS), (right, RIGHT)] {
+        let right_width = if room == Room::Pair { BESIDE } else { RIGHT };
+        for (column, width) in [(left, LEFT), (vec![(view, 1.0)], 0.0), (lens, LENS), (right, right_width)] {
             let id = match column.len() {
                 0 => continue,
                 1 => column[0].0,
@@ -188,8 +246,8 @@ impl Layout {
             };
             columns.push((id, width));
         }
-        let rest = size.x - columns.iter().map(|c| c.1).sum::<f32>();
         let mut row = Linear::new(LinearDir::Horizontal, columns.iter().map(|c| c.0).collect());
+        let rest = size.x - gaps(&row) - columns.iter().map(|c| c.1).sum::<f32>();
         for (id, width) in columns {
             row.shares.set_share(id, if width > 0.0 { width } else { rest.max(1.0) });
         }
@@ -198,21 +256,25 @@ impl Layout {
         self.tree = Some((Tree::new(egui::Id::unique("docks"), root, tiles), room));
     }
 
-    /// Keeps the widths of the side columns when the window's size changes.
+    /// Keeps the widths of the side columns when the window's size changes. The shares of the row are points.
     fn keep_sides(&mut self, size: Vec2) {
         let (Some((tree, _)), Some(middle)) = (&mut self.tree, self.middle) else { return };
-        let Some(root) = tree.root() else { return };
-        let Some(Tile::Container(Container::Linear(row))) = tree.tiles.get(root) else { return };
-        let children = row.children.clone();
-        let widths: Vec<_> = children.iter().map(|id| (*id, tree.tiles.rect(*id).map_or(0.0, |r| r.width()))).collect();
-        if row.dir != LinearDir::Horizontal || !children.contains(&middle) || widths.iter().any(|w| w.1 <= 0.0) {
-            return;
-        }
-        let sides: f32 = widths.iter().filter(|w| w.0 != middle).map(|w| w.1).sum();
-        if let Some(Tile::Container(Container::Linear(row))) = tree.tiles.get_mut(root) {
-            for (id, width) in widths {
-                row.shares.set_share(id, if id == middle { (size.x - sides).max(1.0) } else { width });
-            }
-        }
+        let Some(row) = row_of(tree).filter(|row| row.children.contains(&middle)) else { return };
+        let sides: f32 = row.children.iter().filter(|id| **id != middle).map(|id| row.shares[*id]).sum();
+        row.shares.set_share(middle, (size.x - gaps(row) - sides).max(1.0));
     }
+}
+
+/// The row of columns.
+fn row_of(tree: &mut Tree<Pane>) -> Option<&mut Linear> {
+    let root = tree.root()?;
+    match tree.tiles.get_mut(root)? {
+        Tile::Container(Container::Linear(row)) if row.dir == LinearDir::Horizontal => Some(row),
+        _ => None,
+    }
+}
+
+/// The width of all gaps between the columns of a row.
+fn gaps(row: &Linear) -> f32 {
+    GAP * (row.children.len().max(1) - 1) as f32
 }

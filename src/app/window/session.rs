@@ -26,7 +26,7 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::{Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
+use crate::core::run::{Born, Chain, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 use worker::Worker;
 
 /// How often progress is reported.
@@ -44,6 +44,8 @@ pub enum Ask {
     Made(ElementId),
     /// Report the history of something up to the current step.
     Past(Watched),
+    /// Report the decision chain of a quadrilateral.
+    Chain(ElementId),
     /// Count how often conditions hold.
     Count(Vec<Condition>),
     /// Report why a segment of the front was or was not chosen.
@@ -63,19 +65,24 @@ pub enum SessionNews {
     Opened(Arc<Opened>),
     /// A state, with the number of requests that it answers.
     Moment(Arc<Moment>, usize),
+    /// The state before this was reached because a breakpoint was met, or because this was touched.
+    Stopped(Option<Watched>),
     /// More of the run: steps after `from`, which replace those known before; `end`: they include the last one.
     Track {
         from: u64,
         steps: Vec<Tracked>,
         samples: Vec<Sample>,
+        born: Born,
         end: bool,
     },
     /// The result of the checks of the whole mesh at a step.
     Checked(u64, Verdict),
     /// The history of something up to a step.
     Past(Arc<Past>),
-    /// How often each condition holds in the recorded part of the run.
-    Hits(Vec<usize>),
+    /// The decision chain of a quadrilateral.
+    Chain(Arc<ToldChain>),
+    /// The steps of the recorded part of the run at which each condition holds.
+    Hits(Vec<Vec<u64>>),
     /// Why a segment of the front was or was not chosen, at a step.
     Explained(u64, Arc<Explained>),
     /// There is no such step, with the number of requests that this answers.
@@ -88,7 +95,7 @@ pub enum SessionNews {
 pub struct Opened {
     /// The run as it was opened.
     pub run: Run,
-    pub background: Background,
+    pub background: Arc<Background>,
 }
 
 /// The record of a step.
@@ -131,6 +138,15 @@ pub struct Past {
     pub killed: Option<u64>,
 }
 
+/// The decision chain of a quadrilateral at a step.
+#[derive(Clone, Debug)]
+pub struct ToldChain {
+    pub step: u64,
+    pub element: ElementId,
+    /// None for a quadrilateral that the background mesh has.
+    pub chain: Option<Chain>,
+}
+
 /// A run on its threads.
 pub struct Session {
     ask: Sender<Ask>,
@@ -146,13 +162,32 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 impl Session {
     /// Opens the run that `read` returns.
     pub fn open(read: impl FnOnce() -> Result<Run, Fault> + Send + 'static, wake: Wake) -> Session {
+        Session::begin(
+            |voice| {
+                let run = read()?;
+                let background = Arc::new(run.background(voice)?);
+                Ok((run, background))
+            },
+            wake,
+        )
+    }
+
+    /// Opens a run whose background mesh is known.
+    pub fn fork(run: Run, background: Arc<Background>, wake: Wake) -> Session {
+        Session::begin(|_| Ok((run, background)), wake)
+    }
+
+    fn begin(
+        make: impl FnOnce(&mut Voice) -> Result<(Run, Arc<Background>), Fault> + Send + 'static,
+        wake: Wake,
+    ) -> Session {
         let (ask, asked) = channel();
         let (tell, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let opening = Cancel::new();
         let voice = Voice { tell, wake, last: Instant::now(), cancel: opening.clone() };
         let (own, flag) = (ask.clone(), stop.clone());
-        std::thread::spawn(move || match Worker::open(read, own, voice, flag) {
+        std::thread::spawn(move || match Worker::open(make, own, voice, flag) {
             Ok(mut worker) => worker.serve(&asked),
             Err((voice, fault)) => voice.say(SessionNews::Fault(*fault, 1)),
         });

@@ -54,7 +54,7 @@ impl Settings {
             layers: ViewLayer::ALL.map(|layer| layer.is_on(workspace.document.layers)),
             colour_by: workspace.document.colour_by.name().to_owned(),
             speed: workspace.speed,
-            bottom: layout.timeline_height.round(),
+            bottom: layout.timeline_height,
             place: view,
             hidden,
             curved,

@@ -4,21 +4,25 @@
 //! worker threads report. The parts of [`State`] are private to this module and the two below it, so the compiler holds
 //! everybody else to that.
 
+mod log;
+mod pair;
 mod run_state;
 mod workspace;
 mod view_state;
 mod apply;
 mod hearing;
 
+pub use pair::Pair;
 use run_state::Opening;
 pub use run_state::{Lookup, Progress, RunState};
 pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState};
 pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint, Workspace};
 
+use super::autosave::Marks;
 use super::session::{Moment, Stops, Wake};
 use crate::core::case::Parameters;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Bookmark, Condition, Run, Watched, run};
+use crate::core::run::{Condition, Run, Watched, run};
 use crate::render::scene::{ColourBy, Outlined};
 
 /// Everything that the window knows.
@@ -29,12 +33,29 @@ pub struct State {
     workspace: Workspace,
     view: ViewState,
     frame: FrameState,
+    /// The pair that this run is the first one of.
+    pair: Option<Pair>,
+    /// Whether it is the second run of a pair.
+    is_second: bool,
 }
 
 impl State {
     /// A window in which nothing is open; `wake` is called from other threads when they have something to report.
     pub fn new(wake: Wake, workspace: Workspace) -> State {
-        State { wake, run: RunState::default(), workspace, view: ViewState::default(), frame: FrameState::default() }
+        State {
+            wake,
+            run: RunState::default(),
+            workspace,
+            view: ViewState::default(),
+            frame: FrameState::default(),
+            pair: None,
+            is_second: false,
+        }
+    }
+
+    /// Called from other threads, it has the next frame drawn.
+    pub fn wake(&self) -> Wake {
+        self.wake.clone()
     }
 
     /// The run and the work on it.
@@ -80,18 +101,10 @@ impl State {
         }
     }
 
-    /// The step at which each element was last made, where elements are coloured by it.
+    /// The step that made each quadrilateral, by slot, where elements are coloured by it.
     pub fn births(&self, by: ColourBy, moment: &Moment) -> Vec<u64> {
-        let mut births = vec![0; moment.mesh.element_slots()];
-        if by == ColourBy::Birth {
-            let steps = self.run.track.iter().take(moment.step as usize).zip(1..);
-            for (&(element, _), step) in steps.filter_map(|(step, k)| Some((step.formed.as_ref()?, k))) {
-                if let Some(birth) = births.get_mut(element.index()) {
-                    *birth = step;
-                }
-            }
-        }
-        births
+        let slots = moment.mesh.element_slots();
+        if by == ColourBy::Birth { self.run.born.of_quads(moment.step, slots) } else { vec![0; slots] }
     }
 
     /// The run with all changes of the user.
@@ -99,12 +112,16 @@ impl State {
         let mut run = self.run.opened.as_ref()?.run.clone();
         run.shown = None;
         run.set_edits(self.document().edits.clone());
-        let name = |step: u64| run.bookmarks.iter().find(|mark| mark.step == step).map(|mark| mark.name.clone());
-        let marks = self.document().bookmarks.iter();
-        let marks = marks.map(|step| Bookmark { step: *step, name: name(*step).unwrap_or_default() });
-        run.bookmarks = marks.collect();
+        run.bookmarks.clone_from(&self.document().bookmarks);
         run.camera = self.moved_camera().or(run.camera);
         Some(run)
+    }
+
+    /// What the user has set beside the run.
+    fn marks(&self) -> Marks {
+        let Document { breakpoints, watches, .. } = self.document();
+        let step = self.run.moment.as_ref().map_or(0, |moment| moment.step);
+        Marks { step, breakpoints: breakpoints.clone(), watches: watches.clone() }
     }
 
     /// Whether the mesh lies on surfaces and is shown in space.

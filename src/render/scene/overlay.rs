@@ -65,6 +65,8 @@ pub struct Overlay<'a> {
     pub changed: &'a [Arc<[ElementId]>],
     /// The current quadrilateral.
     pub decision: Decision,
+    /// Whether elements are coloured by a quantity.
+    pub is_coloured: bool,
     /// Candidate edges that were rejected.
     pub refused: &'a [[NodeId; 2]],
     /// The selection.
@@ -141,9 +143,11 @@ impl Scene {
         if !layers.front {
             return;
         }
+        // Every colour of a map must leave the front visible.
+        let (casing, opacity) = if overlay.is_coloured { (4.0, 1.0) } else { (2.0, 0.8) };
         for segment in overlay.front {
-            let width = FRONT[usize::from(segment.class) - 1] + 2.0;
-            self.add(over, overlay.mesh, [segment.a, segment.b], palette.ground.faded(0.8), width);
+            let width = FRONT[usize::from(segment.class) - 1] + casing;
+            self.add(over, overlay.mesh, [segment.a, segment.b], palette.ground.faded(opacity), width);
         }
         for class in (1..=4).rev() {
             for segment in overlay.front.iter().filter(|s| s.class == class) {
@@ -255,7 +259,18 @@ mod tests {
     fn bare(mesh: &Mesh) -> Overlay<'_> {
         let decision = Decision::default();
         let (picked, hovered, background) = (None, None, None);
-        Overlay { mesh, front: &[], changed: &[], decision, refused: &[], picked, hovered, lit: &[], background }
+        Overlay {
+            mesh,
+            front: &[],
+            changed: &[],
+            decision,
+            refused: &[],
+            picked,
+            hovered,
+            lit: &[],
+            background,
+            is_coloured: false,
+        }
     }
 
     #[test]

@@ -25,19 +25,14 @@ pub struct Carried<'a> {
 /// # Errors
 /// A size that is not possible.
 pub fn write(svg: &str, dpi: f64, carried: Carried<'_>) -> Result<Vec<u8>, Fault> {
-    let refuse = |error: String| Fault::new(format!("The picture cannot be rendered: {error}"));
-    let mut options = Options { font_family: FAMILY.to_owned(), dpi: 72.0, ..Options::default() };
-    options.fontdb_mut().load_font_data(FONT.to_vec());
-    let tree = Tree::from_str(svg, &options).map_err(|error| refuse(error.to_string()))?;
+    let tree = tree(svg)?;
     let pixels = |length: f32| ((f64::from(length) * dpi / 72.0).round() as u32).max(1);
     let (width, height) = (pixels(tree.size().width()), pixels(tree.size().height()));
     if width > MOST || height > MOST || u64::from(width) * u64::from(height) > MOST_PIXELS {
         let fault = refuse(format!("{width} x {height} pixels are too many"));
         return Err(fault.remedy("Choose a smaller size or fewer dots per inch"));
     }
-    let mut pixmap = Pixmap::new(width, height).ok_or_else(|| refuse("it has no size".to_owned()))?;
-    let to_pixels = Transform::from_scale(width as f32 / tree.size().width(), height as f32 / tree.size().height());
-    resvg::render(&tree, to_pixels, &mut pixmap.as_mut());
+    let pixmap = rendered(&tree, [width, height])?;
     let opaque = pixmap.pixels().iter().all(|p| p.alpha() == u8::MAX);
     let mut bytes = Vec::with_capacity(pixmap.pixels().len() * if opaque { 3 } else { 4 });
     for pixel in pixmap.pixels() {
@@ -48,7 +43,40 @@ pub fn write(svg: &str, dpi: f64, carried: Carried<'_>) -> Result<Vec<u8>, Fault
         }
     }
     let colour = if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba };
-    encode(&bytes, [width, height], colour, dpi, carried).map_err(|error| refuse(error.to_string()))
+    encode(&bytes, [width, height], colour, dpi, carried).map_err(refuse)
+}
+
+/// Renders an SVG in at most so many pixels. Returns its size, and red, green, blue and opacity of each pixel.
+///
+/// # Errors
+/// A picture without a size.
+pub fn fitted(svg: &str, [width, height]: [f32; 2]) -> Result<([u32; 2], Vec<u8>), Fault> {
+    let tree = tree(svg)?;
+    let scale = (width / tree.size().width()).min(height / tree.size().height());
+    let size = [tree.size().width(), tree.size().height()].map(|length| ((length * scale).round() as u32).max(1));
+    let pixmap = rendered(&tree, size)?;
+    let pixels = pixmap.pixels().iter().flat_map(|pixel| {
+        let colour = pixel.demultiply();
+        [colour.red(), colour.green(), colour.blue(), colour.alpha()]
+    });
+    Ok((size, pixels.collect()))
+}
+
+fn refuse(error: impl std::fmt::Display) -> Fault {
+    Fault::new(format!("The picture cannot be rendered: {error}"))
+}
+
+fn tree(svg: &str) -> Result<Tree, Fault> {
+    let mut options = Options { font_family: FAMILY.to_owned(), dpi: 72.0, ..Options::default() };
+    options.fontdb_mut().load_font_data(FONT.to_vec());
+    Tree::from_str(svg, &options).map_err(refuse)
+}
+
+fn rendered(tree: &Tree, [width, height]: [u32; 2]) -> Result<Pixmap, Fault> {
+    let mut pixmap = Pixmap::new(width, height).ok_or_else(|| refuse("it has no size"))?;
+    let to_pixels = Transform::from_scale(width as f32 / tree.size().width(), height as f32 / tree.size().height());
+    resvg::render(tree, to_pixels, &mut pixmap.as_mut());
+    Ok(pixmap)
 }
 
 fn encode(

@@ -4,8 +4,10 @@ use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::Marks;
 use crate::app::window::settings::state_folder;
 use crate::core::fault::Fault;
+use crate::core::kernel::number::counted;
 use crate::core::record::run_file;
 
 /// The folder of autosaved runs; none if the user has no home.
@@ -59,10 +61,16 @@ impl RunSlot {
         path.exists().then_some(RunSlot { path, lock, _held: held })
     }
 
+    /// The file of what was set in the window beside the run.
+    pub fn marks(&self) -> PathBuf {
+        self.path.with_extension("json")
+    }
+
     /// Removes it.
     pub fn remove(self) {
         // A file that cannot be removed is offered once more: nothing is lost.
         let _ = std::fs::remove_file(&self.path);
+        let _ = std::fs::remove_file(self.marks());
         let _ = std::fs::remove_file(&self.lock);
     }
 }
@@ -75,26 +83,29 @@ pub struct Offer {
     pub text: String,
     /// Whether it can be opened.
     pub opens: bool,
+    pub(super) marks: Marks,
 }
 
 impl Offer {
     fn of(slot: RunSlot) -> Offer {
         let since = std::fs::metadata(&slot.path).and_then(|meta| meta.modified()).ok();
+        let marks = Marks::read(&slot.marks());
         let ago = since.map_or_else(String::new, |since| format!(" from {}", ago(since)));
         let (text, opens) = match run_file::read(&slot.path) {
             Ok(run) => {
-                let edits = match (run.edits().len(), run.bookmarks.len()) {
-                    (0, 0) => String::new(),
-                    (0, 1) => " with 1 bookmark".to_owned(),
-                    (0, marks) => format!(" with {marks} bookmarks"),
-                    (1, _) => " with 1 edit".to_owned(),
-                    (edits, _) => format!(" with {edits} edits"),
-                };
+                let of = [
+                    (run.edits().len(), "edit"),
+                    (run.bookmarks.len(), "bookmark"),
+                    (marks.breakpoints.len(), "breakpoint"),
+                    (marks.watches.len(), "watchpoint"),
+                ];
+                let first = of.into_iter().find(|(count, _)| *count > 0);
+                let edits = first.map_or(String::new(), |(n, one)| format!(" with {}", counted(n as u64, one)));
                 (format!("An unsaved run of {}{edits}{ago} can be recovered.", run.case.name), true)
             }
             Err(fault) => (format!("An unsaved run{ago} cannot be recovered: {fault}"), false),
         };
-        Offer { slot, text, opens }
+        Offer { slot, text, opens, marks }
     }
 }
 

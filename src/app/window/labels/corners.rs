@@ -66,7 +66,7 @@ impl Labels<'_> {
         let text = format!("θ{name} {}°", words::degrees(segment.theta[side.index()]));
         let at = middle + 14.0 * (middle - centre).normalized();
         let anchor = if at.x < centre.x { Align2::RIGHT_CENTER } else { Align2::LEFT_CENTER };
-        self.label(at, anchor, &text, theme::medium(12.0), ink(self.palette.accent), true);
+        self.label(at, anchor, &text, theme::medium(12.0), ink(self.palette.accent));
     }
 }
 

@@ -119,7 +119,7 @@ impl Labels<'_> {
         let text = if (1e-4..1e5).contains(&length) { format!("{length}") } else { words::size(length) };
         let text = if text.len() > 8 { words::size(length) } else { text };
         let at = Pos2::new(right + 8.0, y);
-        self.painter.text(at, Align2::LEFT_CENTER, text, theme::regular(11.5), ink(self.palette.weak));
+        self.plated(at, Align2::LEFT_CENTER, &text);
     }
 
     pub(super) fn axes(&self) {
@@ -135,8 +135,17 @@ impl Labels<'_> {
             let d = Vec2::new(d.x as f32, d.y as f32);
             self.painter.line_segment([origin, origin + 24.0 * d], stroke);
             let text = origin + 32.0 * d;
-            self.painter.text(text, Align2::CENTER_CENTER, name, theme::regular(11.5), ink(self.palette.weak));
+            self.plated(text, Align2::CENTER_CENTER, name);
         }
+    }
+
+    /// A text on a plate, so that it is read over every colour.
+    fn plated(&self, at: Pos2, anchor: Align2, text: &str) {
+        let colour = ink(self.palette.weak);
+        let galley = self.painter.layout_no_wrap(text.to_owned(), theme::regular(11.5), colour);
+        let rect = anchor.anchor_size(at, galley.size());
+        self.painter.rect_filled(rect.expand2(Vec2::new(3.0, 0.0)), 3.0, ink(self.palette.label_plate));
+        self.painter.galley(rect.min, galley, colour);
     }
 }
 

@@ -23,14 +23,8 @@ fn write_tile(tiles: &Tiles<Pane>, id: TileId) -> Value {
         }
         Some(Tile::Container(Container::Linear(linear))) => {
             let share = |id: &TileId| linear.shares.iter().find(|share| share.0 == id).map_or(1.0, |share| *share.1);
-            let shares: Vec<f64> = linear.children.iter().map(|id| f64::from(share(id).round())).collect();
-            let total: f64 = shares.iter().sum();
-            // Shares are points in the row of columns, and fractions elsewhere.
-            let shares = if total > 8.0 {
-                shares
-            } else {
-                linear.children.iter().map(|id| f64::from((share(id) * 1000.0).round()) / 1000.0).collect()
-            };
+            // A splitter is at the same pixel when they are read.
+            let shares: Vec<f64> = linear.children.iter().map(|id| f64::from(share(id))).collect();
             let children: Vec<Value> = linear.children.iter().map(|child| write_tile(tiles, *child)).collect();
             let name = if linear.dir == LinearDir::Horizontal { "row" } else { "column" };
             json!({ name: children, "shares": shares })

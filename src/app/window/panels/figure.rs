@@ -1,17 +1,34 @@
 //! The panel for figures: what they show, their look and their size.
 
-use eframe::egui::{self, Align2, Context, DragValue, Grid, RichText, TextEdit, Ui, Vec2, WidgetInfo, Window};
+mod preview;
 
-use super::{choice, on_click};
+use std::path::Path;
+
+use eframe::egui::{
+    self, Align, Align2, Context, DragValue, Grid, Label, Layout, RichText, TextEdit, Ui, Vec2, WidgetInfo, Window,
+};
+
+pub use preview::PreviewState;
+
+use super::{choice, note, on_click};
 use crate::app::window::command::Command;
-use crate::app::window::figures::{Content, Formats};
+use crate::app::window::figures::{self, Content, Formats};
 use crate::app::window::state::State;
 use crate::app::window::theme::ink;
 use crate::render::look::{Ink, Layer};
 use crate::render::palette::Palette;
 
+/// A window of at least this width has room for the preview beside the form.
+const ROOMY: f32 = 760.0;
+
 /// Shows the panel over the view, if it is open.
-pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(
+    context: &Context,
+    state: &State,
+    local: &mut PreviewState,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
     if !state.view().figure_panel {
         return;
     }
@@ -20,11 +37,24 @@ pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palet
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width(330.0)
+        .default_width(620.0)
         .frame(super::floating(palette))
         .pivot(Align2::CENTER_CENTER)
         .default_pos(context.content_rect().center() - Vec2::new(0.0, 60.0))
-        .show(context, |ui| form(ui, state, commands, palette));
+        .vscroll(true)
+        .default_height(context.content_rect().height() - 140.0)
+        .show(context, |ui| {
+            let columns = if context.content_rect().width() > ROOMY {
+                Layout::left_to_right(Align::Min)
+            } else {
+                Layout::top_down(Align::Min)
+            };
+            ui.with_layout(columns, |ui| {
+                local.show(ui, state, palette);
+                ui.add_space(10.0);
+                ui.vertical(|ui| form(ui, state, commands, palette));
+            });
+        });
     if !open {
         commands.push(Command::Figures);
     }
@@ -70,6 +100,12 @@ fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palet
         row("ground", &mut |ui| radios(ui, &mut figure.transparent, [(false, "white"), (true, "transparent")]));
         let parts = [(false, "the whole mesh"), (true, "what is in view")];
         row("part", &mut |ui| radios(ui, &mut figure.in_view, parts));
+        row("folder", &mut |ui| {
+            ui.horizontal(|ui| {
+                field(ui, &mut figure.folder, "Folder of the figure", "the working folder");
+                on_click(&ui.button("Choose…"), Command::ChooseFolder, commands);
+            });
+        });
         row("name", &mut |ui| field(ui, &mut figure.name, "Name of the figure", "from case and step"));
     });
     if !matches!(figure.content, Content::Lengths | Content::Angles) {
@@ -96,6 +132,13 @@ fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palet
         commands.push(Command::SetFigure(Box::new(figure)));
     }
     ui.add_space(8.0);
+    let names = figures::names(state, Formats::Both);
+    let folder = names[0].parent().filter(|folder| !folder.as_os_str().is_empty()).map(Path::to_path_buf);
+    let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+    let files = names.iter().filter_map(|name| name.file_name()).map(|name| name.to_string_lossy());
+    let text = format!("{} in {}", files.collect::<Vec<_>>().join(" and "), folder.display());
+    ui.add(Label::new(note(text, palette)).wrap());
+    ui.add_space(4.0);
     ui.horizontal(|ui| {
         for formats in Formats::ALL {
             on_click(&ui.button(format!("Save {}", formats.name())), Command::SaveFigure(formats), commands);

@@ -1,25 +1,31 @@
 //! The selection, or else the current decision or what is under the pointer, with numbers in the paper's formulas.
 
 mod segment;
+mod rows;
 mod why;
 mod edge;
 mod node;
 mod element;
 mod step;
 pub mod past;
+mod chain;
 
-use eframe::egui::{Align, Label, Layout, Rect, Response, RichText, ScrollArea, Sense, Ui, UiBuilder, Vec2};
+use eframe::egui::collapsing_header::CollapsingState;
+use eframe::egui::{
+    Align, Align2, Id, Label, Layout, Response, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, Vec2, WidgetInfo,
+};
 
-use super::{heading, inset, line, note, on_click, stands_for};
+use super::{inset, line, note, on_click, stands_for};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
-use crate::app::window::words;
+use crate::app::window::{icons, words};
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::MetricFacts;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Decision, Outlined};
+use rows::{Last, TableRow};
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
@@ -56,6 +62,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                 step::show(ui, moment, palette);
                 step::next(ui, moment, palette);
             }
+            if let Some(Outlined::Element(e)) = shown
+                && moment.mesh.has_element(e)
+                && moment.mesh.is_quad(e)
+            {
+                chain::show(ui, state, e, commands, palette);
+            }
             if let Some(what) = shown {
                 past::show(ui, state, what, commands, palette);
             }
@@ -87,37 +99,35 @@ fn gone(ui: &mut Ui, what: &str, palette: &Palette) {
     ui.label(note(format!("{what} does not exist at this step."), palette));
 }
 
-/// The gap between columns in points.
-const GAP: f32 = 7.0;
-
-/// One row of a table in columns of fixed widths; the last one takes the rest. Long texts are cut and shown on hover.
-fn table_row(ui: &mut Ui, widths: &[f32], texts: &[String], colour: Rgba, ground: Option<Rgba>) -> Response {
-    // Numbers are aligned to the right, words to the left.
-    let left_last = texts.last().is_some_and(|text| text.contains(char::is_alphabetic) && !text.ends_with('°'));
-    let full = ui.available_width();
-    let (rect, response) = ui.allocate_exact_size(Vec2::new(full, 20.0), Sense::click());
-    if let Some(ground) = ground {
-        ui.painter().rect_filled(rect.expand2(Vec2::new(4.0, 0.0)), 0.0, ink(ground));
+/// The head of a section, which a click folds or unfolds; its source stands at the right where there is room. Returns
+/// whether the section is unfolded.
+fn section(ui: &mut Ui, title: &str, source: &str, palette: &Palette) -> bool {
+    ui.add_space(8.0);
+    let id = Id::unique(("section of the inspector", title));
+    let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, true);
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 22.0), Sense::click());
+    if response.clicked() {
+        state.toggle(ui);
+        state.store(ui.ctx());
     }
-    let mut x = rect.left();
-    for (k, text) in texts.iter().enumerate() {
-        let is_last = k + 1 == texts.len();
-        let width = if is_last { rect.right() - x } else { widths[k] };
-        let cell = Rect::from_min_size(rect.min + Vec2::new(x - rect.left(), 0.0), Vec2::new(width.max(0.0), 20.0));
-        let first = k == 0 || (is_last && left_last);
-        let layout = if first { Layout::left_to_right(Align::Center) } else { Layout::right_to_left(Align::Center) };
-        ui.scope_builder(UiBuilder::new().max_rect(cell).layout(layout), |ui| {
-            ui.add(Label::new(line(text, colour)).selectable(false).truncate());
-        });
-        x += width + GAP;
+    let is_open = state.is_open();
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, title));
+    let colour = ink(if response.hovered() { palette.text } else { palette.weak });
+    let icon = if is_open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
+    let left = rect.left_center() - Vec2::new(4.0, 0.0);
+    ui.painter().text(left, Align2::LEFT_CENTER, icon, theme::regular(theme::HEAD), colour);
+    let name = ui.painter().layout_no_wrap(title.to_owned(), theme::semibold(theme::BODY), ink(palette.strong));
+    let at = left + Vec2::new(14.0, -0.5 * name.size().y);
+    let said = RichText::new(source).font(theme::regular(theme::HEAD)).color(ink(palette.weak));
+    let room = ui.painter().layout_no_wrap(source.to_owned(), theme::regular(theme::HEAD), ink(palette.weak)).size().x;
+    if at.x + name.size().x + 10.0 + room <= rect.right() {
+        let right = UiBuilder::new().max_rect(rect).layout(Layout::right_to_left(Align::Center));
+        ui.scope_builder(right, |ui| ui.add(Label::new(said).selectable(false)));
+    } else if is_open {
+        ui.add(Label::new(said).wrap());
     }
-    response
-}
-
-/// The headings of such a table.
-fn table_head(ui: &mut Ui, widths: &[f32], texts: &[&str], palette: &Palette) {
-    let texts: Vec<String> = texts.iter().map(|text| (*text).to_owned()).collect();
-    table_row(ui, widths, &texts, palette.weak, None);
+    ui.painter().galley(at, name, ink(palette.strong));
+    is_open
 }
 
 /// A link that selects something.
@@ -128,7 +138,9 @@ fn link(ui: &mut Ui, text: String, what: Outlined, commands: &mut Vec<Command>, 
 
 /// The length of an edge, in the metric and in space.
 fn length(ui: &mut Ui, metric: f64, physical: f64, palette: &Palette) {
-    heading(ui, "Length", "eq. 4", palette);
+    if !section(ui, "Length", "eq. 4", palette) {
+        return;
+    }
     let text = format!("**{}** metric,  {} in space", words::fixed(metric, 2), words::size(physical));
     formula(ui, &text, palette).on_hover_text("In a plane case the parametric length is the length in space.");
 }
@@ -146,13 +158,12 @@ fn elements(ui: &mut Ui, name: &str, ids: &[ElementId], commands: &mut Vec<Comma
 
 /// Nodes with their places and the sizes of their metrics.
 fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut Vec<Command>, palette: &Palette) {
-    let widths = [38.0, 44.0, 44.0, 48.0, 44.0];
     let axes = if moment.mesh.embedding().is_some() { ["u", "v"] } else { ["x", "y"] };
-    table_head(ui, &widths, &["", axes[0], axes[1], "h\u{2081}", "h\u{2082}", "axis °"], palette);
-    for (k, (name, node)) in nodes.iter().enumerate() {
-        let p = moment.mesh.uv(*node);
-        let told = MetricFacts::of(&moment.mesh, *node);
-        let texts = [
+    let facts: Vec<MetricFacts> = nodes.iter().map(|node| MetricFacts::of(&moment.mesh, node.1)).collect();
+    let row = |k: usize| {
+        let ((name, node), told) = (nodes[k], &facts[k]);
+        let p = moment.mesh.uv(node);
+        let texts = vec![
             format!("{name} {}", node.0).trim().to_owned(),
             words::size(p.x),
             words::size(p.y),
@@ -160,8 +171,12 @@ fn ends(ui: &mut Ui, moment: &Moment, nodes: &[(&str, NodeId)], commands: &mut V
             words::size(told.sizes[0]),
             words::fixed(axis(told.directions[1]), 1),
         ];
-        let ground = (k % 2 == 0).then_some(palette.stripe);
-        let response = table_row(ui, &widths, &texts, palette.text, ground);
+        TableRow { texts, colour: palette.text, ground: k.is_multiple_of(2).then_some(palette.stripe) }
+    };
+    let rows: Vec<TableRow> = (0..nodes.len()).map(row).collect();
+    let head = ["node", axes[0], axes[1], "h\u{2081}", "h\u{2082}", "axis °"];
+    let shown = rows::table(ui, &head, &rows, Last::Numbers, palette);
+    for ((response, (_, node)), told) in shown.into_iter().zip(nodes).zip(&facts) {
         let tip = format!(
             "node {}: h\u{2081} runs along the axis; M = ({}, {}, {}), \u{3bb} = {} and {}; click to select it",
             node.0,

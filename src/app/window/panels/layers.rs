@@ -2,7 +2,7 @@
 
 use eframe::egui::{ScrollArea, Ui};
 
-use super::{heading, inset, note, on_click};
+use super::{heading, inset, legend, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::state::State;
 use crate::app::window::view_layer::ViewLayer;
@@ -11,7 +11,13 @@ use crate::render::scene::ColourBy;
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    ScrollArea::vertical().show(ui, |ui| inset().show(ui, |ui| list(ui, state, commands, palette)));
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        inset().show(ui, |ui| {
+            list(ui, state, commands, palette);
+            heading(ui, "Classes of front segments", "table 1", palette);
+            legend::table(ui, state, palette);
+        });
+    });
 }
 
 /// Check boxes for layers, buttons for colours.

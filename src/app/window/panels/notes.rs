@@ -1,14 +1,14 @@
 //! The notes of a case: open from the start for the small cases that show a figure of the paper.
 
-use eframe::egui::{Align2, Context, Grid, RichText, ScrollArea, Ui, Vec2, Window};
+use eframe::egui::{Align2, Context, Grid, Rect, RichText, ScrollArea, Ui, Vec2, Window};
 
 use crate::app::window::command::Command;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::render::palette::Palette;
 
-/// Shows the notes, if they are open.
-pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+/// Shows the notes, if they are open; they start over the bottom of `place`.
+pub fn show(context: &Context, place: Rect, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let opened = state.run().opened.as_ref().filter(|_| state.view().notes);
     let Some(case) = opened.map(|opened| &opened.run.case) else { return };
     let mut open = true;
@@ -18,9 +18,8 @@ pub fn show(context: &Context, state: &State, commands: &mut Vec<Command>, palet
         .resizable(false)
         .default_width(304.0)
         .frame(super::floating(palette))
-        // It starts over the left column, where it does not cover the mesh.
         .pivot(Align2::LEFT_BOTTOM)
-        .default_pos(context.content_rect().left_bottom() + Vec2::new(8.0, -224.0))
+        .default_pos(place.left_bottom() + Vec2::new(8.0, -8.0))
         .show(context, |ui| {
             ui.set_width(304.0);
             ui.label(RichText::new(&case.title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));

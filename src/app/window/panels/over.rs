@@ -4,6 +4,7 @@ use eframe::egui::{self, Align2, Area, Button, Context, Key, Label, Order, RichT
 
 use crate::app::window::command::{Command, keys};
 use crate::app::window::mesh_out;
+use crate::app::window::pair::PairCommand;
 use crate::app::window::session::Source;
 use crate::app::window::state::{Overlay, State};
 use crate::app::window::theme::{self, ink};
@@ -25,7 +26,7 @@ pub struct OverState {
 pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &mut Vec<Command>, palette: &Palette) {
     let over = state.view().overlay;
     if over != local.shown {
-        local.field = if over == Overlay::Mesh { mesh_out::suggested_path(state) } else { String::new() };
+        local.field = if over == Overlay::Mesh { mesh_out::suggested_path(state.active()) } else { String::new() };
         local.shown = over;
     }
     if over == Overlay::Nothing {
@@ -53,12 +54,20 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
                         commands.extend([Command::CloseOverlay, Command::Open(source)]);
                     }
                 }
+                Overlay::PathBeside => {
+                    let hint = "The path of a case, a run or a mesh, or the name of a built-in case";
+                    if field(ui, &mut local.field, hint, "Path of the second run") {
+                        let source = Source::named(local.field.trim());
+                        let open = PairCommand::OpenBeside(source, Box::default());
+                        commands.extend([Command::CloseOverlay, Command::Pair(open)]);
+                    }
+                }
                 Overlay::Mesh => {
                     let hint = "A name such as part.vtu; its extension chooses the format";
                     if field(ui, &mut local.field, hint, "Path of the mesh") {
                         commands.push(Command::SaveMeshAs(local.field.clone()));
                     }
-                    about_the_mesh(ui, state.run().is_at_the_end(), palette);
+                    about_the_mesh(ui, state.active().run().is_at_the_end(), palette);
                 }
                 Overlay::Nothing => {}
             }

@@ -5,7 +5,7 @@ mod numbers;
 
 use std::sync::{Arc, Weak};
 
-use eframe::egui::{RichText, Ui, Vec2b};
+use eframe::egui::{RichText, Role, Ui, Vec2b, WidgetInfo};
 use egui_plot::{Bar, BarChart, Legend, Plot};
 
 use super::{line, note};
@@ -189,6 +189,7 @@ fn chart(
             plot.bar_chart(chart.element_formatter(Box::new(|bar, _| bar.name.clone())));
         }
     });
+    shown.response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, format!("Plot of {id}")));
     let at = shown.response.interact_pointer_pos().filter(|_| shown.response.clicked())?;
     let x = shown.transform.value_from_position(at).x;
     let bar = ((x - range[0]) / width).floor();

@@ -23,8 +23,9 @@ pub struct TimeState {
     pub times: Times,
 }
 
-/// Shows both.
-pub fn show(ui: &mut Ui, state: &State, local: &mut TimeState, commands: &mut Vec<Command>, palette: &Palette) {
+/// Shows both; `window` is the first run.
+pub fn show(ui: &mut Ui, window: &State, local: &mut TimeState, commands: &mut Vec<Command>, palette: &Palette) {
+    let state = window.active();
     let rect = ui.max_rect();
     let row = Rect::from_min_size(rect.min, Vec2::new(rect.width(), 40.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(row.shrink2(Vec2::new(8.0, 0.0))), |ui| {
@@ -34,7 +35,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut TimeState, commands: &mut Ve
     progress(ui, row, state, palette);
     let below = Rect::from_min_max(row.left_bottom(), rect.max);
     ui.scope_builder(egui::UiBuilder::new().max_rect(below), |ui| {
-        timeline::show(ui, state, &mut local.timeline, commands, palette);
+        timeline::show(ui, window, &mut local.timeline, commands, palette);
     });
     ui.advance_cursor_after_rect(rect);
 }
@@ -68,12 +69,15 @@ fn transport(ui: &mut Ui, state: &State, times: &Times, commands: &mut Vec<Comma
         ui.label(RichText::new("breakpoint").font(theme::regular(theme::TABLE)).color(ink(palette.weak)));
     }
     rule(ui, palette);
-    speed(ui, state, commands);
+    if ui.available_width() > 330.0 {
+        speed(ui, state, commands);
+    }
     if ui.available_width() > 620.0 {
         kinds(ui, commands, open);
     }
     ui.add_space(10.0);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        icon_button(ui, icons::LIST, theme::TRANSPORT_ICON, Command::Messages, true, commands);
         icon_button(ui, icons::BOOKMARK, theme::TRANSPORT_ICON, Command::Bookmark, open, commands);
         if state.run().is_busy() && state.run().since.is_some_and(|since| since.elapsed().as_millis() > 150) {
             on_click(&ui.button("Stop"), Command::Stop, commands);
@@ -132,7 +136,8 @@ fn verdict(ui: &mut Ui, state: &State, times: &Times, palette: &Palette) {
         Verdict::Holds | Verdict::Looking => (icons::CHECK_CIRCLE, "invariants hold".to_owned(), palette.holds),
         Verdict::Broken(what) => (icons::X_CIRCLE, what.clone(), palette.broken),
     };
-    let text = RichText::new(format!("{icon} {text}")).font(theme::regular(theme::TABLE)).color(ink(colour));
+    let text = if ui.available_width() > 300.0 { format!("{icon} {text}") } else { icon.to_owned() };
+    let text = RichText::new(text).font(theme::regular(theme::TABLE)).color(ink(colour));
     ui.label(text).on_hover_text(
         "The mesh is sound: twins agree, every element is positive, and every loop of the front is even",
     );
@@ -153,25 +158,27 @@ fn status(ui: &mut Ui, state: &State, palette: &Palette) {
         return;
     }
     let Some(moment) = &state.run().moment else { return };
-    let (quads, all) =
-        (words::counted(moment.standing, "quad"), state.run().track.last().map(|t| u64::from(t.standing)));
+    let quads = words::counted(moment.standing, "quad");
+    let all = state.run().track.last().map(|t| u64::from(t.standing));
     let more = if state.run().recorded { "" } else { "…" };
-    let strong = |text: String| RichText::new(text).font(theme::semibold(theme::BODY)).color(ink(palette.strong));
-    let weak = |text: String| RichText::new(text).color(ink(palette.weak));
-    ui.spacing_mut().item_spacing.x = 5.0;
-    ui.label(strong(format!("step {}", words::grouped(moment.step))));
-    ui.label(weak(format!("/ {}{more}", words::grouped(state.run().track.len() as u64))));
-    ui.label(strong(format!("  {quads}")));
-    // Clean-up removes some: the number at the end is no total.
-    if let Some(all) = all.filter(|_| state.run().recorded) {
-        ui.label(weak(format!("({} at the end)", words::grouped(all))));
-    }
-    let text = match &moment.event {
+    let event = match &moment.event {
         None => "the front is the boundary; the first step selects a base".to_owned(),
         Some(event) => words::event(event),
     };
-    let text = RichText::new(format!("·  {text}")).color(ink(palette.text));
-    ui.add(egui::Label::new(text).truncate());
+    let at = format!(
+        "**step {}** / {}{more}   ",
+        words::grouped(moment.step),
+        words::grouped(state.run().track.len() as u64)
+    );
+    // Clean-up removes some: the number at the end is no total.
+    let end = all.filter(|_| state.run().recorded).map(|all| format!(" ({} at the end)", words::grouped(all)));
+    let text = format!("{at}**{quads}**{}  ·  {event}", end.unwrap_or_default());
+    // The row has room for two lines.
+    let mut job = theme::formula(&text, theme::BODY, ink(palette.text), ink(palette.strong));
+    job.wrap.max_width = ui.available_width().max(1.0);
+    job.wrap.max_rows = 2;
+    let galley = ui.painter().layout_job(job);
+    ui.label(galley);
 }
 
 /// A thin bar over the row while work is under way.

@@ -7,6 +7,7 @@ use eframe::egui::{
 use super::on_click;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
+use crate::app::window::pair::PairCommand;
 use crate::app::window::session::{Goal, Source};
 use crate::app::window::state::{State, SurfaceView};
 use crate::app::window::theme::{self, ink};
@@ -79,6 +80,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         items(ui, [Command::OpenDialog, Command::OpenPath, Command::Reopen, Command::Import], commands);
         items(ui, [Command::SaveRun, Command::SaveMesh, Command::Notes], commands);
         ui.separator();
+        items(ui, [PairCommand::Fork, PairCommand::AskBeside].map(Command::Pair), commands);
+        ui.separator();
         let mut open = |ui: &mut Ui, cases: &[(&str, &str)]| {
             for (name, _) in cases {
                 item(ui, Command::Open(Source::BuiltIn((*name).to_owned())), commands);
@@ -96,7 +99,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         items(ui, [Command::ResetParameters, Command::Undo, Command::Redo], commands);
     });
     ui.menu_button("View", |ui| {
-        let view = [Command::Fit, Command::ShowDecision, Command::ToggleTheme, Command::ResetLayout];
+        let view =
+            [Command::Fit, Command::ShowDecision, Command::FindWorst, Command::ToggleTheme, Command::ResetLayout];
         items(ui, view, commands);
         ui.separator();
         ui.menu_button("Surfaces", |ui| {
@@ -117,7 +121,7 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         });
     });
     ui.menu_button("Help", |ui| {
-        items(ui, [Command::Help, Command::Palette, Command::Go(Goal::Step(0))], commands);
+        items(ui, [Command::Help, Command::Palette, Command::Messages, Command::Go(Goal::Step(0))], commands);
     });
 }
 

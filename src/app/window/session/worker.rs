@@ -9,10 +9,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
-use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, Tracked, Voice};
+use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, ToldChain, Tracked, Voice};
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
+use crate::core::prepare::Background;
 use crate::core::run::copies::Since;
 use crate::core::run::history::BUDGET;
 use crate::core::run::{
@@ -81,13 +82,12 @@ pub(super) struct Worker {
 
 impl Worker {
     pub(super) fn open(
-        read: impl FnOnce() -> Result<Run, Fault>,
+        make: impl FnOnce(&mut Voice) -> Result<(Run, Arc<Background>), Fault>,
         own: Sender<Ask>,
         mut voice: Voice,
         stop: Arc<AtomicBool>,
     ) -> Result<Worker, (Voice, Box<Fault>)> {
-        let made = read().and_then(|run| {
-            let background = run.background(&mut voice)?;
+        let made = make(&mut voice).and_then(|(run, background)| {
             let history = History::of(run, &background, BUDGET)?;
             Ok((background, history))
         });
@@ -142,6 +142,7 @@ impl Worker {
                 }
                 Ask::Made(element) => self.go_back(self.history.made(element), "It exists from the beginning."),
                 Ask::Past(watched) => self.past(watched),
+                Ask::Chain(element) => self.chain(element),
                 Ask::Count(conditions) => {
                     self.conditions = conditions;
                     self.count();
@@ -212,6 +213,12 @@ impl Worker {
         self.report(told().map(|past| SessionNews::Past(Arc::new(past))), 0);
     }
 
+    fn chain(&self, element: ElementId) {
+        let step = self.history.step();
+        let told = self.history.chain(element).map(|chain| ToldChain { step, element, chain });
+        self.report(told.map(|told| SessionNews::Chain(Arc::new(told))), 0);
+    }
+
     /// Reports an answer, or the fault instead, to so many requests.
     fn report(&self, answer: Result<SessionNews, Fault>, asks: usize) {
         self.voice.say(answer.unwrap_or_else(|fault| SessionNews::Fault(fault, asks)));
@@ -240,10 +247,10 @@ impl Worker {
         Some((step, why))
     }
 
-    /// Counts how often the conditions hold in the recorded events.
+    /// Finds the steps of the recorded events at which the conditions hold.
     fn count(&self) {
         let log = self.history.log();
-        let mut hits = vec![0; self.conditions.len()];
+        let mut hits = vec![Vec::new(); self.conditions.len()];
         for step in (1..=log.known()).filter(|_| !self.conditions.is_empty()) {
             let Some(event) = log.event(step) else { continue };
             let moment = breakpoint::StepFacts {
@@ -254,7 +261,9 @@ impl Worker {
                 angles: log.angles(step),
             };
             for (hit, condition) in hits.iter_mut().zip(&self.conditions) {
-                *hit += usize::from(condition.holds(&moment));
+                if condition.holds(&moment) {
+                    hit.push(step);
+                }
             }
         }
         self.voice.say(SessionNews::Hits(hits));
@@ -322,7 +331,13 @@ impl Worker {
         // The first sample is that of step 0.
         let fresh = |sample: &&Sample| sample.step > self.tracked || self.tracked == 0;
         let samples = log.samples().iter().filter(fresh).copied().collect();
-        let told = SessionNews::Track { from: self.tracked, steps: steps.collect(), samples, end };
+        let told = SessionNews::Track {
+            from: self.tracked,
+            steps: steps.collect(),
+            samples,
+            born: log.born().after(self.tracked),
+            end,
+        };
         self.tracked = log.known();
         self.voice.say(told);
     }
@@ -334,7 +349,8 @@ impl Worker {
         let found = match &aim {
             Aim::Goals(goals) => {
                 let log = self.history.log();
-                goals.iter().try_fold(self.history.step(), |step, goal| goal.resolve(log, step, end))
+                let step = goals.iter().try_fold(self.history.step(), |step, goal| goal.resolve(log, step, end));
+                step.map(|step| (step, None))
             }
             Aim::Break(stops, direction) => match self.stop_at(stops, *direction) {
                 Ok(None) if end.is_some() || *direction == Direction::Back => {
@@ -344,34 +360,39 @@ impl Worker {
                 Err(fault) => return self.voice.say(SessionNews::Fault(fault, asks)),
             },
         };
-        let Some(step) = found else {
+        let Some((step, watched)) = found else {
             self.pending = Some(Pending { aim, asks, since });
             let words = "Converting: quad";
             return self.voice.progress(words, self.history.log().nq(u64::MAX), self.triangles / 2);
         };
         let moment = self.moment(step, since);
+        let has_arrived = moment.is_ok();
         self.report(moment.map(|moment| SessionNews::Moment(Arc::new(moment), asks)), asks);
+        if has_arrived && matches!(aim, Aim::Break(..)) {
+            self.voice.say(SessionNews::Stopped(watched));
+        }
     }
 
-    /// The nearest step at which a breakpoint is met or something that is watched is touched.
-    fn stop_at(&mut self, stops: &Stops, direction: Direction) -> Result<Option<u64>, Fault> {
+    /// The nearest step at which a breakpoint is met or something that is watched is touched, with the latter.
+    fn stop_at(&mut self, stops: &Stops, direction: Direction) -> Result<Option<(u64, Option<Watched>)>, Fault> {
         let mut found = Vec::new();
         if !stops.conditions.is_empty() {
             let met = match direction {
                 Direction::Forward => self.history.next_break(&stops.conditions)?,
                 Direction::Back => self.history.previous_break(&stops.conditions)?,
             };
-            found.extend(met.map(|met| met.0));
+            found.extend(met.map(|met| (met.0, None)));
         }
         for &watched in &stops.watched {
-            found.extend(match direction {
+            let touched = match direction {
                 Direction::Forward => self.history.next_touch(watched)?,
                 Direction::Back => self.history.last_touch(watched)?,
-            });
+            };
+            found.extend(touched.map(|step| (step, Some(watched))));
         }
         Ok(match direction {
-            Direction::Forward => found.into_iter().min(),
-            Direction::Back => found.into_iter().max(),
+            Direction::Forward => found.into_iter().min_by_key(|stop| stop.0),
+            Direction::Back => found.into_iter().max_by_key(|stop| stop.0),
         })
     }
 }

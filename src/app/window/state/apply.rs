@@ -1,27 +1,42 @@
 //! Does what the user asks for. With `hearing` this is the only place that changes [`State`].
 
 mod opening;
+mod pair;
 mod parameters;
 mod saving;
 
 use std::time::{Duration, Instant};
+
+pub(super) use pair::are_in_one_place;
 
 use super::{Breakpoint, Document, Look, Overlay, State, SurfaceView, ViewCamera, ViewKind, Watchpoint, watched};
 use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
+use crate::app::window::layout::Pane;
+use crate::app::window::lists::ListKind;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Condition, Edit, EditKind, Watched};
+use crate::core::run::{Bookmark, Condition, Edit, EditKind, Query, Watched};
+use crate::render::scene::Outlined;
 
 impl State {
     /// Does what the user asks for.
     pub(in crate::app::window) fn apply(&mut self, command: Command) {
+        match command {
+            Command::Pair(command) => self.apply_to_pair(command),
+            command if self.pair.is_some() => self.apply_beside(command),
+            command => self.apply_alone(command),
+        }
+    }
+
+    /// The same in this run, whether or not there is a second one.
+    fn apply_alone(&mut self, command: Command) {
         if self.run.import.is_some() && !command.fits_import() {
             return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
         }
@@ -46,6 +61,16 @@ impl State {
             Command::TellPast(watched) => {
                 self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
             }
+            Command::TellChain(element) => {
+                self.run.asked_chain = self.inquire(Ask::Chain(element)).map(|step| (step, element));
+            }
+            Command::List(kind, query) => self.list(kind, query, false),
+            Command::CopyList(kind, query) => self.list(kind, query, true),
+            Command::Find(what) => self.find(what),
+            Command::FindWorst => match self.run.moment.as_ref().and_then(|moment| moment.worst) {
+                Some((e, _)) => self.find(Outlined::Element(e)),
+                None => self.notice("There is no quadrilateral yet.".to_owned()),
+            },
             Command::Watch(what) => self.watch(watched(what)),
             Command::SwitchWatch(k) => {
                 self.change(|document| flip(document.watches.get_mut(k).map(|watch| &mut watch.is_on)));
@@ -83,6 +108,11 @@ impl State {
                 }
             }),
             Command::Bookmark => self.bookmark(),
+            Command::WriteNote(step, note) => self.workspace.write_note(step, note),
+            Command::RemoveBookmark(step) => {
+                self.change(|document| document.bookmarks.retain(|mark| mark.step != step))
+            }
+            Command::ExportNotes => self.export_notes(),
             Command::Open(source) => self.open(source, Overrides::default()),
             Command::OpenWith(source, overrides) => self.open(source, *overrides),
             Command::Import => match &self.run.source {
@@ -116,8 +146,12 @@ impl State {
                     self.view.faults.remove(k);
                 }
             }
+            Command::Messages => self.view.messages = !self.view.messages,
             Command::Screenshot => self.frame.screenshot = true,
             Command::Figures => self.view.figure_panel = !self.view.figure_panel,
+            Command::ChooseFolder => {
+                self.run.folder_dialog.get_or_insert_with(|| Dialog::choose_folder(self.wake.clone()));
+            }
             Command::SetFigure(form) => self.workspace.figure = *form,
             Command::Export => self.save_figure(Formats::Both),
             Command::SaveFigure(formats) => self.save_figure(formats),
@@ -153,21 +187,38 @@ impl State {
             }
             Command::ToggleTheme => self.frame.toggle_theme = true,
             Command::Escape => self.escape(),
+            Command::Pair(command) => self.apply_to_pair(command),
         }
     }
 
     /// Ends a frame: does what its panels ask for. Returns whether the next frame has something new to show.
     pub(in crate::app::window) fn end_frame(&mut self, commands: Vec<Command>) -> bool {
-        let hovered = std::mem::take(&mut self.frame).hovered;
+        let hovered = self.begin_hovering();
         let is_asked = commands.iter().any(|command| !matches!(command, Command::Hover(_)));
         commands.into_iter().for_each(|command| self.apply(command));
-        let is_hovered_anew = self.frame.hovered != hovered;
-        self.view.over_epoch += u64::from(is_hovered_anew);
-        is_asked || is_hovered_anew
+        is_asked | self.is_hovered_anew(hovered)
+    }
+
+    /// Forgets what the pointer was on in each run. Returns it.
+    fn begin_hovering(&mut self) -> [Option<Outlined>; 2] {
+        let other = self.pair.as_mut().and_then(|pair| std::mem::take(&mut pair.other.frame).hovered);
+        [std::mem::take(&mut self.frame).hovered, other]
+    }
+
+    /// Whether the pointer is on something else than it was before, in either run.
+    fn is_hovered_anew(&mut self, [before, other]: [Option<Outlined>; 2]) -> bool {
+        let is_new = self.frame.hovered != before;
+        self.view.over_epoch += u64::from(is_new);
+        self.pair.as_mut().is_some_and(|pair| pair.other.is_hovered_anew([other, None])) || is_new
     }
 
     /// While the run is played, goes on when it is time. Returns how long to wait until then.
     pub(in crate::app::window) fn play_on(&mut self) -> Option<Duration> {
+        let waits = [self.pair.as_mut().and_then(|pair| pair.other.play_on()), self.play_on_alone()];
+        waits.into_iter().flatten().min()
+    }
+
+    fn play_on_alone(&mut self) -> Option<Duration> {
         let last = self.run.playing.filter(|_| !self.run.is_busy())?;
         let period = Duration::from_secs_f32(1.0 / self.workspace.speed.max(0.1));
         let left = period.checked_sub(last.elapsed()).filter(|left| !left.is_zero());
@@ -195,15 +246,27 @@ impl State {
 
     /// Shows a fault until the user closes it.
     pub(in crate::app::window) fn complain(&mut self, fault: &Fault) {
-        let text = fault.to_string();
-        if !self.view.faults.contains(&text) {
-            self.view.faults.push(text);
-        }
+        self.warn(fault.to_string());
+    }
+
+    /// Shows what went wrong until the user closes it.
+    fn warn(&mut self, text: String) {
+        self.view.log.keep(text.clone(), true, self.step());
+        // The latest one is shown.
+        self.view.notice = None;
+        self.view.faults.retain(|old| *old != text);
+        self.view.faults.push(text);
     }
 
     /// Shows for a while what was done.
     pub(in crate::app::window) fn notice(&mut self, text: String) {
+        self.view.log.keep(text.clone(), false, self.step());
         self.view.notice = Some((text, Instant::now()));
+    }
+
+    /// The step that is shown.
+    fn step(&self) -> Option<u64> {
+        self.run.moment.as_ref().map(|moment| moment.step)
     }
 
     /// Asks the session to go somewhere.
@@ -220,7 +283,7 @@ impl State {
     }
 
     /// Changes the document, so that undo takes it back.
-    fn change(&mut self, change: impl FnOnce(&mut Document)) {
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut Document)) {
         if let Some(before) = self.workspace.change(change) {
             self.follow(&before);
         }
@@ -244,13 +307,10 @@ impl State {
         if document.layers != before.layers || document.colour_by != before.colour_by {
             self.view.style_epoch += 1;
         }
-        if document.breakpoints != before.breakpoints
-            && let Some(session) = &self.run.session
-        {
-            // Switched off, a breakpoint keeps its count.
-            let all = document.breakpoints.iter().filter_map(|b| Condition::parse(&b.condition).ok());
-            session.ask(Ask::Count(all.collect()));
+        if document.breakpoints != before.breakpoints {
+            self.count_breakpoints();
         }
+        let document = &self.workspace.document;
         if document.picked != before.picked {
             self.view.scroll.ask(document.picked);
         }
@@ -258,6 +318,14 @@ impl State {
         if document.edits != before.edits {
             self.run.recorded = false;
             self.ask(Ask::Edits(document.edits.clone()));
+        }
+    }
+
+    /// Has the session find where the breakpoints hold; switched off, one keeps its count.
+    pub(super) fn count_breakpoints(&self) {
+        let all = self.document().breakpoints.iter().filter_map(|b| Condition::parse(&b.condition).ok());
+        if let Some(session) = &self.run.session {
+            session.ask(Ask::Count(all.collect()));
         }
     }
 
@@ -301,9 +369,13 @@ impl State {
     /// Sets a bookmark at the current step, or removes it.
     fn bookmark(&mut self) {
         let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
-        self.change(|document| match document.bookmarks.binary_search(&step) {
+        let is_new = self.document().bookmarks.iter().all(|mark| mark.step != step);
+        if is_new {
+            self.view.reveal.ask(Some(Pane::Bookmarks));
+        }
+        self.change(|document| match document.bookmarks.binary_search_by_key(&step, |mark| mark.step) {
             Ok(k) => drop(document.bookmarks.remove(k)),
-            Err(k) => document.bookmarks.insert(k, step),
+            Err(k) => document.bookmarks.insert(k, Bookmark { step, note: String::new() }),
         });
     }
 
@@ -312,6 +384,23 @@ impl State {
         let (moment, session) = (self.run.moment.as_ref()?, self.run.session.as_ref()?);
         session.ask(ask);
         Some(moment.step)
+    }
+
+    /// Selects something and brings it into view.
+    fn find(&mut self, what: Outlined) {
+        self.change(|document| document.picked = Some(what));
+        self.view.look.ask(Look::Near(what));
+    }
+
+    /// Has a list of the current state made.
+    fn list(&mut self, kind: ListKind, query: Query, as_text: bool) {
+        let Some(moment) = &self.run.moment else { return };
+        let mesh = moment.mesh.clone();
+        let born = match kind {
+            ListKind::Elements => self.run.born.of_quads(moment.step, mesh.element_slots()),
+            ListKind::Nodes => self.run.born.of_nodes(moment.step, mesh.node_slots()),
+        };
+        self.run.lists.make(kind, query, as_text, mesh, born, self.wake.clone());
     }
 
     fn move_camera(&mut self, view: ViewKind, camera: ViewCamera) {
@@ -336,9 +425,9 @@ impl State {
             self.view.overlay = Overlay::Nothing;
         } else if self.run.import.is_some() {
             self.cancel_import();
-        } else if self.view.figure_panel || self.view.notes {
+        } else if self.view.figure_panel || self.view.notes || self.view.messages {
             // What lies over the views is closed before what is selected behind it is let go.
-            (self.view.figure_panel, self.view.notes) = (false, false);
+            (self.view.figure_panel, self.view.notes, self.view.messages) = (false, false, false);
         } else if self.run.playing.is_some() {
             self.run.playing = None;
         } else {

@@ -4,6 +4,8 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
+use super::log::MessageLog;
+use crate::app::window::layout::Pane;
 use crate::core::run::run;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::scene::Outlined;
@@ -24,6 +26,8 @@ pub struct ViewState {
     pub scroll: Request<Option<Outlined>>,
     /// The docks are to be arranged as the document says.
     pub relayout: Request<()>,
+    /// The panel that is to be shown in its tabs.
+    pub reveal: Request<Option<Pane>>,
     /// What a bar of a plot stands for, lit up in the views until the next state comes.
     pub lit: Vec<Outlined>,
     /// Changes when the mesh is to be drawn in another way.
@@ -35,8 +39,11 @@ pub struct ViewState {
     pub notes: bool,
     /// Whether the panel for figures is shown.
     pub figure_panel: bool,
+    /// Whether the log of messages is shown.
+    pub messages: bool,
     /// Whether the status line tells how long states and frames take.
     pub times: bool,
+    pub log: MessageLog,
     /// What went wrong; each message stays until it is closed.
     pub faults: Vec<String>,
     /// What was done last, and when.
@@ -88,6 +95,8 @@ pub enum Look {
     /// At the decision, from near.
     Decision,
     At(Outlined),
+    /// At something, from near unless it is seen well already.
+    Near(Outlined),
     /// At the whole mesh in space, from a side.
     From(Bearing),
 }
@@ -101,6 +110,8 @@ pub enum Overlay {
     Help,
     GoTo,
     Path,
+    /// The path of a second run.
+    PathBeside,
     Mesh,
 }
 

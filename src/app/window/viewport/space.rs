@@ -3,7 +3,7 @@
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::cameras::zoom;
+use super::cameras::{extent_of, is_seen_well, scale_for, zoom};
 use super::{ViewFrame, Views, moved, paint};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
@@ -14,10 +14,13 @@ use crate::render::camera::{Bearing, Camera};
 use crate::render::gpu::Light;
 use crate::render::palette::Palette;
 use crate::render::pick::{self, Cover};
-use crate::render::scene::{Decision, Outlined};
+use crate::render::scene::{ColourBy, Decision, Outlined};
 
 /// Margin around a fitted mesh, in points.
 pub(super) const MARGIN: f64 = 44.0;
+
+/// A base whose normal has less than this in common with the direction towards the eye is turned to the front.
+const FACING: f64 = 0.3;
 
 /// The last cover, and the scene and camera that it is of.
 #[derive(Default)]
@@ -52,7 +55,11 @@ impl Views {
             .and_then(|at| pick::pick_in_space(&self.space.scene, &moment.mesh, &camera, size, frame.inside(at)));
         self.point(ui, &response, state, hovered, commands);
         let hidden = state.workspace().surfaces.hidden.share();
-        paint(ui, 0, &frame, &self.space.scene, palette, Light::on_surfaces(palette.dark), hidden);
+        let light = match self.shading.by {
+            ColourBy::State => Light::on_surfaces(palette.dark),
+            _ => Light::ON_DATA,
+        };
+        paint(ui, self.first, &frame, &self.space.scene, palette, light, hidden);
         let of = Some((self.space.scene.shape(), camera, size));
         if self.cover.of != of {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
@@ -119,7 +126,15 @@ fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Came
     };
     match look {
         None => {}
-        Some(Look::Fit) => (camera, is_fitted) = (fit(moment, camera.turn, size), true),
+        Some(Look::Fit) => {
+            if let Some((_, normal)) =
+                Decision::of(&moment.phase).base.and_then(|b| place_of(moment, Outlined::Edge(b)))
+                && normal.dot(camera.towards()) < FACING
+            {
+                camera.face(normal);
+            }
+            (camera, is_fitted) = (fit(moment, camera.turn, size), true);
+        }
         Some(Look::From(side)) => (camera, is_fitted) = (fit(moment, side.turn(), size), true),
         // A camera of the plane looks straight down at it.
         Some(Look::Kept(kept)) if kept.target[2] == 0.0 && kept.turn == [0.0, 0.0, 0.0, 1.0] => {}
@@ -137,6 +152,19 @@ fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Came
             if let Some((place, _)) = place_of(moment, what) {
                 camera.centre_on(place);
                 is_fitted = false;
+            }
+        }
+        Some(Look::Near(what)) => {
+            let found = extent_of(moment, what, |mesh, n| mesh.xyz(n));
+            if let Some(((place, extent), (_, normal))) = found.zip(place_of(moment, what)) {
+                let is_behind = normal.dot(camera.towards()) < 0.3;
+                if is_behind {
+                    camera.face(normal);
+                }
+                if is_behind || !is_seen_well(&camera, size, place, extent) {
+                    camera.look_at_place(place, scale_for(camera.points_per_unit(), extent));
+                    is_fitted = false;
+                }
             }
         }
     }
@@ -164,7 +192,7 @@ fn place_of(moment: &Moment, what: Outlined) -> Option<(DVec3, DVec3)> {
 fn near(camera: &mut Camera, moment: &Moment, ends: [NodeId; 2]) {
     let Some((place, normal)) = place_of(moment, Outlined::Edge(ends)) else { return };
     let [a, b] = ends.map(|n| moment.mesh.xyz(n));
-    if normal.dot(camera.towards()) < 0.3 {
+    if normal.dot(camera.towards()) < FACING {
         camera.face(normal);
     }
     camera.look_at_place(place, super::cameras::DECISION / a.distance(b).max(f64::MIN_POSITIVE));

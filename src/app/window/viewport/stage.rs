@@ -91,6 +91,7 @@ impl Stage {
                 front: &moment.front,
                 changed: &moment.changed,
                 decision: Decision::of(&moment.phase),
+                is_coloured: state.document().colour_by != ColourBy::State,
                 refused: &refused(moment),
                 picked: state.document().picked,
                 hovered: state.frame().hovered,

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{actions, elements, ends, gone, heading, length, note, title};
+use super::{actions, elements, ends, gone, length, note, section, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -34,12 +34,14 @@ pub fn show(
     ui.label(note(format!("{kind}{boundary}"), palette));
     actions(ui, state, Outlined::Edge(between), commands);
     length(ui, told.length_metric, told.length_physical, palette);
-    heading(ui, "Elements beside it", "", palette);
     let sides = [mesh.half_edge_between(a, b), mesh.half_edge_between(b, a)];
     let beside: Vec<ElementId> = sides.into_iter().flatten().map(|h| h.element()).collect();
     let (live, dead): (Vec<ElementId>, Vec<ElementId>) = beside.into_iter().partition(|e| mesh.is_triangle(*e));
-    elements(ui, "live triangles", &live, commands, palette);
-    elements(ui, "dead quads", &dead, commands, palette);
-    heading(ui, "Ends", "sizes of their metrics", palette);
-    ends(ui, moment, &[("", a), ("", b)], commands, palette);
+    if section(ui, "Elements beside it", "", palette) {
+        elements(ui, "live triangles", &live, commands, palette);
+        elements(ui, "dead quads", &dead, commands, palette);
+    }
+    if section(ui, "Ends", "sizes of their metrics", palette) {
+        ends(ui, moment, &[("", a), ("", b)], commands, palette);
+    }
 }

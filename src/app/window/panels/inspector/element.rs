@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{actions, ends, formula, gone, heading, note, title};
+use super::{actions, ends, formula, gone, note, section, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -21,16 +21,20 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands:
     let state_of = if told.is_live { "live".to_owned() } else { format!("dead  ·  level {}", told.level) };
     ui.label(note(format!("{state_of}  ·  region {}", told.region), palette));
     actions(ui, state, Outlined::Element(e), commands);
-    heading(ui, "Quality", "0 to 1, in the metric", palette);
-    formula(ui, &format!("**{}**", words::fixed(told.quality, 2)), palette);
-    heading(ui, "Angles", "degrees, at its nodes", palette);
+    if section(ui, "Quality", "0 to 1, in the metric", palette) {
+        formula(ui, &format!("**{}**", words::fixed(told.quality, 2)), palette);
+    }
     let list = |angles: &[f64]| angles.iter().map(|a| words::fixed(*a, 1)).collect::<Vec<_>>().join("   ");
-    formula(ui, &format!("metric   **{}**", list(&told.angles_metric)), palette);
-    formula(ui, &format!("space    {}", list(&told.angles_physical)), palette);
-    heading(ui, "Area", "1 is a unit square of the metric", palette);
-    let areas = format!("**{}** metric,  {} in space", words::fixed(told.area_metric, 2), words::size(told.area));
-    formula(ui, &areas, palette);
-    heading(ui, "Nodes", "sizes of their metrics", palette);
-    let nodes: Vec<(&str, NodeId)> = told.nodes.iter().map(|n| ("", *n)).collect();
-    ends(ui, moment, &nodes, commands, palette);
+    if section(ui, "Angles", "degrees, at its nodes", palette) {
+        formula(ui, &format!("metric   **{}**", list(&told.angles_metric)), palette);
+        formula(ui, &format!("space    {}", list(&told.angles_physical)), palette);
+    }
+    if section(ui, "Area", "1 is a unit square of the metric", palette) {
+        let areas = format!("**{}** metric,  {} in space", words::fixed(told.area_metric, 2), words::size(told.area));
+        formula(ui, &areas, palette);
+    }
+    if section(ui, "Nodes", "sizes of their metrics", palette) {
+        let nodes: Vec<(&str, NodeId)> = told.nodes.iter().map(|n| ("", *n)).collect();
+        ends(ui, moment, &nodes, commands, palette);
+    }
 }

@@ -3,7 +3,7 @@
 
 use eframe::egui::{Label, Sense, Ui};
 
-use super::{elements, heading, line, note, on_click};
+use super::{elements, line, note, on_click, section};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::{Lookup, State, watched};
@@ -18,7 +18,9 @@ pub fn show(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Comma
         Lookup::Pending => return,
         Lookup::Unasked => return commands.push(Command::TellPast(watched)),
     };
-    heading(ui, "Past steps", "up to this step", palette);
+    if !section(ui, "Past steps", "up to this step", palette) {
+        return;
+    }
     if let Some((step, merged)) = &past.made {
         step_link(ui, *step, "made", commands, palette);
         elements(ui, "made of the triangles", merged, commands, palette);

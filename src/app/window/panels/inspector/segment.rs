@@ -2,14 +2,15 @@
 
 use eframe::egui::Ui;
 
-use super::{ends, formula, heading, length, note, sentence, stands_for, step, table_head, table_row, title, why};
+use super::rows::{self, Last, TableRow};
+use super::{ends, formula, length, note, section, sentence, stands_for, step, title, why};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::{icons, words};
 use crate::core::case::{Selection, SelectionWindow};
-use crate::core::convert::Candidates;
+use crate::core::convert::{Candidate, Candidates, Event};
 use crate::core::front::{Segment, Side};
 use crate::core::run::explain;
 use crate::render::palette::Palette;
@@ -51,29 +52,41 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
         }
         super::past::actions(ui, state, Outlined::Edge(what), commands);
     });
+    // What the last step decided comes first: the choice of a side among candidates, or of the base.
+    let tried = moment.candidates.as_ref().filter(|_| is_base);
+    if let Some(tried) = tried {
+        candidates(ui, moment, tried, s, commands, palette);
+    }
+    let is_selected = !is_base || matches!(moment.event, Some(Event::BaseSelected { .. }));
+    if is_selected {
+        why::show(ui, state, moment, what, commands, palette);
+    }
     if is_base {
         step::next(ui, moment, palette);
-    }
-    h_value(ui, moment, s, palette);
-    key(ui, moment, place, palette);
-    heading(ui, "Frontal angles", "metric of the node", palette);
-    for (side, name) in Side::BOTH.into_iter().zip(["A", "B"]) {
-        angle(ui, moment, s, side, name, palette);
-    }
-    why::show(ui, state, moment, what, commands, palette);
-    if let Some(tried) = moment.candidates.as_ref().filter(|_| is_base) {
-        candidates(ui, moment, tried, s, commands, palette);
     }
     if is_base {
         step::so_far(ui, moment, commands, palette);
     }
+    if section(ui, "Frontal angles", "metric of the node", palette) {
+        for (side, name) in Side::BOTH.into_iter().zip(["A", "B"]) {
+            angle(ui, moment, s, side, name, palette);
+        }
+    }
+    if !is_selected {
+        why::show(ui, state, moment, what, commands, palette);
+    }
+    h_value(ui, moment, s, palette);
+    key(ui, moment, place, palette);
     length(ui, s.length_metric, s.length_physical, palette);
-    heading(ui, "Ends", "sizes of their metrics", palette);
-    ends(ui, moment, &[("A", s.a), ("B", s.b)], commands, palette);
+    if section(ui, "Ends", "sizes of their metrics", palette) {
+        ends(ui, moment, &[("A", s.a), ("B", s.b)], commands, palette);
+    }
 }
 
 fn h_value(ui: &mut Ui, moment: &Moment, s: &Segment, palette: &Palette) {
-    heading(ui, "H-value", "eq. 6", palette);
+    if !section(ui, "H-value", "eq. 6", palette) {
+        return;
+    }
     let h = [s.a, s.b].map(|n| moment.mesh.smallest_size(n));
     let told = ["A", "B"].iter().zip(h).map(|(name, h)| {
         let lambda = 1.0 / (h * h);
@@ -103,8 +116,9 @@ fn key(ui: &mut Ui, moment: &Moment, place: usize, palette: &Palette) {
         Selection::Table1 => format!(",   c\u{b7}H_{{min}} = {}", words::size(table.reach())),
         _ => String::new(),
     };
-    heading(ui, "Key of the selection", "4.3.3", palette);
-    sentence(ui, &format!("{text}{reach}"), palette.text, palette);
+    if section(ui, "Key of the selection", "4.3.3", palette) {
+        sentence(ui, &format!("{text}{reach}"), palette.text, palette);
+    }
 }
 
 fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, palette: &Palette) {
@@ -134,18 +148,20 @@ fn candidates(
     };
     let edges = tried.edges.len() - swaps;
     let told = format!("{} tried, {}", count(edges, "edge"), count(swaps, "swap"));
-    heading(ui, &format!("{side} side at {end}"), &told, palette);
+    if !section(ui, &format!("{side} side at {end}"), &told, palette) {
+        return;
+    }
     sentence(ui, &explain::side_rule(tried), palette.text, palette);
-    let widths = [60.0, 40.0, 34.0, 36.0];
-    table_head(ui, &widths, &["edge", "angle °", "off °", "length", "verdict"], palette);
-    for (k, candidate) in tried.edges.iter().enumerate() {
-        let ends = [from, candidate.node];
+    // The edge that was taken comes first, then all others as they are met from the base.
+    let (mut all, others): (Vec<&Candidate>, Vec<_>) = tried.edges.iter().partition(|edge| edge.passed.is_none());
+    all.extend(others);
+    let row = |(k, candidate): (usize, &&Candidate)| {
         let verdict = match candidate.passed {
             None => format!("{} chosen", icons::CHECK),
             Some(passed) => words::passed(passed, candidate, tried),
         };
-        let texts = [
-            words::edge(ends),
+        let texts = vec![
+            words::edge([from, candidate.node]),
             words::degrees(candidate.angle),
             words::degrees(candidate.deviation),
             words::fixed(candidate.length, 2),
@@ -158,9 +174,13 @@ fn candidates(
             None => (palette.strong, Some(palette.accent_row)),
             Some(_) => (palette.text, (k % 2 == 1).then_some(palette.stripe)),
         };
-        let response = table_row(ui, &widths, &texts, colour, ground);
+        TableRow { texts, colour, ground }
+    };
+    let rows: Vec<TableRow> = all.iter().enumerate().map(row).collect();
+    let shown = rows::table(ui, &["edge", "angle °", "off °", "length", "verdict"], &rows, Last::Words, palette);
+    for (response, candidate) in shown.into_iter().zip(all) {
         let there = moment.mesh.has_node(candidate.node) && moment.mesh.are_joined(from, candidate.node);
-        let what = if there { Outlined::Edge(ends) } else { Outlined::Node(candidate.node) };
-        stands_for(&response.on_hover_text(&texts[4]), what, commands);
+        let what = if there { Outlined::Edge([from, candidate.node]) } else { Outlined::Node(candidate.node) };
+        stands_for(&response, what, commands);
     }
 }

@@ -3,7 +3,7 @@
 use eframe::egui::Ui;
 
 use super::past::step_link;
-use super::{heading, note, sentence};
+use super::{note, section, sentence};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::words;
@@ -16,7 +16,9 @@ const LISTED: usize = 12;
 /// The last step, where no quadrilateral is under way.
 pub fn show(ui: &mut Ui, moment: &Moment, palette: &Palette) {
     let Some(event) = &moment.event else { return };
-    heading(ui, "Last step", &format!("step {}", words::grouped(moment.step)), palette);
+    if !section(ui, "Last step", &format!("step {}", words::grouped(moment.step)), palette) {
+        return;
+    }
     sentence(ui, &format!("{}.", words::capital(&words::event(event))), palette.text, palette);
     for text in explain::about(event, moment.candidates.as_ref(), moment.narrow.as_ref()) {
         sentence(ui, &text, palette.weak, palette);
@@ -25,7 +27,9 @@ pub fn show(ui: &mut Ui, moment: &Moment, palette: &Palette) {
 
 /// The steps since the selection of the base under way, the latest first.
 pub fn so_far(ui: &mut Ui, moment: &Moment, commands: &mut Vec<Command>, palette: &Palette) {
-    heading(ui, "This quadrilateral so far", "4.3.4", palette);
+    if !section(ui, "This quadrilateral so far", "4.3.4", palette) {
+        return;
+    }
     for (step, event) in moment.so_far.iter().rev().take(LISTED) {
         step_link(ui, *step, &words::event(event), commands, palette);
     }
@@ -37,6 +41,7 @@ pub fn so_far(ui: &mut Ui, moment: &Moment, commands: &mut Vec<Command>, palette
 
 /// What comes next.
 pub fn next(ui: &mut Ui, moment: &Moment, palette: &Palette) {
-    heading(ui, "Next step", "Ctrl+Right", palette);
-    sentence(ui, &moment.next, palette.text, palette);
+    if section(ui, "Next step", "Ctrl+Right", palette) {
+        sentence(ui, &moment.next, palette.text, palette);
+    }
 }

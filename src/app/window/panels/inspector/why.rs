@@ -3,7 +3,7 @@
 
 use eframe::egui::Ui;
 
-use super::{heading, sentence};
+use super::{section, sentence};
 use crate::app::window::command::Command;
 use crate::app::window::session::{Explained, Moment};
 use crate::app::window::state::{Lookup, State};
@@ -33,7 +33,9 @@ pub fn show(
     };
     let is_next = moment.selecting.base.is_none() && told.rank.is_some_and(|rank| rank.0 == 0);
     let title = if told.is_base || is_next { "Why this segment" } else { "Why not this segment" };
-    heading(ui, title, "table 1, 4.3.3", palette);
+    if !section(ui, title, "table 1, 4.3.3", palette) {
+        return;
+    }
     if let Some((step, why)) = deferred {
         let why = why.map_or(String::new(), |why| format!(" ({})", words::why(why)));
         let text =

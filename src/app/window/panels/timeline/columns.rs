@@ -52,7 +52,7 @@ pub struct Lane {
     /// The row of kinds that it belongs to, if there are several.
     pub group: Option<usize>,
     pub is_open: bool,
-    kinds: &'static [EventKind],
+    pub kinds: &'static [EventKind],
 }
 
 worded! {
@@ -60,7 +60,7 @@ worded! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum CurveKind by name {
         Front = "front length",
-        Quality = "worst quality",
+        Quality = "worst quality, metric",
         Live = "live triangles",
         Loops = "loops",
     }

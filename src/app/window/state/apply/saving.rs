@@ -21,8 +21,9 @@ impl State {
         let path = files::free_path(&format!("{}-run", run.case.name), "toml");
         match run_file::write(&path, &run) {
             Ok(()) => {
+                let marks = self.marks();
                 if let Some(autosave) = &mut self.run.autosave {
-                    autosave.saved(&run);
+                    autosave.saved(&run, &marks);
                 }
                 self.notice(format!("The run was saved as {}.", path.display()));
                 Some(path)
@@ -37,6 +38,14 @@ impl State {
     /// Starts to make the figure that the panel describes.
     pub(super) fn save_figure(&mut self, formats: Formats) {
         match figures::begin(self, formats, self.wake.clone()) {
+            Ok(writing) => self.run.figures.extend(writing),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    /// Starts to write the page with the notes on bookmarked steps.
+    pub(super) fn export_notes(&mut self) {
+        match figures::begin_notes(self, self.wake.clone()) {
             Ok(writing) => self.run.figures.extend(writing),
             Err(fault) => self.complain(&fault),
         }

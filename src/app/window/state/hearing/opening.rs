@@ -3,27 +3,31 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::app::window::autosave::Marks;
 use crate::app::window::files::Watcher;
 use crate::app::window::session::{Goal, Opened, SessionNews, Source};
 use crate::app::window::state::{Look, Opening, RunState, State, ViewCamera};
+use crate::app::window::words;
 use crate::core::case::built_in;
+use crate::core::fault::Fault;
 
 impl State {
     /// Takes in what the preview of an import reports; a mesh that cannot be read is given up.
     pub(in crate::app::window) fn hear_import(&mut self, dark: bool) {
         let Some(import) = &mut self.run.import else { return };
         if let Some(fault) = import.look(dark) {
-            self.complain(&fault);
+            self.complain(&self.with_what_stays(fault));
             self.give_up_import();
-            self.say_what_stays();
         }
     }
 
-    /// Says that the run that is open stays, if there is one.
-    fn say_what_stays(&mut self) {
+    /// A fault that also says that the run that is open stays, if there is one.
+    fn with_what_stays(&self, mut fault: Fault) -> Fault {
         if let Some(opened) = &self.run.opened {
-            self.notice(format!("{} stays open.", opened.run.case.name));
+            let stays = format!("{} stays open", opened.run.case.name);
+            fault.remedy = if fault.remedy.is_empty() { stays } else { format!("{}; {stays}", fault.remedy) };
         }
+        fault
     }
 
     pub(super) fn hear_opening(&mut self) {
@@ -39,7 +43,7 @@ impl State {
                     let opening = self.run.opening.take();
                     match opening {
                         _ if fault.is_stop() => {}
-                        Some(Opening { source: Source::Mesh(path, options), overrides, .. }) => {
+                        Some(Opening { source: Source::Mesh(path, options), overrides, .. }) if !self.is_second => {
                             // The import shows why, and how the mesh may be imported in another way.
                             if self.run.import.is_none() {
                                 self.import(path, options, overrides);
@@ -48,10 +52,7 @@ impl State {
                                 import.refuse_conversion(fault);
                             }
                         }
-                        _ => self.complain(&fault),
-                    }
-                    if self.run.import.is_none() {
-                        self.say_what_stays();
+                        _ => self.complain(&self.with_what_stays(fault)),
                     }
                     if let Some(autosave) = &mut self.run.autosave {
                         autosave.failed();
@@ -67,7 +68,13 @@ impl State {
     fn begin(&mut self, opening: Opening, opened: Arc<Opened>) {
         let Opening { source, overrides, session } = opening;
         self.give_up_import();
+        let recovered = self.run.autosave.as_ref().and_then(|autosave| autosave.recovered(&source)).cloned();
+        // What is opened again, with other parameters for instance, keeps its breakpoints.
+        let is_again = self.run.source.as_ref() == Some(&source);
+        let breakpoints = if is_again { self.document().breakpoints.clone() } else { Vec::new() };
         let watcher = match &source {
+            // The window itself writes this file.
+            Source::File(_) if recovered.is_some() => None,
             Source::File(path) | Source::Mesh(path, _) => Some(Watcher::of(path.clone(), self.wake.clone())),
             Source::BuiltIn(_) => None,
         };
@@ -84,6 +91,7 @@ impl State {
             autosave: old.autosave,
             pictures: old.pictures,
             dialog: old.dialog,
+            folder_dialog: old.folder_dialog,
             figures: old.figures,
             meshes: old.meshes,
             session: Some(session),
@@ -92,8 +100,8 @@ impl State {
             waiting: 1,
             ..RunState::default()
         };
-        let bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
-        self.workspace.begin(opened.run.edits().to_vec(), bookmarks);
+        self.workspace.begin(opened.run.edits().to_vec(), opened.run.bookmarks.clone());
+        self.workspace.document.breakpoints = breakpoints;
         self.view.notes = is_figure;
         for view in [&mut self.view.plane, &mut self.view.space] {
             *view = ViewCamera { camera: None, is_fitted: true, ..*view };
@@ -105,5 +113,28 @@ impl State {
             self.go(if shown.at.is_some() { Goal::Step(shown.step) } else { Goal::End });
         }
         self.run.opened = Some(opened);
+        if let Some(marks) = recovered {
+            self.recover(marks);
+        }
+        self.count_breakpoints();
+    }
+
+    /// Sets what was set in the window of a recovered run, and says so.
+    fn recover(&mut self, marks: Marks) {
+        let Marks { step, breakpoints, watches } = marks;
+        let document = &mut self.workspace.document;
+        (document.breakpoints, document.watches) = (breakpoints, watches);
+        let of = [
+            (document.edits.len(), "edit"),
+            (document.bookmarks.len(), "bookmark"),
+            (document.breakpoints.len(), "breakpoint"),
+            (document.watches.len(), "watchpoint"),
+        ];
+        let counts = of.into_iter().filter(|(count, _)| *count > 0).map(|(n, one)| words::counted(n as u64, one));
+        let with = counts.collect::<Vec<_>>().join(", ");
+        let name = self.run.opened.as_ref().map_or("The run", |opened| opened.run.case.name.as_str());
+        let text = format!("{name} is recovered at step {}, with {with}.", words::grouped(step));
+        self.notice(text);
+        self.go(Goal::Step(step));
     }
 }
