@@ -299,10 +299,7 @@ pub fn embedded(run: &Run) -> Result<String, Fault> {
     Ok(text(run, &Links::of(run)?, Path::new("")))
 }
 
-/// The text of a run for a file in a folder, with paths of meshes relative to it.
-///
-/// # Errors
-/// A mesh of the run that cannot be read.
+/// As [`embedded`], also in its errors, for a file in a folder: with paths of meshes relative to it.
 pub fn written_in(run: &Run, folder: &Path) -> Result<String, Fault> {
     Ok(text(run, &Links::of(run)?, folder))
 }
