@@ -266,7 +266,7 @@ mod tests {
         // Places and the text itself differ.
         let plain = |text: &str| {
             let case = Case::parse(text, "a", "a.toml", Path::new("")).unwrap();
-            let lines = regex_free(&format!("{:?} {:?}", case.domain, case.fields));
+            let lines = without_lines(&format!("{:?} {:?}", case.domain, case.fields));
             (case.title, case.parameters, case.gradation, case.split_odd, lines)
         };
         for (name, text) in built_in::all() {
@@ -277,7 +277,7 @@ mod tests {
     }
 
     /// A debug text without the numbers of lines.
-    fn regex_free(text: &str) -> String {
+    fn without_lines(text: &str) -> String {
         let mut parts = text.split("a.toml, line ");
         let mut plain = parts.next().unwrap_or_default().to_owned();
         parts.for_each(|part| plain.push_str(part.trim_start_matches(|c: char| c.is_ascii_digit())));

@@ -412,3 +412,31 @@ fn ended(run: &Run, budget: Budget, cancel: &Cancel) -> Result<(End, Cost), Faul
     };
     Ok((end, cost))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_are_alike_whatever_their_names_and_numbers() {
+        let head = |what: &str| Head::of(&Fault::new(what).of_kind(FaultKind::Mesh));
+        assert_eq!(head("The loop \"a b\" has 27 segments (at 0, 1)"), head("The loop \"hole\" has 1 segment"));
+        assert_eq!(head("Triangles 3, 7 and 9 overlap: they lie on"), head("Triangles 1 and 2 overlap"));
+        assert_ne!(head("Triangles 1 and 2 overlap"), head("Triangles 1 and 2 are the same"));
+        assert_ne!(head("It fails"), Head::of(&Fault::new("It fails").of_kind(FaultKind::Metric)));
+    }
+
+    #[test]
+    fn each_question_is_about_a_step_the_end_or_a_panic() {
+        let kind = |text: &str| match Question::parse(text).unwrap().kind {
+            Kind::Step(_) => "step",
+            Kind::End(_) => "end",
+            Kind::Panics => "panic",
+        };
+        let questions =
+            ["quad.min_angle < 10", "fallback", "is refused", "exit 1", "last_resort > 0 || refused", "panics"];
+        assert_eq!(questions.map(kind), ["step", "step", "end", "end", "end", "panic"]);
+        let message = Question::parse("seconds > 1").unwrap_err().to_string();
+        assert!(message.contains("\"seconds\" does not exist"), "time would make the result depend on the machine");
+    }
+}
