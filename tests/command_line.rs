@@ -528,3 +528,59 @@ fn comparing_names_the_first_difference_and_its_exit_code_says_whether_there_is_
         assert!(error.starts_with("error: "), "{error}");
     }
 }
+
+#[test]
+fn a_run_is_compared_with_a_finished_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (file, set) in [("own.vtu", "c=2"), ("own.msh", "c=2"), ("other.vtu", "whole_below=0")] {
+        let (code, _, error) = said(&run(&["convert", "example1", "-q", "--set", set, "-o", file], folder));
+        assert_eq!(code, 0, "{error}");
+    }
+    let (code, text, _) = said(&run(&["compare", "example1", "own.msh", "-q"], folder));
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("no difference: both have the same quadrilaterals\n"), "{text}");
+    assert!(text.contains(" in both, 0 only in A, 0 only in B\n"), "{text}");
+    // The figures of both are the same, of the run and of the file.
+    for head in ["quadrilaterals", "irregular nodes", "angles, metric", "edge length", "scaled Jacobian"] {
+        let line = text.lines().find(|line| line.trim_start().starts_with(head)).unwrap();
+        let cells: Vec<&str> = line.trim_start()[head.len()..].split("  ").map(str::trim).collect();
+        let cells: Vec<&str> = cells.into_iter().filter(|cell| !cell.is_empty()).collect();
+        assert!(cells.len() == 2 && cells[0] == cells[1], "{line}");
+    }
+    // The step is the first that made a quadrilateral of the one file which the other one does not have: each corner
+    // within a tenth of the shortest edge there.
+    let read = |name: &str| read_bytes(name, &std::fs::read(folder.join(name)).unwrap(), Format::Vtu).unwrap();
+    let (own, other) = (read("own.vtu"), read("other.vtu"));
+    let shortest = |n: u32| {
+        let quads = own.quads.iter().filter(|quad| quad.contains(&n));
+        let ends = quads.flat_map(|quad| (0..4).map(|k| [quad[k], quad[(k + 1) % 4]]).filter(|ends| ends.contains(&n)));
+        let lengths = ends.map(|[a, b]| own.points[a as usize].distance(own.points[b as usize]));
+        lengths.fold(f64::INFINITY, f64::min)
+    };
+    let near: Vec<f64> = (0..own.points.len() as u32).map(|n| 0.1 * shortest(n)).collect();
+    let has_partner = |quad: &&[u32; 4]| {
+        other.quads.iter().any(|partner| {
+            quad.iter().all(|a| {
+                let is_at = |b: &u32| own.points[*a as usize].distance(other.points[*b as usize]) <= near[*a as usize];
+                partner.iter().any(is_at)
+            })
+        })
+    };
+    let steps = &own.element_data.iter().find(|data| data.name == "step").unwrap().values;
+    let missing = own.quads.iter().zip(steps).filter(|(quad, _)| !has_partner(quad));
+    let step = missing.map(|(_, step)| *step as u64).min().unwrap();
+    let both = own.quads.iter().filter(has_partner).count();
+    let (code, text, _) = said(&run(&["compare", "example1", "other.vtu", "-q"], folder));
+    assert_eq!(code, 1);
+    assert!(text.contains(&format!("\nfirst difference: step {step} (")), "{step}: {text}");
+    let counts = format!(" in both, {} only in A, {} only in B\n", own.quads.len() - both, other.quads.len() - both);
+    assert!(text.contains(&format!("\n{both} quadrilateral")) && text.contains(&counts), "{both}, {counts}: {text}");
+    let (_, json, _) = said(&run(&["compare", "example1", "other.vtu", "-q", "--json"], folder));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["comparison"]["first_difference"]["step"], step);
+    assert_eq!(json["report"]["mesh"]["quads"], own.quads.len());
+    assert!(both > 100 && step > 100, "{both}, {step}");
+    let (code, _, error) = said(&run(&["compare", "example1", "other.vtu", "--with", "c=2"], folder));
+    assert!(code == 2 && error.contains("A finished mesh has no parameters"), "{error}");
+}

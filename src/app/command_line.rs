@@ -277,7 +277,8 @@ pub(super) struct CompareArguments {
     pub source: Source,
     #[command(flatten)]
     pub mesh: MeshArguments,
-    /// The other run, with the same options; without it, the same run with what --with changes
+    /// The other run, with the same options, or a finished mesh of quadrilaterals; without it, the same run with what
+    /// --with changes
     #[arg(value_name = "OTHER")]
     pub other: Option<String>,
     /// Set a parameter of the other run, for example c=1.5 (repeatable)

@@ -1,4 +1,6 @@
-//! `compare`: two runs side by side: their first difference, and what both end with.
+//! `compare`: two runs side by side, or a run and a finished mesh: their first difference, and what both end with.
+
+mod finished;
 
 use std::process::ExitCode;
 
@@ -10,12 +12,14 @@ use super::progress::Progress;
 use super::{FALLS_SHORT, input, work};
 use crate::core::case::Parameters;
 use crate::core::fault::Fault;
-use crate::core::kernel::number::{counted, fixed, grouped};
+use crate::core::kernel::number::{UNDEFINED, counted, fixed, grouped, size};
 use crate::core::progress::{Stage, Watch};
-use crate::core::record::Report;
 use crate::core::record::statistics::Range;
+use crate::core::record::{Report, Statistics};
 use crate::core::run::compare::{Did, FirstDifference, first_difference};
 use crate::core::run::{History, Run};
+use crate::core::soup::MeshFile;
+use finished::{Finished, Parted};
 
 /// The names of the two runs in what is printed.
 const NAMES: [&str; 2] = ["A", "B"];
@@ -57,6 +61,15 @@ pub(super) fn report(run: &Run, watch: &mut dyn Watch) -> Result<Report, Fault> 
 pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
     let CompareArguments { source, mesh, other, with, with_paper, json } = arguments;
     let first = input::read(source, &mesh.options())?;
+    if let Some(name) = other
+        && let Some(found) = input::read_mesh(name, None, &mut Progress::new(source.quiet))?
+        && found.is_of_quads()
+    {
+        if !with.is_empty() || *with_paper {
+            return Err(Fault::new("A finished mesh has no parameters").at(name.clone()).remedy("Leave --with out"));
+        }
+        return with_mesh(&first.run, [&source.input, name], &found, *json, source.quiet);
+    }
     let second = match other {
         Some(other) => {
             let Source { from, sol, overrides, quiet, .. } = source;
@@ -120,7 +133,7 @@ fn text(inputs: [&String; 2], runs: &[Run; 2], found: Option<&FirstDifference>, 
             }
         }
     }
-    text + &table(reports)
+    text + &table(reports.each_ref().map(Ends::of))
 }
 
 /// The parameters that differ from others, with their values.
@@ -138,30 +151,101 @@ pub(super) fn kinds(did: &[Option<Did>; 2]) -> String {
     if a == b { a.replace('_', " ") } else { format!("A {}, B {}", a.replace('_', " "), b.replace('_', " ")) }
 }
 
+/// Compares a run with a finished mesh.
+fn with_mesh(run: &Run, inputs: [&String; 2], mesh: &MeshFile, json: bool, quiet: bool) -> Result<ExitCode, Fault> {
+    let mut progress = Progress::new(quiet);
+    let found = finished::compare(run, mesh, &mut progress)?;
+    progress.finish();
+    let mut progress = Progress::new(quiet);
+    let mut report = report(run, &mut progress)?;
+    report.timing = progress.finish();
+    let differ = found.first_difference.is_some();
+    if json {
+        let text = serde_json::json!({ "comparison": found, "report": report });
+        Stream::Output.print(&format!("{text:#}\n"));
+    } else {
+        Stream::Output.print(&text_beside_mesh(inputs, &found, &report));
+    }
+    Ok(if differ { ExitCode::from(FALLS_SHORT) } else { ExitCode::SUCCESS })
+}
+
+fn text_beside_mesh([a, b]: [&String; 2], found: &Finished, report: &Report) -> String {
+    let Finished { both, only: [only_a, only_b], statistics, first_difference } = found;
+    let quads = |n: usize| counted(n as u64, "quadrilateral");
+    let mut text = format!("A: {a}\nB: {b}, a mesh of {}\n", quads(both + only_b));
+    match first_difference {
+        None => text += "no difference: both have the same quadrilaterals\n",
+        Some(Parted { step, corners, did }) => {
+            let kind = did.as_ref().map_or("given", |did| did.event.kind().name()).replace('_', " ");
+            text += &format!("first difference: step {step} ({kind})\n");
+            if let Some(Did { text: line, why, .. }) = did {
+                text += &format!("  A: {line}\n");
+                why.iter().for_each(|sentence| text += &format!("     {sentence}\n"));
+            }
+            text += &match corners {
+                Some(corners) => {
+                    let corners = corners.map(|p| format!("({})", p.map(size).join(", ")));
+                    format!("  B: has no quadrilateral with the corners {}\n", corners.join(", "))
+                }
+                None => format!("  B: has {} more\n", quads(*only_b)),
+            };
+        }
+    }
+    text += &format!("{} in both, {only_a} only in A, {only_b} only in B\n", quads(*both));
+    text + &table([Ends::of(report), Ends::of_mesh(both + only_b, statistics.as_ref())])
+}
+
+/// What a run ends with, or what a mesh has.
+struct Ends<'r> {
+    quads: usize,
+    mesh: Option<&'r Statistics>,
+    report: Option<&'r Report>,
+}
+
+impl<'r> Ends<'r> {
+    fn of(report: &'r Report) -> Ends<'r> {
+        Ends { quads: report.mesh.quads, mesh: Some(&report.mesh), report: Some(report) }
+    }
+
+    fn of_mesh(quads: usize, mesh: Option<&'r Statistics>) -> Ends<'r> {
+        Ends { quads, mesh, report: None }
+    }
+
+    fn measured(&self, text: impl Fn(&Statistics) -> String) -> String {
+        self.mesh.map_or_else(|| UNDEFINED.to_owned(), text)
+    }
+
+    fn told(&self, text: impl Fn(&Report) -> String) -> String {
+        self.report.map_or_else(|| UNDEFINED.to_owned(), text)
+    }
+}
+
 /// What both end with.
-fn table(reports: &[Report; 2]) -> String {
+fn table(ends: [Ends<'_>; 2]) -> String {
     let jacobian = |range: Option<Range>| {
         range.map_or("none".to_owned(), |range| format!("{} / {}", fixed(range.min, 3), fixed(range.mean, 3)))
     };
-    type Figure<'f> = (&'f str, &'f dyn Fn(&Report) -> String);
+    type Figure<'f> = (&'f str, &'f dyn Fn(&Ends<'_>) -> String);
     let rows: [Figure<'_>; 9] = [
-        ("quadrilaterals", &|r| grouped(r.mesh.quads as u64)),
-        ("background triangles", &|r| grouped(r.background_triangles as u64)),
-        ("irregular nodes", &|r| {
-            format!("{} ({} %)", grouped(r.mesh.irregular.irregular as u64), fixed(r.mesh.irregular.percent, 1))
+        ("quadrilaterals", &|e| grouped(e.quads as u64)),
+        ("background triangles", &|e| e.told(|r| grouped(r.background_triangles as u64))),
+        ("irregular nodes", &|e| {
+            e.measured(|m| format!("{} ({} %)", grouped(m.irregular.irregular as u64), fixed(m.irregular.percent, 1)))
         }),
-        ("angles, metric", &|r| {
-            format!("{}–{}°", fixed(r.mesh.metric_angles.min, 1), fixed(r.mesh.metric_angles.max, 1))
+        ("angles, metric", &|e| {
+            e.measured(|m| format!("{}–{}°", fixed(m.metric_angles.min, 1), fixed(m.metric_angles.max, 1)))
         }),
-        ("within 60–120°", &|r| format!("{} %", fixed(100.0 * r.mesh.metric_angles.share_60_120, 1))),
-        ("edge length", &|r| format!("{} ± {}", fixed(r.mesh.lengths.mean, 2), fixed(r.mesh.lengths.deviation, 2))),
-        ("scaled Jacobian", &|r| jacobian(r.mesh.metric_scaled_jacobian)),
-        ("by the last resort", &|r| grouped(r.last_resort.quads as u64)),
-        ("time", &|r| format!("{} s", fixed(r.timing.iter().map(|(_, seconds)| seconds).sum(), 2))),
+        ("within 60–120°", &|e| e.measured(|m| format!("{} %", fixed(100.0 * m.metric_angles.share_60_120, 1)))),
+        ("edge length", &|e| {
+            e.measured(|m| format!("{} ± {}", fixed(m.lengths.mean, 2), fixed(m.lengths.deviation, 2)))
+        }),
+        ("scaled Jacobian", &|e| e.measured(|m| jacobian(m.metric_scaled_jacobian))),
+        ("by the last resort", &|e| e.told(|r| grouped(r.last_resort.quads as u64))),
+        ("time", &|e| e.told(|r| format!("{} s", fixed(r.timing.iter().map(|(_, seconds)| seconds).sum(), 2)))),
     ];
     let mut text = format!("  {:<22} {:>16} {:>16}\n", "", "A", "B");
     for (head, value) in rows {
-        let [a, b] = reports.each_ref().map(value);
+        let [a, b] = ends.each_ref().map(value);
         text += &format!("  {head:<22} {a:>16} {b:>16}\n");
     }
     text

@@ -19,6 +19,7 @@ pub mod window;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::Parser;
@@ -26,7 +27,7 @@ use clap::Parser;
 use crate::core::fault::Fault;
 use crate::core::formats::save;
 use command_line::{Cli, Command, OpenArguments};
-use progress::INTERRUPT;
+use progress::{INTERRUPT, KEEPS};
 
 /// A mesh that was checked or converted is not valid, or runs that were compared differ.
 const FALLS_SHORT: u8 = 1;
@@ -51,10 +52,13 @@ pub fn run() -> ExitCode {
     // Files are renamed into place when complete; the handler removes incomplete ones. Without a handler (no system
     // refuses one) Ctrl-C would still end the process, but leave a temporary file.
     let _ = ctrlc::set_handler(|| {
-        save::abandon();
+        if !KEEPS.load(Ordering::Relaxed) {
+            save::abandon();
+        }
         INTERRUPT.ask();
         // Work that notices ends by itself and removes its own temporary files.
         std::thread::sleep(GRACE);
+        save::abandon();
         std::process::exit(i32::from(INTERRUPTED));
     });
     let done = match cli.command.as_ref().unwrap_or(&Command::Open(OpenArguments::of("example1"))) {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::sync::LazyLock;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
@@ -11,6 +12,9 @@ use crate::core::progress::{Cancel, Stage, Watch};
 
 /// The cancellation by Ctrl-C.
 pub(super) static INTERRUPT: LazyLock<Cancel> = LazyLock::new(Cancel::new);
+
+/// Whether Ctrl-C leaves time to finish the files under way: set by work that keeps what it has.
+pub(super) static KEEPS: AtomicBool = AtomicBool::new(false);
 
 /// Shows progress on standard error where that is a terminal, and measures the time of each stage.
 pub(super) struct Progress {

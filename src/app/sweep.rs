@@ -1,24 +1,26 @@
 //! `sweep`: one conversion for each value of a parameter, or for each pair of values of two.
 
 mod outputs;
-mod pool;
+pub(super) mod pool;
 mod shell;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use super::command_line::SweepArguments;
 use super::input;
 use super::output::Stream;
-use super::progress::{INTERRUPT, counting};
+use super::progress::{INTERRUPT, KEEPS, counting};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::number::counted;
 use crate::core::record::report::figures::{FIGURES, Figure};
 use crate::core::record::sweep::{Axis, Cell, DEFAULT_AXES, DEFAULT_FIGURE, Sweep, TIME};
 use crate::core::run::Run;
 use crate::render::vector::heat_map::{Scale, meaning};
-use outputs::{Adopted, Outputs, SweepLook, adopt};
+use outputs::{Adopted, adopt};
+pub(super) use outputs::{Outputs, SweepLook};
 
 /// Sweeps one or two parameters of a case.
 pub(super) fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Fault> {
@@ -44,6 +46,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Fault> {
     let write = |sweep: &Sweep| outputs.write(&input.run.case, sweep, look);
     write(&sweep)?;
     if collect.is_none() {
+        KEEPS.store(true, Ordering::Relaxed);
         let threads = jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
         convert(&input.run, &mut sweep, threads, source.quiet, &write)?;
     }

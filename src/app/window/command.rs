@@ -10,6 +10,7 @@ use super::lists::ListKind;
 use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
+use super::sweep::SweepCommand;
 use super::view_layer::ViewLayer;
 use crate::app::command_line::Overrides;
 use crate::core::case::{Parameters, built_in};
@@ -157,6 +158,8 @@ pub enum Command {
     SaveMesh,
     /// Save the current mesh to a path.
     SaveMeshAs(String),
+    /// Sweep parameters.
+    Sweep(SweepCommand),
     /// Undo the last change.
     Undo,
     /// Redo it.
@@ -325,6 +328,7 @@ impl Command {
                 | Command::CancelImport
                 | Command::Escape
                 | Command::Stop
+                | Command::Sweep(SweepCommand::Stop | SweepCommand::Set(_))
                 | Command::Fit
                 | Command::LookFrom(_)
                 | Command::HiddenLines
@@ -359,6 +363,7 @@ impl Command {
             Command::ShowTimes,
             Command::Measure,
         ]);
+        all.extend(SweepCommand::ALL.map(Command::Sweep));
         all.extend(Rules::ALL.map(Command::SetRules));
         all.extend(PairCommand::all().into_iter().map(Command::Pair));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));

@@ -33,6 +33,7 @@ worded! {
         Bookmarks = "Bookmarks",
         Space = "Space",
         Quality = "Quality",
+        Sweep = "Sweep",
         MetricLens = "Metric lens",
         Parametric = "Parametric",
         Inspector = "Inspector",
@@ -189,8 +190,8 @@ impl Layout {
             tiles.insert_tab_tile(panes)
         };
         let view = match room {
-            Room::Wide => tabs(&[Pane::Space, Pane::Quality]),
-            _ => tabs(&[Pane::Space, Pane::Quality, Pane::MetricLens, Pane::Parametric]),
+            Room::Wide => tabs(&[Pane::Space, Pane::Quality, Pane::Sweep]),
+            _ => tabs(&[Pane::Space, Pane::Quality, Pane::Sweep, Pane::MetricLens, Pane::Parametric]),
         };
         let (mut left, mut lens) = (Vec::new(), Vec::new());
         if matches!(room, Room::Wide | Room::Middle) {

@@ -19,6 +19,7 @@ mod autosave;
 mod figures;
 mod mesh_out;
 mod lists;
+mod sweep;
 mod state;
 mod viewport;
 mod labels;
@@ -42,6 +43,7 @@ pub use lists::ListKind;
 pub use pair::{Arrangement, LinkedBy, PairCommand, Which};
 pub use session::{Direction, Goal, Source};
 pub use state::SurfaceView;
+pub use sweep::{SweepCommand, SweepForm};
 pub use view_layer::ViewLayer;
 
 /// The largest window in points: egui's textures end there.

@@ -219,6 +219,7 @@ impl Command {
                 | Command::CloseOverlay
                 | Command::CloseFault(_)
                 | Command::SaveMesh
+                | Command::Sweep(_)
                 | Command::Screenshot
                 | Command::SetFigure(_)
                 | Command::Arrange(_)

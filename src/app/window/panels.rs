@@ -21,6 +21,7 @@ pub mod notes;
 pub mod figure;
 pub mod import;
 pub mod over;
+pub mod sweep;
 
 use eframe::egui::{
     self, Align, Button, ComboBox, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo, WidgetText,
@@ -42,6 +43,7 @@ pub struct PanelStates {
     pub plots: plots::PlotsState,
     pub figure: figure::PreviewState,
     pub over: over::OverState,
+    pub sweep: sweep::SweepPanel,
 }
 
 /// A button with an icon, its name for screen readers, and a tooltip with its key.

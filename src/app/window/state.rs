@@ -20,6 +20,7 @@ pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint,
 
 use super::autosave::Marks;
 use super::session::{Moment, Stops, Wake};
+use super::sweep::SweepWork;
 use crate::core::case::Parameters;
 use crate::core::mesh::NodeId;
 use crate::core::run::{Condition, Run, Watched, run};
@@ -33,6 +34,8 @@ pub struct State {
     workspace: Workspace,
     view: ViewState,
     frame: FrameState,
+    /// The sweep, which outlasts the run that it was begun with.
+    sweep: Option<SweepWork>,
     /// The pair that this run is the first one of.
     pair: Option<Pair>,
     /// Whether it is the second run of a pair.
@@ -48,6 +51,7 @@ impl State {
             workspace,
             view: ViewState::default(),
             frame: FrameState::default(),
+            sweep: None,
             pair: None,
             is_second: false,
         }
@@ -76,6 +80,11 @@ impl State {
     /// What is seen.
     pub fn view(&self) -> &ViewState {
         &self.view
+    }
+
+    /// The sweep of the window, once there is one.
+    pub fn sweep(&self) -> Option<&SweepWork> {
+        self.sweep.as_ref()
     }
 
     /// What holds for the frame at hand only.

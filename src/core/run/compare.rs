@@ -104,6 +104,15 @@ fn base(event: &Event) -> Option<[NodeId; 2]> {
     }
 }
 
+/// What a run did in a step, where it did anything. It stands after that step afterwards.
+///
+/// # Errors
+/// A conversion that cannot continue.
+pub fn did_at(run: &mut History, step: u64) -> Result<Option<Did>, Fault> {
+    let event = if step == 0 { None } else { run.event(step)? };
+    did(run, step, event, None)
+}
+
 /// What a run did in a step, where it did anything; `other` is the base segment that the other run selected.
 fn did(run: &mut History, step: u64, event: Option<Event>, other: Option<[NodeId; 2]>) -> Result<Option<Did>, Fault> {
     let Some(event) = event else { return Ok(None) };

@@ -137,6 +137,11 @@ impl Texture {
 }
 
 impl MeshFile {
+    /// Whether all its elements are quadrilaterals.
+    pub fn is_of_quads(&self) -> bool {
+        !self.quads.is_empty() && self.triangles.is_empty() && self.polygons.is_empty()
+    }
+
     /// Whether every point lies in the plane z = 0.
     pub fn is_flat(&self) -> bool {
         self.points.iter().all(|p| p.z == 0.0)

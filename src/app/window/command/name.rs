@@ -83,6 +83,7 @@ impl Command {
             Command::SaveRun => "Save the run".into(),
             Command::SaveMesh => "Save the mesh…".into(),
             Command::SaveMeshAs(path) => format!("Save the mesh as {path}"),
+            Command::Sweep(command) => command.name(),
             Command::Undo => "Undo".into(),
             Command::Redo => "Redo".into(),
             Command::Palette => "All commands by name".into(),

@@ -7,6 +7,7 @@ use crate::app::window::mesh_out;
 use crate::app::window::pair::PairCommand;
 use crate::app::window::session::Source;
 use crate::app::window::state::{Overlay, State};
+use crate::app::window::sweep::{SweepCommand, SweepWork};
 use crate::app::window::theme::{self, ink};
 use crate::core::formats::Format;
 use crate::render::palette::Palette;
@@ -26,7 +27,11 @@ pub struct OverState {
 pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &mut Vec<Command>, palette: &Palette) {
     let over = state.view().overlay;
     if over != local.shown {
-        local.field = if over == Overlay::Mesh { mesh_out::suggested_path(state.active()) } else { String::new() };
+        local.field = match over {
+            Overlay::Mesh => mesh_out::suggested_path(state.active()),
+            Overlay::Sweep => state.sweep().map_or_else(String::new, SweepWork::suggested_path),
+            _ => String::new(),
+        };
         local.shown = over;
     }
     if over == Overlay::Nothing {
@@ -69,6 +74,13 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
                     }
                     about_the_mesh(ui, state.active().run().is_at_the_end(), palette);
                 }
+                Overlay::Sweep => {
+                    let hint = "A name such as sweep.svg; its extension chooses the format";
+                    if field(ui, &mut local.field, hint, "Path of the sweep") {
+                        commands.push(Command::Sweep(SweepCommand::SaveAs(local.field.clone())));
+                    }
+                    about_the_sweep(ui, state, palette);
+                }
                 Overlay::Nothing => {}
             }
         });
@@ -101,6 +113,23 @@ fn about_the_mesh(ui: &mut Ui, is_at_the_end: bool, palette: &Palette) {
     if !is_at_the_end {
         lines.push("It is not finished and still has triangles; Esc, then End, goes to the finished mesh".to_owned());
     }
+    tell(ui, lines, palette);
+}
+
+/// What is saved of the sweep.
+fn about_the_sweep(ui: &mut Ui, state: &State, palette: &Palette) {
+    let figure = state.workspace().sweep.figure().name;
+    let mut lines = vec![format!(
+        "Enter saves a heat map of {figure} as .svg or .png, and all figures of each run as .csv or .json"
+    )];
+    if state.sweep().is_some_and(SweepWork::is_running) {
+        lines.push("The sweep goes on: runs that are not there yet are left empty".to_owned());
+    }
+    tell(ui, lines, palette);
+}
+
+/// Notes below the field for a path, and the folder of names.
+fn tell(ui: &mut Ui, mut lines: Vec<String>, palette: &Palette) {
     if let Ok(folder) = std::env::current_dir() {
         lines.push(format!("A name without a folder is saved in {}", folder.display()));
     }

@@ -10,6 +10,7 @@ use crate::app::window::icons;
 use crate::app::window::pair::PairCommand;
 use crate::app::window::session::{Goal, Source};
 use crate::app::window::state::{State, SurfaceView};
+use crate::app::window::sweep::SweepCommand;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::view_layer::ViewLayer;
 use crate::core::case::built_in;
@@ -97,6 +98,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     });
     ui.menu_button("Parameters", |ui| {
         items(ui, [Command::ResetParameters, Command::Undo, Command::Redo], commands);
+        ui.separator();
+        items(ui, SweepCommand::ALL.map(Command::Sweep), commands);
     });
     ui.menu_button("View", |ui| {
         let view =

@@ -4,6 +4,7 @@ mod opening;
 mod pair;
 mod parameters;
 mod saving;
+mod sweeping;
 
 use std::time::{Duration, Instant};
 
@@ -178,6 +179,7 @@ impl State {
                 }
             }
             Command::SaveMeshAs(path) => self.save_mesh(&path),
+            Command::Sweep(command) => self.apply_to_sweep(command),
             Command::Undo => self.take_back(Direction::Back),
             Command::Redo => self.take_back(Direction::Forward),
             Command::Arrange(layout) => self.change(|document| document.layout = Some(layout)),

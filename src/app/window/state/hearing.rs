@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use super::State;
 use crate::app::figure::another_state;
 use crate::app::window::session::{Moment, SessionNews, Source};
+use crate::app::window::sweep::SweepWork;
 use crate::core::convert::Phase;
 use crate::core::run::shown::fingerprint;
 use crate::core::run::{Changes, ShownState};
@@ -23,6 +24,9 @@ impl State {
     pub(in crate::app::window) fn hear(&mut self) {
         self.hear_alone();
         self.hear_second();
+        if let Some(fault) = self.sweep.as_mut().and_then(SweepWork::hear) {
+            self.complain(&fault);
+        }
     }
 
     fn hear_alone(&mut self) {

@@ -113,6 +113,7 @@ pub enum Overlay {
     /// The path of a second run.
     PathBeside,
     Mesh,
+    Sweep,
 }
 
 /// A request that stands until whoever it is for has taken it, which may be shown only later. Requests are numbered,

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::window::figures::FigureForm;
 use crate::app::window::session::Direction;
+use crate::app::window::sweep::SweepForm;
 use crate::core::kernel::worded::worded;
 use crate::core::run::{Bookmark, Edit, Watched};
 use crate::render::look::HiddenLines;
@@ -22,6 +23,8 @@ pub struct Workspace {
     pub surfaces: SurfaceStyle,
     /// How figures are made.
     pub figure: FigureForm,
+    /// What is swept.
+    pub sweep: SweepForm,
     undo: Vec<Document>,
     redo: Vec<Document>,
     /// The step whose note was changed last: what is typed there is undone as one change.
@@ -108,6 +111,7 @@ impl Default for Workspace {
             speed: 8.0,
             surfaces: SurfaceStyle::default(),
             figure: FigureForm::default(),
+            sweep: SweepForm::default(),
             undo: Vec::new(),
             redo: Vec::new(),
             noted: None,

@@ -1,5 +1,7 @@
 //! An axis of a sweep: a parameter and the values that it takes.
 
+use std::collections::BTreeSet;
+
 use super::MOST_CELLS;
 use crate::core::case::{ParameterKind, Parameters};
 use crate::core::fault::{Fault, FaultKind};
@@ -48,16 +50,42 @@ impl Axis {
         } else {
             values.split(',').map(|value| value.trim().to_owned()).collect()
         };
-        let mut values: Vec<String> = Vec::with_capacity(texts.len());
+        let (mut values, mut seen) = (Vec::with_capacity(texts.len()), BTreeSet::new());
         for text in texts {
             parameters.set(key, &text)?;
             let value = parameters.text_of(key).unwrap_or(text);
-            if values.contains(&value) {
+            if !seen.insert(value.clone()) {
                 return Err(Fault::new(format!("The value {value} is there twice")).remedy("Name each value once"));
             }
             values.push(value);
         }
         Ok(Axis { key, values })
+    }
+
+    /// Values to begin with, as [`Axis::parse`] takes them after the key: all words, or numbers about the present one.
+    pub fn suggested(key: &str, now: &str) -> String {
+        let default = super::DEFAULT_AXES.into_iter().filter_map(|axis| axis.split_once('='));
+        if let Some((_, values)) = default.into_iter().find(|axis| axis.0 == key) {
+            return values.to_owned();
+        }
+        let number: f64 = now.parse().unwrap_or(0.0);
+        let about = |distance: f64, limits: [f64; 2]| {
+            let [low, high] = [number - distance, number + distance].map(|x| x.clamp(limits[0], limits[1]));
+            format!("{low}:{high}:{}", distance / 2.0)
+        };
+        match Parameters::kind_of(key) {
+            Some(ParameterKind::Word(words)) => words.join(","),
+            Some(ParameterKind::Flag) => "true,false".to_owned(),
+            Some(ParameterKind::Angle(limits)) => about(10.0, limits),
+            Some(ParameterKind::Count(_)) if number < 100.0 => format!("{number}:{}:1", number + 3.0),
+            Some(ParameterKind::Number(limits)) => {
+                let factors = [0.5, 0.75, 1.0, 1.25, 1.5].map(|factor| factor * number);
+                let mut fits: Vec<f64> = factors.into_iter().filter(|x| (limits[0]..=limits[1]).contains(x)).collect();
+                fits.dedup();
+                fits.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+            }
+            _ => now.to_owned(),
+        }
     }
 
     /// The unit of the values: degrees of angles, else none.
@@ -160,6 +188,17 @@ mod tests {
         assert_eq!(Axis::parse("theta_rect=120").unwrap().unit(), "°");
         assert_eq!(Axis::parse("c=2").unwrap().unit(), "");
         assert_eq!(Axis::parse("faces=").unwrap().with_value(""), "faces = (all)");
+    }
+
+    #[test]
+    fn suggested_values_can_be_swept() {
+        let parameters = Parameters::default();
+        for key in Parameters::KEYS {
+            let now = parameters.text_of(key).unwrap();
+            let axis = Axis::parse(&format!("{key}={}", Axis::suggested(key, &now))).unwrap();
+            assert!(axis.values.contains(&now), "{key}: {axis:?}");
+            assert!(axis.values.len() > 1 || ["layered_loops", "faces", "max_quads"].contains(&key), "{key}: {axis:?}");
+        }
     }
 
     #[test]

@@ -186,7 +186,7 @@ fn figures_of(value: &Value) -> Option<Cell> {
 mod tests {
     use super::*;
     use crate::core::case::built_in;
-    use crate::core::run::Run;
+    use crate::core::run::{Edit, EditKind, Run};
 
     fn sweep(axes: &[&str]) -> Sweep {
         let mut run = Run::of(built_in::named("example1").unwrap().unwrap());
@@ -209,6 +209,15 @@ mod tests {
             let text = sweep.json();
             assert_eq!(Sweep::parse(&text).unwrap().unwrap(), sweep, "{text}");
         }
+    }
+
+    #[test]
+    fn a_key_that_the_run_changes_at_a_step_is_refused() {
+        let mut run = Run::of(built_in::named("example1").unwrap().unwrap());
+        run.set_edits(vec![Edit { step: 9, kind: EditKind::parameter("c", "1.5").unwrap() }]);
+        let of = |axis: &str| Sweep::new(&run, vec![Axis::parse(axis).unwrap()]);
+        assert!(of("theta_rect=120,135").is_ok());
+        assert!(of("c=1,2").unwrap_err().what.contains("changes c at step 9"));
     }
 
     #[test]

@@ -15,7 +15,7 @@ use super::run_file;
 use crate::core::case::Parameters;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::Fingerprint;
-use crate::core::run::Run;
+use crate::core::run::{EditKind, Run};
 
 /// The largest number of cells of a sweep.
 pub const MOST_CELLS: usize = 10_000;
@@ -64,9 +64,10 @@ impl Sweep {
     /// A sweep of a run, without any cell yet.
     ///
     /// # Errors
-    /// No axis or more than two, the same key twice, too many cells, a mesh file that cannot be read.
+    /// No axis or more than two, the same key twice, too many cells, a key that the run changes at a step, a mesh file
+    /// that cannot be read.
     pub fn new(run: &Run, axes: Vec<Axis>) -> Result<Sweep, Fault> {
-        check(&axes).map_err(|fault| fault.of_kind(FaultKind::Parameter))?;
+        check(&axes).and_then(|()| check_edits(run, &axes)).map_err(|fault| fault.of_kind(FaultKind::Parameter))?;
         let count = axes.iter().map(|axis| axis.values.len()).product();
         Ok(Sweep {
             case: CaseRecord::of(&run.case),
@@ -135,10 +136,18 @@ impl Sweep {
 
     /// The cell with the case's own values, if they are among those of the axes.
     pub fn own(&self) -> Option<usize> {
-        (0..self.cells.len()).find(|cell| {
-            let mut values = self.values(*cell).into_iter();
-            values.all(|(key, value)| self.parameters.text_of(key).as_deref() == Some(value))
-        })
+        self.cell_with(&self.parameters)
+    }
+
+    /// The cell with these parameters.
+    pub fn cell_with(&self, parameters: &Parameters) -> Option<usize> {
+        let place = |axis: &Axis| {
+            let value = parameters.text_of(axis.key)?;
+            axis.values.iter().position(|known| *known == value)
+        };
+        let row = self.axes.get(1).map_or(Some(0), place)?;
+        let cell = row * self.shape()[0] + place(&self.axes[0])?;
+        (self.parameters_of(cell) == *parameters).then_some(cell)
     }
 
     /// The value of a figure in a cell; `None` where the cell is refused or not known yet, or has no such figure.
@@ -199,6 +208,19 @@ fn check(axes: &[Axis]) -> Result<(), Fault> {
     if count > MOST_CELLS {
         return Err(Fault::new(format!("The sweep has {count} cells; it may have {MOST_CELLS}"))
             .remedy("Take larger steps or fewer values"));
+    }
+    Ok(())
+}
+
+/// Refuses a key that an edit of the run changes: its value would not be that of the cell.
+fn check_edits(run: &Run, axes: &[Axis]) -> Result<(), Fault> {
+    for edit in run.edits() {
+        if let EditKind::Parameter { key, .. } = &edit.kind
+            && axes.iter().any(|axis| axis.key == key)
+        {
+            return Err(Fault::new(format!("The run changes {key} at step {}, in every cell", edit.step))
+                .remedy("Sweep another key, or take back that change"));
+        }
     }
     Ok(())
 }

@@ -23,13 +23,23 @@ impl State {
         {
             return self.import(path.clone(), ImportOptions::default(), overrides);
         }
+        let (named, changed) = (source.clone(), overrides.clone());
+        self.open_read(source, overrides, move || read(&named, &changed));
+    }
+
+    /// Opens the run that `read` gives, of a source with its parameters changed.
+    pub(super) fn open_read(
+        &mut self,
+        source: Source,
+        overrides: Overrides,
+        read: impl FnOnce() -> Result<Run, Fault> + Send + 'static,
+    ) {
         let is_of_import =
             matches!((&source, &self.run.import), (Source::Mesh(path, _), Some(import)) if *path == import.path);
         if !is_of_import {
             self.give_up_import();
         }
-        let (named, changed) = (source.clone(), overrides.clone());
-        let session = Session::open(move || read(&named, &changed), self.wake.clone());
+        let session = Session::open(read, self.wake.clone());
         if self.run.opening.replace(Opening { source, overrides, session }).is_none() {
             self.run.waiting += 1;
         }

@@ -11,7 +11,9 @@ use crate::app::window::pair::{PairCommand, Which};
 use crate::app::window::session::{Goal, Opened, Session, Source};
 use crate::app::window::state::pair::Pair;
 use crate::app::window::state::{Opening, Overlay, ViewKind};
+use crate::core::fault::Fault;
 use crate::core::formats::Format;
+use crate::core::run::Run;
 use crate::core::run::copies::Since;
 
 /// What a command is for, where there are two runs.
@@ -157,7 +159,17 @@ impl State {
             source => source,
         };
         let (named, changed) = (source.clone(), overrides.clone());
-        let session = Session::open(move || super::opening::read(&named, &changed), self.wake.clone());
+        self.open_read_beside(source, overrides, move || super::opening::read(&named, &changed));
+    }
+
+    /// Opens the second run that `read` gives, of a source with its parameters changed.
+    pub(super) fn open_read_beside(
+        &mut self,
+        source: Source,
+        overrides: Overrides,
+        read: impl FnOnce() -> Result<Run, Fault> + Send + 'static,
+    ) {
+        let session = Session::open(read, self.wake.clone());
         let step = self.run.moment.as_ref().map_or(0, |moment| moment.step);
         self.begin_beside(Opening { source, overrides, session }, step, None);
     }
