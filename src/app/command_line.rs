@@ -41,6 +41,8 @@ pub(super) enum Command {
     Check(CheckArguments),
     /// Compare two runs: the step at which they first differ, why, and what both end with (exit code 1 if they differ)
     Compare(CompareArguments),
+    /// Find the smallest case that still shows something: an event, a bad angle, a refusal
+    Reduce(ReduceArguments),
     /// Sweep one or two parameters: what a conversion ends with for each of their values, as a heat map or a table
     Sweep(SweepArguments),
     /// Draw a mesh, or states of a conversion, as SVG or PNG
@@ -321,6 +323,24 @@ pub(super) struct SweepArguments {
 }
 
 #[derive(Args)]
+pub(super) struct ReduceArguments {
+    #[command(flatten)]
+    pub source: Source,
+    #[command(flatten)]
+    pub mesh: MeshArguments,
+    /// What the smaller case must still show: a breakpoint condition that holds at some step ('quad.min_angle < 10',
+    /// 'kind == seamed'), a condition on the end ('last_resort > 0', 'is refused', 'exit 1'), or 'panics'
+    #[arg(long = "while", value_name = "CONDITION")]
+    pub condition: String,
+    /// Write the smallest case (.toml); a mesh goes beside it
+    #[arg(short, long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Stop after this many tries
+    #[arg(long, value_name = "N", default_value_t = 5000)]
+    pub tries: u64,
+}
+
+#[derive(Args)]
 pub(super) struct RenderArguments {
     #[command(flatten)]
     pub source: Source,
@@ -406,6 +426,7 @@ mod tests {
             "quadfront compare example1 --with c=1.5 --with theta_rect=120",
             "quadfront compare example1 --with-paper --json",
             "quadfront compare a.toml b.toml --set size_scale=0.5",
+            "quadfront reduce example1 --while exit_1 -o small.toml --tries 50",
             "quadfront sweep example1 --over c=1.5:3:.25 --over theta_rect=110:150:5 --show irregular -o a.svg -o a.csv",
             "quadfront sweep example1 --over selection=table1,level --list",
             "quadfront sweep example1 --list=cells --over c=1:2:.5",

@@ -10,6 +10,7 @@ mod convert;
 mod check;
 mod cases;
 mod compare;
+mod reduce;
 mod sweep;
 mod render;
 mod notes;
@@ -66,6 +67,7 @@ pub fn run() -> ExitCode {
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
         Command::Check(arguments) => check::check(arguments),
         Command::Compare(arguments) => compare::compare(arguments),
+        Command::Reduce(arguments) => reduce::reduce(arguments).map(|()| ExitCode::SUCCESS),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Notes(arguments) => notes::notes(arguments).map(|()| ExitCode::SUCCESS),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),

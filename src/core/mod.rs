@@ -1,6 +1,5 @@
-//! The converter and what it stands on, from the lowest floor to the highest: a room imports only from rooms
-//! listed before it (`tests/architecture.rs`). Deliberately absent: screens, clocks, threads' own state, unseeded
-//! randomness.
+//! The converter and what it stands on, from the lowest floor to the highest: a room imports only from rooms listed
+//! before it (`tests/architecture.rs`). Deliberately absent: screens, clocks, threads' own state, unseeded randomness.
 
 pub mod fault;
 pub mod progress;
@@ -18,3 +17,4 @@ pub mod prepare;
 pub mod convert;
 pub mod run;
 pub mod record;
+pub mod reduce;

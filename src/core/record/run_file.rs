@@ -299,6 +299,11 @@ pub fn embedded(run: &Run) -> Result<String, Fault> {
     Ok(text(run, &Links::of(run)?, Path::new("")))
 }
 
+/// As [`embedded`], also in its errors, for a file in a folder: with paths of meshes relative to it.
+pub fn written_in(run: &Run, folder: &Path) -> Result<String, Fault> {
+    Ok(text(run, &Links::of(run)?, folder))
+}
+
 fn text(run: &Run, links: &Links, folder: &Path) -> String {
     let mut text = format!(
         "run = {VERSION}\nprogram = \"{} {}\"\n\n[case]\nname = {}\n",

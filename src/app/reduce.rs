@@ -1,0 +1,166 @@
+//! `reduce`: the smallest case that still shows something.
+
+use std::io;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::command_line::{ReduceArguments, Source};
+use super::input;
+use super::output::Stream;
+use super::progress::{INTERRUPT, Progress};
+use crate::core::case::ImportOptions;
+use crate::core::fault::Fault;
+use crate::core::kernel::number::counted;
+use crate::core::progress::Cancel;
+use crate::core::reduce::{Budget, Draft, Finding, Question, Reduced, Written, does_not_show, reduce as search};
+use crate::core::run::Run;
+
+/// How often a child is looked after.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// Reduces a case, and writes the smallest one after each success, so that an interruption keeps it.
+pub(super) fn reduce(arguments: &ReduceArguments) -> Result<(), Fault> {
+    let ReduceArguments { source, mesh, condition, out, tries } = arguments;
+    let question = Question::parse(condition).map_err(|fault| fault.at("--while"))?;
+    let input = input::read(source, &mesh.options())?;
+    let mut progress = Progress::new(source.quiet);
+    let original = Draft::of(&input.run, &mut progress)?;
+    progress.finish();
+    let mut written = Written::new(out.clone(), &original, &question)?;
+    // The hook would print a message for each panic that a try meets.
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    let done = reduced(&question, &input.run, &original, &mut written, *tries, source);
+    std::panic::set_hook(hook);
+    let reduced = done?;
+    if !source.quiet {
+        let head = format!("{}: {}\n", out.display(), reduced.finding.sentence);
+        let lines = reduced.draft.size().changes(&original.size());
+        let lines: String = lines.into_iter().map(|line| format!("  {line}\n")).collect();
+        Stream::Output.print(&format!("{head}{lines}  {}\n", counted(reduced.tests, "smaller case") + " tried"));
+    }
+    Ok(())
+}
+
+fn reduced(
+    question: &Question,
+    run: &Run,
+    original: &Draft,
+    written: &mut Written,
+    tries: u64,
+    source: &Source,
+) -> Result<Reduced, Fault> {
+    let cancel = INTERRUPT.clone();
+    let bar = bar(source.quiet);
+    bar.set_message("Looking at the case as it is");
+    bar.tick();
+    let folder = tempfile::tempdir().map_err(|error| Fault::new(format!("Cannot make a temporary folder: {error}")))?;
+    // A try in a file of its own, for another process.
+    let child = |draft: &Draft, written: &Written| -> Result<Option<Finding>, Fault> {
+        let file = written.beside(folder.path());
+        file.write(draft, &Finding::panic(), "")?;
+        Ok(panics(file.path(), &cancel)?.then(Finding::panic))
+    };
+    let mut found = None;
+    for (format, draft) in written.drafts(original) {
+        written.choose(format);
+        let finding = if question.asks_for_a_panic() {
+            child(&draft, written)?
+        } else {
+            question.find(&draft.run()?, Budget::UNLIMITED, &cancel)?
+        };
+        if let Some(finding) = finding {
+            found = Some((draft, finding));
+            break;
+        }
+    }
+    let Some((draft, first)) = found else {
+        return Err(does_not_show(&source.input, question, question.shown_instead(run, &cancel)));
+    };
+    let budget = Budget::like(&first);
+    let mut judge = |draft: &Draft| -> Result<Option<Finding>, Fault> {
+        let Ok(run) = draft.run() else { return Ok(None) };
+        let found =
+            if question.asks_for_a_panic() { child(draft, written)? } else { question.find(&run, budget, &cancel)? };
+        Ok(found.filter(|found| found.is_like(&first)))
+    };
+    let mut smallest = None;
+    let mut tell = |tries: u64, draft: &Draft, finding: &Finding, is_new: bool| {
+        bar.set_message(format!("Reducing: {} tried; now {}", counted(tries, "case"), draft.size()));
+        bar.tick();
+        if is_new {
+            written.write(draft, finding, "The reduction has not ended: more may be left out.")?;
+            smallest = Some(draft.size());
+        }
+        Ok(())
+    };
+    let done = search(draft, first.clone(), tries, &mut judge, &mut tell);
+    bar.finish_and_clear();
+    if cancel.is_asked() {
+        Stream::Error.print(&match &smallest {
+            Some(size) => format!("Stopped. {} has the smallest case so far: {size}\n", written.path().display()),
+            None => "Stopped before anything could be left out. Nothing was written.\n".to_owned(),
+        });
+    }
+    let done = done?;
+    let how = if done.is_least {
+        format!("{} tried; no part that is left can be left out.", counted(done.tests, "smaller case"))
+    } else {
+        format!("{} tried; more tries may leave out more.", counted(done.tests, "smaller case"))
+    };
+    written.write(&done.draft, &done.finding, &how)?;
+    let shows = if question.asks_for_a_panic() {
+        panics(written.path(), &cancel)?
+    } else {
+        let file = Source { input: written.path().display().to_string(), quiet: true, ..Source::default() };
+        let found = question.find(&input::read(&file, &ImportOptions::default())?.run, budget, &cancel)?;
+        found.is_some_and(|found| found.is_like(&first))
+    };
+    if shows {
+        return Ok(done);
+    }
+    Err(Fault::new("The case that was written does not show it, though it did in memory")
+        .at(written.path().display().to_string())
+        .remedy("Report this as a bug, with the case that was reduced"))
+}
+
+fn bar(quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let style = ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::with_draw_target(None, target).with_style(style)
+}
+
+/// Whether converting a file ends in a panic or an abort, seen from another process.
+fn panics(path: &Path, cancel: &Cancel) -> Result<bool, Fault> {
+    let refuse = |error: io::Error| Fault::new(format!("Cannot start another process: {error}"));
+    let program = std::env::current_exe().map_err(refuse)?;
+    let mut command = Command::new(program);
+    command.arg("convert").arg(path).arg("--quiet");
+    let mut child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().map_err(refuse)?;
+    let status = wait(&mut child, cancel).map_err(refuse)?;
+    cancel.check()?;
+    Ok(status.is_some_and(is_panic))
+}
+
+/// Waits for a process, and ends it when the work is cancelled.
+fn wait(child: &mut Child, cancel: &Cancel) -> io::Result<Option<ExitStatus>> {
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        if cancel.is_asked() {
+            child.kill()?;
+            child.wait()?;
+            return Ok(None);
+        }
+        std::thread::sleep(PAUSE);
+    }
+}
+
+/// Rust ends with 101 after a panic, and by a signal after an abort or a stack overflow.
+fn is_panic(status: ExitStatus) -> bool {
+    status.code().is_none_or(|code| code == 101)
+}
