@@ -252,6 +252,8 @@ fn reading_and_converting_are_cancelled_and_the_window_goes_on() {
     harness.get_by_label("Cancel").click();
     harness.run_steps(2);
     assert!(harness.state().state.run().import.is_none() && harness.state().state.view().faults.is_empty());
+    // Shorter: its charts are shown before it can be converted.
+    let path = stl(folder.path(), "shorter.stl", &tube(2_000));
     harness.state_mut().apply(Command::Open(Source::File(path)));
     until(&mut harness, "it is read", |window| {
         window.state().state.run().import.as_ref().is_some_and(|import| import.loaded.is_some())

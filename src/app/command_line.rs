@@ -1,7 +1,9 @@
 //! The arguments of the command line.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
 use super::figure::FigureOptions;
@@ -10,6 +12,7 @@ use super::output::Target;
 use crate::core::case::{ImportOptions, MeshUse};
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
+use crate::core::record::report::figures::{FIGURES, Figure};
 use crate::core::run::Run;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
@@ -38,6 +41,8 @@ pub(super) enum Command {
     Check(CheckArguments),
     /// Compare two runs: the step at which they first differ, why, and what both end with (exit code 1 if they differ)
     Compare(CompareArguments),
+    /// Sweep one or two parameters: what a conversion ends with for each of their values, as a heat map or a table
+    Sweep(SweepArguments),
     /// Draw a mesh, or states of a conversion, as SVG or PNG
     Render(RenderArguments),
     /// List the built-in cases
@@ -62,6 +67,20 @@ pub(super) struct Source {
     /// Print no progress and no summary
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+impl Source {
+    /// The input and how it is read as command-line arguments.
+    pub fn words(&self) -> Vec<String> {
+        let Source { input, from, sol, overrides, quiet: _ } = self;
+        let mut words = vec![input.clone()];
+        words.extend(from.map(|from| format!("--from={}", from.word())));
+        words.extend(sol.iter().map(|sol| format!("--sol={}", sol.display())));
+        words.extend(overrides.set.iter().map(|(key, value)| format!("--set={key}={value}")));
+        words.extend(overrides.faces.iter().map(|face| format!("--face={face}")));
+        words.extend(overrides.paper.then(|| "--paper".to_owned()));
+        words
+    }
 }
 
 /// Changes of the parameters of a case before its run begins, in this order: the paper's, the faces, single values.
@@ -134,6 +153,22 @@ impl MeshArguments {
         let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale } = self;
         ImportOptions { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale }
     }
+
+    /// The options as command-line arguments.
+    pub fn words(&self) -> Vec<String> {
+        let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale } = self;
+        let number = |name: &str, value: Option<f64>| value.map(|value| format!("--{name}={value}"));
+        let words = [
+            used.map(|used| format!("--use={}", used.name())),
+            split_odd.then(|| "--split-odd".to_owned()),
+            number("mesh-size", mesh_size),
+            number("curvature", curvature),
+            number("feature-angle", feature_angle),
+            number("chart-stretch", chart_stretch),
+            number("scale", scale),
+        ];
+        words.into_iter().flatten().collect()
+    }
 }
 
 /// The outputs of a mesh.
@@ -151,6 +186,13 @@ pub(super) struct Destination {
     /// Write a picture (.svg .png), or - for standard output (SVG)
     #[arg(long, value_name = "FILE")]
     pub picture: Option<Target>,
+}
+
+/// The figures of a report, with their meaning.
+fn figures() -> impl TypedValueParser<Value = &'static Figure> {
+    let named = |name: String| Figure::named(&name).expect("a possible value is the name of a figure");
+    let all = FIGURES.iter().map(|figure| PossibleValue::new(figure.name).help(figure.doc));
+    PossibleValuesParser::new(all).map(named)
 }
 
 #[derive(Args)]
@@ -246,6 +288,36 @@ pub(super) struct CompareArguments {
 }
 
 #[derive(Args)]
+pub(super) struct SweepArguments {
+    #[command(flatten)]
+    pub source: Source,
+    #[command(flatten)]
+    pub mesh: MeshArguments,
+    /// A parameter and its values: key=from:to:step, both ends included, or key=value,value (once or twice) [default:
+    /// c=1.5:3:0.25 and theta_rect=110:150:5]
+    #[arg(long, value_name = "KEY=VALUES")]
+    pub over: Vec<String>,
+    /// The figure of the report in picture and summary [default: irregular]. Tables have all figures; the time
+    /// (seconds) only where it is shown. Repeatable: the first one is in the picture
+    #[arg(long, value_name = "FIGURE", value_parser = figures())]
+    pub show: Vec<&'static Figure>,
+    /// Write the sweep (.svg .png .csv .json), also while it goes on (repeatable). A .json that is there is gone on
+    /// with: cells of the same case, parameters and version are kept
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Vec<Target>,
+    /// Print one command for each cell, for other machines; each writes its cell to a file in a folder, which is made
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, require_equals = true,
+          default_missing_value = "sweep-cells", conflicts_with_all = ["out", "collect", "jobs"])]
+    pub list: Option<PathBuf>,
+    /// Convert nothing, and take the cells from the files in this folder
+    #[arg(long, value_name = "FOLDER", conflicts_with = "jobs")]
+    pub collect: Option<PathBuf>,
+    /// Cells converted at the same time [default: the number of processors]
+    #[arg(short, long, value_name = "NUMBER")]
+    pub jobs: Option<NonZeroUsize>,
+}
+
+#[derive(Args)]
 pub(super) struct RenderArguments {
     #[command(flatten)]
     pub source: Source,
@@ -284,6 +356,21 @@ mod tests {
     }
 
     #[test]
+    fn inputs_read_back_from_their_arguments() {
+        let line = "quadfront sweep a --from msh --sol b.sol --set c=1.5 --set size_scale=0.5 --face left --paper \
+                    --use shape --split-odd --mesh-size 0.1 --curvature 0.01 --feature-angle 30 --chart-stretch 3 \
+                    --scale 0.001";
+        let words = |line: &[&str]| match Cli::try_parse_from(line).unwrap().command {
+            Some(Command::Sweep(read)) => [read.source.words(), read.mesh.words()].concat(),
+            _ => Vec::new(),
+        };
+        let first = words(&line.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(first.len(), 14, "{first:?}");
+        let again: Vec<_> = ["quadfront", "sweep"].into_iter().chain(first.iter().map(String::as_str)).collect();
+        assert_eq!(words(&again), first);
+    }
+
+    #[test]
     fn documented_command_lines_are_accepted() {
         for line in [
             "quadfront convert example1 --out example1.msh --report example1.json",
@@ -305,6 +392,10 @@ mod tests {
             "quadfront compare example1 --with c=1.5 --with theta_rect=120",
             "quadfront compare example1 --with-paper --json",
             "quadfront compare a.toml b.toml --set size_scale=0.5",
+            "quadfront sweep example1 --over c=1.5:3:.25 --over theta_rect=110:150:5 --show irregular -o a.svg -o a.csv",
+            "quadfront sweep example1 --over selection=table1,level --list",
+            "quadfront sweep example1 --list=cells --over c=1:2:.5",
+            "quadfront sweep example1 --collect cells -o a.json --show seconds",
             "quadfront cases --json",
             "quadfront",
             "quadfront open",
@@ -325,6 +416,9 @@ mod tests {
             "quadfront convert a.stl --use wobble",
             "quadfront convert a.stl --curvature 0.1",
             "quadfront render a --at nq=2,1 -o a.svg",
+            "quadfront sweep a --list --collect cells",
+            "quadfront sweep a --show wobble",
+            "quadfront sweep a --jobs 0",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_err(), "{line}");
         }

@@ -20,11 +20,37 @@ use crate::core::run::{History, Run};
 /// The names of the two runs in what is printed.
 const NAMES: [&str; 2] = ["A", "B"];
 
-/// What is printed with `--json`.
-#[derive(Serialize)]
-struct Comparison {
-    first_difference: Option<FirstDifference>,
-    reports: [Report; 2],
+/// Where two runs differ first, and what they end with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// `None` where they never differ.
+    pub first_difference: Option<FirstDifference>,
+    /// The report of each at its end, with the time that it takes by itself.
+    pub reports: [Report; 2],
+}
+
+impl Comparison {
+    /// Compares two runs; `report` gives the report of each at its end.
+    ///
+    /// # Errors
+    /// A conversion that cannot continue, and cancellation.
+    pub fn of(
+        runs: &[Run; 2],
+        watch: &mut dyn Watch,
+        mut report: impl FnMut(&Run) -> Result<Report, Fault>,
+    ) -> Result<Comparison, Fault> {
+        let first_difference = {
+            let [mut a, mut b] = [History::open(runs[0].clone(), watch)?, History::open(runs[1].clone(), watch)?];
+            first_difference([&mut a, &mut b], watch)?
+        };
+        Ok(Comparison { first_difference, reports: [report(&runs[0])?, report(&runs[1])?] })
+    }
+}
+
+/// The report of a run at its end, without its times.
+pub(super) fn report(run: &Run, watch: &mut dyn Watch) -> Result<Report, Fault> {
+    watch.tell(Stage::Read, 0, 0);
+    Ok(work::convert(run, None, None, false, watch)?.report)
 }
 
 /// Compares two runs: success where they never differ, exit code 1 where they do.
@@ -49,34 +75,22 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
     let changes = Overrides { set: with.clone(), paper: *with_paper, ..Overrides::default() };
     changes.apply(&mut runs[1], "--with")?;
     let mut progress = Progress::new(source.quiet);
-    let found = difference(&runs, &mut progress)?;
+    let comparison = Comparison::of(&runs, &mut progress, |run| {
+        let mut progress = Progress::new(source.quiet);
+        let mut report = report(run, &mut progress)?;
+        report.timing = progress.finish();
+        Ok(report)
+    })?;
     progress.finish();
-    let [a, b] = &runs;
-    let reports = [report(a, source.quiet)?, report(b, source.quiet)?];
-    let differ = found.is_some();
+    let differ = comparison.first_difference.is_some();
     if *json {
-        let comparison = Comparison { first_difference: found, reports };
         let text = serde_json::to_string_pretty(&comparison).expect("JSON can express all figures");
         Stream::Output.print(&format!("{text}\n"));
     } else {
         let inputs = [&source.input, other.as_ref().unwrap_or(&source.input)];
-        Stream::Output.print(&text(inputs, &runs, found.as_ref(), &reports));
+        Stream::Output.print(&text(inputs, &runs, comparison.first_difference.as_ref(), &comparison.reports));
     }
     Ok(if differ { ExitCode::from(FALLS_SHORT) } else { ExitCode::SUCCESS })
-}
-
-fn difference([a, b]: &[Run; 2], watch: &mut dyn Watch) -> Result<Option<FirstDifference>, Fault> {
-    let [mut a, mut b] = [History::open(a.clone(), watch)?, History::open(b.clone(), watch)?];
-    first_difference([&mut a, &mut b], watch)
-}
-
-/// The report of a run at its end, with the time that it takes by itself.
-fn report(run: &Run, quiet: bool) -> Result<Report, Fault> {
-    let mut progress = Progress::new(quiet);
-    progress.tell(Stage::Read, 0, 0);
-    let mut report = work::convert(run, None, None, false, &mut progress)?.report;
-    report.timing = progress.finish();
-    Ok(report)
 }
 
 fn text(inputs: [&String; 2], runs: &[Run; 2], found: Option<&FirstDifference>, reports: &[Report; 2]) -> String {
@@ -110,7 +124,7 @@ fn text(inputs: [&String; 2], runs: &[Run; 2], found: Option<&FirstDifference>, 
 }
 
 /// The parameters that differ from others, with their values.
-fn values_that_differ(parameters: &Parameters, others: &Parameters) -> String {
+pub(super) fn values_that_differ(parameters: &Parameters, others: &Parameters) -> String {
     let differ = Parameters::KEYS.iter().filter_map(|key| {
         let [value, other] = [parameters, others].map(|parameters| parameters.text_of(key));
         (value != other).then(|| format!("{key} = {}", value.as_deref().unwrap_or("(none)")))
@@ -119,7 +133,7 @@ fn values_that_differ(parameters: &Parameters, others: &Parameters) -> String {
 }
 
 /// The kinds of what both did.
-fn kinds(did: &[Option<Did>; 2]) -> String {
+pub(super) fn kinds(did: &[Option<Did>; 2]) -> String {
     let [a, b] = did.each_ref().map(|did| did.as_ref().map_or("ended", |did| did.event.kind().name()));
     if a == b { a.replace('_', " ") } else { format!("A {}, B {}", a.replace('_', " "), b.replace('_', " ")) }
 }

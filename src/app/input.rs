@@ -33,6 +33,16 @@ pub(super) enum InputFormat {
     Mesh(Format),
 }
 
+impl InputFormat {
+    /// Its name, as [`input_format`] takes it.
+    pub fn word(self) -> &'static str {
+        match self {
+            InputFormat::Case => "toml",
+            InputFormat::Mesh(format) => format.extension(),
+        }
+    }
+}
+
 /// Parses `--from` where cases are possible.
 pub(super) fn input_format(text: &str) -> Result<InputFormat, String> {
     if text == "toml" { Ok(InputFormat::Case) } else { mesh_format(text).map(InputFormat::Mesh) }

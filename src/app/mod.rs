@@ -10,6 +10,7 @@ mod convert;
 mod check;
 mod cases;
 mod compare;
+mod sweep;
 mod render;
 #[cfg(feature = "window")]
 pub mod window;
@@ -60,6 +61,7 @@ pub fn run() -> ExitCode {
         Command::Background(arguments) => convert::background(arguments).map(|()| ExitCode::SUCCESS),
         Command::Check(arguments) => check::check(arguments),
         Command::Compare(arguments) => compare::compare(arguments),
+        Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
         Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),
     };

@@ -15,23 +15,32 @@ pub(super) static INTERRUPT: LazyLock<Cancel> = LazyLock::new(Cancel::new);
 /// Shows progress on standard error where that is a terminal, and measures the time of each stage.
 pub(super) struct Progress {
     bar: ProgressBar,
-    now: Option<(Stage, Instant)>,
-    times: Vec<(Stage, f64)>,
+    times: StageTimes,
     total: u64,
 }
 
-impl Progress {
-    /// Shows nothing where `quiet` or where standard error is not a terminal.
-    pub fn new(quiet: bool) -> Progress {
-        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        let bar = ProgressBar::with_draw_target(None, target).with_style(style("{msg}"));
-        Progress { bar, now: None, times: Vec::new(), total: 0 }
+/// The seconds of each stage, in the order of the work.
+#[derive(Default)]
+pub(super) struct StageTimes {
+    now: Option<(Stage, Instant)>,
+    times: Vec<(Stage, f64)>,
+}
+
+impl StageTimes {
+    /// A stage is under way. Returns whether it has just begun.
+    pub fn begin(&mut self, stage: Stage) -> bool {
+        let begins = self.now.is_none_or(|(now, _)| now != stage);
+        if begins {
+            self.close();
+            self.now = Some((stage, Instant::now()));
+        }
+        begins
     }
 
-    /// Clears the line and returns the seconds of each stage, in the order of the work.
+    /// The seconds of each stage up to now.
     pub fn finish(mut self) -> Vec<(Stage, f64)> {
         self.close();
-        std::mem::take(&mut self.times)
+        self.times
     }
 
     fn close(&mut self) {
@@ -42,10 +51,22 @@ impl Progress {
             None => self.times.push((stage, seconds)),
         }
     }
+}
+
+impl Progress {
+    /// Shows nothing where `quiet` or where standard error is not a terminal.
+    pub fn new(quiet: bool) -> Progress {
+        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(None, target).with_style(style("{msg}"));
+        Progress { bar, times: StageTimes::default(), total: 0 }
+    }
+
+    /// Clears the line and returns the seconds of each stage, in the order of the work.
+    pub fn finish(mut self) -> Vec<(Stage, f64)> {
+        std::mem::take(&mut self.times).finish()
+    }
 
     fn begin(&mut self, stage: Stage, total: u64) {
-        self.close();
-        self.now = Some((stage, Instant::now()));
         // Set a style without numbers first, since each of the changes below may be drawn.
         self.bar.set_style(style("{msg}"));
         self.bar.set_message(words(stage));
@@ -57,7 +78,7 @@ impl Progress {
         self.total = total;
         self.bar.set_length(total);
         self.bar.reset_eta();
-        let parts = match self.now {
+        let parts = match self.times.now {
             _ if total == 0 => "{msg}",
             // These count bytes or steps of unequal length.
             Some((Stage::Read | Stage::Repair, _)) => "{msg}: {percent} % {bar:20} {left}",
@@ -93,7 +114,7 @@ fn style(template: &str) -> ProgressStyle {
 
 impl Watch for Progress {
     fn tell(&mut self, stage: Stage, done: u64, total: u64) {
-        if self.now.is_none_or(|(now, _)| now != stage) {
+        if self.times.begin(stage) {
             self.begin(stage, total);
         } else if total != self.total {
             self.set_total(total);
@@ -105,6 +126,16 @@ impl Watch for Progress {
     fn cancel(&self) -> Cancel {
         INTERRUPT.clone()
     }
+}
+
+/// A bar for `left` of `all` equal parts of some work, such as "cells".
+pub(super) fn counting(message: &str, parts: &str, all: usize, left: usize, quiet: bool) -> ProgressBar {
+    let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(all as u64), target).with_message(message.to_owned());
+    bar.set_style(style(&format!("{{msg}}: {{done}} of {{all}} {parts} {{bar:20}} {{left}}")));
+    bar.set_position((all - left) as u64);
+    bar.reset_eta();
+    bar
 }
 
 /// The name of a stage of the work.

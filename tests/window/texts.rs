@@ -108,7 +108,10 @@ fn walk(harness: &mut Window, what: &str, found: &mut Found) {
         // One that is scrolled out of sight, too.
         harness.get_by_role_and_label(Role::Tab, tab).click_accesskit();
         harness.run_steps(4);
-        note(found, faults(harness, false), &format!("{what}, {tab}"));
+        let mut seen = faults(harness, false);
+        // These two tables scroll sideways.
+        seen.retain(|fault| !(["Elements", "Nodes"].contains(&tab.as_str()) && fault.starts_with("cut")));
+        note(found, seen, &format!("{what}, {tab}"));
         note(found, nameless(harness, false), &format!("{what}, {tab}"));
     }
 }

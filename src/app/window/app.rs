@@ -29,9 +29,10 @@ const DIALOG: Duration = Duration::from_secs(1);
 pub struct App {
     /// What the window knows.
     pub state: State,
-    views: Views,
+    /// The views of each run, and what the panels keep of it.
+    views: [Views; 2],
     layout: Layout,
-    panels: PanelStates,
+    panels: [PanelStates; 2],
     taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
     /// Whether the last frame asked for this one at once.
     moving: bool,
@@ -82,9 +83,9 @@ impl App {
         }
         App {
             state,
-            views: Views::default(),
+            views: [0, 1].map(Views::of_run),
             layout: settings.as_ref().map(Settings::layout).unwrap_or_default(),
-            panels: PanelStates::default(),
+            panels: Default::default(),
             taken: Arc::default(),
             moving: false,
             lost,
@@ -99,7 +100,7 @@ impl App {
 
     /// The same in a program that was started at this time.
     pub fn started(mut self, at: Instant) -> App {
-        self.panels.time.times.started = Some(at);
+        self.panels[0].time.times.started = Some(at);
         self
     }
 
@@ -222,8 +223,10 @@ impl App {
         if let Some(wait) = self.state.hear_files() {
             context.request_repaint_after(wait);
         }
-        if let Some((changes, slots)) = self.state.take_changes() {
-            self.views.note(&changes, slots);
+        for (views, changed) in self.views.iter_mut().zip(self.state.take_changes()) {
+            if let Some((changes, slots)) = changed {
+                views.note(&changes, slots);
+            }
         }
     }
 
@@ -254,13 +257,15 @@ impl App {
         // eframe clears the window in the colour of the panels: with software rendering every full layer costs time.
         let plain = if self.is_cleared { Frame::NONE } else { Frame::NONE.fill(theme::ink(palette.panel)) };
         let mut commands = Vec::new();
-        let (state, local, asked) = (&self.state, &mut self.panels, &mut commands);
-        Panel::top("menus").frame(plain).exact_size(32.0).show(ui, |ui| panels::top::show(ui, state, asked, palette));
+        // The panels show one of two runs; the first one stands for the window.
+        let (window, state) = (&self.state, self.state.active());
+        let (local, asked) = (&mut self.panels[window.active_run() as usize], &mut commands);
+        Panel::top("menus").frame(plain).exact_size(32.0).show(ui, |ui| panels::top::show(ui, window, asked, palette));
         let mut views = ui.available_rect_before_wrap();
-        if state.run().import.is_some() {
-            panels::import::show(ui, state, plain, asked, palette);
+        if window.run().import.is_some() {
+            panels::import::show(ui, window, plain, asked, palette);
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
-                self.views.given(ui, state, asked, palette);
+                self.views[0].given(ui, window, asked, palette);
             });
         } else {
             // A window without room for the timeline must not change the height that the user has chosen.
@@ -271,14 +276,14 @@ impl App {
                 .default_size(*height)
                 .size_range(TIMELINE_HEIGHTS[0]..=TIMELINE_HEIGHTS[1])
                 .resizable(true)
-                .show(ui, |ui| panels::time::show(ui, state, &mut local.time, asked, palette));
+                .show(ui, |ui| panels::time::show(ui, window, &mut local.time, asked, palette));
             if !squashed {
                 *height = time.response.rect.height();
             }
             views = ui.available_rect_before_wrap();
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
                 let views = &mut self.views;
-                let mut docks = Docks { state, local, views, commands: asked, palette, edited: false };
+                let mut docks = Docks { window, state, local, views, commands: asked, palette, edited: false };
                 self.layout.show(ui, &mut docks);
             });
             // The notes cover neither the mesh nor the breakpoints.
@@ -286,8 +291,8 @@ impl App {
             panels::notes::show(&context, place, state, asked, palette);
             panels::figure::show(&context, state, &mut local.figure, asked, palette);
         }
-        panels::messages::show(&context, views, state, asked, palette);
-        panels::over::show(&context, state, &mut local.over, asked, palette);
+        panels::messages::show(&context, views, window, asked, palette);
+        panels::over::show(&context, window, &mut local.over, asked, palette);
         self.state.end_frame(commands)
     }
 }
@@ -295,9 +300,9 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        let times = &mut self.panels.time.times;
+        let times = &mut self.panels[self.state.active_run() as usize].time.times;
         times.frame(std::mem::take(&mut self.moving));
-        times.first(self.views.has_shown());
+        times.first(self.views[0].has_shown());
         self.state.hear();
         self.graphics(&context);
         self.measure(&context, frame);

@@ -184,6 +184,19 @@ impl Autosave {
         Autosave { folder, wake, saver, offers: Vec::new(), scan, opened: None, saved: None, kept: None, opening: None }
     }
 
+    /// Autosaves a second run of this window, and offers nothing.
+    pub fn beside(&self) -> Autosave {
+        let (folder, wake) = (self.folder.clone(), self.wake.clone());
+        let saver = Saver::new(folder.clone(), None, wake.clone());
+        let scan = channel().1;
+        Autosave { folder, wake, saver, offers: Vec::new(), scan, opened: None, saved: None, kept: None, opening: None }
+    }
+
+    /// Searches again for abandoned runs.
+    pub fn search(&mut self) {
+        self.scan = scan(&self.folder, &self.wake);
+    }
+
     /// The run on offer, and how many more there are.
     pub fn offer(&self) -> Option<(&Offer, usize)> {
         self.offers.first().map(|offer| (offer, self.offers.len() - 1))
@@ -275,7 +288,7 @@ impl Autosave {
         // The old one ends first and releases its lock.
         drop(std::mem::replace(&mut self.saver, Saver::new(self.folder.clone(), slot, self.wake.clone())));
         if was_unsaved {
-            self.scan = scan(&self.folder, &self.wake);
+            self.search();
         }
         self.opened = Some(opened.clone());
     }

@@ -1,9 +1,13 @@
 //! Everything that can be done in the window, as a value: menus, keys, panels, the palette and tests all use it.
 
-use eframe::egui::{Key, Modifiers};
+mod keys;
+
+pub use keys::{Purpose, groups, keys};
 
 use super::figures::{FigureForm, Formats};
 use super::import::{Gesture, ImportOptions};
+use super::lists::ListKind;
+use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
@@ -13,7 +17,7 @@ use crate::core::case::{Parameters, built_in};
 use crate::core::convert::EventKind;
 use crate::core::kernel::worded::worded;
 use crate::core::mesh::{ElementId, NodeId};
-use crate::core::run::Watched;
+use crate::core::run::{Query, Watched};
 use crate::render::camera::Bearing;
 use crate::render::scene::{ColourBy, Outlined};
 
@@ -48,6 +52,12 @@ pub enum Command {
     Explain([NodeId; 2]),
     /// Ask for the history of something.
     TellPast(Watched),
+    /// Make a list of elements or nodes.
+    List(ListKind, Query),
+    /// Copy such a list as comma-separated values.
+    CopyList(ListKind, Query),
+    /// Select something and bring it into view.
+    Find(Outlined),
     /// Watch something, or stop watching it.
     Watch(Outlined),
     /// Switch a watchpoint on or off.
@@ -162,6 +172,8 @@ pub enum Command {
     ShowTimes,
     /// Close what is open over the window, or clear the selection.
     Escape,
+    /// Do something with two runs.
+    Pair(PairCommand),
 }
 
 worded! {
@@ -202,56 +214,6 @@ pub const KINDS: [EventKind; 13] = [
     EventKind::LastResort,
 ];
 
-const NONE: Modifiers = Modifiers::NONE;
-const SHIFT: Modifiers = Modifiers::SHIFT;
-const CTRL: Modifiers = Modifiers::COMMAND;
-const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
-
-/// All keys and their commands. Those with more modifiers come first, since egui takes Ctrl+Shift+S for Ctrl+S.
-pub fn keys() -> Vec<(Modifiers, Key, Command)> {
-    let mut keys = vec![
-        (CTRL_SHIFT, Key::Z, Command::Redo),
-        (CTRL_SHIFT, Key::S, Command::Screenshot),
-        (CTRL_SHIFT, Key::L, Command::ToggleTheme),
-        (CTRL_SHIFT, Key::E, Command::Figures),
-        (SHIFT, Key::V, Command::ToggleSplit),
-        (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
-        (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
-        (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
-        (SHIFT, Key::ArrowLeft, Command::Go(Goal::Quads(-10))),
-        (Modifiers::ALT, Key::F5, Command::ToBreakpoint(Direction::Back)),
-        (CTRL, Key::G, Command::GoTo),
-        (CTRL, Key::P, Command::Palette),
-        (CTRL, Key::Z, Command::Undo),
-        (CTRL, Key::Y, Command::Redo),
-        (CTRL, Key::O, Command::OpenPath),
-        (CTRL, Key::S, Command::SaveRun),
-        (CTRL, Key::M, Command::SaveMesh),
-        (CTRL, Key::E, Command::Export),
-        (CTRL, Key::B, Command::Bookmark),
-        (CTRL, Key::R, Command::Reopen),
-        (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
-        (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
-        (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
-        (NONE, Key::Home, Command::Go(Goal::Step(0))),
-        (NONE, Key::End, Command::Go(Goal::End)),
-        (NONE, Key::Space, Command::Play),
-        (NONE, Key::F, Command::Fit),
-        (NONE, Key::D, Command::ShowDecision),
-        (NONE, Key::V, Command::TogglePlane),
-        (NONE, Key::I, Command::LookFrom(Bearing::Iso)),
-        (NONE, Key::X, Command::LookFrom(Bearing::X)),
-        (NONE, Key::Y, Command::LookFrom(Bearing::Y)),
-        (NONE, Key::Z, Command::LookFrom(Bearing::Z)),
-        (NONE, Key::H, Command::HiddenLines),
-        (NONE, Key::C, Command::ToggleCurved),
-        (NONE, Key::Escape, Command::Escape),
-    ];
-    let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
-    keys.extend(digits.into_iter().zip(ViewLayer::ALL).map(|(key, layer)| (NONE, key, Command::Layer(layer))));
-    keys
-}
-
 impl Command {
     /// Its name in the palette, in menus and in tooltips.
     pub fn name(&self) -> String {
@@ -271,6 +233,9 @@ impl Command {
             Command::Made(_) => "Go to creation".into(),
             Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
             Command::TellPast(_) => "History".into(),
+            Command::List(kind, _) => format!("List {}s", kind.name()),
+            Command::CopyList(kind, _) => format!("Copy the {}s as CSV", kind.name()),
+            Command::Find(what) => format!("Find {}", words::thing(*what)),
             Command::Watch(what) => format!("Watch {}", words::thing(*what)),
             Command::SwitchWatch(_) => "Switch a watchpoint".into(),
             Command::Measure => "Measure how long steps take".into(),
@@ -332,6 +297,7 @@ impl Command {
             Command::Arrange(_) => "Arrange the panels".into(),
             Command::ResetLayout => "Reset layout".into(),
             Command::Escape => "Close, or clear the selection".into(),
+            Command::Pair(command) => command.name(),
         }
     }
 
@@ -340,14 +306,7 @@ impl Command {
         if *self == Command::Help {
             return Some("?".into());
         }
-        let (modifiers, key, _) = keys().into_iter().find(|k| k.2 == *self)?;
-        let mut text = String::new();
-        for (held, name) in [(modifiers.command, "Ctrl+"), (modifiers.alt, "Alt+"), (modifiers.shift, "Shift+")] {
-            if held {
-                text += name;
-            }
-        }
-        Some(text + key_name(key))
+        keys().into_iter().find(|k| k.2 == *self).map(|(modifiers, key, _)| keys::text(modifiers, key))
     }
 
     /// Its name with its key, for tooltips.
@@ -371,6 +330,7 @@ impl Command {
             Command::Hover(_)
                 | Command::Explain(_)
                 | Command::TellPast(_)
+                | Command::List(..)
                 | Command::MoveCamera(..)
                 | Command::SetFigure(_)
                 | Command::CloseOverlay
@@ -416,6 +376,7 @@ impl Command {
             Command::Measure,
         ]);
         all.extend(Rules::ALL.map(Command::SetRules));
+        all.extend(PairCommand::all().into_iter().map(Command::Pair));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));
         all.extend(KINDS.iter().flat_map(|&kind| Direction::BOTH.map(|way| Command::Go(Goal::Kind(kind, way)))));
@@ -450,28 +411,9 @@ fn go_name(goal: Goal) -> String {
     }
 }
 
-fn key_name(key: Key) -> &'static str {
-    match key {
-        Key::ArrowRight => "Right",
-        Key::ArrowLeft => "Left",
-        Key::Escape => "Esc",
-        other => other.name(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn keys_with_more_modifiers_come_first_and_none_is_used_twice() {
-        let keys = keys();
-        let held = |m: &Modifiers| [m.command, m.alt, m.shift].iter().filter(|held| **held).count();
-        assert!(keys.is_sorted_by(|a, b| held(&a.0) >= held(&b.0)));
-        for (i, a) in keys.iter().enumerate() {
-            assert!(keys[..i].iter().all(|b| (b.0, b.1) != (a.0, a.1)), "{:?}", a.2);
-        }
-    }
 
     #[test]
     fn every_command_has_a_name_of_its_own_and_tells_its_key() {

@@ -18,6 +18,8 @@ const LEFT: f32 = 420.0;
 const LENS: f32 = 263.0;
 const RIGHT: f32 = 332.0;
 const VIEW: f32 = 404.0;
+/// The width of the panels beside two runs.
+const BESIDE: f32 = 400.0;
 
 worded! {
     /// A panel.
@@ -25,6 +27,8 @@ worded! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Pane by name {
         Front = "Front",
+        Elements = "Elements",
+        Nodes = "Nodes",
         Breakpoints = "Breakpoints",
         Bookmarks = "Bookmarks",
         Space = "Space",
@@ -35,6 +39,7 @@ worded! {
         History = "History",
         Parameters = "Parameters",
         Layers = "Layers",
+        TwoRuns = "Two runs",
     }
 }
 
@@ -50,6 +55,8 @@ enum Room {
     Middle,
     /// One side column.
     Narrow,
+    /// Two runs: all that is left of the middle is the view, for both of them.
+    Pair,
 }
 
 impl Room {
@@ -58,11 +65,14 @@ impl Room {
             Room::Wide => "wide",
             Room::Middle => "middle",
             Room::Narrow => "narrow",
+            Room::Pair => "pair",
         }
     }
 
-    fn of(width: f32) -> Room {
-        if width >= LEFT + LENS + RIGHT + VIEW {
+    fn of(width: f32, is_pair: bool) -> Room {
+        if is_pair && width >= VIEW + BESIDE {
+            Room::Pair
+        } else if width >= LEFT + LENS + RIGHT + VIEW {
             Room::Wide
         } else if width >= 1100.0 {
             Room::Middle
@@ -87,8 +97,9 @@ pub struct Layout {
     arranged: BTreeMap<String, Value>,
     /// Whether the user is moving something.
     edited: bool,
-    /// The last request to arrange the docks that was carried out.
+    /// The last requests that were carried out: to arrange the docks, and to show a panel.
     relayouts: u64,
+    reveals: u64,
 }
 
 impl Default for Layout {
@@ -101,6 +112,7 @@ impl Default for Layout {
             arranged: BTreeMap::new(),
             edited: false,
             relayouts: 0,
+            reveals: 0,
         }
     }
 }
@@ -108,9 +120,9 @@ impl Default for Layout {
 impl Layout {
     /// Shows all panels.
     pub fn show(&mut self, ui: &mut Ui, docks: &mut Docks<'_>) {
-        let state = docks.state;
+        let state = docks.window;
         let size = ui.available_size();
-        let room = Room::of(size.x);
+        let room = Room::of(size.x, state.pair().is_some());
         if state.view().relayout.take(&mut self.relayouts).is_some() {
             let kept = state.document().layout.as_ref().and_then(|text| serde_json::from_str::<Value>(text).ok());
             self.arrange(kept.as_ref());
@@ -130,6 +142,9 @@ impl Layout {
         }
         self.size = size;
         let Some((tree, _)) = &mut self.tree else { return };
+        if let Some(Some(pane)) = state.view().reveal.take(&mut self.reveals) {
+            tree.make_active(|_, tile| matches!(tile, Tile::Pane(shown) if *shown == pane));
+        }
         tree.ui(docks, ui);
         self.edited |= docks.edited;
         if self.edited && !ui.input(|input| input.pointer.any_down()) {
@@ -174,26 +189,55 @@ impl Layout {
             tiles.insert_tab_tile(panes)
         };
         let view = match room {
-            Room::Wide => tabs(&[Pane::Space, Pane::Quality]),
-            _ => tabs(&[Pane::Space, Pane::Quality, Pane::MetricLens, Pane::Parametric]),
+            Room::Wide => tabs(&[Pane::Space]),
+            _ => tabs(&[Pane::Space, Pane::MetricLens, Pane::Parametric]),
         };
         let (mut left, mut lens) = (Vec::new(), Vec::new());
-        if room != Room::Narrow {
-            left = vec![(tabs(&[Pane::Front]), 1.0), (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42)];
+        if matches!(room, Room::Wide | Room::Middle) {
+            left = vec![
+                // The plots are beside the mesh, in which their bars light elements.
+                (tabs(&[Pane::Front, Pane::Elements, Pane::Nodes, Pane::Quality]), 1.0),
+                (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42),
+            ];
         }
         if room == Room::Wide {
             lens = vec![(tabs(&[Pane::MetricLens]), 1.0), (tabs(&[Pane::Parametric]), 1.0)];
         }
         let (inspector, share): (&[Pane], f32) = match room {
             Room::Narrow => (
-                &[Pane::Inspector, Pane::Front, Pane::Breakpoints, Pane::Bookmarks, Pane::History],
+                &[
+                    Pane::Inspector,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Quality,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                    Pane::History,
+                    Pane::TwoRuns,
+                ],
                 210.0 / size.y.max(420.0),
             ),
-            _ => (&[Pane::Inspector, Pane::History], 0.6),
+            Room::Pair => (
+                &[
+                    Pane::TwoRuns,
+                    Pane::Inspector,
+                    Pane::History,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Quality,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                ],
+                0.42,
+            ),
+            _ => (&[Pane::Inspector, Pane::History, Pane::TwoRuns], 0.6),
         };
         let right = vec![(tabs(inspector), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), share)];
         let mut columns = Vec::new();
-        for (column, width) in [(left, LEFT), (vec![(view, 1.0)], 0.0), (lens, LENS), (right, RIGHT)] {
+        let right_width = if room == Room::Pair { BESIDE } else { RIGHT };
+        for (column, width) in [(left, LEFT), (vec![(view, 1.0)], 0.0), (lens, LENS), (right, right_width)] {
             let id = match column.len() {
                 0 => continue,
                 1 => column[0].0,

@@ -6,9 +6,12 @@ pub mod legend;
 pub mod time;
 pub mod timeline;
 pub mod front;
+pub mod lists;
+mod condition_field;
 pub mod breakpoints;
 pub mod inspector;
 pub mod history;
+pub mod two_runs;
 pub mod parameters;
 pub mod layers;
 pub mod plots;
@@ -32,6 +35,7 @@ use crate::render::scene::Outlined;
 pub struct PanelStates {
     pub time: time::TimeState,
     pub front: front::FrontState,
+    pub lists: lists::ListStates,
     pub breakpoints: breakpoints::BreakpointsState,
     pub parameters: parameters::ParametersState,
     pub plots: plots::PlotsState,

@@ -26,7 +26,7 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::{Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
+use crate::core::run::{Born, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 use worker::Worker;
 
 /// How often progress is reported.
@@ -70,6 +70,7 @@ pub enum SessionNews {
         from: u64,
         steps: Vec<Tracked>,
         samples: Vec<Sample>,
+        born: Born,
         end: bool,
     },
     /// The result of the checks of the whole mesh at a step.
@@ -90,7 +91,7 @@ pub enum SessionNews {
 pub struct Opened {
     /// The run as it was opened.
     pub run: Run,
-    pub background: Background,
+    pub background: Arc<Background>,
 }
 
 /// The record of a step.
@@ -148,13 +149,32 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 impl Session {
     /// Opens the run that `read` returns.
     pub fn open(read: impl FnOnce() -> Result<Run, Fault> + Send + 'static, wake: Wake) -> Session {
+        Session::begin(
+            |voice| {
+                let run = read()?;
+                let background = Arc::new(run.background(voice)?);
+                Ok((run, background))
+            },
+            wake,
+        )
+    }
+
+    /// Opens a run whose background mesh is known.
+    pub fn fork(run: Run, background: Arc<Background>, wake: Wake) -> Session {
+        Session::begin(|_| Ok((run, background)), wake)
+    }
+
+    fn begin(
+        make: impl FnOnce(&mut Voice) -> Result<(Run, Arc<Background>), Fault> + Send + 'static,
+        wake: Wake,
+    ) -> Session {
         let (ask, asked) = channel();
         let (tell, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let opening = Cancel::new();
         let voice = Voice { tell, wake, last: Instant::now(), cancel: opening.clone() };
         let (own, flag) = (ask.clone(), stop.clone());
-        std::thread::spawn(move || match Worker::open(read, own, voice, flag) {
+        std::thread::spawn(move || match Worker::open(make, own, voice, flag) {
             Ok(mut worker) => worker.serve(&asked),
             Err((voice, fault)) => voice.say(SessionNews::Fault(*fault, 1)),
         });

@@ -5,12 +5,14 @@
 //! everybody else to that.
 
 mod log;
+mod pair;
 mod run_state;
 mod workspace;
 mod view_state;
 mod apply;
 mod hearing;
 
+pub use pair::Pair;
 use run_state::Opening;
 pub use run_state::{Lookup, Progress, RunState};
 pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState};
@@ -31,12 +33,24 @@ pub struct State {
     workspace: Workspace,
     view: ViewState,
     frame: FrameState,
+    /// The pair that this run is the first one of.
+    pair: Option<Pair>,
+    /// Whether it is the second run of a pair.
+    is_second: bool,
 }
 
 impl State {
     /// A window in which nothing is open; `wake` is called from other threads when they have something to report.
     pub fn new(wake: Wake, workspace: Workspace) -> State {
-        State { wake, run: RunState::default(), workspace, view: ViewState::default(), frame: FrameState::default() }
+        State {
+            wake,
+            run: RunState::default(),
+            workspace,
+            view: ViewState::default(),
+            frame: FrameState::default(),
+            pair: None,
+            is_second: false,
+        }
     }
 
     /// Called from other threads, it has the next frame drawn.
@@ -87,18 +101,10 @@ impl State {
         }
     }
 
-    /// The step at which each element was last made, where elements are coloured by it.
+    /// The step that made each quadrilateral, by slot, where elements are coloured by it.
     pub fn births(&self, by: ColourBy, moment: &Moment) -> Vec<u64> {
-        let mut births = vec![0; moment.mesh.element_slots()];
-        if by == ColourBy::Birth {
-            let steps = self.run.track.iter().take(moment.step as usize).zip(1..);
-            for (&(element, _), step) in steps.filter_map(|(step, k)| Some((step.formed.as_ref()?, k))) {
-                if let Some(birth) = births.get_mut(element.index()) {
-                    *birth = step;
-                }
-            }
-        }
-        births
+        let slots = moment.mesh.element_slots();
+        if by == ColourBy::Birth { self.run.born.of_quads(moment.step, slots) } else { vec![0; slots] }
     }
 
     /// The run with all changes of the user.

@@ -3,6 +3,7 @@
 mod cameras;
 mod faces;
 mod given;
+pub mod pair;
 mod space;
 mod stage;
 mod tools;
@@ -27,7 +28,7 @@ use super::words;
 use crate::core::mesh::ElementId;
 use crate::core::run::Changes;
 use crate::render::camera::Camera;
-use crate::render::gpu::{Light, Painter, View};
+use crate::render::gpu::{Light, Painter, VIEWS, View};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::pick;
 use crate::render::scene::{Form, Outlined, Scene, Shading};
@@ -42,20 +43,22 @@ pub enum Lens {
     Whole,
 }
 
-/// The pictures on the graphics card: 0 is the main view, then come the lens, the whole, and the plane beside space.
+/// The views of a run: 0 is the main one, then come the lens, the whole, and the plane beside space.
 const LENS: usize = 1;
 const WHOLE: usize = 2;
 const BESIDE: usize = 3;
 
-/// All views, and the two scenes that they share: one of the plane and one in space.
+/// All views of a run, and the two scenes that they share: one of the plane and one in space.
 #[derive(Default)]
 pub struct Views {
+    /// The number of the first view on the graphics card.
+    first: usize,
     plane: Stage,
     space: Stage,
     pub shading: Shading,
     hint: Option<ElementId>,
     /// Labels of the views in the frame before.
-    labels: [labels::Memory; 4],
+    labels: [labels::Memory; VIEWS],
     /// What the open context menu is about.
     menu_of: Option<Outlined>,
     /// The point about which a drag in space turns the mesh.
@@ -96,6 +99,11 @@ impl ViewFrame {
 }
 
 impl Views {
+    /// The views of a run beside others, by its number from 0.
+    pub fn of_run(number: usize) -> Views {
+        Views { first: number * VIEWS, ..Views::default() }
+    }
+
     /// Whether a mesh has been shown.
     pub fn has_shown(&self) -> bool {
         self.plane.has_shown() || self.space.has_shown()
@@ -164,7 +172,7 @@ impl Views {
         });
         self.point(ui, &response, state, hovered, commands);
         self.plane.update(state, moment, palette, &frame, Form::Plane, true, &mut self.shading);
-        paint(ui, index, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
+        paint(ui, self.first + index, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
         faces::show(ui, &frame, state, moment, palette);
         let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
         labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[index]);
@@ -195,7 +203,7 @@ impl Views {
         let (which, k) =
             if lens == Lens::Metric { (labels::ViewRole::Lens, LENS) } else { (labels::ViewRole::Whole, WHOLE) };
         self.plane.update(state, &moment, palette, &frame, Form::Plane, false, &mut self.shading);
-        paint(ui, k, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
+        paint(ui, self.first + k, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
         let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
         labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
     }

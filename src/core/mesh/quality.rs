@@ -32,7 +32,22 @@ pub fn quality_over(p: [DVec2; 3], m: [&Metric2; 3]) -> f64 {
 /// ordinary meshes pass by chance.
 const OFF_SQUARE: [f64; 2] = [0.2, 0.3];
 
+/// The turn around a regular node inside a face, in twelfths.
+pub const FULL_TURN: u32 = 12;
+
+/// The part of a regular node's turn that an element takes, in twelfths: a quarter where it is a quadrilateral, a sixth
+/// where it is a triangle.
+#[inline]
+pub fn twelfths(is_quad: bool) -> u32 {
+    if is_quad { 3 } else { 2 }
+}
+
 impl Mesh {
+    /// Whether a node inside a face is regular: four quadrilaterals, six triangles, or an equivalent mixture around it.
+    pub fn is_regular(&self, node: NodeId) -> bool {
+        self.elements_at(node).map(|e| twelfths(self.is_quad(e))).sum::<u32>() == FULL_TURN
+    }
+
     /// Metric length of an edge over the metrics of its ends.
     #[inline]
     pub fn length(&self, h: HalfEdgeId) -> f64 {

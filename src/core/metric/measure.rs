@@ -85,6 +85,17 @@ pub fn quad_quality(metrics: [&Metric2; 4], corners: [DVec2; 4]) -> f64 {
     least
 }
 
+/// The scaled Jacobian of a quadrilateral: the smallest sine of its corner angles, each in the metric of its corner;
+/// negative at a reflex corner.
+pub fn scaled_jacobian(metrics: &[Metric2; 4], corners: [DVec2; 4]) -> f64 {
+    let sine = |k: usize| {
+        let (a, b) = (corners[(k + 1) % 4] - corners[k], corners[(k + 3) % 4] - corners[k]);
+        let m = &metrics[k];
+        m.det().max(0.0).sqrt() * a.perp_dot(b) / (m.norm2(a) * m.norm2(b)).sqrt()
+    };
+    (0..4).map(sine).fold(f64::INFINITY, f64::min)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,5 @@
-//! The records of a run: exported meshes, statistics, reports, run files, and runs embedded in figures.
+//! The records of a run: exported meshes, statistics, reports, run files, runs embedded in figures, sweeps over
+//! parameters.
 
 pub mod statistics;
 mod export;
@@ -6,6 +7,7 @@ mod flaw;
 pub mod report;
 pub mod run_file;
 pub mod figure;
+pub mod sweep;
 
 pub use export::Export;
 pub use report::Report;

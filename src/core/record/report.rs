@@ -1,6 +1,7 @@
 //! The report of a conversion: JSON for programs (keys in a fixed order) and a summary for people.
 
 mod counts;
+pub mod figures;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -376,7 +377,7 @@ mod tests {
             on_surfaces: false,
             last_resort: LastResort::of(3, 3),
             repairs: vec!["2 clockwise triangles were reversed".to_owned()],
-            events: BTreeMap::from([("swap".to_owned(), 2), ("merge".to_owned(), 1)]),
+            events: BTreeMap::from([("front_seam".to_owned(), 2), ("front_step".to_owned(), 31)]),
             timing: vec![(Stage::Adapt, 0.25), (Stage::Convert, 1.5)],
         }
     }
@@ -384,6 +385,51 @@ mod tests {
     #[test]
     fn the_summary_says_what_matters_in_a_few_lines() {
         insta::assert_snapshot!(three_quads().summary());
+    }
+
+    #[test]
+    fn every_figure_has_the_value_of_the_json_or_none() {
+        let report = three_quads();
+        let json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
+        let expected = |name: &str| -> Option<f64> {
+            let (path, factor) = match name {
+                "quads" => ("/mesh/quads", 1.0),
+                "nodes" => ("/mesh/nodes", 1.0),
+                "background_triangles" => ("/background_triangles", 1.0),
+                "irregular" => ("/mesh/irregular/percent", 1.0),
+                "irregular_nodes" => ("/mesh/irregular/irregular", 1.0),
+                "min_angle" => ("/mesh/metric_angles/min", 1.0),
+                "max_angle" => ("/mesh/metric_angles/max", 1.0),
+                "good_angles" => ("/mesh/metric_angles/share_60_120", 100.0),
+                "fair_angles" => ("/mesh/metric_angles/share_30_160", 100.0),
+                "space.min_angle" => ("/mesh/physical_angles/min", 1.0),
+                "space.max_angle" => ("/mesh/physical_angles/max", 1.0),
+                "space.good_angles" => ("/mesh/physical_angles/share_60_120", 100.0),
+                "length.mean" => ("/mesh/lengths/mean", 1.0),
+                "length.deviation" => ("/mesh/lengths/deviation", 1.0),
+                "length.min" => ("/mesh/lengths/min", 1.0),
+                "length.max" => ("/mesh/lengths/max", 1.0),
+                "length.unit" => ("/mesh/lengths/share_unit", 100.0),
+                "quality.min" => ("/mesh/quality/min", 1.0),
+                "quality.mean" => ("/mesh/quality/mean", 1.0),
+                "jacobian.min" => ("/mesh/metric_scaled_jacobian/min", 1.0),
+                "jacobian.mean" => ("/mesh/metric_scaled_jacobian/mean", 1.0),
+                "space.jacobian.min" => ("/mesh/physical_scaled_jacobian/min", 1.0),
+                "space.jacobian.mean" => ("/mesh/physical_scaled_jacobian/mean", 1.0),
+                "last_resort" => ("/last_resort/quads", 1.0),
+                "steps" => ("/events/front_step", 1.0),
+                "rolled_back" => ("/events/front_rolled_back", 1.0),
+                "deferred" => ("/events/front_deferred", 1.0),
+                "seams" => ("/events/front_seam", 1.0),
+                "splits" => ("/events/front_split", 1.0),
+                "seconds" => ("/timing/total", 1.0),
+                name => panic!("{name} is not in this table"),
+            };
+            json.pointer(path).and_then(serde_json::Value::as_f64).map(|value| factor * value)
+        };
+        for figure in figures::FIGURES {
+            assert_eq!(figure.of(&report), expected(figure.name), "{}", figure.name);
+        }
     }
 
     #[test]

@@ -31,10 +31,12 @@
 //! ```
 
 mod figure;
+mod inputs;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+pub use inputs::inputs;
 use toml::de::DeTable;
 
 use crate::core::case::table::{Source, Table, Value};

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use crate::core::geometry::Atlas;
 use crate::core::kernel::Metric2;
-use crate::core::mesh::PointId;
-use crate::core::metric::measure::{angle, length_exact, quad_quality, triangle_quality};
+use crate::core::mesh::{FULL_TURN, PointId, twelfths};
+use crate::core::metric::measure::{angle, length_exact, quad_quality, scaled_jacobian, triangle_quality};
 use crate::core::metric::{BadMetric, MetricSource};
 
 /// Number of angle classes, each 10 degrees wide; the last has no upper limit.
@@ -143,8 +143,8 @@ impl Statistics {
             let m = quad.map(|n| metrics[n as usize]);
             tally.angles(&p, &m, &quad.map(seen));
             tally.quality.add(quad_quality(m.each_ref(), p));
-            tally.metric_jacobian.add(scaled_jacobian(&p, &m));
-            tally.physical_jacobian.add(scaled_jacobian(&p, &quad.map(seen)));
+            tally.metric_jacobian.add(scaled_jacobian(&m, p));
+            tally.physical_jacobian.add(scaled_jacobian(&quad.map(seen), p));
         }
         let (edges, interior) = edges_and_interior(&mesh);
         let lengths = edges.iter().map(|[a, b]| length_exact(source, mesh.uv[*a as usize], mesh.uv[*b as usize]));
@@ -166,15 +166,6 @@ impl Statistics {
             quality: tally.quality.range(),
         })
     }
-}
-
-/// The smallest sine of the corner angles, negative at a reflex corner.
-fn scaled_jacobian(p: &[DVec2; 4], m: &[Metric2; 4]) -> f64 {
-    let sine = |k: usize| {
-        let (a, b) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
-        m[k].det().max(0.0).sqrt() * a.perp_dot(b) / (m[k].norm2(a) * m[k].norm2(b)).sqrt()
-    };
-    (0..4).map(sine).fold(f64::INFINITY, f64::min)
 }
 
 /// Every edge once (copies of the same two points are one edge), and for each node whether it is on no curve.
@@ -209,12 +200,11 @@ fn edges_and_interior(mesh: &Measured<'_>) -> (Vec<[u32; 2]>, Vec<bool>) {
 }
 
 fn irregular(mesh: &Measured<'_>, interior: &[bool]) -> Irregular {
-    // A quadrilateral takes a quarter of a regular node's turn, a triangle a sixth: 3 and 2 twelfths.
-    let mut twelfths = vec![0_u32; mesh.uv.len()];
-    mesh.triangles.as_flattened().iter().for_each(|n| twelfths[*n as usize] += 2);
-    mesh.quads.as_flattened().iter().for_each(|n| twelfths[*n as usize] += 3);
-    let inside = || twelfths.iter().zip(interior).filter(|(turn, inside)| **turn > 0 && **inside);
-    let (interior, irregular) = (inside().count(), inside().filter(|(turn, _)| **turn != 12).count());
+    let mut turns = vec![0_u32; mesh.uv.len()];
+    mesh.triangles.as_flattened().iter().for_each(|n| turns[*n as usize] += twelfths(false));
+    mesh.quads.as_flattened().iter().for_each(|n| turns[*n as usize] += twelfths(true));
+    let inside = || turns.iter().zip(interior).filter(|(turn, inside)| **turn > 0 && **inside);
+    let (interior, irregular) = (inside().count(), inside().filter(|(turn, _)| **turn != FULL_TURN).count());
     Irregular { interior, irregular, percent: 100.0 * share(irregular as u64, interior as u64) }
 }
 

@@ -1,26 +1,18 @@
 //! Breakpoints: conditions on what a step did and on the front after it, such as `kind == seamed && quad.min_angle <
-//! 30`.
-//!
-//! ```text
-//! condition  = both { "||" both }
-//! both       = one { "&&" one }
-//! one        = "!" one | "(" condition ")" | field [ ("==" | "!=" | "<" | "<=" | ">" | ">=") value ]
-//! value      = a number (angles in degrees) | a word
-//! ```
-//!
-//! A comparison with a field that a step does not have (`quad.min_angle` where no quadrilateral was formed) is false.
+//! 30` ([`condition`]). A comparison with a field that a step does not have (`quad.min_angle` where no quadrilateral
+//! was formed) is false.
 
 mod fields;
 
-pub use self::fields::{FIELDS, Field, Holds};
+pub use self::fields::FIELDS;
 
-use self::fields::Value;
+use self::fields::VALUES;
 use super::front_count::FrontCount;
 use super::history::History;
 use super::log::Angles;
 use crate::core::convert::Event;
-use crate::core::fault::{Fault, FaultKind};
-use crate::core::kernel::spelling::nearest;
+use crate::core::fault::Fault;
+use crate::core::kernel::condition::{self, Value};
 
 /// The facts about a step that conditions test.
 #[derive(Clone, Copy, Debug)]
@@ -37,240 +29,32 @@ pub struct StepFacts<'a> {
     pub angles: Option<Angles>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Comparison {
-    Equal,
-    Unequal,
-    Less,
-    AtMost,
-    Greater,
-    AtLeast,
+/// The value of a field of a step, by its index in [`FIELDS`].
+pub fn value(facts: &StepFacts<'_>, field: usize) -> Option<Value> {
+    VALUES[field](facts)
 }
 
+/// A condition on steps.
 #[derive(Clone, Debug, PartialEq)]
-enum Tree {
-    Any(Vec<Tree>),
-    All(Vec<Tree>),
-    Not(Box<Tree>),
-    /// A field, by its index in [`FIELDS`], compared with a value.
-    Compare(usize, Comparison, Value),
-}
-
-/// A parsed condition.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Condition {
-    text: String,
-    tree: Tree,
-}
+pub struct Condition(condition::Condition);
 
 impl Condition {
     /// Parses a condition.
     ///
     /// # Errors
-    /// A syntax error or an unknown name, with the position of the first wrong character (from 1) and the nearest known
-    /// name.
+    /// As [`condition::Condition::parse`].
     pub fn parse(text: &str) -> Result<Condition, Fault> {
-        Condition::parsed(text).map_err(|fault| fault.of_kind(FaultKind::Syntax))
-    }
-
-    fn parsed(text: &str) -> Result<Condition, Fault> {
-        let mut reader = Reader { text, at: 0 };
-        let tree = reader.any()?;
-        reader.skip_blanks();
-        if reader.at < text.len() {
-            return Err(reader.fault("The condition should end here").remedy("Join conditions with && or ||"));
-        }
-        Ok(Condition { text: text.trim().to_owned(), tree })
+        condition::Condition::parse(text, FIELDS).map(Condition)
     }
 
     /// Its text.
     pub fn text(&self) -> &str {
-        &self.text
+        self.0.text()
     }
 
     /// Whether it holds for a step.
     pub fn holds(&self, facts: &StepFacts<'_>) -> bool {
-        self.tree.holds(facts)
-    }
-}
-
-impl Tree {
-    fn holds(&self, facts: &StepFacts<'_>) -> bool {
-        match self {
-            Tree::Any(trees) => trees.iter().any(|tree| tree.holds(facts)),
-            Tree::All(trees) => trees.iter().all(|tree| tree.holds(facts)),
-            Tree::Not(tree) => !tree.holds(facts),
-            Tree::Compare(field, comparison, value) => {
-                let Some(found) = (FIELDS[*field].of)(facts) else { return false };
-                match (&found, value) {
-                    (Value::Number(found), Value::Number(value)) => match comparison {
-                        Comparison::Equal => found == value,
-                        Comparison::Unequal => found != value,
-                        Comparison::Less => found < value,
-                        Comparison::AtMost => found <= value,
-                        Comparison::Greater => found > value,
-                        Comparison::AtLeast => found >= value,
-                    },
-                    _ => (found == *value) == (*comparison == Comparison::Equal),
-                }
-            }
-        }
-    }
-}
-
-struct Reader<'t> {
-    text: &'t str,
-    at: usize,
-}
-
-impl<'t> Reader<'t> {
-    fn rest(&self) -> &'t str {
-        &self.text[self.at..]
-    }
-
-    fn skip_blanks(&mut self) {
-        self.at = self.text.len() - self.rest().trim_start().len();
-    }
-
-    fn fault(&self, what: impl Into<String>) -> Fault {
-        self.fault_at(self.at, what)
-    }
-
-    fn fault_at(&self, at: usize, what: impl Into<String>) -> Fault {
-        Fault::new(what).at(format!("position {}", self.text[..at].chars().count() + 1))
-    }
-
-    fn take(&mut self, sign: &str) -> bool {
-        self.skip_blanks();
-        let found = self.rest().starts_with(sign);
-        if found {
-            self.at += sign.len();
-        }
-        found
-    }
-
-    fn any(&mut self) -> Result<Tree, Fault> {
-        let mut trees = vec![self.all()?];
-        while self.take("||") {
-            trees.push(self.all()?);
-        }
-        Ok(if trees.len() == 1 { trees.remove(0) } else { Tree::Any(trees) })
-    }
-
-    fn all(&mut self) -> Result<Tree, Fault> {
-        let mut trees = vec![self.one()?];
-        while self.take("&&") {
-            trees.push(self.one()?);
-        }
-        Ok(if trees.len() == 1 { trees.remove(0) } else { Tree::All(trees) })
-    }
-
-    fn one(&mut self) -> Result<Tree, Fault> {
-        // Many signs nest deeply: limit the depth before the recursion exhausts the stack.
-        let mut negated = 0;
-        while !self.rest_starts_with("!=") && self.take("!") {
-            negated += 1;
-        }
-        let tree = if self.take("(") {
-            let depth = self.text[..self.at].matches('(').count() - self.text[..self.at].matches(')').count();
-            if depth > 100 {
-                return Err(self.fault("The parentheses are nested too deeply").remedy("Simplify the condition"));
-            }
-            let tree = self.any()?;
-            if !self.take(")") {
-                return Err(self.fault("A parenthesis is not closed").remedy("Write ) here"));
-            }
-            tree
-        } else {
-            self.comparison()?
-        };
-        Ok(if negated % 2 == 1 { Tree::Not(Box::new(tree)) } else { tree })
-    }
-
-    fn rest_starts_with(&mut self, sign: &str) -> bool {
-        self.skip_blanks();
-        self.rest().starts_with(sign)
-    }
-
-    fn comparison(&mut self) -> Result<Tree, Fault> {
-        self.skip_blanks();
-        let start = self.at;
-        let name = self.word();
-        if name.is_empty() {
-            let what = if self.rest().is_empty() { "The condition ends here" } else { "A field was expected here" };
-            return Err(self.fault(what).remedy("Write for example kind == formed"));
-        }
-        let Some(field) = FIELDS.iter().position(|field| field.name == name) else {
-            let fault = self.fault_at(start, format!("The field \"{name}\" does not exist"));
-            let known = FIELDS.iter().map(|field| field.name);
-            return Err(match nearest(name, known.clone()) {
-                Some(near) => fault.remedy(format!("The nearest known field is \"{near}\"")),
-                None => fault.remedy(format!("Use one of: {}", known.collect::<Vec<_>>().join(", "))),
-            });
-        };
-        let holds = FIELDS[field].holds;
-        let signs = [
-            ("==", Comparison::Equal),
-            ("!=", Comparison::Unequal),
-            ("<=", Comparison::AtMost),
-            (">=", Comparison::AtLeast),
-            ("<", Comparison::Less),
-            (">", Comparison::Greater),
-        ];
-        self.skip_blanks();
-        let sign = self.at;
-        let Some((_, comparison)) = signs.into_iter().find(|(sign, _)| self.take(sign)) else {
-            if holds == Holds::Flag {
-                return Ok(Tree::Compare(field, Comparison::Equal, Value::Flag(true)));
-            }
-            let example =
-                holds.words().first().map_or_else(|| format!("{name} < 30"), |word| format!("{name} == {word}"));
-            return Err(self.fault("A comparison is missing").remedy(format!("Write for example {example}")));
-        };
-        let is_number = matches!(holds, Holds::Number | Holds::Degrees);
-        if !is_number && !matches!(comparison, Comparison::Equal | Comparison::Unequal) {
-            return Err(self.fault_at(sign, format!("{name} has no order")).remedy("Compare it with == or !="));
-        }
-        self.value(name, holds).map(|value| Tree::Compare(field, comparison, value))
-    }
-
-    fn value(&mut self, name: &str, holds: Holds) -> Result<Value, Fault> {
-        self.skip_blanks();
-        let start = self.at;
-        let quoted = self.take("\"");
-        let word = self.word();
-        if quoted && !self.take("\"") {
-            return Err(self.fault("A quotation mark is missing").remedy("Words need no quotation marks"));
-        }
-        // Shorter words for some kinds of events.
-        let word = match (holds, word) {
-            (Holds::Kind, "seam") => "seamed",
-            (Holds::Kind, "quad" | "form") => "formed",
-            (Holds::Kind, "base") => "base_selected",
-            (Holds::Kind, "rollback") => "rolled_back",
-            (_, word) => word,
-        };
-        holds.value(word).ok_or_else(|| {
-            if matches!(holds, Holds::Number | Holds::Degrees) {
-                let unit = if holds == Holds::Degrees { " of degrees, without a unit" } else { "" };
-                let fault = self.fault_at(start, format!("{name} is compared with a number"));
-                return fault.remedy(format!("Write a number{unit}"));
-            }
-            let fault = self.fault_at(start, format!("{name} is never \"{word}\""));
-            match nearest(word, holds.words().iter().copied()) {
-                Some(near) => fault.remedy(format!("The nearest known word is \"{near}\"")),
-                None => fault.remedy(format!("Use one of: {}", holds.words().join(", "))),
-            }
-        })
-    }
-
-    fn word(&mut self) -> &'t str {
-        self.skip_blanks();
-        let rest = self.rest();
-        let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+');
-        let end = rest.find(|c| !is_part(c)).unwrap_or(rest.len());
-        self.at += end;
-        &rest[..end]
+        self.0.holds(|field| value(facts, field))
     }
 }
 

@@ -27,7 +27,7 @@ use serde::Serialize;
 use crate::core::case::Parameters;
 use crate::core::front::Side;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
-use crate::core::metric::measure::angle;
+use crate::core::metric::measure::{angle, scaled_jacobian};
 
 /// A metric with its eigenpairs: sizes h = 1 / sqrt(lambda). On surfaces they are the sizes in space, as in eq. (6).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -202,6 +202,12 @@ pub struct ElementFacts {
     pub angles_metric: Vec<f64>,
     /// Angles at its nodes in space, in degrees.
     pub angles_physical: Vec<f64>,
+    /// Lengths of its sides in the metric, from its first node on.
+    pub lengths_metric: Vec<f64>,
+    /// Lengths of its sides in space.
+    pub lengths_physical: Vec<f64>,
+    /// Scaled Jacobian of a quadrilateral in the metric, and in space in the tangent plane of each corner.
+    pub jacobians: Option<[f64; 2]>,
     /// Area in space, between straight sides.
     pub area: f64,
     /// Area in the metric.
@@ -230,6 +236,12 @@ impl ElementFacts {
             let (out, back) = (next - p, last - p);
             libm::atan2(out.cross(back).length(), out.dot(back)).to_degrees()
         };
+        let sides = || (0..count).map(|k| (nodes[k], nodes[(k + 1) % count]));
+        let jacobians = mesh.is_quad(element).then(|| {
+            let n = mesh.quad(element);
+            let in_space = n.map(|n| mesh.first_form(n));
+            [n.map(|n| mesh.metric(n)), in_space].map(|metrics| scaled_jacobian(&metrics, n.map(|n| mesh.uv(n))))
+        });
         let (p, q) = (mesh.uv(nodes[0]), mesh.xyz(nodes[0]));
         let pairs = || nodes.windows(2).skip(1);
         let area_uv = 0.5 * pairs().map(|n| (mesh.uv(n[0]) - p).perp_dot(mesh.uv(n[1]) - p)).sum::<f64>();
@@ -241,6 +253,9 @@ impl ElementFacts {
             quality: mesh.quality(element),
             angles_metric: (0..count).map(in_metric).collect(),
             angles_physical: (0..count).map(in_space).collect(),
+            lengths_metric: sides().map(|(a, b)| mesh.distance(a, b)).collect(),
+            lengths_physical: sides().map(|(a, b)| mesh.physical_distance(a, b)).collect(),
+            jacobians,
             area,
             area_metric: root * area_uv,
             level: mesh.level(element),

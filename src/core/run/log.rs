@@ -3,6 +3,7 @@
 
 use serde::Serialize;
 
+use super::births::Born;
 use super::front_count::FrontCount;
 use super::sample::Sample;
 use crate::core::convert::{Event, EventKind};
@@ -37,6 +38,7 @@ pub struct Log {
     /// The angles of the quadrilaterals that were formed.
     quads: Vec<(u64, Angles)>,
     samples: Vec<Sample>,
+    born: Born,
     /// The events of all chunks before this one were dropped.
     given_up: usize,
 }
@@ -98,6 +100,15 @@ impl Log {
         &self.samples
     }
 
+    /// What the steps made.
+    pub fn born(&self) -> &Born {
+        &self.born
+    }
+
+    pub(super) fn born_mut(&mut self) -> &mut Born {
+        &mut self.born
+    }
+
     /// The kinds of the steps from `from` to `until` (both included).
     pub fn kinds(&self, from: u64, until: u64) -> impl Iterator<Item = EventKind> + '_ {
         let until = usize::try_from(until).unwrap_or(usize::MAX).min(self.kinds.len());
@@ -145,6 +156,7 @@ impl Log {
         self.fronts.extend(later.fronts);
         self.quads.extend(later.quads);
         self.samples.extend(later.samples);
+        self.born.append(&later.born);
         for event in later.chunks.into_iter().flatten().flatten().chain(later.tail) {
             self.push_event(event);
         }
@@ -159,6 +171,7 @@ impl Log {
         self.fronts.truncate(self.fronts.partition_point(|point| point.0 <= step));
         self.quads.truncate(self.quads.partition_point(|quad| quad.0 <= step));
         self.samples.truncate(self.samples.partition_point(|sample| sample.step <= step));
+        self.born.truncate(step);
         if count < CHUNK * self.chunks.len() {
             let partial = self.chunks.swap_remove(count / CHUNK);
             self.chunks.truncate(count / CHUNK);
@@ -179,7 +192,8 @@ impl Log {
         let kept = self.chunks.iter().flatten().count() * CHUNK + self.tail.capacity();
         let figures = self.fronts.capacity() * size_of::<(u64, FrontCount)>()
             + self.quads.capacity() * size_of::<(u64, Angles)>()
-            + self.samples.capacity() * size_of::<Sample>();
+            + self.samples.capacity() * size_of::<Sample>()
+            + self.born.bytes();
         self.kinds.capacity()
             + 4 * self.nq.capacity()
             + figures

@@ -12,6 +12,7 @@
 //! | one event per step, the number of quadrilaterals, where to go next | [`Log`] |
 //! | invariants and statistics along a run, lanes of its work | [`Sample`], [`timeline`] |
 //! | the step that made each quadrilateral, without a history | [`Births`] |
+//! | elements and nodes with their measures, filtered and sorted | [`ElementTable`], [`NodeTable`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`Watched`] |
 //! | why a segment is chosen, what a node is | [`Selecting`], [`SegmentFacts`], [`NodeFacts`], [`FrontTable`] |
 //! | what a step did and looked at, by which rule, and what comes next, in words | [`explain`] |
@@ -37,17 +38,23 @@ pub mod breakpoint;
 mod watch;
 pub mod front_table;
 pub mod explain;
+mod listing;
+mod element_table;
+mod node_table;
 
-pub use births::Births;
+pub use births::{Births, Born};
 pub use breakpoint::Condition;
 pub use copies::Copies;
+pub use element_table::{ElementRow, ElementTable};
 pub use explain::{
     Corner, EdgeFacts, EdgeKind, ElementFacts, MetricFacts, NodeFacts, SegmentFacts, SelectedBase, Selecting, Verdict,
 };
 pub use front_count::FrontCount;
 pub use front_table::FrontTable;
 pub use history::{Changes, History};
+pub use listing::{Listed, Listing, Query, Row, csv};
 pub use log::{Angles, Log};
+pub use node_table::{NodePlace, NodeRow, NodeTable};
 pub use recorder::{Recorder, Stretch};
 pub use run::{Bookmark, Camera, Edit, EditKind, Run};
 pub use sample::Sample;

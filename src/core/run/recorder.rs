@@ -4,6 +4,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::births::Appearing;
 use super::front_count::{FrontTracker, changes_front};
 use super::keyframes::{Keyframe, Keyframes};
 use super::log::{Angles, Log};
@@ -39,6 +40,9 @@ pub struct Recorder {
     /// What was touched since the last update of the front.
     since_front: Touched,
     measures: Measures,
+    /// What the last step touched.
+    last: Touched,
+    appearing: Appearing,
 }
 
 /// The log and keyframes of a stretch of steps.
@@ -74,6 +78,7 @@ impl Recorder {
         converter.keep_journal();
         let touched = Touched::default();
         let (front, measures) = (FrontTracker::of(&converter.mesh), Measures::of(&converter.mesh));
+        let appearing = Appearing::of(&converter.mesh);
         Ok(Recorder {
             run,
             converter,
@@ -86,6 +91,8 @@ impl Recorder {
             front,
             since_front: Touched::default(),
             measures,
+            last: Touched::default(),
+            appearing,
         })
     }
 
@@ -145,8 +152,11 @@ impl Recorder {
         let mark = self.converter.mesh.mark();
         let event = self.converter.step()?;
         self.step += 1;
-        self.touched.note_since(&self.converter.mesh, mark);
-        self.since_front.note_since(&self.converter.mesh, mark);
+        self.last.clear();
+        self.last.note_since(&self.converter.mesh, mark);
+        for all in [&mut self.touched, &mut self.since_front] {
+            all.note_ids(self.last.nodes(), self.last.elements());
+        }
         if changes_front(&event) {
             self.update_front(&event);
             stretch.log.push_front(self.step, self.front.count());
@@ -160,6 +170,7 @@ impl Recorder {
             || *phase == Phase::Done
             || self.touched.nodes().len() > SWEPT + self.converter.mesh.node_slots() / 2;
         let can_be_kept = phase.mark().is_none();
+        self.appearing.note(&self.converter.mesh, &self.last, self.step, can_be_kept, stretch.log.born_mut());
         stretch.log.push(event, self.converter.standing(), at_rest);
         if can_be_kept {
             self.converter.mesh.commit();

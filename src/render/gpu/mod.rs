@@ -91,10 +91,14 @@ struct Uniform {
 /// Lines lie on faces: they are shifted towards the eye by at least this much depth.
 const LEAST_PULL: f32 = 1e-6;
 
+/// How many views of a run there are: view k shows run k / `VIEWS`.
+pub const VIEWS: usize = 4;
+
 /// Draws a scene in the plane, one in space and one of an imported surface into any number of views.
 pub struct Painter {
     pipelines: Pipelines,
-    lists: [Lists; 3],
+    /// For each run: in the plane, in space, and as given.
+    lists: Vec<[Lists; 3]>,
     targets: Vec<Option<Target>>,
     most: u32,
 }
@@ -155,13 +159,14 @@ impl Painter {
     pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Painter {
         Painter {
             pipelines: Pipelines::new(device, window, samples),
-            lists: [Lists::new(), Lists::new(), Lists::new()],
+            lists: Vec::new(),
             targets: Vec::new(),
             most: device.limits().max_texture_dimension_2d,
         }
     }
 
-    /// Sends the changes of the scene, and draws view number `index` if its picture is not up to date.
+    /// Sends the changes of the scene, and draws view number `index` if its picture is not up to date. The views of a
+    /// run are numbered one after another and share its scenes: see [`VIEWS`].
     pub fn draw(
         &mut self,
         device: &wgpu::Device,
@@ -176,7 +181,11 @@ impl Painter {
             Form::Flat | Form::Curved => 1,
             Form::Given => 2,
         };
-        let lists = &mut self.lists[which];
+        let run = index / VIEWS;
+        while self.lists.len() <= run {
+            self.lists.push([Lists::new(), Lists::new(), Lists::new()]);
+        }
+        let lists = &mut self.lists[run][which];
         lists.set(device, queue, scene);
         if self.targets.len() <= index {
             self.targets.resize_with(index + 1, || None);
@@ -234,7 +243,7 @@ impl Painter {
 
     /// Bytes sent to the card for the scene's lists since the painter was made.
     pub fn bytes_sent(&self) -> u64 {
-        self.lists.iter().map(Lists::sent).sum()
+        self.lists.iter().flatten().map(Lists::sent).sum()
     }
 }
 

@@ -2,5 +2,6 @@
 
 pub mod svg;
 pub mod histogram;
+pub mod heat_map;
 #[cfg(feature = "window")]
 pub mod png;

@@ -8,14 +8,18 @@ use crate::app::window::command::Command;
 use crate::app::window::panels::{self, PanelStates};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
-use crate::app::window::viewport::{Lens, Views};
+use crate::app::window::viewport::{Lens, Views, pair};
 use crate::render::palette::Palette;
 
 /// All panels and what they need.
 pub struct Docks<'a> {
+    /// The first run, and with it the window.
+    pub window: &'a State,
+    /// The run that the panels show, and what they keep of it.
     pub state: &'a State,
     pub local: &'a mut PanelStates,
-    pub views: &'a mut Views,
+    /// The views of each run.
+    pub views: &'a mut [Views; 2],
     pub commands: &'a mut Vec<Command>,
     pub palette: &'static Palette,
     /// Whether the user has moved something.
@@ -24,12 +28,18 @@ pub struct Docks<'a> {
 
 impl Behavior<Pane> for Docks<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
-        let Docks { state, local, views, commands, palette, .. } = self;
+        let Docks { window, state, local, views, commands, palette, .. } = self;
+        let beside = &mut views[window.active_run() as usize];
         match pane {
-            Pane::Space => views.space(ui, state, commands, palette),
-            Pane::MetricLens => views.other(ui, state, Lens::Metric, palette),
-            Pane::Parametric => views.other(ui, state, Lens::Whole, palette),
+            Pane::Space => match window.pair() {
+                Some(pair) => pair::show(ui, window, pair, views, commands, palette),
+                None => beside.space(ui, state, commands, palette),
+            },
+            Pane::MetricLens => beside.other(ui, state, Lens::Metric, palette),
+            Pane::Parametric => beside.other(ui, state, Lens::Whole, palette),
             Pane::Front => panels::front::show(ui, state, &mut local.front, commands, palette),
+            Pane::Elements => panels::lists::elements(ui, state, &mut local.lists.elements, commands, palette),
+            Pane::Nodes => panels::lists::nodes(ui, state, &mut local.lists.nodes, commands, palette),
             Pane::Breakpoints => panels::breakpoints::show(ui, state, &mut local.breakpoints, commands, palette),
             Pane::Bookmarks => panels::breakpoints::bookmarks(ui, state, commands, palette),
             Pane::Quality => panels::plots::show(ui, state, &mut local.plots, commands, palette),
@@ -37,6 +47,7 @@ impl Behavior<Pane> for Docks<'_> {
             Pane::History => panels::history::show(ui, state, commands, palette),
             Pane::Parameters => panels::parameters::show(ui, state, &mut local.parameters, commands, palette),
             Pane::Layers => panels::layers::show(ui, state, commands, palette),
+            Pane::TwoRuns => panels::two_runs::show(ui, window, commands, palette),
         }
         UiResponse::None
     }

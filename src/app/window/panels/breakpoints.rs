@@ -1,22 +1,18 @@
 //! Breakpoints, watchpoints and bookmarks.
 
-use eframe::egui::{
-    self, Align, Id, Key, Label, Layout, Modifiers, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo,
-};
+use eframe::egui::{self, Align, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 
-use super::{icon_button, inset, line, note, on_click};
+use super::condition_field::ConditionField;
+use super::{icon_button, inset, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
-use crate::app::window::theme::{self, ink};
+use crate::app::window::theme;
 use crate::app::window::{icons, words};
-use crate::core::run::breakpoint::{FIELDS, Holds};
-use crate::core::run::{Condition, Watched};
+use crate::core::run::Watched;
+use crate::core::run::breakpoint::FIELDS;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
-
-/// The greatest number of completions.
-const OFFERED: usize = 6;
 
 /// What the panel keeps for itself.
 #[derive(Default)]
@@ -28,9 +24,12 @@ pub struct BreakpointsState {
 /// Shows the breakpoints and watchpoints.
 pub fn show(ui: &mut Ui, state: &State, local: &mut BreakpointsState, commands: &mut Vec<Command>, palette: &Palette) {
     inset().show(ui, |ui| {
-        let offers = offers(&local.field);
-        let below = 34.0 + if local.field.is_empty() { 0.0 } else { 20.0 * (offers.len() as f32 + 1.5) };
-        let room = (ui.available_height() - below).max(30.0);
+        let field = ConditionField {
+            name: "Condition of a new breakpoint",
+            hint: "a condition, e.g. kind == seamed",
+            fields: FIELDS,
+        };
+        let room = (ui.available_height() - field.height(&local.field)).max(30.0);
         ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
             if state.document().breakpoints.is_empty() && state.document().watches.is_empty() {
                 ui.add(Label::new(note("None yet. Try quad.min_angle < 30.", palette)).wrap());
@@ -40,7 +39,9 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut BreakpointsState, commands: 
             conditions(ui, state, commands, palette);
             watches(ui, state, commands, palette);
         });
-        field(ui, &mut local.field, &offers, commands, palette);
+        if field.show(ui, &mut local.field, palette).is_entered() {
+            commands.push(Command::AddBreakpoint(std::mem::take(&mut local.field)));
+        }
     });
 }
 
@@ -101,85 +102,6 @@ fn watches(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pa
     }
 }
 
-/// Completions of the word that is being typed, with their meaning.
-fn offers(text: &str) -> Vec<(String, String)> {
-    if text.trim().is_empty() {
-        return Vec::new();
-    }
-    let start = word_start(text);
-    let (before, word) = text.split_at(start);
-    let before = before.trim_end();
-    let compared = ["==", "!="].iter().find_map(|sign| before.strip_suffix(sign)).map(str::trim_end);
-    if let Some(field) = compared {
-        let name = &field[word_start(field)..];
-        let words = FIELDS.iter().find(|f| f.name == name).map_or(&[][..], |field| field.holds.words());
-        let fits = words.iter().filter(|w| w.contains(word) && **w != word);
-        return fits.take(OFFERED).map(|w| ((*w).to_owned(), String::new())).collect();
-    }
-    let is_value = before.ends_with(['<', '>', '=']);
-    if word.is_empty() || is_value || FIELDS.iter().any(|field| field.name == word) {
-        return Vec::new();
-    }
-    let mut fits: Vec<_> = FIELDS.iter().filter(|field| field.name.contains(word)).collect();
-    fits.sort_by_key(|field| !field.name.starts_with(word));
-    let unit = |holds: Holds| if holds == Holds::Degrees { ", degrees" } else { "" };
-    fits.iter().take(OFFERED).map(|f| (f.name.to_owned(), format!("{}{}", f.doc, unit(f.holds)))).collect()
-}
-
-/// Where the word at the end of a text begins.
-fn word_start(text: &str) -> usize {
-    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
-    text.rfind(|c| !is_word(c)).map_or(0, |at| at + text[at..].chars().next().map_or(1, char::len_utf8))
-}
-
-fn field(ui: &mut Ui, text: &mut String, offers: &[(String, String)], commands: &mut Vec<Command>, palette: &Palette) {
-    let id = Id::unique("condition");
-    // Tab takes the first completion; it must not leave the field.
-    let has_focus = ui.memory(|memory| memory.has_focus(id));
-    let taken = has_focus && !offers.is_empty() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab));
-    let field = TextEdit::singleline(text)
-        .id(id)
-        .lock_focus(true)
-        .hint_text("a condition, e.g. kind == seamed")
-        .desired_width(f32::INFINITY);
-    let response = ui.add(field);
-    response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Condition of a new breakpoint"));
-    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    let mut chosen = taken.then(|| offers[0].0.clone());
-    let parsed = Condition::parse(text);
-    if entered && parsed.is_ok() {
-        commands.push(Command::AddBreakpoint(std::mem::take(text)));
-        return;
-    }
-    for (k, (name, doc)) in offers.iter().enumerate() {
-        let line = RichText::new(format!("{name}   {doc}")).font(theme::regular(theme::TABLE));
-        let line = line.color(ink(if k == 0 { palette.strong } else { palette.text }));
-        let offer = ui.add(Label::new(line).sense(Sense::click()).selectable(false).truncate());
-        offer.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Use {name}")));
-        if offer.on_hover_text(if k == 0 { "Tab takes it" } else { doc }).clicked() {
-            chosen = Some(name.clone());
-        }
-    }
-    if let Some(chosen) = chosen {
-        text.truncate(word_start(text));
-        *text += &chosen;
-        text.push(' ');
-        response.request_focus();
-        if let Some(mut edit) = egui::TextEdit::load_state(ui.ctx(), id) {
-            let end = egui::text::CCursor::new(text.chars().count());
-            edit.cursor.set_char_range(Some(egui::text::CCursorRange::one(end)));
-            edit.store(ui.ctx(), id);
-        }
-    } else if let (Err(fault), false) = (&parsed, text.trim().is_empty()) {
-        // While the user types it is a hint; after Enter, until it is corrected, an error.
-        let colour = if response.has_focus() { palette.weak } else { palette.broken };
-        ui.add(Label::new(line(fault.to_string(), colour)).wrap());
-    }
-    if entered {
-        response.request_focus();
-    }
-}
-
 /// Shows the bookmarks.
 pub fn bookmarks(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     inset().show(ui, |ui| {
@@ -193,23 +115,4 @@ pub fn bookmarks(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palett
             on_click(&ui.button(text).on_hover_text("Go to that step"), Command::Go(Goal::Step(*step)), commands);
         }
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(text: &str) -> Vec<String> {
-        offers(text).into_iter().map(|offer| offer.0).collect()
-    }
-
-    #[test]
-    fn fields_are_offered_while_one_types_and_words_after_a_comparison() {
-        assert!(names("").is_empty());
-        assert_eq!(names("quad.mi"), ["quad.min_angle"]);
-        assert_eq!(names("kind == seamed && angle")[..2], ["quad.min_angle", "quad.max_angle"]);
-        assert!(names("kind == rolled").contains(&"rolled_back".to_owned()));
-        assert!(names("quad.min_angle < 3").is_empty());
-        assert!(names("quad.min_angle").is_empty(), "it is there already");
-    }
 }

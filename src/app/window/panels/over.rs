@@ -2,8 +2,9 @@
 
 use eframe::egui::{self, Align2, Area, Button, Context, Key, Label, Order, RichText, ScrollArea, TextEdit, Ui, Vec2};
 
-use crate::app::window::command::{Command, keys};
+use crate::app::window::command::{Command, Purpose, groups};
 use crate::app::window::mesh_out;
+use crate::app::window::pair::PairCommand;
 use crate::app::window::session::Source;
 use crate::app::window::state::{Overlay, State};
 use crate::app::window::theme::{self, ink};
@@ -25,7 +26,7 @@ pub struct OverState {
 pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &mut Vec<Command>, palette: &Palette) {
     let over = state.view().overlay;
     if over != local.shown {
-        local.field = if over == Overlay::Mesh { mesh_out::suggested_path(state) } else { String::new() };
+        local.field = if over == Overlay::Mesh { mesh_out::suggested_path(state.active()) } else { String::new() };
         local.shown = over;
     }
     if over == Overlay::Nothing {
@@ -53,12 +54,20 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
                         commands.extend([Command::CloseOverlay, Command::Open(source)]);
                     }
                 }
+                Overlay::PathBeside => {
+                    let hint = "The path of a case, a run or a mesh, or the name of a built-in case";
+                    if field(ui, &mut local.field, hint, "Path of the second run") {
+                        let source = Source::named(local.field.trim());
+                        let open = PairCommand::OpenBeside(source, Box::default());
+                        commands.extend([Command::CloseOverlay, Command::Pair(open)]);
+                    }
+                }
                 Overlay::Mesh => {
                     let hint = "A name such as part.vtu; its extension chooses the format";
                     if field(ui, &mut local.field, hint, "Path of the mesh") {
                         commands.push(Command::SaveMeshAs(local.field.clone()));
                     }
-                    about_the_mesh(ui, state.run().is_at_the_end(), palette);
+                    about_the_mesh(ui, state.active().run().is_at_the_end(), palette);
                 }
                 Overlay::Nothing => {}
             }
@@ -135,20 +144,26 @@ fn help(ui: &mut Ui, palette: &Palette) {
     ui.add_space(6.0);
     ScrollArea::vertical().max_height(460.0).min_scrolled_height(460.0).show(ui, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing(Vec2::new(26.0, 3.0)).show(ui, |ui| {
-            for (_, _, command) in keys() {
-                ui.label(RichText::new(command.key().unwrap_or_default()).color(ink(palette.strong)));
-                ui.label(command.name());
-                ui.end_row();
-            }
-            for (keys, what) in [
-                ("drag, middle drag", "Move the mesh"),
-                ("wheel, pinch", "Zoom at the pointer"),
-                ("right drag", "Turn the mesh; F looks straight down again"),
-                ("click, double click", "Select; show in the middle"),
-            ] {
+            let row = |ui: &mut Ui, keys: &str, what: &str| {
                 ui.label(RichText::new(keys).color(ink(palette.strong)));
                 ui.label(what);
                 ui.end_row();
+            };
+            for (purpose, entries) in groups() {
+                let head = RichText::new(purpose.name()).font(theme::semibold(theme::BODY));
+                ui.label(head.color(ink(palette.weak)));
+                ui.end_row();
+                entries.iter().for_each(|(keys, command)| row(ui, keys, &command.name()));
+                if purpose == Purpose::Views {
+                    for (keys, what) in [
+                        ("drag, middle drag", "Move the mesh"),
+                        ("wheel, pinch", "Zoom at the pointer"),
+                        ("right drag", "Turn the mesh; F looks straight down again"),
+                        ("click, double click", "Select; show in the middle"),
+                    ] {
+                        row(ui, keys, what);
+                    }
+                }
             }
         });
     });

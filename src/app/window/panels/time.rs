@@ -23,8 +23,9 @@ pub struct TimeState {
     pub times: Times,
 }
 
-/// Shows both.
-pub fn show(ui: &mut Ui, state: &State, local: &mut TimeState, commands: &mut Vec<Command>, palette: &Palette) {
+/// Shows both; `window` is the first run.
+pub fn show(ui: &mut Ui, window: &State, local: &mut TimeState, commands: &mut Vec<Command>, palette: &Palette) {
+    let state = window.active();
     let rect = ui.max_rect();
     let row = Rect::from_min_size(rect.min, Vec2::new(rect.width(), 40.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(row.shrink2(Vec2::new(8.0, 0.0))), |ui| {
@@ -34,7 +35,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut TimeState, commands: &mut Ve
     progress(ui, row, state, palette);
     let below = Rect::from_min_max(row.left_bottom(), rect.max);
     ui.scope_builder(egui::UiBuilder::new().max_rect(below), |ui| {
-        timeline::show(ui, state, &mut local.timeline, commands, palette);
+        timeline::show(ui, window, &mut local.timeline, commands, palette);
     });
     ui.advance_cursor_after_rect(rect);
 }

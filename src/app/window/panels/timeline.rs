@@ -7,8 +7,9 @@ use eframe::egui::{self, Align2, Pos2, Rect, Response, Role, Sense, Shape, Strok
 
 use crate::app::window::command::Command;
 use crate::app::window::icons;
+use crate::app::window::pair::Which;
 use crate::app::window::session::{Goal, Verdict};
-use crate::app::window::state::State;
+use crate::app::window::state::{Pair, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::render::palette::{Palette, Rgba};
@@ -32,6 +33,8 @@ const NEAR: f32 = 6.0;
 #[derive(Default)]
 pub struct TimelineState {
     columns: Columns,
+    /// Those of the other run, where there are two.
+    others: Columns,
     /// The row whose kinds have rows of their own.
     open_row: Option<usize>,
     /// The steps that are shown, unless those are all, and the number of the run that they belong to.
@@ -41,8 +44,10 @@ pub struct TimelineState {
     seeking: Option<u64>,
 }
 
-/// Shows the timeline.
-pub fn show(ui: &mut Ui, state: &State, local: &mut TimelineState, commands: &mut Vec<Command>, palette: &Palette) {
+/// Shows the timeline of the run that the panels show, and the lanes of the other one where there are two; `window` is
+/// the first run.
+pub fn show(ui: &mut Ui, window: &State, local: &mut TimelineState, commands: &mut Vec<Command>, palette: &Palette) {
+    let state = window.active();
     let rect = ui.max_rect();
     let plot = Rect::from_min_max(
         Pos2::new(rect.left() + LABELS, rect.top() + 4.0),
@@ -56,25 +61,48 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut TimelineState, commands: &mu
     let Some(moment) = &state.run().moment else { return };
     let spoken = format!("Timeline: step {} of {}", moment.step, state.run().track.len());
     response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, spoken.clone()));
-    let axis = Axis { plot, span: turn(ui, &response, plot, state, local) };
+    let other = window.pair().map(|pair| window.of(pair.active.other()));
+    let all = [Some(state), other].into_iter().flatten().map(|state| state.run().track.len()).max();
+    let axis = Axis { plot, span: turn(ui, &response, plot, all.unwrap_or(0), local) };
     local.columns.update(state, local.open_row, axis.span, plot.width());
-    let step = seek(&response, &axis, state, local, moment.step);
+    if let Some(other) = other {
+        local.others.update(other, None, axis.span, plot.width());
+    }
+    // The lanes of the second run are below those of the first.
+    let above = if window.active_run() == Which::A { 0 } else { local.others.lanes().len() };
+    let lanes = plot.top() + RULER + above as f32 * (LANE + GAP) + if above > 0 { GAP } else { 0.0 };
+    let step = seek(&response, &axis, state, local, moment.step, lanes);
     commands.extend(step.map(|step| Command::Go(Goal::Step(step))));
-    let TimelineState { columns, open_row, .. } = local;
+    let TimelineState { columns, others, open_row, .. } = local;
     let painter = ui.painter_at(rect);
     let worst = moment.worst.map(|worst| worst.1);
     let drawing = Drawing { painter, axis, palette, now: moment.step, worst };
     let mut y = drawing.ruler(state, plot.top());
     let fits = |y: f32, height: f32| y + height <= plot.bottom() + 2.0;
-    for lane in columns.lanes() {
-        if !fits(y, LANE) {
-            break;
+    let first = y;
+    for which in Which::ALL.into_iter().filter(|which| *which == Which::A || other.is_some()) {
+        let (shown, columns) =
+            if which == window.active_run() { (state, &*columns) } else { (window.of(which), &*others) };
+        let top = y;
+        for lane in columns.lanes() {
+            if !fits(y, LANE) {
+                break;
+            }
+            drawing.lane(lane, y, shown.run().track.len());
+            if which == window.active_run()
+                && let Some(group) = label_button(ui, &drawing.axis, lane, y)
+            {
+                *open_row = if *open_row == Some(group) { None } else { Some(group) };
+            }
+            y += LANE + GAP;
         }
-        drawing.lane(lane, y);
-        if let Some(group) = label_button(ui, &drawing.axis, lane, y) {
-            *open_row = if *open_row == Some(group) { None } else { Some(group) };
+        if other.is_some() {
+            drawing.letter(which, 0.5 * (top + y - GAP), which == window.active_run());
+            y += GAP;
         }
-        y += LANE + GAP;
+    }
+    if let Some(step) = window.pair().and_then(Pair::first_difference) {
+        drawing.first_difference(step, plot.top(), [first, y - GAP]);
     }
     if fits(y, LANE) {
         drawing.invariants(columns, y, state);
@@ -94,8 +122,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut TimelineState, commands: &mu
 }
 
 /// The steps that are shown, after zooming and scrolling.
-fn turn(ui: &Ui, response: &Response, plot: Rect, state: &State, local: &mut TimelineState) -> [f64; 2] {
-    let all = state.run().track.len().max(1) as f64;
+fn turn(ui: &Ui, response: &Response, plot: Rect, all: usize, local: &mut TimelineState) -> [f64; 2] {
+    let all = all.max(1) as f64;
     let mut span = local.span.filter(|span| span[1] <= all).unwrap_or([0.0, all]);
     if let Some(at) = response.hover_pos() {
         let scroll = ui.input(|input| input.smooth_scroll_delta());
@@ -117,8 +145,15 @@ fn turn(ui: &Ui, response: &Response, plot: Rect, state: &State, local: &mut Tim
 }
 
 /// The step to go to: a click or a drag goes to the step under the pointer; a click near a bookmark or a breakpoint
-/// goes there, and one in a row of events to an event of the row.
-fn seek(response: &Response, axis: &Axis, state: &State, local: &mut TimelineState, now: u64) -> Option<u64> {
+/// goes there, and one in a row of events to an event of the row. `lanes`: where the first row begins.
+fn seek(
+    response: &Response,
+    axis: &Axis,
+    state: &State,
+    local: &mut TimelineState,
+    now: u64,
+    lanes: f32,
+) -> Option<u64> {
     let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) else {
         local.seeking = None;
         return None;
@@ -126,11 +161,11 @@ fn seek(response: &Response, axis: &Axis, state: &State, local: &mut TimelineSta
     let mut step = axis.step(at.x).round().clamp(0.0, state.run().track.len() as f64) as u64;
     let away = |mark: &u64| (axis.x(*mark as f64) - at.x).abs();
     let reach = [-NEAR, NEAR].map(|by| axis.step(at.x + by).clamp(0.0, state.run().track.len() as f64) as u64);
-    let row = (at.y - axis.plot.top() - RULER).div_euclid(LANE + GAP);
-    let nearest = if row < 0.0 {
+    let row = (at.y - lanes).div_euclid(LANE + GAP);
+    let nearest = if at.y < axis.plot.top() + RULER {
         let marks = state.document().bookmarks.iter().copied().chain(stops(state).flat_map(|hits| within(hits, reach)));
         marks.min_by(|a, b| away(a).total_cmp(&away(b)))
-    } else if let Some(lane) = local.columns.lanes().get(row as usize).filter(|_| response.clicked()) {
+    } else if let Some(lane) = local.columns.lanes().get(row as usize).filter(|_| row >= 0.0 && response.clicked()) {
         let steps = (reach[0].max(1)..=reach[1]).filter(|step| {
             state.run().track.get(*step as usize - 1).is_some_and(|tracked| lane.kinds.contains(&tracked.kind))
         });
@@ -287,10 +322,33 @@ impl Drawing<'_> {
         self.text(Pos2::new(right, y), Align2::RIGHT_CENTER, count, colour);
     }
 
+    /// The letter of a run beside its lanes.
+    fn letter(&self, which: Which, y: f32, is_active: bool) {
+        let at = Pos2::new(self.axis.plot.left() - LABELS + 10.0, y);
+        let colour = if is_active { self.palette.accent } else { self.palette.text };
+        self.painter.text(at, Align2::LEFT_CENTER, which.name(), theme::semibold(theme::BODY), ink(colour));
+    }
+
+    /// Tints the part in which two runs are the same, and marks its end.
+    fn first_difference(&self, step: u64, top: f32, [from, until]: [f32; 2]) {
+        let Drawing { axis, palette, .. } = self;
+        let x = axis.x(step as f64).clamp(axis.plot.left(), axis.plot.right());
+        let same = Rect::from_min_max(Pos2::new(axis.plot.left(), from), Pos2::new(x, until));
+        self.painter.rect_filled(same, 0.0, ink(palette.holds.faded(0.14)));
+        let line = [Pos2::new(x, top + 14.0), Pos2::new(x, until)];
+        self.painter.extend(Shape::dashed_line(&line, Stroke::new(1.2, ink(palette.accent)), 4.0, 3.0));
+        let (text, font) = ("first difference", theme::regular(theme::TIMELINE));
+        let text = self.painter.layout_no_wrap(text.to_owned(), font, ink(palette.accent));
+        let fits = x + 4.0 + text.size().x < axis.plot.right();
+        let left = if fits { x + 4.0 } else { x - 4.0 - text.size().x };
+        self.painter.galley(Pos2::new(left, top + 12.0), text, ink(palette.accent));
+    }
+
     /// One tick for each event, or a density strip if there are several in many columns.
-    fn lane(&self, lane: &Lane, y: f32) {
+    fn lane(&self, lane: &Lane, y: f32, steps: usize) {
         let plot = self.axis.plot;
-        let ground = Rect::from_min_size(Pos2::new(plot.left(), y), Vec2::new(plot.width(), LANE));
+        let end = self.axis.x(steps as f64).clamp(plot.left(), plot.right());
+        let ground = Rect::from_min_max(Pos2::new(plot.left(), y), Pos2::new(end, y + LANE));
         self.painter.rect_filled(ground, 0.0, ink(self.palette.line.faded(0.45)));
         let colour = if lane.is_failure { self.palette.broken } else { self.palette.dead_edge };
         let head = self.head_column();

@@ -13,6 +13,7 @@ use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, Tracked,
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
+use crate::core::prepare::Background;
 use crate::core::run::copies::Since;
 use crate::core::run::history::BUDGET;
 use crate::core::run::{
@@ -81,13 +82,12 @@ pub(super) struct Worker {
 
 impl Worker {
     pub(super) fn open(
-        read: impl FnOnce() -> Result<Run, Fault>,
+        make: impl FnOnce(&mut Voice) -> Result<(Run, Arc<Background>), Fault>,
         own: Sender<Ask>,
         mut voice: Voice,
         stop: Arc<AtomicBool>,
     ) -> Result<Worker, (Voice, Box<Fault>)> {
-        let made = read().and_then(|run| {
-            let background = run.background(&mut voice)?;
+        let made = make(&mut voice).and_then(|(run, background)| {
             let history = History::of(run, &background, BUDGET)?;
             Ok((background, history))
         });
@@ -324,7 +324,13 @@ impl Worker {
         // The first sample is that of step 0.
         let fresh = |sample: &&Sample| sample.step > self.tracked || self.tracked == 0;
         let samples = log.samples().iter().filter(fresh).copied().collect();
-        let told = SessionNews::Track { from: self.tracked, steps: steps.collect(), samples, end };
+        let told = SessionNews::Track {
+            from: self.tracked,
+            steps: steps.collect(),
+            samples,
+            born: log.born().after(self.tracked),
+            end,
+        };
         self.tracked = log.known();
         self.voice.say(told);
     }

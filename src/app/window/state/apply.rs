@@ -1,27 +1,41 @@
 //! Does what the user asks for. With `hearing` this is the only place that changes [`State`].
 
 mod opening;
+mod pair;
 mod parameters;
 mod saving;
 
 use std::time::{Duration, Instant};
+
+pub(super) use pair::are_in_one_place;
 
 use super::{Breakpoint, Document, Look, Overlay, State, SurfaceView, ViewCamera, ViewKind, Watchpoint, watched};
 use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
+use crate::app::window::lists::ListKind;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Condition, Edit, EditKind, Watched};
+use crate::core::run::{Condition, Edit, EditKind, Query, Watched};
+use crate::render::scene::Outlined;
 
 impl State {
     /// Does what the user asks for.
     pub(in crate::app::window) fn apply(&mut self, command: Command) {
+        match command {
+            Command::Pair(command) => self.apply_to_pair(command),
+            command if self.pair.is_some() => self.apply_beside(command),
+            command => self.apply_alone(command),
+        }
+    }
+
+    /// The same in this run, whether or not there is a second one.
+    fn apply_alone(&mut self, command: Command) {
         if self.run.import.is_some() && !command.fits_import() {
             return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
         }
@@ -45,6 +59,12 @@ impl State {
             Command::Explain(ends) => self.run.asked = self.inquire(Ask::Explain(ends)).map(|step| (step, ends)),
             Command::TellPast(watched) => {
                 self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
+            }
+            Command::List(kind, query) => self.list(kind, query, false),
+            Command::CopyList(kind, query) => self.list(kind, query, true),
+            Command::Find(what) => {
+                self.change(|document| document.picked = Some(what));
+                self.view.look.ask(Look::Near(what));
             }
             Command::Watch(what) => self.watch(watched(what)),
             Command::SwitchWatch(k) => {
@@ -157,21 +177,38 @@ impl State {
             }
             Command::ToggleTheme => self.frame.toggle_theme = true,
             Command::Escape => self.escape(),
+            Command::Pair(command) => self.apply_to_pair(command),
         }
     }
 
     /// Ends a frame: does what its panels ask for. Returns whether the next frame has something new to show.
     pub(in crate::app::window) fn end_frame(&mut self, commands: Vec<Command>) -> bool {
-        let hovered = std::mem::take(&mut self.frame).hovered;
+        let hovered = self.begin_hovering();
         let is_asked = commands.iter().any(|command| !matches!(command, Command::Hover(_)));
         commands.into_iter().for_each(|command| self.apply(command));
-        let is_hovered_anew = self.frame.hovered != hovered;
-        self.view.over_epoch += u64::from(is_hovered_anew);
-        is_asked || is_hovered_anew
+        is_asked | self.is_hovered_anew(hovered)
+    }
+
+    /// Forgets what the pointer was on in each run. Returns it.
+    fn begin_hovering(&mut self) -> [Option<Outlined>; 2] {
+        let other = self.pair.as_mut().and_then(|pair| std::mem::take(&mut pair.other.frame).hovered);
+        [std::mem::take(&mut self.frame).hovered, other]
+    }
+
+    /// Whether the pointer is on something else than it was before, in either run.
+    fn is_hovered_anew(&mut self, [before, other]: [Option<Outlined>; 2]) -> bool {
+        let is_new = self.frame.hovered != before;
+        self.view.over_epoch += u64::from(is_new);
+        self.pair.as_mut().is_some_and(|pair| pair.other.is_hovered_anew([other, None])) || is_new
     }
 
     /// While the run is played, goes on when it is time. Returns how long to wait until then.
     pub(in crate::app::window) fn play_on(&mut self) -> Option<Duration> {
+        let waits = [self.pair.as_mut().and_then(|pair| pair.other.play_on()), self.play_on_alone()];
+        waits.into_iter().flatten().min()
+    }
+
+    fn play_on_alone(&mut self) -> Option<Duration> {
         let last = self.run.playing.filter(|_| !self.run.is_busy())?;
         let period = Duration::from_secs_f32(1.0 / self.workspace.speed.max(0.1));
         let left = period.checked_sub(last.elapsed()).filter(|left| !left.is_zero());
@@ -329,6 +366,17 @@ impl State {
         let (moment, session) = (self.run.moment.as_ref()?, self.run.session.as_ref()?);
         session.ask(ask);
         Some(moment.step)
+    }
+
+    /// Has a list of the current state made.
+    fn list(&mut self, kind: ListKind, query: Query, as_text: bool) {
+        let Some(moment) = &self.run.moment else { return };
+        let mesh = moment.mesh.clone();
+        let born = match kind {
+            ListKind::Elements => self.run.born.of_quads(moment.step, mesh.element_slots()),
+            ListKind::Nodes => self.run.born.of_nodes(moment.step, mesh.node_slots()),
+        };
+        self.run.lists.make(kind, query, as_text, mesh, born, self.wake.clone());
     }
 
     fn move_camera(&mut self, view: ViewKind, camera: ViewCamera) {

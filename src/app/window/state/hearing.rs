@@ -2,6 +2,7 @@
 
 mod files;
 mod opening;
+mod pair;
 mod stopping;
 
 use std::sync::Arc;
@@ -20,7 +21,13 @@ const PATIENCE: Duration = Duration::from_millis(4);
 impl State {
     /// Takes in what the session reports.
     pub(in crate::app::window) fn hear(&mut self) {
+        self.hear_alone();
+        self.hear_second();
+    }
+
+    fn hear_alone(&mut self) {
         self.hear_opening();
+        self.run.lists.hear();
         let Some(session) = &self.run.session else { return };
         let told: Vec<SessionNews> = session.hear().collect();
         told.into_iter().for_each(|told| self.take(told));
@@ -30,6 +37,18 @@ impl State {
     /// once, and are seen in the very frame that asked for them.
     pub(in crate::app::window) fn hear_soon(&mut self) {
         let begin = Instant::now();
+        self.hear_until(begin);
+        if self.pair.is_some() {
+            // Both runs are seen in one frame.
+            self.hear_second();
+            if let Some(pair) = &mut self.pair {
+                pair.other.hear_until(begin);
+            }
+            self.hear_second();
+        }
+    }
+
+    fn hear_until(&mut self, begin: Instant) {
         while self.run.waiting > 0
             && let Some(left) = PATIENCE.checked_sub(begin.elapsed())
             && let Some(told) = self.run.session.as_ref().and_then(|session| session.hear_within(left))
@@ -38,8 +57,14 @@ impl State {
         }
     }
 
-    /// The differences between the current state and the one at the last call, and how many slots for elements it has.
-    pub(in crate::app::window) fn take_changes(&mut self) -> Option<(Changes, usize)> {
+    /// For each run the differences between the current state and the one at the last call, and how many slots for
+    /// elements it has.
+    pub(in crate::app::window) fn take_changes(&mut self) -> [Option<(Changes, usize)>; 2] {
+        let second = self.pair.as_mut().and_then(|pair| pair.other.take_changes_alone());
+        [self.take_changes_alone(), second]
+    }
+
+    fn take_changes_alone(&mut self) -> Option<(Changes, usize)> {
         let slots = self.run.moment.as_ref()?.mesh.element_slots();
         Some((self.run.changes.take(), slots))
     }
@@ -56,11 +81,13 @@ impl State {
                     self.change(|document| document.picked = subject);
                 }
             }
-            SessionNews::Track { from, steps, samples, end } => {
+            SessionNews::Track { from, steps, samples, born, end } => {
                 run.track.truncate(from as usize);
                 run.track.extend(steps);
                 run.samples.retain(|sample| sample.step <= from && from > 0);
                 run.samples.extend(samples);
+                run.born.truncate(from);
+                run.born.append(&born);
                 run.track_epoch += 1;
                 run.recorded = end;
             }
@@ -97,6 +124,7 @@ impl State {
             run.playing = None;
         }
         run.changes.note(&moment.changes, moment.mesh.element_slots());
+        run.lists.note(&moment.changes, &moment.mesh);
         run.verdict = moment.verdict.clone();
         run.moment = Some(moment.clone());
         self.view.lit.clear();

@@ -7,12 +7,13 @@ use crate::app::command_line::Overrides;
 use crate::app::window::autosave::Autosave;
 use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
+use crate::app::window::lists::Lists;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, Tracked, Verdict};
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
-use crate::core::run::{Sample, ShownState, Watched};
+use crate::core::run::{Born, Sample, ShownState, Watched};
 
 /// How far some work is.
 #[derive(Clone, Debug)]
@@ -58,7 +59,9 @@ pub struct RunState {
     pub track: Vec<Tracked>,
     /// Invariants and sizes along it.
     pub samples: Vec<Sample>,
-    /// Changes with both.
+    /// The steps that made quadrilaterals and nodes.
+    pub born: Born,
+    /// Changes with all of them.
     pub track_epoch: u64,
     /// Whether all steps have been recorded.
     pub recorded: bool,
@@ -70,6 +73,8 @@ pub struct RunState {
     /// Set while the run is played: when it went on last.
     pub playing: Option<Instant>,
     pub measuring: Option<Measuring>,
+    /// The lists of elements and nodes.
+    pub lists: Lists,
     /// The mesh that is about to be converted.
     pub import: Option<Import>,
     /// Saves the run while the user works on it.

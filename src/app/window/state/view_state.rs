@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use glam::DVec2;
 
 use super::log::MessageLog;
+use crate::app::window::layout::Pane;
 use crate::core::run::run;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::scene::Outlined;
@@ -25,6 +26,8 @@ pub struct ViewState {
     pub scroll: Request<Option<Outlined>>,
     /// The docks are to be arranged as the document says.
     pub relayout: Request<()>,
+    /// The panel that is to be shown in its tabs.
+    pub reveal: Request<Option<Pane>>,
     /// What a bar of a plot stands for, lit up in the views until the next state comes.
     pub lit: Vec<Outlined>,
     /// Changes when the mesh is to be drawn in another way.
@@ -92,6 +95,8 @@ pub enum Look {
     /// At the decision, from near.
     Decision,
     At(Outlined),
+    /// At something, from near unless it is seen well already.
+    Near(Outlined),
     /// At the whole mesh in space, from a side.
     From(Bearing),
 }
@@ -105,6 +110,8 @@ pub enum Overlay {
     Help,
     GoTo,
     Path,
+    /// The path of a second run.
+    PathBeside,
     Mesh,
 }
 

@@ -124,6 +124,18 @@ impl Workspace {
         }
     }
 
+    /// Takes over how meshes and figures look in another one. Returns whether layers or colours have changed.
+    pub(super) fn look_like(&mut self, other: &Workspace) -> bool {
+        (self.surfaces, self.speed) = (other.surfaces, other.speed);
+        if self.figure != other.figure {
+            self.figure = other.figure.clone();
+        }
+        let (to, from) = (&mut self.document, &other.document);
+        let is_new = (to.layers, to.colour_by) != (from.layers, from.colour_by);
+        (to.layers, to.colour_by) = (from.layers, from.colour_by);
+        is_new
+    }
+
     /// Changes the document so that undo takes it back. Returns the document as it was before, if there is a
     /// difference.
     pub(super) fn change(&mut self, change: impl FnOnce(&mut Document)) -> Option<Document> {

@@ -1,12 +1,12 @@
 //! Where the views look: requests to the main view, the lens, and the view of the whole mesh.
 
 use eframe::egui::{self, PointerButton, Rect, Ui};
-use glam::{DMat2, DVec2};
+use glam::{DMat2, DVec2, DVec3};
 
 use super::ViewFrame;
 use crate::app::window::session::Moment;
 use crate::app::window::state::{Look, State, ViewCamera};
-use crate::core::mesh::NodeId;
+use crate::core::mesh::{Mesh, NodeId};
 use crate::render::camera::Camera;
 use crate::render::scene::{self, Decision, Outlined};
 
@@ -47,8 +47,59 @@ pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look
                 is_fitted = false;
             }
         }
+        Some(Look::Near(what)) => {
+            if let Some((place, extent)) = extent_of(moment, what, |mesh, n| mesh.uv(n).extend(0.0))
+                && !is_seen_well(&camera, size, place, extent)
+            {
+                camera.look_at(place.truncate(), scale_for(camera.points_per_unit(), extent));
+                is_fitted = false;
+            }
+        }
     }
     (camera, is_fitted)
+}
+
+/// How large something is to be in points where a view is moved to show it, and how small it may be otherwise.
+const FOUND: [f64; 2] = [80.0, 14.0];
+/// The room that a view leaves around what it shows.
+const ROOM: f64 = 24.0;
+
+/// The middle of something and the largest distance from there to its nodes, where it exists.
+pub(super) fn extent_of(
+    moment: &Moment,
+    what: Outlined,
+    place: impl Fn(&Mesh, NodeId) -> DVec3,
+) -> Option<(DVec3, f64)> {
+    let mesh = &moment.mesh;
+    let nodes: Vec<NodeId> = match what {
+        Outlined::Node(node) => {
+            mesh.has_node(node).then(|| [node].into_iter().chain(mesh.neighbours(node)).collect())?
+        }
+        Outlined::Edge(ends) => ends.to_vec(),
+        Outlined::Element(e) => mesh.has_element(e).then(|| mesh.corners(e).collect())?,
+    };
+    if !nodes.iter().all(|n| mesh.has_node(*n)) {
+        return None;
+    }
+    let places: Vec<DVec3> = nodes.iter().map(|&n| place(mesh, n)).collect();
+    let middle = match what {
+        Outlined::Node(_) => places[0],
+        _ => places.iter().sum::<DVec3>() / places.len() as f64,
+    };
+    let extent = places.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
+    Some((middle, extent.max(f64::MIN_POSITIVE)))
+}
+
+/// Whether something lies in a view with room around it and is large enough to be seen.
+pub(super) fn is_seen_well(camera: &Camera, size: DVec2, place: DVec3, extent: f64) -> bool {
+    let at = camera.project(place, size);
+    let is_inside = at.cmpgt(DVec2::splat(ROOM)).all() && at.cmplt(size - ROOM).all();
+    is_inside && extent * camera.points_per_unit() >= FOUND[1]
+}
+
+/// The scale at which something has a good size, unless it is larger already.
+pub(super) fn scale_for(scale: f64, extent: f64) -> f64 {
+    scale.max(FOUND[0] / extent)
 }
 
 fn near(camera: &mut Camera, moment: &Moment, [a, b]: [NodeId; 2]) {

@@ -3,7 +3,7 @@
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::cameras::zoom;
+use super::cameras::{extent_of, is_seen_well, scale_for, zoom};
 use super::{ViewFrame, Views, moved, paint};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
@@ -59,7 +59,7 @@ impl Views {
             ColourBy::State => Light::on_surfaces(palette.dark),
             _ => Light::ON_DATA,
         };
-        paint(ui, 0, &frame, &self.space.scene, palette, light, hidden);
+        paint(ui, self.first, &frame, &self.space.scene, palette, light, hidden);
         let of = Some((self.space.scene.shape(), camera, size));
         if self.cover.of != of {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
@@ -152,6 +152,19 @@ fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Came
             if let Some((place, _)) = place_of(moment, what) {
                 camera.centre_on(place);
                 is_fitted = false;
+            }
+        }
+        Some(Look::Near(what)) => {
+            let found = extent_of(moment, what, |mesh, n| mesh.xyz(n));
+            if let Some(((place, extent), (_, normal))) = found.zip(place_of(moment, what)) {
+                let is_behind = normal.dot(camera.towards()) < 0.3;
+                if is_behind {
+                    camera.face(normal);
+                }
+                if is_behind || !is_seen_well(&camera, size, place, extent) {
+                    camera.look_at_place(place, scale_for(camera.points_per_unit(), extent));
+                    is_fitted = false;
+                }
             }
         }
     }

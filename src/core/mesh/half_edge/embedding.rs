@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Mesh;
 use crate::core::geometry::Atlas;
+use crate::core::kernel::Metric2;
 use crate::core::mesh::ids::NodeId;
 
 /// The surfaces on which a mesh lies, and the positions of its boundary points in space, which all faces share.
@@ -40,6 +41,14 @@ impl Mesh {
     /// The unit normal of the surface at a node; z in the plane.
     pub fn normal(&self, node: NodeId) -> DVec3 {
         self.embedding.as_ref().map_or(DVec3::Z, |embedding| embedding.atlas.at(self.uv(node)).normal())
+    }
+
+    /// The first fundamental form at a node: lengths and angles in space of what lies in its tangent plane.
+    pub fn first_form(&self, node: NodeId) -> Metric2 {
+        match &self.embedding {
+            None => Metric2 { uu: 1.0, uv: 0.0, vv: 1.0 },
+            Some(embedding) => embedding.atlas.at(self.uv(node)).first_form(),
+        }
     }
 
     /// The smallest target size at a node, in units of length: on surfaces that of the intrinsic eigenvalues, of M

@@ -3,80 +3,26 @@
 use super::StepFacts;
 use crate::core::convert::{Event, EventKind, WhyKind};
 use crate::core::front::Side;
+use crate::core::kernel::condition::Holds::{Degrees, Flag, Number};
+use crate::core::kernel::condition::{Holds, Value, fields};
 
-/// The type of a field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Holds {
-    /// A number.
-    Number,
-    /// An angle in degrees.
-    Degrees,
-    /// Yes or no: the field by itself is a condition.
-    Flag,
-    /// The kind of an event.
-    Kind,
-    /// Why an attempt was rolled back.
-    Why,
-    /// Left or right.
-    Side,
-}
+/// The kind of an event.
+const KIND: Holds = Holds::Words {
+    words: EventKind::NAMES,
+    short: &[
+        ("seam", "seamed"),
+        ("quad", "formed"),
+        ("form", "formed"),
+        ("base", "base_selected"),
+        ("rollback", "rolled_back"),
+    ],
+};
 
-impl Holds {
-    /// The words that a field of this type can be compared with; none for numbers.
-    pub fn words(self) -> &'static [&'static str] {
-        match self {
-            Holds::Kind => EventKind::NAMES,
-            Holds::Why => WhyKind::NAMES,
-            Holds::Side => &["left", "right"],
-            Holds::Flag => &["true", "false"],
-            Holds::Number | Holds::Degrees => &[],
-        }
-    }
+/// Why an attempt was rolled back.
+const WHY: Holds = Holds::Words { words: WhyKind::NAMES, short: &[] };
 
-    /// Reads a value of this type.
-    pub(super) fn value(self, word: &str) -> Option<Value> {
-        match self {
-            Holds::Number | Holds::Degrees => word.parse().ok().filter(|n: &f64| n.is_finite()).map(Value::Number),
-            Holds::Flag => word.parse().ok().map(Value::Flag),
-            Holds::Kind => word.parse().ok().map(Value::Kind),
-            Holds::Why => word.parse().ok().map(Value::Why),
-            Holds::Side => Side::BOTH
-                .into_iter()
-                .zip(self.words())
-                .find(|(_, name)| **name == word)
-                .map(|(side, _)| Value::Side(side)),
-        }
-    }
-}
-
-/// The value of a field, or the one it is compared with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Value {
-    Number(f64),
-    Flag(bool),
-    Kind(EventKind),
-    Why(WhyKind),
-    Side(Side),
-}
-
-/// A field that conditions can name.
-pub struct Field {
-    /// Its name.
-    pub name: &'static str,
-    /// Its type.
-    pub holds: Holds,
-    /// Its meaning, for people who write conditions.
-    pub doc: &'static str,
-    pub(super) of: fn(&StepFacts<'_>) -> Option<Value>,
-}
-
-fn number(n: impl Into<f64>) -> Option<Value> {
-    Some(Value::Number(n.into()))
-}
-
-fn degrees(radians: f64) -> Option<Value> {
-    number(radians.to_degrees())
-}
+/// A side.
+const SIDE: Holds = Holds::Words { words: &["left", "right"], short: &[] };
 
 /// The value of a field that one kind of event has.
 macro_rules! of_event {
@@ -88,67 +34,60 @@ macro_rules! of_event {
     };
 }
 
-/// Makes the table of fields: for each its name, its type, its meaning and its value.
-macro_rules! fields {
-    ($($name:literal: $holds:ident, $doc:literal => $of:expr;)*) => {
-        /// All fields, in the order of the list that users see.
-        pub const FIELDS: &[Field] = &[$(Field { name: $name, holds: Holds::$holds, doc: $doc, of: $of },)*];
-    };
-}
-
 fields! {
-    "kind": Kind, "kind of the event" => |m| Some(Value::Kind(m.event.kind()));
-    "step": Number, "step number" => |m| number(m.step as f64);
-    "nq": Number, "number of quadrilaterals" => |m| number(m.nq as f64);
+    StepFacts<'_>;
+    "kind": KIND, "kind of the event" => |m| Some(Value::Word(m.event.kind().name()));
+    "step": Number, "step number" => |m| Value::number(m.step as f64);
+    "nq": Number, "number of quadrilaterals" => |m| Value::number(m.nq as f64);
     "quad.quality": Number, "quality of the new quadrilateral, 0 to 1" =>
-        of_event!(Event::Formed { quality, .. } => number(quality));
+        of_event!(Event::Formed { quality, .. } => Value::number(quality));
     "quad.min_angle": Degrees, "smallest angle of the new quadrilateral, in the metric" =>
-        |m| m.angles.and_then(|angles| degrees(angles.min.into()));
+        |m| m.angles.and_then(|angles| Value::degrees(angles.min.into()));
     "quad.max_angle": Degrees, "largest angle of the new quadrilateral, in the metric" =>
-        |m| m.angles.and_then(|angles| degrees(angles.max.into()));
+        |m| m.angles.and_then(|angles| Value::degrees(angles.max.into()));
     "quad.level": Number, "row of the new quadrilateral, counted from the boundary" =>
-        of_event!(Event::Formed { level, .. } => number(level));
+        of_event!(Event::Formed { level, .. } => Value::number(level));
     "quad.merged": Number, "number of triangles merged into the new quadrilateral" =>
-        of_event!(Event::Formed { merged, .. } => number(merged));
+        of_event!(Event::Formed { merged, .. } => Value::number(merged));
     "quad.attempt": Number, "attempt that formed the quadrilateral, from 0" =>
-        of_event!(Event::Formed { attempt, .. } => number(attempt));
+        of_event!(Event::Formed { attempt, .. } => Value::number(attempt));
     "quad.element": Number, "id of the new quadrilateral" =>
-        of_event!(Event::Formed { element, .. } => number(element.0));
-    "front.segments": Number, "number of segments of the front" => |m| number(m.front.segments);
-    "front.loops": Number, "number of loops of the front" => |m| number(m.front.loops);
-    "front.odd": Number, "number of loops with an odd number of segments" => |m| number(m.front.odd);
-    "front.live": Number, "number of live triangles" => |m| number(m.front.live);
+        of_event!(Event::Formed { element, .. } => Value::number(element.0));
+    "front.segments": Number, "number of segments of the front" => |m| Value::number(m.front.segments);
+    "front.loops": Number, "number of loops of the front" => |m| Value::number(m.front.loops);
+    "front.odd": Number, "number of loops with an odd number of segments" => |m| Value::number(m.front.odd);
+    "front.live": Number, "number of live triangles" => |m| Value::number(m.front.live);
     "base.class": Number, "class of the base segment in table 1, 1 to 4" =>
-        of_event!(Event::BaseSelected { class, .. } => number(class));
+        of_event!(Event::BaseSelected { class, .. } => Value::number(class));
     "base.h_value": Number, "H-value (eq. 6) of the base segment" =>
-        of_event!(Event::BaseSelected { h_value, .. } => number(h_value));
+        of_event!(Event::BaseSelected { h_value, .. } => Value::number(h_value));
     "base.key": Number, "key of the base segment, held against the reach" =>
-        of_event!(Event::BaseSelected { key, .. } => number(key));
+        of_event!(Event::BaseSelected { key, .. } => Value::number(key));
     "base.reach": Number, "reach at the selection, c Hmin" =>
-        of_event!(Event::BaseSelected { reach, .. } => number(reach));
+        of_event!(Event::BaseSelected { reach, .. } => Value::number(reach));
     "base.length": Number, "length of the base segment in the metric" =>
-        of_event!(Event::BaseSelected { length_metric, .. } => number(length_metric));
+        of_event!(Event::BaseSelected { length_metric, .. } => Value::number(length_metric));
     "base.level": Number, "rows between the base segment and the boundary" =>
-        of_event!(Event::BaseSelected { level, .. } => number(level));
+        of_event!(Event::BaseSelected { level, .. } => Value::number(level));
     "base.theta_a": Degrees, "frontal angle at the left node of the base segment" =>
-        of_event!(Event::BaseSelected { theta, .. } => degrees(theta[0]));
+        of_event!(Event::BaseSelected { theta, .. } => Value::degrees(theta[0]));
     "base.theta_b": Degrees, "frontal angle at the right node of the base segment" =>
-        of_event!(Event::BaseSelected { theta, .. } => degrees(theta[1]));
+        of_event!(Event::BaseSelected { theta, .. } => Value::degrees(theta[1]));
     "base.within_reach": Flag, "the base segment is within c Hmin" =>
         of_event!(Event::BaseSelected { within_reach, .. } => Some(Value::Flag(within_reach)));
     "base.picked": Flag, "the user picked the base segment" =>
         of_event!(Event::BaseSelected { picked, .. } => Some(Value::Flag(picked)));
-    "side": Side, "side edge that the step is about" => side;
+    "side": SIDE, "side edge that the step is about" => side;
     "side.deviation": Degrees, "deviation of the side edge from the direction aimed at" =>
-        of_event!(Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => degrees(edge.deviation));
+        of_event!(Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => Value::degrees(edge.deviation));
     "recovery.failed": Flag, "the top edge could not be recovered" => recovery_failed;
     "recovery.swaps": Number, "number of swaps that recovered the top edge" =>
-        of_event!(Event::TopFound { swaps, .. } => number(swaps));
-    "rollback.why": Why, "why the attempt was rolled back" => |m| rolled_back(m).map(Value::Why);
+        of_event!(Event::TopFound { swaps, .. } => Value::number(swaps));
+    "rollback.why": WHY, "why the attempt was rolled back" => |m| rolled_back(m).map(|why| Value::Word(why.name()));
     "seam.angle": Degrees, "frontal angle that the seam closed" =>
-        of_event!(Event::Seamed { corner, .. } | Event::TransitionSeamed { corner, .. } => degrees(corner.angle));
+        of_event!(Event::Seamed { corner, .. } | Event::TransitionSeamed { corner, .. } => Value::degrees(corner.angle));
     "split.ratio": Number, "width divided by height of the slender triangle at which the front was split" =>
-        of_event!(Event::Split { ratio, .. } => number(ratio));
+        of_event!(Event::Split { ratio, .. } => Value::number(ratio));
     "fallback": Flag, "a second pass or the last resort is at work" => fallback;
 }
 
@@ -158,7 +97,10 @@ fn side(facts: &StepFacts<'_>) -> Option<Value> {
         Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => edge.side,
         _ => return None,
     };
-    Some(Value::Side(side))
+    Some(Value::Word(match side {
+        Side::Left => "left",
+        Side::Right => "right",
+    }))
 }
 
 fn rolled_back(facts: &StepFacts<'_>) -> Option<WhyKind> {

@@ -8,6 +8,7 @@ use glam::DVec2;
 
 use super::Sheet;
 use crate::core::record::figure;
+use crate::render::palette::LETTER;
 
 /// The font of figures: the characters of IBM Plex Sans that they need.
 pub(in crate::render::vector) const FONT: &[u8] =
@@ -85,20 +86,25 @@ impl Page {
 
     /// Writes a text anchored with its start, middle or end at a point of its baseline.
     pub fn text(&mut self, at: DVec2, size: f64, anchor: &str, text: &str) {
-        self.placed_text(&format!("x=\"{}\" y=\"{}\"", Short(at.x), Short(at.y)), size, anchor, text);
+        self.text_in(at, size, anchor, LETTER, text);
+    }
+
+    /// As [`Page::text`], in this ink.
+    pub fn text_in(&mut self, at: DVec2, size: f64, anchor: &str, ink: &str, text: &str) {
+        self.placed_text(&format!("x=\"{}\" y=\"{}\"", Short(at.x), Short(at.y)), size, anchor, ink, text);
     }
 
     /// Writes a vertical text with its middle at a point of its baseline.
     pub fn upright_text(&mut self, at: DVec2, size: f64, text: &str) {
         let place = format!("transform=\"translate({} {}) rotate(-90)\"", Short(at.x), Short(at.y));
-        self.placed_text(&place, size, "middle", text);
+        self.placed_text(&place, size, "middle", LETTER, text);
     }
 
-    fn placed_text(&mut self, place: &str, size: f64, anchor: &str, text: &str) {
+    fn placed_text(&mut self, place: &str, size: f64, anchor: &str, ink: &str, text: &str) {
         let _ = writeln!(
             self.svg,
             "<text {place} font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" font-size=\"{size}\" \
-             text-anchor=\"{anchor}\" fill=\"#000000\">{}</text>",
+             text-anchor=\"{anchor}\" fill=\"{ink}\">{}</text>",
             escaped(text)
         );
     }
@@ -109,11 +115,20 @@ impl Page {
     }
 
     /// A rectangle.
-    pub fn bar(&mut self, [low, high]: [DVec2; 2], attributes: &str) {
+    pub fn bar(&mut self, area: [DVec2; 2], attributes: &str) {
+        self.rectangle(area, attributes, "/>");
+    }
+
+    /// A rectangle with a text that viewers show under the pointer.
+    pub fn bar_that_says(&mut self, area: [DVec2; 2], attributes: &str, text: &str) {
+        self.rectangle(area, attributes, &format!("><title>{}</title></rect>", escaped(text)));
+    }
+
+    fn rectangle(&mut self, [low, high]: [DVec2; 2], attributes: &str, end: &str) {
         let size = high - low;
         let _ = writeln!(
             self.svg,
-            "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {attributes}/>",
+            "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {attributes}{end}",
             Short(low.x),
             Short(low.y),
             Short(size.x),

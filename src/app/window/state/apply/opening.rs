@@ -76,7 +76,7 @@ impl State {
 }
 
 /// Reads what is to be opened.
-fn read(source: &Source, overrides: &Overrides) -> Result<Run, Fault> {
+pub(super) fn read(source: &Source, overrides: &Overrides) -> Result<Run, Fault> {
     match source {
         Source::BuiltIn(name) => {
             let case = built_in::named(name);

@@ -43,6 +43,12 @@ impl State {
 
     /// Autosaves the run, and takes in what became of files. Returns when to look again.
     pub(in crate::app::window) fn hear_files(&mut self) -> Option<Duration> {
+        let second = self.pair.as_mut().and_then(|pair| pair.other.hear_files());
+        self.lift_messages();
+        [second, self.hear_files_alone()].into_iter().flatten().min()
+    }
+
+    fn hear_files_alone(&mut self) -> Option<Duration> {
         let mut again = None;
         if let Some(mut autosave) = self.run.autosave.take() {
             let (opened, source) = (self.run.opened.clone(), self.run.source.clone());

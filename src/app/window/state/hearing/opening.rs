@@ -43,7 +43,7 @@ impl State {
                     let opening = self.run.opening.take();
                     match opening {
                         _ if fault.is_stop() => {}
-                        Some(Opening { source: Source::Mesh(path, options), overrides, .. }) => {
+                        Some(Opening { source: Source::Mesh(path, options), overrides, .. }) if !self.is_second => {
                             // The import shows why, and how the mesh may be imported in another way.
                             if self.run.import.is_none() {
                                 self.import(path, options, overrides);

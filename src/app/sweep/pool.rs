@@ -1,0 +1,103 @@
+//! Conversion of the cells of a sweep on several threads.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::time::{Duration, Instant};
+
+use crate::app::work;
+use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::record::sweep::{Cell, Sweep};
+use crate::core::run::Run;
+
+/// The time between two calls while no cell is finished.
+const PATIENCE: Duration = Duration::from_millis(20);
+
+/// The work that the threads share.
+struct Work {
+    run: Run,
+    sweep: Sweep,
+    missing: Vec<usize>,
+    /// The place in `missing` of the next cell to convert.
+    next: AtomicUsize,
+    cancel: Cancel,
+}
+
+/// Converts the cells that a sweep of a run does not have yet, on so many threads. Calls `hear` from this thread with
+/// the cells that were finished since the last call, and at least every 20 milliseconds. Returns as soon as `hear`
+/// returns false, without the cells in work; their threads end by themselves.
+pub(in crate::app) fn convert(
+    run: &Run,
+    sweep: &Sweep,
+    threads: usize,
+    hear: &mut dyn FnMut(Vec<(usize, Cell)>) -> bool,
+) {
+    let missing = sweep.missing();
+    let threads = threads.clamp(1, missing.len().max(1));
+    let (run, sweep, next) = (run.clone(), sweep.clone(), AtomicUsize::new(0));
+    let work = Arc::new(Work { run, sweep, missing, next, cancel: Cancel::new() });
+    let (sender, receiver) = channel();
+    let threads: Vec<_> = (0..threads)
+        .map(|_| {
+            let (work, sender) = (Arc::clone(&work), sender.clone());
+            std::thread::spawn(move || work.convert(&sender))
+        })
+        .collect();
+    drop(sender);
+    loop {
+        let goes_on = match receiver.recv_timeout(PATIENCE) {
+            Ok(first) => hear(std::iter::once(first).chain(receiver.try_iter()).collect()),
+            Err(RecvTimeoutError::Timeout) => hear(Vec::new()),
+            Err(RecvTimeoutError::Disconnected) => break,
+        };
+        if !goes_on {
+            work.cancel.ask();
+            return;
+        }
+    }
+    for thread in threads {
+        // A bug in a conversion is one here too.
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    }
+}
+
+impl Work {
+    fn convert(&self, sender: &Sender<(usize, Cell)>) {
+        while let Some(&cell) = self.missing.get(self.next.fetch_add(1, Ordering::Relaxed)) {
+            let Some(done) = cell_of(&self.sweep.run_of(cell, &self.run), &self.cancel) else { return };
+            if sender.send((cell, done)).is_err() {
+                return;
+            }
+        }
+    }
+}
+
+/// What a run ends with; `None` if it is cancelled.
+fn cell_of(run: &Run, cancel: &Cancel) -> Option<Cell> {
+    cancel.check().ok()?;
+    let begin = Instant::now();
+    let converted = work::convert(run, None, None, false, &mut OnlyCancel(cancel));
+    match converted {
+        Ok(mut quads) => Some(match quads.flaw {
+            Some(flaw) => Cell::Refused(flaw.to_string()),
+            None => {
+                // The stages are of no interest here: their sum is.
+                quads.report.timing = vec![(Stage::Convert, begin.elapsed().as_secs_f64())];
+                Cell::of(&quads.report)
+            }
+        }),
+        Err(fault) if fault.is_stop() => None,
+        Err(fault) => Some(Cell::Refused(fault.to_string())),
+    }
+}
+
+/// Reports nothing, and can be cancelled.
+struct OnlyCancel<'c>(&'c Cancel);
+
+impl Watch for OnlyCancel<'_> {
+    fn tell(&mut self, _: Stage, _: u64, _: u64) {}
+
+    fn cancel(&self) -> Cancel {
+        self.0.clone()
+    }
+}

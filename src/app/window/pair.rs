@@ -1,0 +1,239 @@
+//! Two runs side by side: what can be done with them, and the thread that compares them.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use super::command::{Command, Rules};
+use super::session::{Source, Wake, words_of};
+use super::state::Progress;
+use crate::app::command_line::Overrides;
+use crate::app::compare::Comparison;
+use crate::app::progress::StageTimes;
+use crate::core::fault::Fault;
+use crate::core::kernel::worded::worded;
+use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::run::Run;
+
+worded! {
+    /// One of two runs.
+    #[derive(Default)]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Which by name {
+        /// The run that was open first.
+        #[default]
+        A = "A",
+        /// The second run.
+        B = "B",
+    }
+}
+
+impl Which {
+    /// The other one.
+    pub fn other(self) -> Which {
+        match self {
+            Which::A => Which::B,
+            Which::B => Which::A,
+        }
+    }
+}
+
+worded! {
+    /// Where one run goes when the other one has moved.
+    #[derive(Default)]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Link by name {
+        /// To the same step.
+        #[default]
+        Step = "step",
+        /// To the same number of quadrilaterals.
+        Quad = "quadrilateral",
+        /// To the event of the same kind and number: the 57th selection, the third seam.
+        Event = "phase",
+        /// Nowhere.
+        Free = "nothing",
+    }
+}
+
+worded! {
+    /// How two runs are shown.
+    #[derive(Default)]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Arrangement by name {
+        /// In two views with one camera.
+        #[default]
+        SideBySide = "Side by side",
+        /// In one view, with what only one of them has outlined.
+        Over = "Over each other",
+    }
+}
+
+/// What can be done with two runs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PairCommand {
+    /// Start a second run that is the same up to the current step.
+    Fork,
+    /// The same, with other parameters from this step on.
+    ForkWith(Rules),
+    /// Ask for the path of a second run.
+    AskBeside,
+    /// Open a second run.
+    OpenBeside(Source, Box<Overrides>),
+    /// Have the panels show one of the runs.
+    Activate(Which),
+    /// Go on with the other run.
+    Switch,
+    /// Link the steps of the runs in another way.
+    Link(Link),
+    /// Show the runs in another way.
+    Show(Arrangement),
+    /// Exchange the runs.
+    Exchange,
+    /// Close the second run.
+    Close,
+    /// Go to the first difference.
+    ToDifference,
+    /// Do something in one of the runs.
+    In(Which, Box<Command>),
+}
+
+impl PairCommand {
+    /// Its name in the palette, in menus and in tooltips.
+    pub fn name(&self) -> String {
+        match self {
+            PairCommand::Fork => "Fork at this step".into(),
+            PairCommand::ForkWith(rules) => format!("Fork with all parameters of: {}", rules.name()),
+            PairCommand::AskBeside => "Open a second run by path…".into(),
+            PairCommand::OpenBeside(source, _) => format!("Open {} as second run", source.name()),
+            PairCommand::Activate(which) => format!("Show run {} in the panels", which.name()),
+            PairCommand::Switch => "Show the other run in the panels".into(),
+            PairCommand::Link(Link::Free) => "Move each run by itself".into(),
+            PairCommand::Link(link) => format!("Link the runs by {}", link.name()),
+            PairCommand::Show(arrangement) => format!("Two runs: {}", arrangement.name().to_lowercase()),
+            PairCommand::Exchange => "Exchange the two runs".into(),
+            PairCommand::Close => "Close the second run".into(),
+            PairCommand::ToDifference => "To the first difference of the two runs".into(),
+            PairCommand::In(_, command) => command.name(),
+        }
+    }
+
+    /// All of those that need no more than their names.
+    pub fn all() -> Vec<PairCommand> {
+        let mut all = vec![PairCommand::Fork];
+        all.extend(Rules::ALL.map(PairCommand::ForkWith));
+        all.extend([PairCommand::AskBeside, PairCommand::Switch, PairCommand::ToDifference]);
+        all.extend(Link::ALL.map(PairCommand::Link));
+        all.extend(Arrangement::ALL.map(PairCommand::Show));
+        all.extend([PairCommand::Exchange, PairCommand::Close]);
+        all
+    }
+}
+
+/// What the thread that compares two runs reports.
+pub enum CompareNews {
+    Progress(Progress),
+    Found(Box<Comparison>),
+    Fault(Fault),
+}
+
+/// A thread that compares two runs; it stops when this is dropped.
+pub struct Comparing {
+    told: Receiver<CompareNews>,
+    cancel: Cancel,
+}
+
+impl Comparing {
+    /// Begins to compare two runs; `wake` is called when there is something to hear.
+    pub fn begin(runs: [Run; 2], wake: Wake) -> Comparing {
+        let (tell, told) = channel();
+        let cancel = Cancel::new();
+        let stop = cancel.clone();
+        std::thread::spawn(move || {
+            let said = |news: CompareNews| {
+                // Nobody listens once another comparison has begun.
+                let _ = tell.send(news);
+                wake();
+            };
+            let new_watch = || CompareWatch { say: &said, cancel: stop.clone(), times: StageTimes::default() };
+            match Comparison::of(&runs, &mut new_watch(), |run| {
+                let mut watch = new_watch();
+                let mut report = crate::app::compare::report(run, &mut watch)?;
+                report.timing = watch.times.finish();
+                Ok(report)
+            }) {
+                Ok(comparison) => said(CompareNews::Found(Box::new(comparison))),
+                Err(fault) if fault.is_stop() => {}
+                Err(fault) => said(CompareNews::Fault(fault)),
+            }
+        });
+        Comparing { told, cancel }
+    }
+
+    /// The next report, if there is one.
+    pub fn hear(&self) -> Result<CompareNews, TryRecvError> {
+        self.told.try_recv()
+    }
+}
+
+impl Drop for Comparing {
+    fn drop(&mut self) {
+        self.cancel.ask();
+    }
+}
+
+/// Reports the progress of a comparison, and measures the time of its stages.
+struct CompareWatch<'a> {
+    say: &'a dyn Fn(CompareNews),
+    cancel: Cancel,
+    times: StageTimes,
+}
+
+impl Watch for CompareWatch<'_> {
+    fn tell(&mut self, stage: Stage, done: u64, total: u64) {
+        if self.times.begin(stage) {
+            (self.say)(CompareNews::Progress(Progress { words: words_of(stage), done, total }));
+        }
+    }
+
+    fn cancel(&self) -> Cancel {
+        self.cancel.clone()
+    }
+}
+
+impl Command {
+    /// Whether it is for the window, or for the first of two runs, whose style the second one follows.
+    pub fn is_of_the_window(&self) -> bool {
+        matches!(
+            self,
+            Command::Open(_)
+                | Command::OpenWith(..)
+                | Command::OpenDialog
+                | Command::OpenPath
+                | Command::OpenKept
+                | Command::DiscardKept
+                | Command::Import
+                | Command::SetImport(..)
+                | Command::Convert
+                | Command::CancelImport
+                | Command::GoTo
+                | Command::Palette
+                | Command::Help
+                | Command::CloseOverlay
+                | Command::CloseFault(_)
+                | Command::SaveMesh
+                | Command::Screenshot
+                | Command::SetFigure(_)
+                | Command::Arrange(_)
+                | Command::ResetLayout
+                | Command::ToggleTheme
+                | Command::Measure
+                | Command::ShowTimes
+                | Command::Speed(_)
+                | Command::Layer(_)
+                | Command::ColourBy(_)
+                | Command::SurfaceView(_)
+                | Command::TogglePlane
+                | Command::ToggleSplit
+                | Command::HiddenLines
+                | Command::ToggleCurved
+        )
+    }
+}

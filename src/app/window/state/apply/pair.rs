@@ -1,0 +1,229 @@
+//! Two runs: which of them a command is for, and what is done with both.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::State;
+use crate::app::command_line::Overrides;
+use crate::app::window::command::Command;
+use crate::app::window::layout::Pane;
+use crate::app::window::pair::{PairCommand, Which};
+use crate::app::window::session::{Goal, Opened, Session, Source};
+use crate::app::window::state::pair::Pair;
+use crate::app::window::state::{Opening, Overlay, ViewKind};
+use crate::core::formats::Format;
+use crate::core::run::copies::Since;
+
+/// What a command is for, where there are two runs.
+enum Scope {
+    /// The window, or the first run, whose style the second one follows.
+    Window,
+    /// Both runs.
+    Both,
+    /// The run that the panels show.
+    Active,
+}
+
+impl State {
+    /// Does something with two runs, or begins to have two.
+    pub(super) fn apply_to_pair(&mut self, command: PairCommand) {
+        match command {
+            PairCommand::Fork => self.fork(),
+            PairCommand::ForkWith(rules) => {
+                self.fork();
+                if let Some(pair) = &mut self.pair {
+                    pair.first_rules = Some(rules);
+                }
+            }
+            PairCommand::AskBeside => self.toggle(Overlay::PathBeside),
+            PairCommand::OpenBeside(source, overrides) => self.open_beside(source, *overrides),
+            command if self.pair.is_none() => {
+                let how = "Fork at a step (Ctrl+K), or open a second run";
+                self.notice(format!("\u{201c}{}\u{201d} needs two runs: {how}.", command.name()));
+            }
+            PairCommand::Activate(which) => self.change_pair(|pair| pair.active = which),
+            PairCommand::Switch => self.change_pair(|pair| pair.active = pair.active.other()),
+            PairCommand::Link(link) => self.change_pair(|pair| pair.link = link),
+            PairCommand::Show(arrangement) => self.change_pair(|pair| pair.arrangement = arrangement),
+            PairCommand::Exchange => self.exchange(),
+            PairCommand::Close => self.close_second(),
+            PairCommand::ToDifference => match self.pair.as_ref().map(Pair::first_difference) {
+                Some(Some(step)) => self.apply_beside(Command::Go(Goal::Step(step))),
+                _ => self.notice("No difference of the two runs is known.".to_owned()),
+            },
+            PairCommand::In(which, command) => {
+                if matches!(*command, Command::Pick(_) | Command::Show(_)) {
+                    self.change_pair(|pair| pair.active = which);
+                }
+                self.apply_in(which, *command);
+            }
+        }
+    }
+
+    fn change_pair(&mut self, change: impl FnOnce(&mut Pair)) {
+        if let Some(pair) = &mut self.pair {
+            change(pair);
+            self.view.over_epoch += 1;
+            pair.other.view.over_epoch += 1;
+        }
+    }
+
+    /// Does what the user asks for, where there are two runs.
+    pub(super) fn apply_beside(&mut self, command: Command) {
+        match self.scope(&command) {
+            Scope::Window => self.apply_alone(command),
+            Scope::Active => self.apply_in(self.active_run(), command),
+            Scope::Both => Which::ALL.into_iter().for_each(|which| self.apply_in(which, command.clone())),
+        }
+    }
+
+    fn scope(&self, command: &Command) -> Scope {
+        match command {
+            Command::Fit | Command::LookFrom(_) | Command::Figures | Command::Notes => Scope::Both,
+            Command::Escape if self.view.overlay != Overlay::Nothing || self.run.import.is_some() => Scope::Window,
+            Command::Escape if self.view.figure_panel || self.view.notes => Scope::Both,
+            command if command.is_of_the_window() => Scope::Window,
+            _ => Scope::Active,
+        }
+    }
+
+    /// Does something in one of two runs.
+    fn apply_in(&mut self, which: Which, command: Command) {
+        let moved = match command {
+            Command::MoveCamera(view, _) => Some(view),
+            _ => None,
+        };
+        let Some(pair) = self.pair.as_mut().filter(|_| which == Which::B) else {
+            self.apply_alone(command);
+            return self.link_cameras(which, moved);
+        };
+        // What is open over the window belongs to the first run's state.
+        pair.other.view.overlay = self.view.overlay;
+        pair.other.apply_alone(command);
+        self.view.overlay = std::mem::take(&mut pair.other.view.overlay);
+        self.lift_messages();
+        self.link_cameras(which, moved);
+    }
+
+    /// The camera of the other run follows one that has moved.
+    fn link_cameras(&mut self, which: Which, moved: Option<ViewKind>) {
+        let (Some(pair), Some(view)) = (&mut self.pair, moved) else { return };
+        if !pair.is_in_one_place {
+            return;
+        }
+        let (from, to) = match which {
+            Which::A => (&self.view, &mut pair.other.view),
+            Which::B => (&pair.other.view, &mut self.view),
+        };
+        let (from, to) = match view {
+            ViewKind::Plane => (&from.plane, &mut to.plane),
+            ViewKind::Space => (&from.space, &mut to.space),
+            ViewKind::Import => return,
+        };
+        (to.camera, to.is_fitted) = (from.camera, from.is_fitted);
+    }
+
+    /// Shows the messages of the second run as those of the window.
+    pub(in crate::app::window::state) fn lift_messages(&mut self) {
+        let Some(pair) = &mut self.pair else { return };
+        let view = &mut pair.other.view;
+        let faults = std::mem::take(&mut view.faults);
+        if let Some(notice) = view.notice.take() {
+            self.view.notice = Some((format!("B: {}", notice.0), notice.1));
+        }
+        for fault in faults {
+            let text = format!("B: {fault}");
+            if !self.view.faults.contains(&text) {
+                self.view.faults.push(text);
+            }
+        }
+    }
+
+    /// Starts a second run that is the same up to the current step.
+    fn fork(&mut self) {
+        let active = self.active();
+        let (Some(run), Some(opened), Some(source)) =
+            (active.current_run(), active.run.opened.clone(), active.run.source.clone())
+        else {
+            return self.notice("There is nothing to fork: open a case first.".to_owned());
+        };
+        let step = active.run.moment.as_ref().map_or(0, |moment| moment.step);
+        let overrides = active.run.overrides.clone();
+        let background = opened.background.clone();
+        let session = Session::fork(run, background, self.wake.clone());
+        self.begin_beside(Opening { source, overrides, session }, step, Some(step));
+    }
+
+    /// Opens a second run.
+    fn open_beside(&mut self, source: Source, overrides: Overrides) {
+        let source = match source {
+            // A mesh is imported as it is.
+            Source::File(path) if Format::from_path(&path).is_ok() => Source::Mesh(path, Default::default()),
+            source => source,
+        };
+        let (named, changed) = (source.clone(), overrides.clone());
+        let session = Session::open(move || super::opening::read(&named, &changed), self.wake.clone());
+        let step = self.run.moment.as_ref().map_or(0, |moment| moment.step);
+        self.begin_beside(Opening { source, overrides, session }, step, None);
+    }
+
+    fn begin_beside(&mut self, opening: Opening, step: u64, forked: Option<u64>) {
+        self.close_second();
+        let mut other = Box::new(self.beside());
+        other.run.opening = Some(opening);
+        other.run.waiting = 1;
+        other.run.since = Some(Instant::now());
+        let mut pair = Pair::new(other, forked);
+        pair.first_step = Some(step);
+        self.pair = Some(pair);
+        self.view.reveal.ask(Some(Pane::TwoRuns));
+    }
+
+    /// Closes the second run. If it has unsaved changes, it is offered for recovery.
+    pub(in crate::app::window::state) fn close_second(&mut self) {
+        self.lift_messages();
+        let Some(mut pair) = self.pair.take() else { return };
+        self.view.over_epoch += 1;
+        // The second run's autosave ends first and releases its file.
+        drop(pair.other.run.autosave.take());
+        if let Some(autosave) = &mut self.run.autosave {
+            autosave.search();
+        }
+    }
+
+    /// Makes A the second run and B the first.
+    fn exchange(&mut self) {
+        let Some(mut pair) = self.pair.take() else { return };
+        let other = &mut pair.other;
+        if other.run.opened.is_none() {
+            self.pair = Some(pair);
+            return self.notice("The second run is not open yet.".to_owned());
+        }
+        std::mem::swap(&mut self.run, &mut other.run);
+        std::mem::swap(&mut self.workspace.document, &mut other.workspace.document);
+        std::mem::swap(&mut self.workspace.document.layout, &mut other.workspace.document.layout);
+        std::mem::swap(&mut self.view.plane, &mut other.view.plane);
+        std::mem::swap(&mut self.view.space, &mut other.view.space);
+        for state in [&mut *self, &mut **other] {
+            state.run.changes = Since::everything();
+            state.view.style_epoch += 1;
+            state.view.over_epoch += 1;
+        }
+        pair.active = pair.active.other();
+        (pair.compared, pair.comparison, pair.followed, pair.overlapped) = (None, None, None, None);
+        self.pair = Some(pair);
+    }
+}
+
+/// Whether two backgrounds lie in one place, so that one camera shows both.
+pub(in crate::app::window::state) fn are_in_one_place(a: &Arc<Opened>, b: &Arc<Opened>) -> bool {
+    let bounds = |opened: &Opened| {
+        let mesh = &opened.background.mesh;
+        mesh.nodes().map(|n| mesh.xyz(n)).fold(None, |bounds: Option<[glam::DVec3; 2]>, p| {
+            Some(bounds.map_or([p, p], |[low, high]| [low.min(p), high.max(p)]))
+        })
+    };
+    let (Some([a, b]), Some([c, d])) = (bounds(a), bounds(b)) else { return false };
+    let size = (b - a).length().max((d - c).length());
+    (a - c).length() <= 0.01 * size && (b - d).length() <= 0.01 * size
+}

@@ -1,0 +1,124 @@
+//! A second run beside the first: a state of its own, whose steps and cameras are linked with those of the first.
+
+use std::sync::Arc;
+
+use super::{Progress, State, Workspace};
+use crate::app::compare::Comparison;
+use crate::app::window::command::Rules;
+use crate::app::window::pair::{Arrangement, Comparing, Link, Which};
+use crate::core::run::compare::Overlap;
+use crate::core::run::{Edit, Run};
+
+/// Two runs.
+pub struct Pair {
+    /// Run B.
+    pub(super) other: Box<State>,
+    /// The run that the panels show.
+    pub active: Which,
+    /// How their steps are linked.
+    pub link: Link,
+    /// How they are shown.
+    pub arrangement: Arrangement,
+    /// The step at which B was forked from A; `None` where it was opened from elsewhere.
+    pub forked: Option<u64>,
+    /// What the comparison of both found, once it is known.
+    pub comparison: Option<Arc<Comparison>>,
+    /// Whether both have the same case, parameters and changes.
+    pub is_same: bool,
+    /// How far the comparison is.
+    pub progress: Option<Progress>,
+    /// The quadrilaterals that both have in the states that are shown.
+    pub overlap: Option<Arc<Overlap>>,
+    pub(super) comparing: Option<Comparing>,
+    /// What was compared last.
+    pub(super) compared: Option<[Compared; 2]>,
+    /// Whether B has not reached its first state yet.
+    pub(super) is_starting: bool,
+    /// The state of the active run that the other one has followed last.
+    pub(super) followed: Option<(Which, u64, u64, Link)>,
+    /// The runs, with their steps, of which the overlap is known.
+    pub(super) overlapped: Option<[(Compared, u64); 2]>,
+    /// Where B goes first, until it has been asked to.
+    pub(super) first_step: Option<u64>,
+    /// The parameters that B takes there.
+    pub(super) first_rules: Option<Rules>,
+    /// Whether both meshes lie in one place, so that one camera shows both.
+    pub(super) is_in_one_place: bool,
+}
+
+/// The number of a run and its changes.
+pub(super) type Compared = (u64, Vec<Edit>);
+
+impl Pair {
+    pub(super) fn new(other: Box<State>, forked: Option<u64>) -> Pair {
+        Pair {
+            other,
+            active: Which::B,
+            link: Link::default(),
+            arrangement: Arrangement::default(),
+            forked,
+            comparison: None,
+            is_same: false,
+            progress: None,
+            overlap: None,
+            comparing: None,
+            compared: None,
+            is_starting: true,
+            followed: None,
+            overlapped: None,
+            first_step: None,
+            first_rules: None,
+            is_in_one_place: false,
+        }
+    }
+
+    /// The step at which the runs differ first, once it is known.
+    pub fn first_difference(&self) -> Option<u64> {
+        self.comparison.as_ref()?.first_difference.as_ref().map(|found| found.step)
+    }
+}
+
+impl State {
+    /// The pair of runs, where there is a second one.
+    pub fn pair(&self) -> Option<&Pair> {
+        self.pair.as_ref()
+    }
+
+    /// One of the two runs: A is this one.
+    pub fn of(&self, which: Which) -> &State {
+        match &self.pair {
+            Some(pair) if which == Which::B => &pair.other,
+            _ => self,
+        }
+    }
+
+    /// Which of the runs the panels show.
+    pub fn active_run(&self) -> Which {
+        self.pair.as_ref().map_or(Which::A, |pair| pair.active)
+    }
+
+    /// The run that the panels show.
+    pub fn active(&self) -> &State {
+        self.of(self.active_run())
+    }
+
+    /// The state of a second run with nothing open, which looks like this one.
+    pub(super) fn beside(&self) -> State {
+        let mut other = State::new(self.wake.clone(), Workspace::default());
+        other.workspace.look_like(&self.workspace);
+        other.is_second = true;
+        // Panels tell the runs apart by their numbers.
+        other.run.number = self.run.number + SECOND;
+        other.run.track_epoch = self.run.track_epoch + SECOND;
+        other.run.autosave = self.run.autosave.as_ref().map(|autosave| autosave.beside());
+        other
+    }
+}
+
+/// What the numbers of a second run begin with.
+const SECOND: u64 = 1 << 32;
+
+/// Whether two runs lead to the same states.
+pub(super) fn are_same(a: &Run, b: &Run) -> bool {
+    a.case == b.case && a.parameters == b.parameters && a.edits() == b.edits()
+}

@@ -1,0 +1,244 @@
+//! Promise: a fork shows what would change: where two runs differ first, why, and what both end with; their steps and
+//! cameras are linked, and what is changed is the run that the panels show.
+//!
+//! Needs a graphics adapter (see `window_harness`).
+#![allow(clippy::unwrap_used)]
+
+mod window_harness;
+
+use std::path::Path;
+use std::process::Command as Process;
+
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use quadfront::app::window::{App, Arrangement, Command, Goal, Link, PairCommand, Source, Which};
+use quadfront::core::convert::EventKind;
+use quadfront::core::mesh::{Mesh, NodeId};
+use quadfront::render::scene::Outlined;
+use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
+
+/// The window on example 1.
+fn window() -> Option<Window> {
+    if !has_adapter() {
+        return None;
+    }
+    let mut harness = start(LAPTOP, |cc| App::new(cc, None));
+    apply(&mut harness, Command::Open(Source::BuiltIn("example1".to_owned())));
+    Some(harness)
+}
+
+/// Runs frames until both runs have answered everything and are recorded.
+fn both_settle(harness: &mut Window) {
+    settle(harness);
+    until(harness, "both runs are recorded", |harness| {
+        Which::ALL.into_iter().all(|which| {
+            let run = harness.state().state.of(which).run();
+            run.moment.is_some() && !run.is_busy() && run.recorded
+        })
+    });
+}
+
+fn pair(harness: &mut Window, command: PairCommand) {
+    apply(harness, Command::Pair(command));
+    both_settle(harness);
+}
+
+fn fork(harness: &mut Window) {
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    harness.run_steps(2);
+    both_settle(harness);
+}
+
+fn steps(harness: &Window) -> [u64; 2] {
+    Which::ALL.map(|which| harness.state().state.of(which).run().moment.as_ref().unwrap().step)
+}
+
+fn go(harness: &mut Window, goal: Goal) {
+    harness.state_mut().apply(Command::Go(goal));
+    both_settle(harness);
+}
+
+fn compared(harness: &mut Window) {
+    until(harness, "the runs are compared", |harness| {
+        harness.state().state.pair().is_some_and(|pair| pair.comparison.is_some())
+    });
+}
+
+/// The events of a conversion by the command line, a line each, without what depends on c by itself.
+fn events(folder: &Path, set: &str) -> Vec<serde_json::Value> {
+    let (events, mesh) = (folder.join("events.jsonl"), folder.join("mesh.vtu"));
+    let mut program = Process::new(env!("CARGO_BIN_EXE_quadfront"));
+    program.args(["convert", "example1", "--quiet", "--set", set]);
+    let done = program.arg("-o").arg(&mesh).arg("--events").arg(&events).output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let lines = std::fs::read_to_string(&events).unwrap();
+    let lines = lines.lines().map(|line| {
+        let mut event: serde_json::Value = serde_json::from_str(line).unwrap();
+        event.as_object_mut().unwrap().remove("reach");
+        event
+    });
+    lines.collect()
+}
+
+#[test]
+fn a_fork_with_another_c_differs_first_where_the_event_files_do() {
+    let Some(mut harness) = window() else { return };
+    fork(&mut harness);
+    harness.get_by_label("No difference yet");
+    type_over(&mut harness, "c", "1.5");
+    both_settle(&mut harness);
+    compared(&mut harness);
+    let folder = tempfile::tempdir().unwrap();
+    let files = [events(folder.path(), "c=2"), events(folder.path(), "c=1.5")];
+    let differ = files[0].iter().zip(&files[1]).position(|(a, b)| a != b).unwrap() as u64 + 1;
+    assert_eq!(harness.state().state.pair().unwrap().first_difference(), Some(differ));
+    harness.get_by_label(&format!("First difference: step {differ}"));
+    harness.get_by_label("Go there").click();
+    harness.run_steps(3);
+    both_settle(&mut harness);
+    assert_eq!(steps(&harness), [differ; 2]);
+    // Both reasons are there, in full, and the table of ends has what the command line reports.
+    for name in ["A: base selected", "B: base selected"] {
+        assert!(harness.query_all_by_label_contains(name).count() > 0, "{name}");
+    }
+    let reports = &harness.state().state.pair().unwrap().comparison.as_ref().unwrap().reports;
+    for (report, set) in reports.iter().zip(["c=2", "c=1.5"]) {
+        let mut program = Process::new(env!("CARGO_BIN_EXE_quadfront"));
+        let file = folder.path().join("report.json");
+        let done =
+            program.args(["convert", "example1", "--quiet", "--set", set, "--report"]).arg(&file).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let json: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
+        assert_eq!(json["mesh"], serde_json::to_value(&report.mesh).unwrap(), "{set}");
+    }
+    // A has not been changed.
+    assert!(harness.state().state.document().edits.is_empty());
+    assert_eq!(harness.state().state.of(Which::B).document().edits.len(), 1);
+}
+
+#[test]
+fn the_runs_go_together_by_step_by_quadrilateral_and_by_phase() {
+    let Some(mut harness) = window() else { return };
+    fork(&mut harness);
+    type_over(&mut harness, "c", "1.5");
+    both_settle(&mut harness);
+    for goal in [Goal::Quads(10), Goal::Step(620), Goal::Steps(-3)] {
+        go(&mut harness, goal);
+        let [a, b] = steps(&harness);
+        assert_eq!(a, b, "{goal:?}");
+    }
+    go(&mut harness, Goal::End);
+    let ends = Which::ALL.map(|which| harness.state().state.of(which).run().track.len() as u64);
+    assert_eq!(steps(&harness), [ends[0].min(ends[1]), ends[1]], "each run ends where it ends");
+    assert_ne!(ends[0], ends[1]);
+    pair(&mut harness, PairCommand::Link(Link::Quad));
+    go(&mut harness, Goal::Step(1500));
+    let standing = |harness: &Window, which| {
+        let state = &harness.state().state;
+        state.of(which).run().moment.as_ref().unwrap().standing
+    };
+    assert_eq!(standing(&harness, Which::A), standing(&harness, Which::B));
+    assert_ne!(steps(&harness)[0], steps(&harness)[1]);
+    pair(&mut harness, PairCommand::Link(Link::Event));
+    go(&mut harness, Goal::Kind(EventKind::Seamed, quadfront::app::window::Direction::Back));
+    let number = |which: Which| {
+        let run = harness.state().state.of(which).run();
+        let step = run.moment.as_ref().unwrap().step as usize;
+        assert_eq!(run.track[step - 1].kind, EventKind::Seamed);
+        run.track[..step].iter().filter(|tracked| tracked.kind == EventKind::Seamed).count()
+    };
+    assert_eq!(number(Which::A), number(Which::B));
+    // By themselves: A stays.
+    pair(&mut harness, PairCommand::Link(Link::Free));
+    let before = steps(&harness);
+    go(&mut harness, Goal::Steps(-40));
+    assert_eq!(steps(&harness), [before[0], before[1] - 40]);
+    // With A in the panels, A moves.
+    harness.get_by_label("Run A").click_accesskit();
+    harness.run_steps(2);
+    assert_eq!(harness.state().state.active_run(), Which::A);
+    go(&mut harness, Goal::Step(9));
+    assert_eq!(steps(&harness), [9, before[1] - 40]);
+}
+
+/// How many quadrilaterals of a mesh have a partner in another one: each corner within a tenth of a unit length in the
+/// metric of a corner of the partner, one to one.
+fn with_partners(mesh: &Mesh, other: &Mesh) -> usize {
+    let quads = |mesh: &Mesh| -> Vec<Vec<NodeId>> {
+        mesh.elements().filter(|e| mesh.is_quad(*e)).map(|e| mesh.corners(e).collect()).collect()
+    };
+    let is_near = |a: NodeId, b: NodeId| {
+        let (d, m) = (mesh.uv(a) - other.uv(b), other.metric(b));
+        m.uu * d.x * d.x + 2.0 * m.uv * d.x * d.y + m.vv * d.y * d.y <= 0.01
+    };
+    let others = quads(other);
+    let has_partner = |quad: &Vec<NodeId>| {
+        others.iter().any(|other| {
+            other.iter().all(|b| quad.iter().any(|a| is_near(*a, *b)))
+                && quad.iter().all(|a| other.iter().any(|b| is_near(*a, *b)))
+        })
+    };
+    quads(mesh).iter().filter(|quad| has_partner(quad)).count()
+}
+
+#[test]
+fn what_only_one_run_has_is_counted_and_the_cameras_are_one() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::Go(Goal::Step(100)));
+    fork(&mut harness);
+    assert_eq!(steps(&harness), [100; 2]);
+    type_over(&mut harness, "c", "1.5");
+    both_settle(&mut harness);
+    go(&mut harness, Goal::Step(900));
+    harness.run_steps(3);
+    let state = &harness.state().state;
+    let [a, b] = Which::ALL.map(|which| state.of(which).run().moment.clone().unwrap());
+    let overlap = state.pair().unwrap().overlap.clone().unwrap();
+    let both = with_partners(&a.mesh, &b.mesh);
+    assert!(both > 30 && both < a.standing as usize, "{both} of {}", a.standing);
+    let only = [a.standing, b.standing].map(|standing| standing as usize - both);
+    assert_eq!((overlap.both, overlap.only.each_ref().map(Vec::len)), (both, only));
+    drop((a, b));
+    for arrangement in Arrangement::ALL {
+        pair(&mut harness, PairCommand::Show(arrangement));
+        harness.state_mut().apply(Command::Show(Outlined::Element(overlap.only[1][0])));
+        harness.run_steps(4);
+        let cameras = Which::ALL.map(|which| harness.state().state.of(which).view().plane.camera.unwrap());
+        assert_eq!(cameras[0], cameras[1], "{arrangement:?}");
+    }
+}
+
+#[test]
+fn a_second_run_that_is_closed_unsaved_is_offered_and_runs_can_be_exchanged() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let runs = folder.path().to_path_buf();
+    let mut harness = start(LAPTOP, move |cc| App::new(cc, None).keeping(Some(runs)));
+    apply(&mut harness, Command::Open(Source::BuiltIn("figure-19".to_owned())));
+    harness.state_mut().apply(Command::Pair(PairCommand::Switch));
+    assert!(harness.state().state.view().notice().unwrap().0.contains("needs two runs"));
+    fork(&mut harness);
+    apply(&mut harness, Command::Set("c", "1.25".to_owned()));
+    both_settle(&mut harness);
+    pair(&mut harness, PairCommand::Exchange);
+    assert_eq!(harness.state().state.document().edits.len(), 1, "what was B is A now");
+    assert!(harness.state().state.of(Which::B).document().edits.is_empty());
+    assert_eq!(harness.state().state.active_run(), Which::A);
+    pair(&mut harness, PairCommand::Exchange);
+    harness.get_by_label("Close the second run").click_accesskit();
+    harness.run_steps(2);
+    assert!(harness.state().state.pair().is_none());
+    until(&mut harness, "the run is offered", |harness| {
+        harness.query_all_by_label_contains("An unsaved run of figure-19 with 1 edit").count() > 0
+    });
+    // A case that is opened beside another one is compared with it; one that does not exist changes nothing.
+    let beside = |name: &str| PairCommand::OpenBeside(Source::BuiltIn(name.to_owned()), Box::default());
+    pair(&mut harness, beside("figure-16"));
+    compared(&mut harness);
+    harness.get_by_label("First difference: step 0");
+    harness.state_mut().apply(Command::Pair(beside("no-such-case")));
+    until(&mut harness, "it is refused", |harness| harness.state().state.pair().is_none());
+    assert!(harness.state().state.view().faults.iter().any(|fault| fault.contains("no-such-case")));
+}
