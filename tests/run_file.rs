@@ -33,7 +33,7 @@ fn parameter(step: u64, key: &str, value: &str) -> Edit {
 fn grown(count: u64) -> Run {
     let mut run = run_of("example1");
     run.set_edits((0..count).map(|k| parameter(k, "theta_rect", &format!("{}", 100 + k % 60))).collect());
-    run.bookmarks = (0..count).map(|step| Bookmark { step, name: format!("number {step} of {count}") }).collect();
+    run.bookmarks = (0..count).map(|step| Bookmark { step, note: format!("number {step} of {count}") }).collect();
     run
 }
 

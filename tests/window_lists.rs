@@ -6,9 +6,11 @@
 
 mod window_harness;
 
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
 use quadfront::app::window::{App, Command, Goal, Source};
+use quadfront::core::convert::Event;
 use quadfront::core::mesh::{ElementId, Mesh};
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
@@ -135,4 +137,44 @@ fn a_list_follows_the_run_and_is_copied_as_csv() {
     let text = text.unwrap();
     assert_eq!(text.lines().count(), quads + 1, "{text}");
     assert!(text.starts_with("id,"));
+}
+
+/// The number in the label of a link of a chain.
+fn step_of(label: &str) -> u64 {
+    let digits = label.strip_prefix("Chain, step ").unwrap().split(':').next().unwrap();
+    digits.replace('\u{2009}', "").parse().unwrap()
+}
+
+#[test]
+fn three_actions_lead_from_a_cold_start_to_the_decision_that_made_the_worst_quadrilateral() {
+    let Some(mut window) =
+        has_adapter().then(|| start(LAPTOP, |cc| App::new(cc, Some(Source::BuiltIn("example1".to_owned())))))
+    else {
+        return;
+    };
+    settle(&mut window);
+    // One: to the end.
+    window.key_press(Key::End);
+    settle(&mut window);
+    // Two: the worst quadrilateral.
+    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::W);
+    settle(&mut window);
+    let (worst, quality) = window.state().state.run().moment.as_ref().unwrap().worst.unwrap();
+    assert_eq!(picked(&window), Some(Outlined::Element(worst)));
+    window.get_by_label(&format!("Quadrilateral {}", worst.0));
+    until(&mut window, "the chain is told", |window| {
+        window.query_all_by_label_contains("Chain, step ").next().is_some()
+    });
+    // Its last quality is the one that it has, and one step cost most.
+    assert!(window.query_all_by_label_contains(&format!("\u{2192} {quality:.2}")).next().is_some());
+    window.get_by_label("lost most");
+    let links: Vec<String> = window.get_all_by_label_contains("Chain, step ").map(|node| label(&node)).collect();
+    assert!(links.len() > 3 && links.is_sorted_by_key(|label| step_of(label)), "{links:?}");
+    assert!(links[0].contains("base selected"), "{links:?}");
+    // Three: the decision.
+    window.get_by_label(&links[0]).click_accesskit();
+    settle(&mut window);
+    let moment = window.state().state.run().moment.as_ref().unwrap();
+    assert_eq!(moment.step, step_of(&links[0]));
+    assert!(matches!(moment.event, Some(Event::BaseSelected { .. })));
 }

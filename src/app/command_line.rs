@@ -45,6 +45,8 @@ pub(super) enum Command {
     Sweep(SweepArguments),
     /// Draw a mesh, or states of a conversion, as SVG or PNG
     Render(RenderArguments),
+    /// Write the notes on the bookmarked steps of a run as one page (HTML), with a figure of each
+    Notes(NotesArguments),
     /// List the built-in cases
     Cases(CasesArguments),
 }
@@ -336,6 +338,17 @@ pub(super) struct RenderArguments {
 }
 
 #[derive(Args)]
+pub(super) struct NotesArguments {
+    #[command(flatten)]
+    pub source: Source,
+    #[command(flatten)]
+    pub figure: FigureOptions,
+    /// Write the page (.html), or - for standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Target,
+}
+
+#[derive(Args)]
 pub(super) struct CasesArguments {
     /// Print name and title of each case as JSON
     #[arg(long)]
@@ -396,6 +409,7 @@ mod tests {
             "quadfront sweep example1 --over selection=table1,level --list",
             "quadfront sweep example1 --list=cells --over c=1:2:.5",
             "quadfront sweep example1 --collect cells -o a.json --show seconds",
+            "quadfront notes a.toml -o a.html --size 84mm",
             "quadfront cases --json",
             "quadfront",
             "quadfront open",

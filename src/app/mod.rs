@@ -12,6 +12,7 @@ mod cases;
 mod compare;
 mod sweep;
 mod render;
+mod notes;
 #[cfg(feature = "window")]
 pub mod window;
 
@@ -62,6 +63,7 @@ pub fn run() -> ExitCode {
         Command::Check(arguments) => check::check(arguments),
         Command::Compare(arguments) => compare::compare(arguments),
         Command::Sweep(arguments) => sweep::sweep(arguments),
+        Command::Notes(arguments) => notes::notes(arguments).map(|()| ExitCode::SUCCESS),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
         Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),
     };

@@ -1,6 +1,7 @@
 //! Everything that can be done in the window, as a value: menus, keys, panels, the palette and tests all use it.
 
 mod keys;
+mod name;
 
 pub use keys::{Purpose, groups, keys};
 
@@ -11,7 +12,6 @@ use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::view_layer::ViewLayer;
-use super::words;
 use crate::app::command_line::Overrides;
 use crate::core::case::{Parameters, built_in};
 use crate::core::convert::EventKind;
@@ -52,12 +52,16 @@ pub enum Command {
     Explain([NodeId; 2]),
     /// Ask for the history of something.
     TellPast(Watched),
+    /// Ask for the decision chain of a quadrilateral.
+    TellChain(ElementId),
     /// Make a list of elements or nodes.
     List(ListKind, Query),
     /// Copy such a list as comma-separated values.
     CopyList(ListKind, Query),
     /// Select something and bring it into view.
     Find(Outlined),
+    /// Select the quadrilateral of the lowest quality and bring it into view.
+    FindWorst,
     /// Watch something, or stop watching it.
     Watch(Outlined),
     /// Switch a watchpoint on or off.
@@ -104,6 +108,12 @@ pub enum Command {
     RemoveBreakpoint(usize),
     /// Set a bookmark at this step, or remove it.
     Bookmark,
+    /// Change the note on a bookmarked step.
+    WriteNote(u64, String),
+    /// Remove the bookmark of a step.
+    RemoveBookmark(u64),
+    /// Export the notes on all bookmarked steps as one page.
+    ExportNotes,
     /// Open a case or a mesh.
     Open(Source),
     /// Open a case or a mesh with its parameters changed.
@@ -215,92 +225,6 @@ pub const KINDS: [EventKind; 13] = [
 ];
 
 impl Command {
-    /// Its name in the palette, in menus and in tooltips.
-    pub fn name(&self) -> String {
-        match self {
-            Command::Go(goal) => go_name(*goal),
-            Command::GoToText(text) => format!("Go to {text}"),
-            Command::ToBreakpoint(Direction::Forward) => "To the next breakpoint".into(),
-            Command::ToBreakpoint(Direction::Back) => "Back to a breakpoint".into(),
-            Command::Play => "Play or pause".into(),
-            Command::Speed(speed) => format!("Play {speed} quads a second"),
-            Command::Stop => "Stop".into(),
-            Command::Hover(what) => format!("Point at {}", words::thing(*what)),
-            Command::Pick(_) => "Select".into(),
-            Command::Show(_) => "Show in the middle".into(),
-            Command::LightUp(..) => "Highlight".into(),
-            Command::LastTouch(_) => "Last change".into(),
-            Command::Made(_) => "Go to creation".into(),
-            Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
-            Command::TellPast(_) => "History".into(),
-            Command::List(kind, _) => format!("List {}s", kind.name()),
-            Command::CopyList(kind, _) => format!("Copy the {}s as CSV", kind.name()),
-            Command::Find(what) => format!("Find {}", words::thing(*what)),
-            Command::Watch(what) => format!("Watch {}", words::thing(*what)),
-            Command::SwitchWatch(_) => "Switch a watchpoint".into(),
-            Command::Measure => "Measure how long steps take".into(),
-            Command::ShowTimes => "Show how long states and frames take".into(),
-            Command::Fit => "Fit the mesh to the view".into(),
-            Command::ShowDecision => "Zoom to the decision".into(),
-            Command::LookFrom(Bearing::Iso) => "Look from front, right and above".into(),
-            Command::LookFrom(Bearing::X) => "Look from +x".into(),
-            Command::LookFrom(Bearing::Y) => "Look from +y".into(),
-            Command::LookFrom(Bearing::Z) => "Look from +z".into(),
-            Command::LookFrom(bearing) => format!("Look from {bearing}"),
-            Command::MoveCamera(..) => "Move the camera".into(),
-            Command::SurfaceView(view) => view.name().into(),
-            Command::TogglePlane => "Space or parametric plane".into(),
-            Command::ToggleSplit => "Space and parametric plane side by side".into(),
-            Command::HiddenLines => "Hidden lines: off, faint, shown".into(),
-            Command::ToggleCurved => "Curved or flat elements".into(),
-            Command::Set(key, value) => format!("Set {key} = {value}"),
-            Command::ChooseBase([a, b]) => format!("Choose {} as base", words::segment([*a, *b])),
-            Command::ResetParameters => "Reset all parameters to the case".into(),
-            Command::SetRules(Rules::Paper) => "Set all parameters to the paper's from this step on".into(),
-            Command::SetRules(Rules::Default) => "Set all parameters to the defaults from this step on".into(),
-            Command::SetForCase(key, value) => format!("Open again with {key} = {value}"),
-            Command::Layer(layer) => format!("Layer: {}", layer.name()),
-            Command::ColourBy(by) => format!("Colour by {}", by.name()),
-            Command::ToggleTheme => "Dark or light theme".into(),
-            Command::AddBreakpoint(text) => format!("Break where {text}"),
-            Command::SwitchBreakpoint(_) => "Switch a breakpoint".into(),
-            Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
-            Command::Bookmark => "Bookmark this step".into(),
-            Command::Open(source) | Command::OpenWith(source, _) => format!("Open {}", source.name()),
-            Command::Import => "Import settings…".into(),
-            Command::SetImport(..) => "Change the import".into(),
-            Command::Convert => "Convert".into(),
-            Command::CancelImport => "Cancel".into(),
-            Command::OpenDialog => "Open with a dialog…".into(),
-            Command::OpenPath => "Open by path…".into(),
-            Command::GoTo => "Go to a step or NQ…".into(),
-            Command::Screenshot => "Save a picture of the window".into(),
-            Command::Export => "Save a figure of this state".into(),
-            Command::Figures => "Figures: size, ink, layers, strips…".into(),
-            Command::SetFigure(_) => "Change the figure".into(),
-            Command::ChooseFolder => "Choose the folder of figures…".into(),
-            Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
-            Command::Reopen => "Reload".into(),
-            Command::Notes => "Notes on this case".into(),
-            Command::OpenKept => "Recover the unsaved run".into(),
-            Command::DiscardKept => "Discard the unsaved run".into(),
-            Command::SaveRun => "Save the run".into(),
-            Command::SaveMesh => "Save the mesh…".into(),
-            Command::SaveMeshAs(path) => format!("Save the mesh as {path}"),
-            Command::Undo => "Undo".into(),
-            Command::Redo => "Redo".into(),
-            Command::Palette => "All commands by name".into(),
-            Command::Help => "Keys".into(),
-            Command::CloseOverlay => "Close".into(),
-            Command::CloseFault(_) => "Close the message".into(),
-            Command::Messages => "Messages".into(),
-            Command::Arrange(_) => "Arrange the panels".into(),
-            Command::ResetLayout => "Reset layout".into(),
-            Command::Escape => "Close, or clear the selection".into(),
-            Command::Pair(command) => command.name(),
-        }
-    }
-
     /// Its key as text, if it has one.
     pub fn key(&self) -> Option<String> {
         if *self == Command::Help {
@@ -330,6 +254,7 @@ impl Command {
             Command::Hover(_)
                 | Command::Explain(_)
                 | Command::TellPast(_)
+                | Command::TellChain(_)
                 | Command::List(..)
                 | Command::MoveCamera(..)
                 | Command::SetFigure(_)
@@ -370,6 +295,7 @@ impl Command {
             Command::ResetLayout,
             Command::Import,
             Command::Notes,
+            Command::ExportNotes,
             Command::Messages,
             Command::ChooseFolder,
             Command::ShowTimes,
@@ -389,25 +315,6 @@ impl Command {
             new
         });
         all
-    }
-}
-
-fn go_name(goal: Goal) -> String {
-    let kind = words::kind;
-    match goal {
-        Goal::Step(0) => "To the beginning".into(),
-        Goal::Step(step) => format!("To step {step}"),
-        Goal::Steps(1) => "Step forward (operation)".into(),
-        Goal::Steps(-1) => "Step back (operation)".into(),
-        Goal::Steps(by) => format!("{by} operations"),
-        Goal::Quads(1) => "Step forward (quadrilateral)".into(),
-        Goal::Quads(-1) => "Step back (quadrilateral)".into(),
-        Goal::Quads(by) if by > 0 => format!("{by} quadrilaterals forward"),
-        Goal::Quads(by) => format!("{} quadrilaterals back", -by),
-        Goal::ToQuads(quads) => format!("To NQ = {quads}"),
-        Goal::Kind(event, Direction::Forward) => format!("Next event: {}", kind(event)),
-        Goal::Kind(event, Direction::Back) => format!("Previous event: {}", kind(event)),
-        Goal::End => "To the end".into(),
     }
 }
 

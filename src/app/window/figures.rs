@@ -13,6 +13,7 @@ use super::state::{State, ViewCamera};
 use crate::core::kernel::worded::worded;
 
 use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Size, Wanted};
+use crate::app::notes;
 use crate::app::work::{self, FigureFrame};
 use crate::core::convert::Stop;
 use crate::core::fault::Fault;
@@ -21,7 +22,7 @@ use crate::core::mesh::Names;
 use crate::core::progress::Nobody;
 use crate::core::record::{Export, run_file};
 use crate::core::run::shown::fingerprint;
-use crate::core::run::{Run, Shown, ShownState};
+use crate::core::run::{Bookmark, Run, Shown, ShownState};
 use crate::render::camera::Bearing;
 use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers};
 use crate::render::orthographic::View;
@@ -173,12 +174,12 @@ impl FigureForm {
     }
 
     /// The steps of a strip.
-    fn wanted(&self, bookmarks: &[u64]) -> Result<Vec<Wanted>, Fault> {
+    fn wanted(&self, bookmarks: &[Bookmark]) -> Result<Vec<Wanted>, Fault> {
         if self.content == Content::Bookmarks {
             if bookmarks.is_empty() {
                 return Err(Fault::new("There are no bookmarks").remedy("Ctrl+B bookmarks the current step"));
             }
-            return Ok(bookmarks.iter().map(|step| Wanted::at(Some(Stop::Step(*step)))).collect());
+            return Ok(bookmarks.iter().map(|mark| Wanted::at(Some(Stop::Step(mark.step)))).collect());
         }
         let stops = crate::app::input::stops(&format!("nq={}", self.stops.replace(' ', "")));
         let stops =
@@ -264,6 +265,28 @@ fn maker(state: &State) -> Result<Option<Maker>, Fault> {
             Ok(figure::make(&run, &wanted, &options, true, &mut Nobody)?.0)
         }
         None => of_state(&moment, &opened, &current, &options),
+    })))
+}
+
+/// Starts to write the page with the notes on bookmarked steps, on a thread of its own, in the working folder; does
+/// nothing if nothing is open. The figures look as the panel says.
+///
+/// # Errors
+/// If there is no bookmark, or the form has no meaning.
+pub fn begin_notes(state: &State, wake: Wake) -> Result<Option<Writing>, Fault> {
+    let Some(mut run) = state.current_run() else { return Ok(None) };
+    if run.bookmarks.is_empty() {
+        return Err(Fault::new("There are no bookmarks").remedy("Ctrl+B bookmarks the current step"));
+    }
+    let form = FigureForm { content: Content::State, in_view: false, ..state.workspace().figure.clone() };
+    let side = state.view().space.camera.filter(|_| state.is_in_space()).map(|camera| Bearing::of_turn(camera.turn));
+    let options = form.options(None, side.map(|side| (side, state.workspace().surfaces.hidden)))?;
+    Ok(Some(files::work(wake, move || {
+        run.case.parameters = run.parameters.clone();
+        let page = notes::page(&run, &options, true, &mut Nobody)?;
+        let path = free_path(&format!("{}-notes", run.case.name), "html");
+        save::save(&path, |file| file.write_all(page.as_bytes()))?;
+        Ok(format!("The notes were saved as {}.", path.display()))
     })))
 }
 

@@ -39,7 +39,7 @@ pub use command::{Command, Rules};
 pub use graphics::Lost;
 pub use import::Gesture;
 pub use lists::ListKind;
-pub use pair::{Arrangement, Link, PairCommand, Which};
+pub use pair::{Arrangement, LinkedBy, PairCommand, Which};
 pub use session::{Direction, Goal, Source};
 pub use state::SurfaceView;
 pub use view_layer::ViewLayer;

@@ -40,7 +40,7 @@ worded! {
     /// Where one run goes when the other one has moved.
     #[derive(Default)]
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Link by name {
+    pub enum LinkedBy by name {
         /// To the same step.
         #[default]
         Step = "step",
@@ -81,8 +81,8 @@ pub enum PairCommand {
     Activate(Which),
     /// Go on with the other run.
     Switch,
-    /// Link the steps of the runs in another way.
-    Link(Link),
+    /// LinkedBy the steps of the runs in another way.
+    Link(LinkedBy),
     /// Show the runs in another way.
     Show(Arrangement),
     /// Exchange the runs.
@@ -105,8 +105,8 @@ impl PairCommand {
             PairCommand::OpenBeside(source, _) => format!("Open {} as second run", source.name()),
             PairCommand::Activate(which) => format!("Show run {} in the panels", which.name()),
             PairCommand::Switch => "Show the other run in the panels".into(),
-            PairCommand::Link(Link::Free) => "Move each run by itself".into(),
-            PairCommand::Link(link) => format!("Link the runs by {}", link.name()),
+            PairCommand::Link(LinkedBy::Free) => "Move each run by itself".into(),
+            PairCommand::Link(link) => format!("LinkedBy the runs by {}", link.name()),
             PairCommand::Show(arrangement) => format!("Two runs: {}", arrangement.name().to_lowercase()),
             PairCommand::Exchange => "Exchange the two runs".into(),
             PairCommand::Close => "Close the second run".into(),
@@ -120,7 +120,7 @@ impl PairCommand {
         let mut all = vec![PairCommand::Fork];
         all.extend(Rules::ALL.map(PairCommand::ForkWith));
         all.extend([PairCommand::AskBeside, PairCommand::Switch, PairCommand::ToDifference]);
-        all.extend(Link::ALL.map(PairCommand::Link));
+        all.extend(LinkedBy::ALL.map(PairCommand::Link));
         all.extend(Arrangement::ALL.map(PairCommand::Show));
         all.extend([PairCommand::Exchange, PairCommand::Close]);
         all

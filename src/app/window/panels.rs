@@ -8,6 +8,7 @@ pub mod timeline;
 pub mod front;
 pub mod lists;
 mod condition_field;
+pub mod bookmarks;
 pub mod breakpoints;
 pub mod inspector;
 pub mod history;

@@ -26,7 +26,7 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::{Born, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
+use crate::core::run::{Born, Chain, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
 use worker::Worker;
 
 /// How often progress is reported.
@@ -44,6 +44,8 @@ pub enum Ask {
     Made(ElementId),
     /// Report the history of something up to the current step.
     Past(Watched),
+    /// Report the decision chain of a quadrilateral.
+    Chain(ElementId),
     /// Count how often conditions hold.
     Count(Vec<Condition>),
     /// Report why a segment of the front was or was not chosen.
@@ -77,6 +79,8 @@ pub enum SessionNews {
     Checked(u64, Verdict),
     /// The history of something up to a step.
     Past(Arc<Past>),
+    /// The decision chain of a quadrilateral.
+    Chain(Arc<ToldChain>),
     /// The steps of the recorded part of the run at which each condition holds.
     Hits(Vec<Vec<u64>>),
     /// Why a segment of the front was or was not chosen, at a step.
@@ -132,6 +136,15 @@ pub struct Past {
     pub made: Option<(u64, Vec<ElementId>)>,
     /// The step after which the edge was no longer live on both sides.
     pub killed: Option<u64>,
+}
+
+/// The decision chain of a quadrilateral at a step.
+#[derive(Clone, Debug)]
+pub struct ToldChain {
+    pub step: u64,
+    pub element: ElementId,
+    /// None for a quadrilateral that the background mesh has.
+    pub chain: Option<Chain>,
 }
 
 /// A run on its threads.

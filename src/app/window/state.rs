@@ -22,7 +22,7 @@ use super::autosave::Marks;
 use super::session::{Moment, Stops, Wake};
 use crate::core::case::Parameters;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Bookmark, Condition, Run, Watched, run};
+use crate::core::run::{Condition, Run, Watched, run};
 use crate::render::scene::{ColourBy, Outlined};
 
 /// Everything that the window knows.
@@ -112,10 +112,7 @@ impl State {
         let mut run = self.run.opened.as_ref()?.run.clone();
         run.shown = None;
         run.set_edits(self.document().edits.clone());
-        let name = |step: u64| run.bookmarks.iter().find(|mark| mark.step == step).map(|mark| mark.name.clone());
-        let marks = self.document().bookmarks.iter();
-        let marks = marks.map(|step| Bookmark { step: *step, name: name(*step).unwrap_or_default() });
-        run.bookmarks = marks.collect();
+        run.bookmarks.clone_from(&self.document().bookmarks);
         run.camera = self.moved_camera().or(run.camera);
         Some(run)
     }

@@ -18,7 +18,7 @@
 //!
 //! [[bookmark]]
 //! step = 900
-//! name = "the sliver"
+//! note = "the **sliver**"         # Markdown
 //!
 //! [camera]
 //! target = [0.5, 0.5, 0]
@@ -116,9 +116,9 @@ fn parsed(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
     }
     run.set_edits(edits);
     for table in table.tables("bookmark")? {
-        table.only(&["step", "name"])?;
-        let name = table.need("name", "\"here\"")?.text()?.to_owned();
-        run.bookmarks.push(Bookmark { step: step(&table)?, name });
+        table.only(&["step", "note"])?;
+        let note = table.get("note").map(|value| value.text()).transpose()?.unwrap_or_default().to_owned();
+        run.bookmarks.push(Bookmark { step: step(&table)?, note });
     }
     run.bookmarks.sort_by_key(|bookmark| bookmark.step);
     run.camera = table.get("camera").map(|value| camera(&value.table()?)).transpose()?;
@@ -342,8 +342,11 @@ fn text(run: &Run, links: &Links, folder: &Path) -> String {
             EditKind::Base { a, b } => line(format_args!("base = [{}, {}]\n", a.0, b.0)),
         }
     }
-    for Bookmark { step, name } in &run.bookmarks {
-        line(format_args!("\n[[bookmark]]\nstep = {step}\nname = {}\n", quoted(name)));
+    for Bookmark { step, note } in &run.bookmarks {
+        line(format_args!("\n[[bookmark]]\nstep = {step}\n"));
+        if !note.is_empty() {
+            line(format_args!("note = {}\n", quoted(note)));
+        }
     }
     if let Some(Camera { target, turn, height }) = run.camera {
         let list = |numbers: &[f64]| numbers.iter().map(|&x| Shortest(x).to_string()).collect::<Vec<_>>().join(", ");
@@ -412,7 +415,7 @@ mod tests {
             Edit { step: 900, kind: EditKind::Base { a: NodeId(17), b: NodeId(18) } },
             parameter(812, "selection", "table1"),
         ]);
-        run.bookmarks.push(Bookmark { step: 900, name: "the \"sliver\"\n\\".to_owned() });
+        run.bookmarks.push(Bookmark { step: 900, note: "the \"sliver\"\n\\".to_owned() });
         run.camera = Some(Camera { target: [0.5, 1e-9, 0.0], turn: [0.0, 0.0, 0.0, 1.0], height: 1.25 });
         run
     }

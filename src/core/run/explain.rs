@@ -15,11 +15,11 @@ mod next;
 
 pub use event::{about, event, why_rolled_back};
 pub use next::next;
-pub use numbers::{capital, edge, plain, segment};
+pub use numbers::{angles_apart, apart, capital, edge, plain, segment};
 pub use segment::{SegmentFacts, Verdict};
 pub use selecting::{SelectedBase, Selecting};
 pub use side::{corner, passed, side_rule};
-pub use why::{key_name, key_text};
+pub use why::{key_name, key_text, margins};
 
 use glam::DVec3;
 use serde::Serialize;

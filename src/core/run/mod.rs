@@ -14,6 +14,7 @@
 //! | the step that made each quadrilateral, without a history | [`Births`] |
 //! | elements and nodes with their measures, filtered and sorted | [`ElementTable`], [`NodeTable`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`Watched`] |
+//! | the decision chain of a quadrilateral | [`Chain`] |
 //! | why a segment is chosen, what a node is | [`Selecting`], [`SegmentFacts`], [`NodeFacts`], [`FrontTable`] |
 //! | what a step did and looked at, by which rule, and what comes next, in words | [`explain`] |
 //!
@@ -36,6 +37,7 @@ mod births;
 mod worst_quality;
 pub mod breakpoint;
 mod watch;
+mod chain;
 pub mod front_table;
 pub mod explain;
 mod listing;
@@ -44,6 +46,7 @@ mod node_table;
 
 pub use births::{Births, Born};
 pub use breakpoint::Condition;
+pub use chain::{Chain, Link};
 pub use copies::Copies;
 pub use element_table::{ElementRow, ElementTable};
 pub use explain::{

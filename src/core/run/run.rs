@@ -70,13 +70,13 @@ impl EditKind {
     }
 }
 
-/// A step with a name.
+/// A step with a note.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bookmark {
     /// The step.
     pub step: u64,
-    /// Its name.
-    pub name: String,
+    /// What the user says of it, as Markdown.
+    pub note: String,
 }
 
 /// The view of a state in plain numbers: `core` does not know what they mean on a screen.

@@ -110,7 +110,7 @@ impl History {
                 if difference.is_none_or(|difference| look.may_change(watched, difference)) {
                     let seen = self.seen(watched, from, until, &|a, b| a != b)?;
                     if let Some(step) = seen.turns.first() {
-                        return Ok(Some(*step));
+                        return Ok(Some(step.0));
                     }
                     look = seen.last;
                 }
@@ -135,7 +135,17 @@ impl History {
     /// # Errors
     /// A step of the replay failed.
     pub fn touches(&self, watched: Watched, most: usize) -> Result<Vec<u64>, Fault> {
-        let mut found = self.turns(watched, self.step(), &|a, b| a != b, most)?;
+        let found = self.turns(watched, 0, self.step(), &|a, b| a != b, most)?;
+        Ok(found.into_iter().rev().map(|turned| turned.0).collect())
+    }
+
+    /// The steps after `since` up to the current state that touched a quadrilateral, each with its quality after it:
+    /// the newest `most`, in ascending order.
+    ///
+    /// # Errors
+    /// A step of the replay failed.
+    pub(super) fn touches_since(&self, quad: ElementId, since: u64, most: usize) -> Result<Vec<(u64, f64)>, Fault> {
+        let mut found = self.turns(Watched::Element(quad), since, self.step(), &|a, b| a != b, most)?;
         found.reverse();
         Ok(found)
     }
@@ -176,14 +186,22 @@ impl History {
     }
 
     fn last_turn(&self, watched: Watched, until: u64, turn: Turn<'_>) -> Result<Option<u64>, Fault> {
-        Ok(self.turns(watched, until, turn, 1)?.first().copied())
+        Ok(self.turns(watched, 0, until, turn, 1)?.first().map(|turned| turned.0))
     }
 
-    /// The newest `most` steps up to `until` at which a turn happened, in descending order.
-    fn turns(&self, watched: Watched, mut until: u64, turn: Turn<'_>, most: usize) -> Result<Vec<u64>, Fault> {
+    /// The newest `most` steps after `since` up to `until` at which a turn happened, in descending order, each with the
+    /// quality of the element after it.
+    fn turns(
+        &self,
+        watched: Watched,
+        since: u64,
+        mut until: u64,
+        turn: Turn<'_>,
+        most: usize,
+    ) -> Result<Vec<(u64, f64)>, Fault> {
         let mut found = Vec::new();
         let mut look = (until == self.step()).then(|| Appearance::at(&self.state().mesh, watched));
-        while until > 0 && found.len() < most {
+        while until > since && found.len() < most {
             let from = self.keyframes().frames()[self.keyframes().at_or_before(until - 1)].step;
             let (_, difference) = self.stretch_from(from);
             let unchanged = |difference| look.as_ref().is_some_and(|look| !look.may_change(watched, difference));
@@ -194,6 +212,7 @@ impl History {
             }
             until = from;
         }
+        found.retain(|turned| turned.0 > since);
         found.truncate(most);
         Ok(found)
     }
@@ -213,7 +232,7 @@ impl History {
             if step == from {
                 seen.first = now.clone();
             } else if seen.last != now && turn(&seen.last, &now) {
-                seen.turns.push(step);
+                seen.turns.push((step, quality(&converter.mesh, watched)));
             }
             seen.last = now;
         })?;
@@ -224,6 +243,15 @@ impl History {
 /// What was observed over a stretch of steps.
 struct Seen {
     first: Appearance,
-    turns: Vec<u64>,
+    /// The steps of the turns, with the quality of the element after each.
+    turns: Vec<(u64, f64)>,
     last: Appearance,
+}
+
+/// The quality of an element that is watched; not a number where there is none.
+fn quality(mesh: &Mesh, watched: Watched) -> f64 {
+    match watched {
+        Watched::Element(e) if mesh.has_element(e) => mesh.quality(e),
+        _ => f64::NAN,
+    }
 }

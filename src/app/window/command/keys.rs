@@ -23,9 +23,13 @@ worded! {
 impl Purpose {
     fn of(command: &Command) -> Purpose {
         match command {
-            Command::Go(_) | Command::GoTo | Command::ToBreakpoint(_) | Command::Play | Command::Bookmark => {
-                Purpose::Steps
-            }
+            Command::Go(_)
+            | Command::GoTo
+            | Command::ToBreakpoint(_)
+            | Command::Play
+            | Command::Bookmark
+            | Command::FindWorst
+            | Command::Pair(_) => Purpose::Steps,
             Command::Layer(_) => Purpose::Layers,
             Command::Fit
             | Command::ShowDecision
@@ -88,6 +92,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL_SHIFT, Key::S, Command::Screenshot),
         (CTRL_SHIFT, Key::L, Command::ToggleTheme),
         (CTRL_SHIFT, Key::E, Command::Figures),
+        (CTRL_SHIFT, Key::W, Command::FindWorst),
         (SHIFT, Key::V, Command::ToggleSplit),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),

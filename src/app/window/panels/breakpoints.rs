@@ -1,11 +1,10 @@
-//! Breakpoints, watchpoints and bookmarks.
+//! Breakpoints and watchpoints.
 
 use eframe::egui::{self, Align, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 
 use super::condition_field::ConditionField;
 use super::{icon_button, inset, note, on_click};
 use crate::app::window::command::Command;
-use crate::app::window::session::Goal;
 use crate::app::window::state::State;
 use crate::app::window::theme;
 use crate::app::window::{icons, words};
@@ -100,19 +99,4 @@ fn watches(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Pa
             });
         });
     }
-}
-
-/// Shows the bookmarks.
-pub fn bookmarks(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
-    inset().show(ui, |ui| {
-        if state.document().bookmarks.is_empty() {
-            ui.label(note("None yet. Ctrl+B bookmarks the current step.", palette));
-        }
-        for step in &state.document().bookmarks {
-            let what = step.checked_sub(1).and_then(|k| state.run().track.get(k as usize));
-            let what = what.map_or(String::new(), |tracked| words::kind(tracked.kind));
-            let text = format!("{}  step {}   {what}", icons::BOOKMARK, words::grouped(*step));
-            on_click(&ui.button(text).on_hover_text("Go to that step"), Command::Go(Goal::Step(*step)), commands);
-        }
-    });
 }

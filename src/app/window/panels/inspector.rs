@@ -8,6 +8,7 @@ mod node;
 mod element;
 mod step;
 pub mod past;
+mod chain;
 
 use eframe::egui::collapsing_header::CollapsingState;
 use eframe::egui::{
@@ -60,6 +61,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             if shown.is_some() && moment.base.is_none() {
                 step::show(ui, moment, palette);
                 step::next(ui, moment, palette);
+            }
+            if let Some(Outlined::Element(e)) = shown
+                && moment.mesh.has_element(e)
+                && moment.mesh.is_quad(e)
+            {
+                chain::show(ui, state, e, commands, palette);
             }
             if let Some(what) = shown {
                 past::show(ui, state, what, commands, palette);

@@ -65,13 +65,14 @@ pub fn show(ui: &mut Ui, window: &State, local: &mut TimelineState, commands: &m
     let all = [Some(state), other].into_iter().flatten().map(|state| state.run().track.len()).max();
     let axis = Axis { plot, span: turn(ui, &response, plot, all.unwrap_or(0), local) };
     local.columns.update(state, local.open_row, axis.span, plot.width());
+    let mut lanes = plot.top() + RULER;
     if let Some(other) = other {
         local.others.update(other, None, axis.span, plot.width());
+        if window.active_run() == Which::B {
+            lanes += local.others.lanes().len() as f32 * (LANE + GAP) + GAP;
+        }
     }
-    // The lanes of the second run are below those of the first.
-    let above = if window.active_run() == Which::A { 0 } else { local.others.lanes().len() };
-    let lanes = plot.top() + RULER + above as f32 * (LANE + GAP) + if above > 0 { GAP } else { 0.0 };
-    let step = seek(&response, &axis, state, local, moment.step, lanes);
+    let step = seek(&response, &axis, lanes, state, local, moment.step);
     commands.extend(step.map(|step| Command::Go(Goal::Step(step))));
     let TimelineState { columns, others, open_row, .. } = local;
     let painter = ui.painter_at(rect);
@@ -145,14 +146,14 @@ fn turn(ui: &Ui, response: &Response, plot: Rect, all: usize, local: &mut Timeli
 }
 
 /// The step to go to: a click or a drag goes to the step under the pointer; a click near a bookmark or a breakpoint
-/// goes there, and one in a row of events to an event of the row. `lanes`: where the first row begins.
+/// goes there, and one in a row of events to an event of the row. `lanes`: where the rows of this run begin.
 fn seek(
     response: &Response,
     axis: &Axis,
+    lanes: f32,
     state: &State,
     local: &mut TimelineState,
     now: u64,
-    lanes: f32,
 ) -> Option<u64> {
     let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) else {
         local.seeking = None;
@@ -163,9 +164,14 @@ fn seek(
     let reach = [-NEAR, NEAR].map(|by| axis.step(at.x + by).clamp(0.0, state.run().track.len() as f64) as u64);
     let row = (at.y - lanes).div_euclid(LANE + GAP);
     let nearest = if at.y < axis.plot.top() + RULER {
-        let marks = state.document().bookmarks.iter().copied().chain(stops(state).flat_map(|hits| within(hits, reach)));
+        let marks = state
+            .document()
+            .bookmarks
+            .iter()
+            .map(|mark| mark.step)
+            .chain(stops(state).flat_map(|hits| within(hits, reach)));
         marks.min_by(|a, b| away(a).total_cmp(&away(b)))
-    } else if let Some(lane) = local.columns.lanes().get(row as usize).filter(|_| row >= 0.0 && response.clicked()) {
+    } else if let Some(lane) = local.columns.lanes().get(row as usize).filter(|_| response.clicked() && row >= 0.0) {
         let steps = (reach[0].max(1)..=reach[1]).filter(|step| {
             state.run().track.get(*step as usize - 1).is_some_and(|tracked| lane.kinds.contains(&tracked.kind))
         });
@@ -293,8 +299,8 @@ impl Drawing<'_> {
             }
             tick += every;
         }
-        for step in &state.document().bookmarks {
-            let x = axis.x(*step as f64);
+        for mark in &state.document().bookmarks {
+            let x = axis.x(mark.step as f64);
             if axis.plot.x_range().contains(x) {
                 self.text(Pos2::new(x, top + 12.0), Align2::CENTER_TOP, icons::BOOKMARK, palette.text);
             }

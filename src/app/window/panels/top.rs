@@ -103,7 +103,8 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         items(ui, [Command::ResetParameters, Command::Undo, Command::Redo], commands);
     });
     ui.menu_button("View", |ui| {
-        let view = [Command::Fit, Command::ShowDecision, Command::ToggleTheme, Command::ResetLayout];
+        let view =
+            [Command::Fit, Command::ShowDecision, Command::FindWorst, Command::ToggleTheme, Command::ResetLayout];
         items(ui, view, commands);
         ui.separator();
         ui.menu_button("Surfaces", |ui| {

@@ -5,7 +5,7 @@ use eframe::egui::{Align, Align2, ComboBox, Grid, Label, Layout, Rect, RichText,
 use super::{heading, inset, line, note, on_click};
 use crate::app::compare::{Comparison, kinds};
 use crate::app::window::command::{Command, Rules};
-use crate::app::window::pair::{Arrangement, Link, PairCommand, Which};
+use crate::app::window::pair::{Arrangement, LinkedBy, PairCommand, Which};
 use crate::app::window::state::{Pair, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -97,7 +97,7 @@ fn runs(ui: &mut Ui, state: &State, pair: &Pair, commands: &mut Vec<Command>, pa
     ui.horizontal_wrapped(|ui| {
         ui.label(note("linked by", palette));
         let list = ComboBox::from_id_salt("link").selected_text(pair.link.name()).width(96.0).show_ui(ui, |ui| {
-            for link in Link::ALL {
+            for link in LinkedBy::ALL {
                 let item = ui.selectable_label(pair.link == link, link.name());
                 on_click(&item.on_hover_text(about_link(link)), Command::Pair(PairCommand::Link(link)), commands);
             }
@@ -121,12 +121,12 @@ fn named(response: &eframe::egui::Response, name: &'static str) {
     response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, name));
 }
 
-fn about_link(link: Link) -> &'static str {
+fn about_link(link: LinkedBy) -> &'static str {
     match link {
-        Link::Step => "Both stand at the same step",
-        Link::Quad => "Both have the same number of quadrilaterals",
-        Link::Event => "Both stand at the event of the same kind and number, such as the 57th selection of a base",
-        Link::Free => "Each run moves by itself",
+        LinkedBy::Step => "Both stand at the same step",
+        LinkedBy::Quad => "Both have the same number of quadrilaterals",
+        LinkedBy::Event => "Both stand at the event of the same kind and number, such as the 57th selection of a base",
+        LinkedBy::Free => "Each run moves by itself",
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
-use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, Tracked, Voice};
+use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, ToldChain, Tracked, Voice};
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
@@ -142,6 +142,7 @@ impl Worker {
                 }
                 Ask::Made(element) => self.go_back(self.history.made(element), "It exists from the beginning."),
                 Ask::Past(watched) => self.past(watched),
+                Ask::Chain(element) => self.chain(element),
                 Ask::Count(conditions) => {
                     self.conditions = conditions;
                     self.count();
@@ -210,6 +211,12 @@ impl Worker {
             Ok(Past { step: history.step(), watched, touches, more, made, killed })
         };
         self.report(told().map(|past| SessionNews::Past(Arc::new(past))), 0);
+    }
+
+    fn chain(&self, element: ElementId) {
+        let step = self.history.step();
+        let told = self.history.chain(element).map(|chain| ToldChain { step, element, chain });
+        self.report(told.map(|told| SessionNews::Chain(Arc::new(told))), 0);
     }
 
     /// Reports an answer, or the fault instead, to so many requests.

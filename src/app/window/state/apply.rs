@@ -14,6 +14,7 @@ use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
+use crate::app::window::layout::Pane;
 use crate::app::window::lists::ListKind;
 use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
@@ -21,7 +22,7 @@ use crate::app::window::words;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Condition, Edit, EditKind, Query, Watched};
+use crate::core::run::{Bookmark, Condition, Edit, EditKind, Query, Watched};
 use crate::render::scene::Outlined;
 
 impl State {
@@ -60,12 +61,16 @@ impl State {
             Command::TellPast(watched) => {
                 self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
             }
+            Command::TellChain(element) => {
+                self.run.asked_chain = self.inquire(Ask::Chain(element)).map(|step| (step, element));
+            }
             Command::List(kind, query) => self.list(kind, query, false),
             Command::CopyList(kind, query) => self.list(kind, query, true),
-            Command::Find(what) => {
-                self.change(|document| document.picked = Some(what));
-                self.view.look.ask(Look::Near(what));
-            }
+            Command::Find(what) => self.find(what),
+            Command::FindWorst => match self.run.moment.as_ref().and_then(|moment| moment.worst) {
+                Some((e, _)) => self.find(Outlined::Element(e)),
+                None => self.notice("There is no quadrilateral yet.".to_owned()),
+            },
             Command::Watch(what) => self.watch(watched(what)),
             Command::SwitchWatch(k) => {
                 self.change(|document| flip(document.watches.get_mut(k).map(|watch| &mut watch.is_on)));
@@ -103,6 +108,11 @@ impl State {
                 }
             }),
             Command::Bookmark => self.bookmark(),
+            Command::WriteNote(step, note) => self.workspace.write_note(step, note),
+            Command::RemoveBookmark(step) => {
+                self.change(|document| document.bookmarks.retain(|mark| mark.step != step))
+            }
+            Command::ExportNotes => self.export_notes(),
             Command::Open(source) => self.open(source, Overrides::default()),
             Command::OpenWith(source, overrides) => self.open(source, *overrides),
             Command::Import => match &self.run.source {
@@ -236,7 +246,11 @@ impl State {
 
     /// Shows a fault until the user closes it.
     pub(in crate::app::window) fn complain(&mut self, fault: &Fault) {
-        let text = fault.to_string();
+        self.warn(fault.to_string());
+    }
+
+    /// Shows what went wrong until the user closes it.
+    fn warn(&mut self, text: String) {
         self.view.log.keep(text.clone(), true, self.step());
         // The latest one is shown.
         self.view.notice = None;
@@ -355,9 +369,13 @@ impl State {
     /// Sets a bookmark at the current step, or removes it.
     fn bookmark(&mut self) {
         let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
-        self.change(|document| match document.bookmarks.binary_search(&step) {
+        let is_new = self.document().bookmarks.iter().all(|mark| mark.step != step);
+        if is_new {
+            self.view.reveal.ask(Some(Pane::Bookmarks));
+        }
+        self.change(|document| match document.bookmarks.binary_search_by_key(&step, |mark| mark.step) {
             Ok(k) => drop(document.bookmarks.remove(k)),
-            Err(k) => document.bookmarks.insert(k, step),
+            Err(k) => document.bookmarks.insert(k, Bookmark { step, note: String::new() }),
         });
     }
 
@@ -366,6 +384,12 @@ impl State {
         let (moment, session) = (self.run.moment.as_ref()?, self.run.session.as_ref()?);
         session.ask(ask);
         Some(moment.step)
+    }
+
+    /// Selects something and brings it into view.
+    fn find(&mut self, what: Outlined) {
+        self.change(|document| document.picked = Some(what));
+        self.view.look.ask(Look::Near(what));
     }
 
     /// Has a list of the current state made.

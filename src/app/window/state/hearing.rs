@@ -97,6 +97,7 @@ impl State {
                 }
             }
             SessionNews::Past(past) => run.past = Some(past),
+            SessionNews::Chain(told) => run.chain = Some(told),
             SessionNews::Hits(hits) => run.hits = hits,
             SessionNews::Explained(step, told) => run.explained = Some((step, told)),
             SessionNews::Nothing(words, asks) => {
@@ -126,6 +127,7 @@ impl State {
         run.changes.note(&moment.changes, moment.mesh.element_slots());
         run.lists.note(&moment.changes, &moment.mesh);
         run.verdict = moment.verdict.clone();
+        run.forget_answers();
         run.moment = Some(moment.clone());
         self.view.lit.clear();
         self.view.over_epoch += 1;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Progress, State, Workspace};
 use crate::app::compare::Comparison;
 use crate::app::window::command::Rules;
-use crate::app::window::pair::{Arrangement, Comparing, Link, Which};
+use crate::app::window::pair::{Arrangement, Comparing, LinkedBy, Which};
 use crate::core::run::compare::Overlap;
 use crate::core::run::{Edit, Run};
 
@@ -16,7 +16,7 @@ pub struct Pair {
     /// The run that the panels show.
     pub active: Which,
     /// How their steps are linked.
-    pub link: Link,
+    pub link: LinkedBy,
     /// How they are shown.
     pub arrangement: Arrangement,
     /// The step at which B was forked from A; `None` where it was opened from elsewhere.
@@ -35,7 +35,7 @@ pub struct Pair {
     /// Whether B has not reached its first state yet.
     pub(super) is_starting: bool,
     /// The state of the active run that the other one has followed last.
-    pub(super) followed: Option<(Which, u64, u64, Link)>,
+    pub(super) followed: Option<(Which, u64, u64, LinkedBy)>,
     /// The runs, with their steps, of which the overlap is known.
     pub(super) overlapped: Option<[(Compared, u64); 2]>,
     /// Where B goes first, until it has been asked to.
@@ -54,7 +54,7 @@ impl Pair {
         Pair {
             other,
             active: Which::B,
-            link: Link::default(),
+            link: LinkedBy::default(),
             arrangement: Arrangement::default(),
             forked,
             comparison: None,

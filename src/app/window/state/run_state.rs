@@ -9,7 +9,7 @@ use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
 use crate::app::window::lists::Lists;
 use crate::app::window::measure::Measuring;
-use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, Tracked, Verdict};
+use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, ToldChain, Tracked, Verdict};
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
@@ -98,6 +98,9 @@ pub struct RunState {
     /// The history of the selected element; and the question asked last.
     pub(super) past: Option<Arc<Past>>,
     pub(super) asked_past: Option<(u64, Watched)>,
+    /// The decision chain of the selected quadrilateral; and the question asked last.
+    pub(super) chain: Option<Arc<ToldChain>>,
+    pub(super) asked_chain: Option<(u64, ElementId)>,
     /// The file dialog, while it is open.
     pub(super) dialog: Option<Dialog>,
     /// The dialog for the folder of figures, while it is open.
@@ -141,6 +144,13 @@ impl RunState {
         self.moment.as_ref().is_some_and(|moment| moment.phase == Phase::Done)
     }
 
+    /// Forgets what the session said of the state before: the run may have changed at an earlier step.
+    pub(super) fn forget_answers(&mut self) {
+        (self.explained, self.asked) = (None, None);
+        (self.past, self.asked_past) = (None, None);
+        (self.chain, self.asked_chain) = (None, None);
+    }
+
     /// Why a segment of the front was or was not chosen at the current step.
     pub fn explanation(&self, ends: [NodeId; 2]) -> Lookup<Explained> {
         let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return Lookup::Pending };
@@ -149,6 +159,18 @@ impl RunState {
                 Lookup::Known(told.clone())
             }
             _ if self.asked == Some((step, ends)) => Lookup::Pending,
+            _ => Lookup::Unasked,
+        }
+    }
+
+    /// The decision chain of a quadrilateral of the current step. While other work is under way the question waits.
+    pub fn chain(&self, element: ElementId) -> Lookup<ToldChain> {
+        let Some(step) = self.moment.as_ref().map(|moment| moment.step) else { return Lookup::Pending };
+        match &self.chain {
+            Some(told) if (told.step, told.element) == (step, element) => Lookup::Known(told.clone()),
+            _ if self.asked_chain == Some((step, element)) || self.is_busy() || self.playing.is_some() => {
+                Lookup::Pending
+            }
             _ => Lookup::Unasked,
         }
     }

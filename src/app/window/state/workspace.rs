@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::app::window::figures::FigureForm;
 use crate::app::window::session::Direction;
 use crate::core::kernel::worded::worded;
-use crate::core::run::{Edit, Watched};
+use crate::core::run::{Bookmark, Edit, Watched};
 use crate::render::look::HiddenLines;
 use crate::render::scene::{ColourBy, Form, Layers, Outlined};
 
@@ -24,6 +24,8 @@ pub struct Workspace {
     pub figure: FigureForm,
     undo: Vec<Document>,
     redo: Vec<Document>,
+    /// The step whose note was changed last: what is typed there is undone as one change.
+    noted: Option<u64>,
 }
 
 /// Everything that undo covers.
@@ -39,8 +41,8 @@ pub struct Document {
     pub colour_by: ColourBy,
     pub breakpoints: Vec<Breakpoint>,
     pub watches: Vec<Watchpoint>,
-    /// The bookmarked steps, in order.
-    pub bookmarks: Vec<u64>,
+    /// The bookmarked steps with their notes, in order.
+    pub bookmarks: Vec<Bookmark>,
     /// Where the panels are, once the user has moved them.
     pub layout: Option<String>,
 }
@@ -108,13 +110,14 @@ impl Default for Workspace {
             figure: FigureForm::default(),
             undo: Vec::new(),
             redo: Vec::new(),
+            noted: None,
         }
     }
 }
 
 impl Workspace {
     /// Another run has been opened: how the mesh is shown stays, and nothing can be undone.
-    pub(super) fn begin(&mut self, edits: Vec<Edit>, bookmarks: Vec<u64>) {
+    pub(super) fn begin(&mut self, edits: Vec<Edit>, bookmarks: Vec<Bookmark>) {
         let Document { layers, colour_by, ref layout, .. } = self.document;
         self.document = Document { edits, bookmarks, layers, colour_by, layout: layout.clone(), ..Document::default() };
         self.undo.clear();
@@ -144,12 +147,23 @@ impl Workspace {
         if self.document == before {
             return None;
         }
+        self.noted = None;
         self.undo.push(before.clone());
         if self.undo.len() > UNDO {
             self.undo.remove(0);
         }
         self.redo.clear();
         Some(before)
+    }
+
+    /// Changes the note on a bookmarked step. What is typed in one go is one change.
+    pub(super) fn write_note(&mut self, step: u64, note: String) {
+        let Ok(k) = self.document.bookmarks.binary_search_by_key(&step, |mark| mark.step) else { return };
+        if self.noted == Some(step) {
+            self.document.bookmarks[k].note = note;
+        } else if self.change(|document| document.bookmarks[k].note = note).is_some() {
+            self.noted = Some(step);
+        }
     }
 
     /// Undoes or redoes a change. Returns the document as it was before, if there was anything to undo or redo.
@@ -159,6 +173,7 @@ impl Workspace {
             Direction::Forward => (&mut self.redo, &mut self.undo),
         };
         let before = std::mem::replace(&mut self.document, from.pop()?);
+        self.noted = None;
         to.push(before.clone());
         Some(before)
     }

@@ -39,7 +39,7 @@ mod tests {
         let mut run = Run::of(case());
         run.case.name = "other".to_owned();
         run.parameters.set("c", "1.5").unwrap();
-        run.bookmarks.push(Bookmark { step: 3, name: "here".to_owned() });
+        run.bookmarks.push(Bookmark { step: 3, note: "here".to_owned() });
         assert_eq!(inputs(&run).unwrap(), same);
         run.set_edits(vec![Edit { step: 9, kind: EditKind::parameter("c", "1.5").unwrap() }]);
         assert_ne!(inputs(&run).unwrap(), same);

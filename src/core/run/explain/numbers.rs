@@ -37,12 +37,12 @@ pub(super) fn count(n: usize, one: &str) -> String {
 }
 
 /// Two sizes that differ, with as many digits as it takes to see it.
-pub(super) fn apart(x: f64, y: f64) -> [String; 2] {
+pub fn apart(x: f64, y: f64) -> [String; 2] {
     longer([x, y], [x, y].map(size), 5)
 }
 
 /// The same for angles in radians, written in degrees without the degree sign.
-pub(super) fn angles_apart(x: f64, y: f64) -> [String; 2] {
+pub fn angles_apart(x: f64, y: f64) -> [String; 2] {
     longer([x, y].map(f64::to_degrees), [x, y].map(degrees), 2)
 }
 

@@ -191,15 +191,7 @@ fn reasons(table: &FrontTable, told: &SegmentFacts, tense: Tense) -> Vec<String>
     if told.verdict == Verdict::First {
         sentences.extend(first(table, &told.row, tense));
         sentences.extend(holder_of_h_min(table, &told.row, tense));
-        let mut bounds: Vec<String> = told.margin_of_c.map(|[low, high]| range_of_c(low, high)).into_iter().collect();
-        let theta_rect = told.margin_of_theta_rect;
-        bounds
-            .extend(theta_rect.map(|[low, high]| {
-                format!("{}\u{b0} < \u{3b8}_{{rect}} \u{2264} {}\u{b0}", up(low, 1), down(high, 1))
-            }));
-        if !bounds.is_empty() {
-            sentences.push(format!("Same choice for {}, all else unchanged.", bounds.join(", or for ")));
-        }
+        sentences.extend(margins(told.margin_of_c, told.margin_of_theta_rect));
     } else {
         sentences.extend(not_first(table, told, tense));
         if let Some([low, high]) = told.chosen_for_c {
@@ -209,6 +201,16 @@ fn reasons(table: &FrontTable, told: &SegmentFacts, tense: Tense) -> Vec<String>
     }
     sentences.extend(rows_that_compete(table, tense));
     sentences
+}
+
+/// For which values of c, and of theta_rect in degrees, a choice would be the same.
+pub fn margins(c: Option<[f64; 2]>, theta_rect: Option<[f64; 2]>) -> Option<String> {
+    let mut bounds: Vec<String> = c.map(|[low, high]| range_of_c(low, high)).into_iter().collect();
+    bounds.extend(
+        theta_rect
+            .map(|[low, high]| format!("{}\u{b0} < \u{3b8}_{{rect}} \u{2264} {}\u{b0}", up(low, 1), down(high, 1))),
+    );
+    (!bounds.is_empty()).then(|| format!("Same choice for {}, all else unchanged.", bounds.join(", or for ")))
 }
 
 /// c Hmin with its factors.

@@ -8,6 +8,7 @@ use super::super::{line, note};
 use crate::app::window::figures::{self, FigureForm};
 use crate::app::window::state::{State, ViewCamera};
 use crate::core::fault::Fault;
+use crate::core::run::Bookmark;
 use crate::render::palette::Palette;
 
 /// The greatest size of the preview in points.
@@ -15,7 +16,7 @@ const MOST: Vec2 = Vec2::new(280.0, 300.0);
 
 /// What the preview depends on: the form, the step and the number of the run, its bookmarks, its changes, and the
 /// cameras.
-type Key = (FigureForm, u64, u64, Vec<u64>, usize, [ViewCamera; 2]);
+type Key = (FigureForm, u64, u64, Vec<Bookmark>, usize, [ViewCamera; 2]);
 
 /// The preview that is shown, and the one that is being drawn.
 #[derive(Default)]

@@ -127,16 +127,11 @@ impl State {
     pub(in crate::app::window::state) fn lift_messages(&mut self) {
         let Some(pair) = &mut self.pair else { return };
         let view = &mut pair.other.view;
-        let faults = std::mem::take(&mut view.faults);
-        if let Some(notice) = view.notice.take() {
-            self.view.notice = Some((format!("B: {}", notice.0), notice.1));
+        let (faults, notice) = (std::mem::take(&mut view.faults), view.notice.take());
+        if let Some((text, _)) = notice {
+            self.notice(format!("B: {text}"));
         }
-        for fault in faults {
-            let text = format!("B: {fault}");
-            if !self.view.faults.contains(&text) {
-                self.view.faults.push(text);
-            }
-        }
+        faults.into_iter().for_each(|fault| self.warn(format!("B: {fault}")));
     }
 
     /// Starts a second run that is the same up to the current step.

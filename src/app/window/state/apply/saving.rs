@@ -43,6 +43,14 @@ impl State {
         }
     }
 
+    /// Starts to write the page with the notes on bookmarked steps.
+    pub(super) fn export_notes(&mut self) {
+        match figures::begin_notes(self, self.wake.clone()) {
+            Ok(writing) => self.run.figures.extend(writing),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
     /// Starts to write the current mesh to a path.
     pub(super) fn save_mesh(&mut self, path: &str) {
         match mesh_out::begin(self, path, self.wake.clone()) {

@@ -100,8 +100,7 @@ impl State {
             waiting: 1,
             ..RunState::default()
         };
-        let bookmarks = opened.run.bookmarks.iter().map(|mark| mark.step).collect();
-        self.workspace.begin(opened.run.edits().to_vec(), bookmarks);
+        self.workspace.begin(opened.run.edits().to_vec(), opened.run.bookmarks.clone());
         self.workspace.document.breakpoints = breakpoints;
         self.view.notes = is_figure;
         for view in [&mut self.view.plane, &mut self.view.space] {

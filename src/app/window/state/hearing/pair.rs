@@ -7,7 +7,7 @@ use std::sync::mpsc::TryRecvError;
 use super::super::pair::{Compared, Pair, are_same};
 use super::super::{RunState, State};
 use crate::app::window::command::Command;
-use crate::app::window::pair::{CompareNews, Comparing, Link, Which};
+use crate::app::window::pair::{CompareNews, Comparing, LinkedBy, Which};
 use crate::app::window::session::{Goal, Moment};
 use crate::app::window::state::apply::are_in_one_place;
 use crate::core::convert::Phase;
@@ -55,7 +55,7 @@ impl State {
 
     /// Sends the other run where the active one is, as their steps are linked.
     fn follow_run(&mut self, pair: &mut Pair) {
-        if pair.is_starting || pair.link == Link::Free {
+        if pair.is_starting || pair.link == LinkedBy::Free {
             return;
         }
         let at = position(pair, self);
@@ -70,11 +70,11 @@ impl State {
         }
         let is_waiting = follower.run.is_busy();
         let goal = match pair.link {
-            Link::Free => return,
-            Link::Step => Goal::Step(moment.step),
-            Link::Quad | Link::Event if moment.phase == Phase::Done => Goal::End,
-            Link::Quad => Goal::ToQuads(moment.standing),
-            Link::Event => match same_event(&leader.run, moment, &follower.run) {
+            LinkedBy::Free => return,
+            LinkedBy::Step => Goal::Step(moment.step),
+            LinkedBy::Quad | LinkedBy::Event if moment.phase == Phase::Done => Goal::End,
+            LinkedBy::Quad => Goal::ToQuads(moment.standing),
+            LinkedBy::Event => match same_event(&leader.run, moment, &follower.run) {
                 Some(step) => Goal::Step(step),
                 // The other run is not recorded that far yet.
                 None => return,
@@ -134,7 +134,7 @@ fn compared(state: &State) -> Compared {
 }
 
 /// Where the active run is.
-fn position(pair: &Pair, first: &State) -> (Which, u64, u64, Link) {
+fn position(pair: &Pair, first: &State) -> (Which, u64, u64, LinkedBy) {
     let run = match pair.active {
         Which::A => &first.run,
         Which::B => &pair.other.run,

@@ -1,5 +1,6 @@
-//! Promise: a fork shows what would change: where two runs differ first, why, and what both end with; their steps and
-//! cameras are linked, and what is changed is the run that the panels show.
+//! Promises. A fork shows what would change: where two runs differ first, why, and what both end with; their steps and
+//! cameras are linked, and what is changed is the run that the panels show. A bookmark takes a note while one types;
+//! the note is kept in the run and undone as one change, and all of them are exported as one page.
 //!
 //! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
@@ -11,7 +12,7 @@ use std::process::Command as Process;
 
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use quadfront::app::window::{App, Arrangement, Command, Goal, Link, PairCommand, Source, Which};
+use quadfront::app::window::{App, Arrangement, Command, Goal, LinkedBy, PairCommand, Source, Which};
 use quadfront::core::convert::EventKind;
 use quadfront::core::mesh::{Mesh, NodeId};
 use quadfront::render::scene::Outlined;
@@ -131,7 +132,7 @@ fn the_runs_go_together_by_step_by_quadrilateral_and_by_phase() {
     let ends = Which::ALL.map(|which| harness.state().state.of(which).run().track.len() as u64);
     assert_eq!(steps(&harness), [ends[0].min(ends[1]), ends[1]], "each run ends where it ends");
     assert_ne!(ends[0], ends[1]);
-    pair(&mut harness, PairCommand::Link(Link::Quad));
+    pair(&mut harness, PairCommand::Link(LinkedBy::Quad));
     go(&mut harness, Goal::Step(1500));
     let standing = |harness: &Window, which| {
         let state = &harness.state().state;
@@ -139,7 +140,7 @@ fn the_runs_go_together_by_step_by_quadrilateral_and_by_phase() {
     };
     assert_eq!(standing(&harness, Which::A), standing(&harness, Which::B));
     assert_ne!(steps(&harness)[0], steps(&harness)[1]);
-    pair(&mut harness, PairCommand::Link(Link::Event));
+    pair(&mut harness, PairCommand::Link(LinkedBy::Event));
     go(&mut harness, Goal::Kind(EventKind::Seamed, quadfront::app::window::Direction::Back));
     let number = |which: Which| {
         let run = harness.state().state.of(which).run();
@@ -149,7 +150,7 @@ fn the_runs_go_together_by_step_by_quadrilateral_and_by_phase() {
     };
     assert_eq!(number(Which::A), number(Which::B));
     // By themselves: A stays.
-    pair(&mut harness, PairCommand::Link(Link::Free));
+    pair(&mut harness, PairCommand::Link(LinkedBy::Free));
     let before = steps(&harness);
     go(&mut harness, Goal::Steps(-40));
     assert_eq!(steps(&harness), [before[0], before[1] - 40]);
@@ -241,4 +242,55 @@ fn a_second_run_that_is_closed_unsaved_is_offered_and_runs_can_be_exchanged() {
     harness.state_mut().apply(Command::Pair(beside("no-such-case")));
     until(&mut harness, "it is refused", |harness| harness.state().state.pair().is_none());
     assert!(harness.state().state.view().faults.iter().any(|fault| fault.contains("no-such-case")));
+}
+
+#[test]
+fn a_bookmark_takes_a_note_and_the_notes_become_a_page() {
+    if !has_adapter() {
+        return;
+    }
+    let mut harness = start(LAPTOP, |cc| App::new(cc, None));
+    apply(&mut harness, Command::Open(Source::BuiltIn("figure-19".to_owned())));
+    harness.state_mut().apply(Command::ExportNotes);
+    assert!(harness.state().state.view().faults[0].contains("There are no bookmarks"));
+    for step in [7, 3] {
+        apply(&mut harness, Command::Go(Goal::Step(step)));
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::B);
+        harness.run_steps(3);
+    }
+    let field = "Note on step 3";
+    harness.get_by_label(field).focus();
+    harness.run_steps(2);
+    for text in ["why **this", " base**?"] {
+        harness.get_by_label(field).type_text(text);
+        harness.run_steps(2);
+    }
+    let notes = |harness: &Window| -> Vec<(u64, String)> {
+        harness.state().state.current_run().unwrap().bookmarks.iter().map(|m| (m.step, m.note.clone())).collect()
+    };
+    assert_eq!(notes(&harness), [(3, "why **this base**?".to_owned()), (7, String::new())]);
+    // Typing is one change; before it, the bookmark was set.
+    harness.state_mut().apply(Command::Undo);
+    assert_eq!(notes(&harness), [(3, String::new()), (7, String::new())]);
+    harness.state_mut().apply(Command::Redo);
+    harness.run_steps(2);
+    harness.get_by_label("Export the notes as a page").click_accesskit();
+    until(&mut harness, "the page is saved", |harness| {
+        harness.state().state.view().notice().is_some_and(|notice| notice.0.contains("notes were saved as"))
+    });
+    let notice = harness.state().state.view().notice().unwrap().0.to_owned();
+    let path = notice.trim_start_matches("The notes were saved as ").trim_end_matches('.').to_owned();
+    let page = std::fs::read_to_string(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    assert!(page.contains("why <strong>this base</strong>?") && page.matches("data:image/svg+xml").count() == 2);
+    // A click on a bookmark goes there; its cross removes it, and undo brings it back with its note.
+    harness.get_by_label("Go to step 7").click_accesskit();
+    harness.run_steps(2);
+    settle(&mut harness);
+    assert_eq!(harness.state().state.run().moment.as_ref().unwrap().step, 7);
+    harness.get_by_label("Remove the bookmark of step 3").click_accesskit();
+    harness.run_steps(2);
+    assert_eq!(notes(&harness).len(), 1);
+    harness.state_mut().apply(Command::Undo);
+    assert_eq!(notes(&harness)[0].1, "why **this base**?");
 }
