@@ -7,6 +7,8 @@
 mod messages;
 #[path = "window/numbers.rs"]
 mod numbers;
+#[path = "window/steps.rs"]
+mod steps;
 #[path = "window/texts.rs"]
 mod texts;
 #[path = "window_harness/pictures.rs"]
@@ -197,7 +199,7 @@ fn a_run_that_is_saved_opens_with_its_changes() {
     apply(&mut harness, Command::Open(Source::File(path)));
     assert_eq!(kinds(&harness), before);
     let kept = &harness.state().state.document();
-    assert_eq!((kept.edits.len(), kept.bookmarks.as_slice()), (1, &[60][..]));
+    assert_eq!((kept.edits.len(), kept.bookmarks.iter().map(|mark| mark.step).collect::<Vec<_>>()), (1, vec![60]));
 }
 
 #[test]
