@@ -7,6 +7,8 @@
 mod messages;
 #[path = "window/numbers.rs"]
 mod numbers;
+#[path = "window/steps.rs"]
+mod steps;
 #[path = "window/texts.rs"]
 mod texts;
 #[path = "window_harness/pictures.rs"]

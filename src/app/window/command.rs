@@ -1,9 +1,10 @@
 //! Everything that can be done in the window, as a value: menus, keys, panels, the palette and tests all use it.
 
+mod keys;
 mod name;
 mod rules;
 
-use eframe::egui::{Key, Modifiers};
+pub use keys::{Purpose, groups, keys};
 
 pub use rules::Rules;
 
@@ -211,73 +212,13 @@ pub const KINDS: [EventKind; 13] = [
     EventKind::LastResort,
 ];
 
-const NONE: Modifiers = Modifiers::NONE;
-const SHIFT: Modifiers = Modifiers::SHIFT;
-const CTRL: Modifiers = Modifiers::COMMAND;
-const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
-
-/// All keys and their commands. Those with more modifiers come first, since egui takes Ctrl+Shift+S for Ctrl+S.
-pub fn keys() -> Vec<(Modifiers, Key, Command)> {
-    let mut keys = vec![
-        (CTRL_SHIFT, Key::Z, Command::Redo),
-        (CTRL_SHIFT, Key::S, Command::Screenshot),
-        (CTRL_SHIFT, Key::L, Command::ToggleTheme),
-        (CTRL_SHIFT, Key::E, Command::Figures),
-        (CTRL_SHIFT, Key::W, Command::FindWorst),
-        (SHIFT, Key::V, Command::ToggleSplit),
-        (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
-        (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
-        (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
-        (SHIFT, Key::ArrowLeft, Command::Go(Goal::Quads(-10))),
-        (Modifiers::ALT, Key::F5, Command::ToBreakpoint(Direction::Back)),
-        (CTRL, Key::G, Command::GoTo),
-        (CTRL, Key::F, Command::FindField),
-        (CTRL, Key::P, Command::Palette),
-        (CTRL, Key::Z, Command::Undo),
-        (CTRL, Key::Y, Command::Redo),
-        (CTRL, Key::O, Command::OpenPath),
-        (CTRL, Key::S, Command::SaveRun),
-        (CTRL, Key::M, Command::SaveMesh),
-        (CTRL, Key::E, Command::Export),
-        (CTRL, Key::B, Command::Bookmark),
-        (CTRL, Key::R, Command::Reopen),
-        (CTRL, Key::K, Command::Pair(PairCommand::Fork)),
-        (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
-        (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
-        (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
-        (NONE, Key::Home, Command::Go(Goal::Step(0))),
-        (NONE, Key::End, Command::Go(Goal::End)),
-        (NONE, Key::Space, Command::Play),
-        (NONE, Key::F, Command::Fit),
-        (NONE, Key::D, Command::ShowDecision),
-        (NONE, Key::V, Command::TogglePlane),
-        (NONE, Key::I, Command::LookFrom(Bearing::Iso)),
-        (NONE, Key::X, Command::LookFrom(Bearing::X)),
-        (NONE, Key::Y, Command::LookFrom(Bearing::Y)),
-        (NONE, Key::Z, Command::LookFrom(Bearing::Z)),
-        (NONE, Key::H, Command::HiddenLines),
-        (NONE, Key::C, Command::ToggleCurved),
-        (NONE, Key::Escape, Command::Escape),
-    ];
-    let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
-    keys.extend(digits.into_iter().zip(ViewLayer::ALL).map(|(key, layer)| (NONE, key, Command::Layer(layer))));
-    keys
-}
-
 impl Command {
     /// Its key as text, if it has one.
     pub fn key(&self) -> Option<String> {
         if *self == Command::Help {
             return Some("?".into());
         }
-        let (modifiers, key, _) = keys().into_iter().find(|k| k.2 == *self)?;
-        let mut text = String::new();
-        for (held, name) in [(modifiers.command, "Ctrl+"), (modifiers.alt, "Alt+"), (modifiers.shift, "Shift+")] {
-            if held {
-                text += name;
-            }
-        }
-        Some(text + key_name(key))
+        keys().into_iter().find(|k| k.2 == *self).map(|(modifiers, key, _)| keys::text(modifiers, key))
     }
 
     /// Its name with its key, for tooltips.
@@ -367,28 +308,9 @@ impl Command {
     }
 }
 
-fn key_name(key: Key) -> &'static str {
-    match key {
-        Key::ArrowRight => "Right",
-        Key::ArrowLeft => "Left",
-        Key::Escape => "Esc",
-        other => other.name(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn keys_with_more_modifiers_come_first_and_none_is_used_twice() {
-        let keys = keys();
-        let held = |m: &Modifiers| [m.command, m.alt, m.shift].iter().filter(|held| **held).count();
-        assert!(keys.is_sorted_by(|a, b| held(&a.0) >= held(&b.0)));
-        for (i, a) in keys.iter().enumerate() {
-            assert!(keys[..i].iter().all(|b| (b.0, b.1) != (a.0, a.1)), "{:?}", a.2);
-        }
-    }
 
     #[test]
     fn every_command_has_a_name_of_its_own_and_tells_its_key() {

@@ -190,13 +190,16 @@ impl Layout {
             tiles.insert_tab_tile(panes)
         };
         let view = match room {
-            Room::Wide => tabs(&[Pane::Space, Pane::Quality, Pane::Sweep]),
-            _ => tabs(&[Pane::Space, Pane::Quality, Pane::Sweep, Pane::MetricLens, Pane::Parametric]),
+            Room::Wide => tabs(&[Pane::Space, Pane::Sweep]),
+            // The map of a sweep beside two runs opens others.
+            Room::Pair => tabs(&[Pane::Space, Pane::MetricLens, Pane::Parametric]),
+            _ => tabs(&[Pane::Space, Pane::Sweep, Pane::MetricLens, Pane::Parametric]),
         };
         let (mut left, mut lens) = (Vec::new(), Vec::new());
         if matches!(room, Room::Wide | Room::Middle) {
             left = vec![
-                (tabs(&[Pane::Front, Pane::Elements, Pane::Nodes]), 1.0),
+                // The plots are beside the mesh, in which their bars light elements.
+                (tabs(&[Pane::Front, Pane::Elements, Pane::Nodes, Pane::Quality]), 1.0),
                 (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42),
             ];
         }
@@ -210,6 +213,7 @@ impl Layout {
                     Pane::Front,
                     Pane::Elements,
                     Pane::Nodes,
+                    Pane::Quality,
                     Pane::Breakpoints,
                     Pane::Bookmarks,
                     Pane::History,
@@ -225,6 +229,7 @@ impl Layout {
                     Pane::Front,
                     Pane::Elements,
                     Pane::Nodes,
+                    Pane::Quality,
                     Pane::Breakpoints,
                     Pane::Bookmarks,
                 ],
@@ -232,7 +237,11 @@ impl Layout {
             ),
             _ => (&[Pane::Inspector, Pane::History, Pane::TwoRuns], 0.6),
         };
-        let right = vec![(tabs(inspector), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), share)];
+        let below: &[Pane] = match room {
+            Room::Pair => &[Pane::Parameters, Pane::Layers, Pane::Sweep],
+            _ => &[Pane::Parameters, Pane::Layers],
+        };
+        let right = vec![(tabs(inspector), 1.0), (tabs(below), share)];
         let mut columns = Vec::new();
         let right_width = if room == Room::Pair { BESIDE } else { RIGHT };
         for (column, width) in [(left, LEFT), (vec![(view, 1.0)], 0.0), (lens, LENS), (right, right_width)] {

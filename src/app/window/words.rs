@@ -37,9 +37,48 @@ pub fn kind(kind: EventKind) -> String {
     kind.name().replace('_', " ")
 }
 
+/// Names in plain text as the paper writes them, with the markup of [`super::theme::formula`]: theta_rect becomes
+/// \u{3b8} with a subscript.
+pub fn symbols(text: &str) -> String {
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let end = rest.find(|c| word(c) != word(first)).unwrap_or(rest.len());
+        let (token, after) = rest.split_at(end);
+        out += &symbol(token);
+        rest = after;
+    }
+    out
+}
+
+/// A word as the paper writes it.
+fn symbol(word: &str) -> String {
+    let greek = [("theta", "\u{3b8}"), ("lambda", "\u{3bb}"), ("eps", "\u{3b5}"), ("h", "h"), ("H", "H")];
+    match word {
+        "sqrt" => return "\u{221a}".to_owned(),
+        "Hmin" => return "H_{min}".to_owned(),
+        "eps1" => return "\u{3b5}_{1}".to_owned(),
+        "eps2" => return "\u{3b5}_{2}".to_owned(),
+        // A parameter, which is written so.
+        "h_min_over" => return word.to_owned(),
+        _ => {}
+    }
+    let parts = word.split_once('_').filter(|parts| !parts.1.contains('_'));
+    let known = parts.and_then(|(name, low)| Some((greek.iter().find(|greek| greek.0 == name)?.1, low)));
+    known.map_or_else(|| word.to_owned(), |(letter, low)| format!("{letter}_{{{low}}}"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_become_symbols_and_parameters_stay() {
+        assert_eq!(symbols("below theta_rect = 135, sqrt(lambda_A)"), "below θ_{rect} = 135, √(λ_{A})");
+        assert_eq!(symbols("top_smoothing, h_min_over; Hmin, eps1"), "top_smoothing, h_min_over; H_{min}, ε_{1}");
+        assert_eq!(symbols(""), "");
+    }
 
     #[test]
     fn numbers_are_grouped_and_have_true_minus_signs() {

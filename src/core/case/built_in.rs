@@ -65,6 +65,12 @@ pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
     CASES.iter().chain(FIGURES).copied()
 }
 
+/// The title of a built-in case; none where there is no such case.
+pub fn title(name: &str) -> Option<&'static str> {
+    let (_, text) = all().find(|case| case.0 == name)?;
+    text.lines().find_map(|line| line.strip_prefix("title = \"")?.split('"').next())
+}
+
 /// The built-in case or figure of a name, if any.
 ///
 /// # Errors
@@ -83,6 +89,7 @@ mod tests {
         for (name, _) in all() {
             let case = named(name).unwrap().unwrap();
             assert_eq!(case.name, name);
+            assert_eq!(title(name), Some(case.title.as_str()));
             assert!(case.title != name && !case.notes.is_empty(), "{name}");
         }
     }

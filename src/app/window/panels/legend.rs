@@ -86,7 +86,8 @@ pub fn show(ui: &mut Ui, kept: f32, state: &State, commands: &mut Vec<Command>, 
             Entry::Class(class) => {
                 let is_lit = lit == Some(class);
                 let said = if is_lit { ": selected the base" } else { "" };
-                response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Class {class}{said}")));
+                response
+                    .widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Row {class} of table 1{said}")));
                 if is_lit {
                     ui.painter().rect_filled(rect.shrink2(Vec2::new(0.0, 3.0)), 3.0, ink(palette.accent_row));
                 }

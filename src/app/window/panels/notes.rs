@@ -1,10 +1,12 @@
 //! The notes of a case: open from the start for the small cases that show a figure of the paper.
 
-use eframe::egui::{Align2, Context, Grid, Rect, RichText, ScrollArea, Ui, Vec2, Window};
+use eframe::egui::text::LayoutJob;
+use eframe::egui::{Align2, Context, Grid, Label, Rect, RichText, ScrollArea, Ui, Vec2, Window};
 
 use crate::app::window::command::Command;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
+use crate::app::window::words;
 use crate::render::palette::Palette;
 
 /// Shows the notes, if they are open; they start over the bottom of `place`.
@@ -27,12 +29,13 @@ pub fn show(context: &Context, place: Rect, state: &State, commands: &mut Vec<Co
             ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
                 for (number, paragraph) in case.notes.split("\n\n").enumerate() {
                     if paragraph.starts_with('|') {
-                        table(ui, number, paragraph);
+                        table(ui, number, paragraph, palette);
                         continue;
                     }
                     // Lines are broken anew.
                     let text = paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
-                    ui.label(RichText::new(if text.is_empty() { "This case has no notes." } else { &text }));
+                    let text = if text.is_empty() { "This case has no notes." } else { &text };
+                    ui.add(Label::new(written(text, palette)).wrap());
                 }
             });
         });
@@ -41,12 +44,17 @@ pub fn show(context: &Context, place: Rect, state: &State, commands: &mut Vec<Co
     }
 }
 
+/// A text of the notes, with symbols as the paper writes them.
+fn written(text: &str, palette: &Palette) -> LayoutJob {
+    theme::formula(&words::symbols(text), theme::BODY, ink(palette.text), ink(palette.strong))
+}
+
 /// A table, whose cells stand between bars.
-fn table(ui: &mut Ui, number: usize, text: &str) {
+fn table(ui: &mut Ui, number: usize, text: &str, palette: &Palette) {
     Grid::new(("table of the notes", number)).num_columns(4).striped(true).show(ui, |ui| {
         for line in text.lines() {
             for cell in line.trim_matches('|').split('|') {
-                ui.label(cell.trim());
+                ui.label(written(cell.trim(), palette));
             }
             ui.end_row();
         }

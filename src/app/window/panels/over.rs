@@ -3,7 +3,7 @@
 use eframe::egui::{self, Align2, Area, Button, Context, Key, Label, Order, RichText, ScrollArea, TextEdit, Ui, Vec2};
 
 use super::on_click;
-use crate::app::window::command::{Command, keys};
+use crate::app::window::command::{Command, Purpose, groups};
 use crate::app::window::mesh_out;
 use crate::app::window::pair::PairCommand;
 use crate::app::window::session::Source;
@@ -198,20 +198,26 @@ fn help(ui: &mut Ui, palette: &Palette) {
     ui.add_space(6.0);
     ScrollArea::vertical().max_height(460.0).min_scrolled_height(460.0).show(ui, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing(Vec2::new(26.0, 3.0)).show(ui, |ui| {
-            for (_, _, command) in keys() {
-                ui.label(RichText::new(command.key().unwrap_or_default()).color(ink(palette.strong)));
-                ui.label(command.name());
-                ui.end_row();
-            }
-            for (keys, what) in [
-                ("drag, middle drag", "Move the mesh"),
-                ("wheel, pinch", "Zoom at the pointer"),
-                ("right drag", "Turn the mesh; F looks straight down again"),
-                ("click, double click", "Select; show in the middle"),
-            ] {
+            let row = |ui: &mut Ui, keys: &str, what: &str| {
                 ui.label(RichText::new(keys).color(ink(palette.strong)));
                 ui.label(what);
                 ui.end_row();
+            };
+            for (purpose, entries) in groups() {
+                let head = RichText::new(purpose.name()).font(theme::semibold(theme::BODY));
+                ui.label(head.color(ink(palette.weak)));
+                ui.end_row();
+                entries.iter().for_each(|(keys, command)| row(ui, keys, &command.name()));
+                if purpose == Purpose::Views {
+                    for (keys, what) in [
+                        ("drag, middle drag", "Move the mesh"),
+                        ("wheel, pinch", "Zoom at the pointer"),
+                        ("right drag", "Turn the mesh; F looks straight down again"),
+                        ("click, double click", "Select; show in the middle"),
+                    ] {
+                        row(ui, keys, what);
+                    }
+                }
             }
         });
     });

@@ -5,10 +5,10 @@ mod numbers;
 
 use std::sync::{Arc, Weak};
 
-use eframe::egui::{RichText, Role, Ui, Vec2b, WidgetInfo};
+use eframe::egui::{Label, RichText, Role, ScrollArea, Ui, Vec2b, WidgetInfo};
 use egui_plot::{Bar, BarChart, Legend, Plot};
 
-use super::{line, note};
+use super::{inset, line, note};
 use crate::app::window::command::Command;
 use crate::app::window::session::{Goal, Moment};
 use crate::app::window::state::State;
@@ -20,7 +20,7 @@ use crate::render::scene::{Outlined, metric_angles};
 use numbers::{BARS, Extremes, LONGEST, Numbers};
 
 /// Height of all that is not a plot.
-const WORDS: f32 = 150.0;
+const WORDS: f32 = 196.0;
 
 /// What the panel keeps for itself.
 #[derive(Default)]
@@ -38,6 +38,20 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut V
     }
     let numbers = local.numbers.get_or_insert_with(|| Numbers::of(moment));
     let half = 0.5 * (ui.available_height() - WORDS);
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        inset().show(ui, |ui| plots(ui, state, moment, numbers, half, commands, palette));
+    });
+}
+
+fn plots(
+    ui: &mut Ui,
+    state: &State,
+    moment: &Moment,
+    numbers: &Numbers,
+    half: f32,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
     ui.spacing_mut().item_spacing.y = 2.0;
     head(ui, "Quality in the metric, 0 to 1", palette);
     quality(ui, state, moment, commands, palette);
@@ -55,10 +69,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut V
         light(commands, lit, &what);
     }
     head(ui, "Smallest and largest angle of each quad in the metric, degrees (fig. 24)", palette);
-    ui.horizontal(|ui| {
-        angles(ui, "in the metric", numbers.in_metric, commands, palette);
-        angles(ui, "in space", numbers.in_space, commands, palette);
-    });
+    angles(ui, "in the metric", numbers.in_metric, commands, palette);
+    angles(ui, "in space", numbers.in_space, commands, palette);
     let [least, greatest] = numbers.angles.clone();
     let series = [("smallest", least, palette.front[1]), ("largest", greatest, palette.front[2])];
     if let Some([low, high]) = chart(ui, "angles", half, [0.0, 180.0], series, 1.0, palette) {
@@ -77,9 +89,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut PlotsState, commands: &mut V
 
 /// The lowest quality now, and of all quadrilaterals when they were formed.
 fn quality(ui: &mut Ui, state: &State, moment: &Moment, commands: &mut Vec<Command>, palette: &Palette) {
-    ui.horizontal(|ui| {
-        // A link keeps a distance of its own.
-        ui.add_space(8.0);
+    ui.horizontal_wrapped(|ui| {
         match moment.worst {
             Some((e, quality)) => {
                 let text = format!("lowest now {}", words::fixed(quality, 2));
@@ -102,8 +112,7 @@ fn quality(ui: &mut Ui, state: &State, moment: &Moment, commands: &mut Vec<Comma
 }
 
 fn edges(ui: &mut Ui, numbers: &Numbers, commands: &mut Vec<Command>, palette: &Palette) {
-    ui.horizontal(|ui| {
-        ui.add_space(12.0);
+    ui.horizontal_wrapped(|ui| {
         ui.label(note(format!("mean {}", words::fixed(numbers.mean, 2)), palette));
         for (name, (ends, length)) in ["shortest", "longest"].into_iter().zip(numbers.edges.into_iter().flatten()) {
             let text = format!("{name} {}", words::fixed(length, 2));
@@ -115,13 +124,14 @@ fn edges(ui: &mut Ui, numbers: &Numbers, commands: &mut Vec<Command>, palette: &
 
 fn angles(ui: &mut Ui, space: &str, extremes: Extremes<ElementId>, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(extremes) = extremes else { return };
-    ui.add_space(12.0);
-    ui.label(note(space, palette));
-    for (name, (e, angle)) in ["smallest", "largest"].into_iter().zip(extremes) {
-        let text = format!("{name} {}°", words::degrees(angle));
-        let tip = format!("Select quadrilateral {}, which has this angle {space}", e.0);
-        link(ui, text, &tip, [Command::Pick(Some(Outlined::Element(e)))], commands, palette);
-    }
+    ui.horizontal_wrapped(|ui| {
+        ui.label(note(space, palette));
+        for (name, (e, angle)) in ["smallest", "largest"].into_iter().zip(extremes) {
+            let text = format!("{name} {}°", words::degrees(angle));
+            let tip = format!("Select quadrilateral {}, which has this angle {space}", e.0);
+            link(ui, text, &tip, [Command::Pick(Some(Outlined::Element(e)))], commands, palette);
+        }
+    });
 }
 
 /// A number that leads to what has it.
@@ -133,7 +143,6 @@ fn link<const N: usize>(
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
-    ui.add_space(4.0);
     if ui.link(line(text, palette.text).underline()).on_hover_text(tip).clicked() {
         commands.extend(asked);
     }
@@ -147,11 +156,9 @@ fn light(commands: &mut Vec<Command>, lit: Vec<Outlined>, what: &str) {
 
 /// The heading of a plot.
 fn head(ui: &mut Ui, title: &str, palette: &Palette) {
-    ui.horizontal(|ui| {
-        ui.set_height(24.0);
-        ui.add_space(12.0);
-        ui.label(RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
-    });
+    ui.add_space(4.0);
+    let text = RichText::new(title).font(theme::semibold(theme::BODY)).color(ink(palette.strong));
+    ui.add(Label::new(text).wrap());
 }
 
 /// Shows bars as high as their counts divided by `unit`; the one under the pointer says its count. Returns the ends of

@@ -20,8 +20,8 @@ use crate::render::scene::ColourBy;
 
 /// How much of the window's height a list in a menu leaves free.
 const ROOM: f32 = 120.0;
-/// The width of the longest name of a built-in case.
-const NAMES: f32 = 176.0;
+/// The width of a menu of cases, at most.
+const TITLES: f32 = 560.0;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
@@ -84,14 +84,18 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         items(ui, [PairCommand::Fork, PairCommand::AskBeside].map(Command::Pair), commands);
         ui.separator();
         let mut open = |ui: &mut Ui, cases: &[(&str, &str)]| {
+            ui.set_min_width(TITLES.min(0.6 * ui.ctx().content_rect().width()));
             for (name, _) in cases {
-                item(ui, Command::Open(Source::BuiltIn((*name).to_owned())), commands);
+                let button = Button::new(built_in::title(name).unwrap_or(name)).shortcut_text(*name).wrap();
+                if ui.add(button).clicked() {
+                    commands.push(Command::Open(Source::BuiltIn((*name).to_owned())));
+                    ui.close();
+                }
             }
         };
         ui.menu_button("Built-in cases", |ui| {
             // A small window has no room for all of them.
             let height = ui.ctx().content_rect().height() - ROOM;
-            ui.set_min_width(NAMES);
             ScrollArea::vertical().max_height(height).show(ui, |ui| open(ui, built_in::CASES));
         });
         ui.menu_button("Figures of the paper", |ui| open(ui, built_in::FIGURES));

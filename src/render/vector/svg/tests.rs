@@ -69,7 +69,7 @@ fn crowded_edges_are_thin_and_none_is_left_out() {
     let svg = write(&Picture::of_mesh(&mesh), &sheet(COLUMN, None));
     let thin = svg.split("<path").find(|path| path.contains("stroke-width=\"0.12\"")).unwrap();
     assert_eq!(thin.matches('M').count(), n as usize - 1);
-    assert!(!svg.contains("stroke-width=\"0.35\""));
+    assert!(!svg.contains("stroke-width=\"0.28\""));
 }
 
 #[test]

@@ -1,0 +1,88 @@
+//! What the timeline and the legend say of steps, and what a stop selects.
+
+use eframe::egui::{Event as Input, Key, Modifiers, PointerButton, Pos2, Vec2};
+use egui_kittest::kittest::Queryable;
+use quadfront::app::window::{Command, Direction, Goal};
+use quadfront::core::convert::{Event, EventKind};
+use quadfront::render::scene::Outlined;
+
+use super::window_harness::{Window, apply, settle};
+use super::{press, step, window};
+
+/// The height of the ruler of the timeline, and of a row with its gap.
+const RULER: f32 = 24.0;
+const ROW: f32 = 14.0;
+
+fn click_at(harness: &mut Window, pos: Pos2) {
+    harness.event(Input::PointerMoved(pos));
+    harness.run_steps(2);
+    for pressed in [true, false] {
+        harness.event(Input::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        harness.run_steps(1);
+    }
+    settle(harness);
+}
+
+#[test]
+fn a_click_in_a_row_of_the_timeline_leads_to_an_event_of_the_row() {
+    let Some(mut harness) = window() else { return };
+    let plot = harness.get_by_label_contains("Timeline: step").rect().shrink2(Vec2::new(6.0, 4.0));
+    let track = harness.state().state.run().track.clone();
+    let rows: [(usize, &[EventKind]); 3] = [
+        (0, &[EventKind::Formed]),
+        (2, &[EventKind::SideDivided, EventKind::NodeRemoved]),
+        (4, &[EventKind::RolledBack, EventKind::Deferred]),
+    ];
+    for (row, kinds) in rows {
+        let steps: Vec<usize> = (1..=track.len()).filter(|step| kinds.contains(&track[step - 1].kind)).collect();
+        for wanted in [steps[0], steps[steps.len() / 2], steps[steps.len() - 1]] {
+            let x = plot.left() + plot.width() * wanted as f32 / track.len() as f32;
+            let y = plot.top() + RULER + ROW * row as f32 + 6.0;
+            click_at(&mut harness, Pos2::new(x + 1.5, y));
+            let kind = track[step(&harness) as usize - 1].kind;
+            assert!(kinds.contains(&kind), "row {row}, step {wanted}: {kind:?} at {}", step(&harness));
+        }
+    }
+}
+
+#[test]
+fn a_stop_at_a_breakpoint_selects_what_it_stopped_for() {
+    let Some(mut harness) = window() else { return };
+    let picked = |harness: &Window| harness.state().state.document().picked;
+    apply(&mut harness, Command::AddBreakpoint("kind == formed && quad.min_angle < 60".to_owned()));
+    press(&mut harness, Modifiers::NONE, Key::F5);
+    let hits = harness.state().state.run().hits[0].clone();
+    assert_eq!(hits.first(), Some(&step(&harness)), "the marks of the timeline are where the run stops");
+    let formed = harness.state().state.run().track[step(&harness) as usize - 1].formed.unwrap();
+    assert_eq!(picked(&harness), Some(Outlined::Element(formed.0)));
+    apply(&mut harness, Command::RemoveBreakpoint(0));
+    apply(&mut harness, Command::AddBreakpoint("kind == base_selected".to_owned()));
+    press(&mut harness, Modifiers::NONE, Key::F5);
+    let moment = harness.state().state.run().moment.clone().unwrap();
+    let Some(Event::BaseSelected { a, b, .. }) = moment.event else { panic!("{:?}", moment.event) };
+    assert_eq!(picked(&harness), Some(Outlined::Edge([a, b])));
+}
+
+#[test]
+fn the_legend_lights_the_row_of_table_1_that_selected_the_base() {
+    let Some(mut harness) = window() else { return };
+    let mut seen = [false; 4];
+    for _ in 0..40 {
+        apply(&mut harness, Command::Go(Goal::Kind(EventKind::BaseSelected, Direction::Forward)));
+        harness.run_steps(2);
+        let moment = harness.state().state.run().moment.clone().unwrap();
+        let Some(Event::BaseSelected { class, within_reach, .. }) = moment.event else { panic!("{:?}", moment.event) };
+        let row = if within_reach { class } else { 4 };
+        seen[usize::from(row) - 1] = true;
+        for k in 1..=4 {
+            let said = if k == row { ": selected the base" } else { "" };
+            harness.get_by_label(&format!("Row {k} of table 1{said}"));
+        }
+    }
+    assert!(seen.iter().filter(|seen| **seen).count() >= 2, "{seen:?}");
+}
