@@ -1,5 +1,5 @@
-//! A run beside a finished mesh, such as one of another program: what both have, and the first step of the run that made
-//! a quadrilateral which the mesh does not have.
+//! A run beside a finished mesh, such as one of another program: what both have, and the first step of the run that
+//! made a quadrilateral which the mesh does not have.
 
 use std::collections::{BTreeMap, BTreeSet};
 
