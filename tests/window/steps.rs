@@ -6,7 +6,7 @@ use quadfront::app::window::{Command, Direction, Goal};
 use quadfront::core::convert::{Event, EventKind};
 use quadfront::render::scene::Outlined;
 
-use super::window_harness::{Window, apply, settle};
+use super::window_harness::{Window, apply, settle, until};
 use super::{press, step, window};
 
 /// The height of the ruler of the timeline, and of a row with its gap.
@@ -56,6 +56,8 @@ fn a_stop_at_a_breakpoint_selects_what_it_stopped_for() {
     let picked = |harness: &Window| harness.state().state.document().picked;
     apply(&mut harness, Command::AddBreakpoint("kind == formed && quad.min_angle < 60".to_owned()));
     press(&mut harness, Modifiers::NONE, Key::F5);
+    // The session says what it stopped for after the state.
+    until(&mut harness, "it is selected", |harness| picked(harness).is_some());
     let hits = harness.state().state.run().hits[0].clone();
     assert_eq!(hits.first(), Some(&step(&harness)), "the marks of the timeline are where the run stops");
     let formed = harness.state().state.run().track[step(&harness) as usize - 1].formed.unwrap();
@@ -63,6 +65,7 @@ fn a_stop_at_a_breakpoint_selects_what_it_stopped_for() {
     apply(&mut harness, Command::RemoveBreakpoint(0));
     apply(&mut harness, Command::AddBreakpoint("kind == base_selected".to_owned()));
     press(&mut harness, Modifiers::NONE, Key::F5);
+    until(&mut harness, "the base is selected", |harness| matches!(picked(harness), Some(Outlined::Edge(_))));
     let moment = harness.state().state.run().moment.clone().unwrap();
     let Some(Event::BaseSelected { a, b, .. }) = moment.event else { panic!("{:?}", moment.event) };
     assert_eq!(picked(&harness), Some(Outlined::Edge([a, b])));
