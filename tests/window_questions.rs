@@ -294,3 +294,47 @@ fn a_bookmark_takes_a_note_and_the_notes_become_a_page() {
     harness.state_mut().apply(Command::Undo);
     assert_eq!(notes(&harness)[0].1, "why **this base**?");
 }
+
+#[test]
+fn a_breakpoint_is_reduced_to_the_smallest_case_that_meets_it() {
+    if !has_adapter() {
+        return;
+    }
+    let mut harness = start(LAPTOP, |cc| App::new(cc, None));
+    apply(&mut harness, Command::Open(Source::BuiltIn("gear".to_owned())));
+    apply(&mut harness, Command::AddBreakpoint("kind == seamed".to_owned()));
+    // A reduction that is stopped leaves the window as it is.
+    harness.get_by_label("Reduce this: kind == seamed").click_accesskit();
+    harness.run_steps(3);
+    assert!(harness.state().state.reducing().unwrap().is_running());
+    harness.get_by_label("Stop reducing").click_accesskit();
+    harness.run_steps(3);
+    let stopped = harness.state().state.reducing().unwrap();
+    assert!(!stopped.is_running() && stopped.told.starts_with("Stopped"));
+    let first = stopped.path.clone();
+    harness.get_by_label("Reduce this: kind == seamed").click_accesskit();
+    harness.run_steps(3);
+    until(&mut harness, "it is reduced", |harness| harness.state().state.reducing().is_some_and(|done| done.is_done));
+    let path = harness.state().state.reducing().unwrap().path.clone();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let events = Process::new(env!("CARGO_BIN_EXE_quadfront"))
+        .arg("convert")
+        .arg(&path)
+        .args(["--quiet", "--events", "-"])
+        .output()
+        .unwrap();
+    let events = String::from_utf8(events.stdout).unwrap();
+    harness.get_by_label_contains("gear-small").click_accesskit();
+    harness.run_steps(3);
+    settle(&mut harness);
+    let name = harness.state().state.run().opened.as_ref().unwrap().run.case.name.clone();
+    for path in [first, path] {
+        // The first one may have been stopped before there was anything to write.
+        let _ = std::fs::remove_file(path);
+    }
+    assert!(name.starts_with("gear-small"), "{name}");
+    assert!(events.contains("\"seamed\""), "{text}");
+    let corners = |text: &str| text.matches('[').count();
+    let (_, original) = quadfront::core::case::built_in::all().find(|case| case.0 == "gear").unwrap();
+    assert!(corners(&text) < corners(original) / 2, "{text}");
+}

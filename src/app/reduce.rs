@@ -15,7 +15,7 @@ use crate::core::case::ImportOptions;
 use crate::core::fault::Fault;
 use crate::core::kernel::number::counted;
 use crate::core::progress::Cancel;
-use crate::core::reduce::{Budget, Draft, Finding, Question, Reduced, Written, does_not_show, reduce as search};
+use crate::core::reduce::{Budget, Draft, Finding, Question, Reduced, Size, Written, does_not_show, reduce as search};
 use crate::core::run::Run;
 
 /// How often a child is looked after.
@@ -33,8 +33,21 @@ pub(super) fn reduce(arguments: &ReduceArguments) -> Result<(), Fault> {
     // The hook would print a message for each panic that a try meets.
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
-    let done = reduced(&question, &input.run, &original, &mut written, *tries, source);
+    let (bar, cancel) = (bar(source.quiet), INTERRUPT.clone());
+    let work = Reduction { question: &question, run: &input.run, original: &original, tries: *tries, cancel };
+    let mut tell = |text: String| {
+        bar.set_message(text);
+        bar.tick();
+    };
+    let (done, smallest) = work.go(&source.input, &mut written, &mut tell);
+    bar.finish_and_clear();
     std::panic::set_hook(hook);
+    if work.cancel.is_asked() {
+        Stream::Error.print(&match &smallest {
+            Some(size) => format!("Stopped. {} has the smallest case so far: {size}\n", written.path().display()),
+            None => "Stopped before anything could be left out. Nothing was written.\n".to_owned(),
+        });
+    }
     let reduced = done?;
     if !source.quiet {
         let head = format!("{}: {}\n", out.display(), reduced.finding.sentence);
@@ -45,86 +58,106 @@ pub(super) fn reduce(arguments: &ReduceArguments) -> Result<(), Fault> {
     Ok(())
 }
 
-fn reduced(
-    question: &Question,
-    run: &Run,
-    original: &Draft,
-    written: &mut Written,
-    tries: u64,
-    source: &Source,
-) -> Result<Reduced, Fault> {
-    let cancel = INTERRUPT.clone();
-    let bar = bar(source.quiet);
-    bar.set_message("Looking at the case as it is");
-    bar.tick();
-    let folder = tempfile::tempdir().map_err(|error| Fault::new(format!("Cannot make a temporary folder: {error}")))?;
-    // A try in a file of its own, for another process.
-    let child = |draft: &Draft, written: &Written| -> Result<Option<Finding>, Fault> {
-        let file = written.beside(folder.path());
-        file.write(draft, &Finding::panic(), "")?;
-        Ok(panics(file.path(), &cancel)?.then(Finding::panic))
-    };
-    let mut found = None;
-    for (format, draft) in written.drafts(original) {
-        written.choose(format);
-        let finding = if question.asks_for_a_panic() {
-            child(&draft, written)?
-        } else {
-            question.find(&draft.run()?, Budget::UNLIMITED, &cancel)?
+/// The reduction of a run.
+pub(super) struct Reduction<'r> {
+    /// What the smaller case must still show.
+    pub question: &'r Question,
+    /// The run.
+    pub run: &'r Run,
+    /// The same as a draft.
+    pub original: &'r Draft,
+    /// The largest number of tries.
+    pub tries: u64,
+    /// Stops it.
+    pub cancel: Cancel,
+}
+
+impl Reduction<'_> {
+    /// Reduces the run, and writes the smallest case after each success, so that an interruption keeps it. `name` is
+    /// that of the run in messages; `tell` hears how far it is. Returns what came of it, and the size of the smallest
+    /// case that was written.
+    pub fn go(
+        &self,
+        name: &str,
+        written: &mut Written,
+        tell: &mut dyn FnMut(String),
+    ) -> (Result<Reduced, Fault>, Option<Size>) {
+        let mut smallest = None;
+        (self.reduced(name, written, tell, &mut smallest), smallest)
+    }
+
+    fn reduced(
+        &self,
+        name: &str,
+        written: &mut Written,
+        tell: &mut dyn FnMut(String),
+        smallest: &mut Option<Size>,
+    ) -> Result<Reduced, Fault> {
+        let Reduction { question, run, original, tries, cancel } = self;
+        tell("Looking at the case as it is".to_owned());
+        let folder =
+            tempfile::tempdir().map_err(|error| Fault::new(format!("Cannot make a temporary folder: {error}")))?;
+        // A try in a file of its own, for another process.
+        let child = |draft: &Draft, written: &Written| -> Result<Option<Finding>, Fault> {
+            let file = written.beside(folder.path());
+            file.write(draft, &Finding::panic(), "")?;
+            Ok(panics(file.path(), cancel)?.then(Finding::panic))
         };
-        if let Some(finding) = finding {
-            found = Some((draft, finding));
-            break;
+        let mut found = None;
+        for (format, draft) in written.drafts(original) {
+            written.choose(format);
+            let finding = if question.asks_for_a_panic() {
+                child(&draft, written)?
+            } else {
+                question.find(&draft.run()?, Budget::UNLIMITED, cancel)?
+            };
+            if let Some(finding) = finding {
+                found = Some((draft, finding));
+                break;
+            }
         }
-    }
-    let Some((draft, first)) = found else {
-        return Err(does_not_show(&source.input, question, question.shown_instead(run, &cancel)));
-    };
-    let budget = Budget::like(&first);
-    let mut judge = |draft: &Draft| -> Result<Option<Finding>, Fault> {
-        let Ok(run) = draft.run() else { return Ok(None) };
-        let found =
-            if question.asks_for_a_panic() { child(draft, written)? } else { question.find(&run, budget, &cancel)? };
-        Ok(found.filter(|found| found.is_like(&first)))
-    };
-    let mut smallest = None;
-    let mut tell = |tries: u64, draft: &Draft, finding: &Finding, is_new: bool| {
-        bar.set_message(format!("Reducing: {} tried; now {}", counted(tries, "case"), draft.size()));
-        bar.tick();
-        if is_new {
-            written.write(draft, finding, "The reduction has not ended: more may be left out.")?;
-            smallest = Some(draft.size());
+        let Some((draft, first)) = found else {
+            return Err(does_not_show(name, question, question.shown_instead(run, cancel)));
+        };
+        let budget = Budget::like(&first);
+        let mut judge = |draft: &Draft| -> Result<Option<Finding>, Fault> {
+            let Ok(run) = draft.run() else { return Ok(None) };
+            let found = if question.asks_for_a_panic() {
+                child(draft, written)?
+            } else {
+                question.find(&run, budget, cancel)?
+            };
+            Ok(found.filter(|found| found.is_like(&first)))
+        };
+        let mut hear = |tries: u64, draft: &Draft, finding: &Finding, is_new: bool| {
+            tell(format!("Reducing: {} tried; now {}", counted(tries, "case"), draft.size()));
+            if is_new {
+                written.write(draft, finding, "The reduction has not ended: more may be left out.")?;
+                *smallest = Some(draft.size());
+            }
+            Ok(())
+        };
+        let done = search(draft, first.clone(), *tries, &mut judge, &mut hear)?;
+        let how = if done.is_least {
+            format!("{} tried; no part that is left can be left out.", counted(done.tests, "smaller case"))
+        } else {
+            format!("{} tried; more tries may leave out more.", counted(done.tests, "smaller case"))
+        };
+        written.write(&done.draft, &done.finding, &how)?;
+        let shows = if question.asks_for_a_panic() {
+            panics(written.path(), cancel)?
+        } else {
+            let file = Source { input: written.path().display().to_string(), quiet: true, ..Source::default() };
+            let found = question.find(&input::read(&file, &ImportOptions::default())?.run, budget, cancel)?;
+            found.is_some_and(|found| found.is_like(&first))
+        };
+        if shows {
+            return Ok(done);
         }
-        Ok(())
-    };
-    let done = search(draft, first.clone(), tries, &mut judge, &mut tell);
-    bar.finish_and_clear();
-    if cancel.is_asked() {
-        Stream::Error.print(&match &smallest {
-            Some(size) => format!("Stopped. {} has the smallest case so far: {size}\n", written.path().display()),
-            None => "Stopped before anything could be left out. Nothing was written.\n".to_owned(),
-        });
+        Err(Fault::new("The case that was written does not show it, though it did in memory")
+            .at(written.path().display().to_string())
+            .remedy("Report this as a bug, with the case that was reduced"))
     }
-    let done = done?;
-    let how = if done.is_least {
-        format!("{} tried; no part that is left can be left out.", counted(done.tests, "smaller case"))
-    } else {
-        format!("{} tried; more tries may leave out more.", counted(done.tests, "smaller case"))
-    };
-    written.write(&done.draft, &done.finding, &how)?;
-    let shows = if question.asks_for_a_panic() {
-        panics(written.path(), &cancel)?
-    } else {
-        let file = Source { input: written.path().display().to_string(), quiet: true, ..Source::default() };
-        let found = question.find(&input::read(&file, &ImportOptions::default())?.run, budget, &cancel)?;
-        found.is_some_and(|found| found.is_like(&first))
-    };
-    if shows {
-        return Ok(done);
-    }
-    Err(Fault::new("The case that was written does not show it, though it did in memory")
-        .at(written.path().display().to_string())
-        .remedy("Report this as a bug, with the case that was reduced"))
 }
 
 fn bar(quiet: bool) -> ProgressBar {

@@ -109,6 +109,10 @@ pub enum Command {
     SwitchBreakpoint(usize),
     /// Remove a breakpoint.
     RemoveBreakpoint(usize),
+    /// Find the smallest case in which a breakpoint is still met.
+    Reduce(usize),
+    /// Stop that.
+    StopReducing,
     /// Set a bookmark at this step, or remove it.
     Bookmark,
     /// Change the note on a bookmarked step.

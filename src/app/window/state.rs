@@ -19,6 +19,7 @@ pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState}
 pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint, Workspace};
 
 use super::autosave::Marks;
+use super::reducing::Reducing;
 use super::session::{Moment, Stops, Wake};
 use super::sweep::SweepWork;
 use crate::core::case::Parameters;
@@ -36,6 +37,8 @@ pub struct State {
     frame: FrameState,
     /// The sweep, which outlasts the run that it was begun with.
     sweep: Option<SweepWork>,
+    /// The reduction of the run, once there is one.
+    reducing: Option<Reducing>,
     /// The pair that this run is the first one of.
     pair: Option<Pair>,
     /// Whether it is the second run of a pair.
@@ -52,6 +55,7 @@ impl State {
             view: ViewState::default(),
             frame: FrameState::default(),
             sweep: None,
+            reducing: None,
             pair: None,
             is_second: false,
         }
@@ -80,6 +84,11 @@ impl State {
     /// What is seen.
     pub fn view(&self) -> &ViewState {
         &self.view
+    }
+
+    /// The reduction of the run, once there is one.
+    pub fn reducing(&self) -> Option<&Reducing> {
+        self.reducing.as_ref()
     }
 
     /// The sweep of the window, once there is one.

@@ -58,6 +58,8 @@ impl Command {
             Command::AddBreakpoint(text) => format!("Break where {text}"),
             Command::SwitchBreakpoint(_) => "Switch a breakpoint".into(),
             Command::RemoveBreakpoint(_) => "Remove a breakpoint".into(),
+            Command::Reduce(_) => "Reduce this: the smallest case in which it is still met".into(),
+            Command::StopReducing => "Stop reducing".into(),
             Command::Bookmark => "Bookmark this step".into(),
             Command::WriteNote(step, _) => format!("Write a note on step {step}"),
             Command::RemoveBookmark(step) => format!("Remove the bookmark of step {step}"),

@@ -5,6 +5,7 @@ use eframe::egui::{self, Align, Label, Layout, RichText, Role, ScrollArea, Sense
 use super::condition_field::ConditionField;
 use super::{icon_button, inset, note, on_click};
 use crate::app::window::command::Command;
+use crate::app::window::session::Source;
 use crate::app::window::state::{State, outlined};
 use crate::app::window::theme;
 use crate::app::window::{icons, words};
@@ -34,6 +35,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut BreakpointsState, commands: 
                 ui.add(Label::new(note(text, palette)).wrap());
             }
             conditions(ui, state, commands, palette);
+            reduction(ui, state, commands, palette);
             watches(ui, state, commands, palette);
         });
         if field.show(ui, &mut local.field, palette).is_entered() {
@@ -51,6 +53,11 @@ fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: 
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 icon_button(ui, icons::X, 13.0, Command::RemoveBreakpoint(k), true, commands);
+                let response = ui.small_button("Reduce");
+                let name = format!("Reduce this: {}", breakpoint.condition);
+                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name.clone()));
+                let tip = "Find the smallest case in which it is still met, and write it as a case file";
+                on_click(&response.on_hover_text(tip), Command::Reduce(k), commands);
                 if let Some(hits) = state.run().hits.get(k) {
                     let text = format!("{} in this run", words::grouped(hits.len() as u64));
                     ui.label(note(text, palette)).on_hover_text("How often it holds in the recorded part of the run");
@@ -58,6 +65,23 @@ fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: 
             });
         });
     }
+}
+
+/// How far a reduction is, or what came of it.
+fn reduction(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(reducing) = state.reducing() else { return };
+    ui.add_space(4.0);
+    let text = format!("{} · {}", reducing.condition, reducing.told);
+    ui.add(Label::new(note(text, palette)).wrap());
+    ui.horizontal_wrapped(|ui| {
+        if reducing.is_running() {
+            on_click(&ui.button(Command::StopReducing.name()), Command::StopReducing, commands);
+        } else if reducing.is_done {
+            let open = Command::Open(Source::File(reducing.path.clone()));
+            on_click(&ui.button(open.name()), open, commands);
+        }
+    });
+    ui.add_space(4.0);
 }
 
 fn watches(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {

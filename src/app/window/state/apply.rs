@@ -19,6 +19,7 @@ use crate::app::window::files::Dialog;
 use crate::app::window::layout::Pane;
 use crate::app::window::lists::ListKind;
 use crate::app::window::measure::Measuring;
+use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
 use crate::core::convert::Event;
@@ -107,6 +108,17 @@ impl State {
                     document.breakpoints.remove(k);
                 }
             }),
+            Command::Reduce(k) => {
+                let condition = self.document().breakpoints.get(k).map(|breakpoint| breakpoint.condition.clone());
+                if let Some((condition, run)) = condition.zip(self.current_run()) {
+                    self.reducing = Some(Reducing::begin(run, condition, self.wake.clone()));
+                }
+            }
+            Command::StopReducing => {
+                if let Some(reducing) = &mut self.reducing {
+                    reducing.stop();
+                }
+            }
             Command::Bookmark => self.bookmark(),
             Command::WriteNote(step, note) => self.workspace.write_note(step, note),
             Command::RemoveBookmark(step) => {

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use super::State;
 use crate::app::figure::another_state;
+use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Moment, SessionNews, Source};
 use crate::app::window::sweep::SweepWork;
 use crate::core::convert::Phase;
@@ -24,6 +25,9 @@ impl State {
     pub(in crate::app::window) fn hear(&mut self) {
         self.hear_alone();
         self.hear_second();
+        if let Some(fault) = self.reducing.as_mut().and_then(Reducing::hear) {
+            self.complain(&fault);
+        }
         if let Some(fault) = self.sweep.as_mut().and_then(SweepWork::hear) {
             self.complain(&fault);
         }
