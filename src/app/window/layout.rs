@@ -224,6 +224,7 @@ impl Layout {
             Room::Pair => (
                 &[
                     Pane::TwoRuns,
+                    Pane::Sweep,
                     Pane::Inspector,
                     Pane::History,
                     Pane::Front,
@@ -237,11 +238,7 @@ impl Layout {
             ),
             _ => (&[Pane::Inspector, Pane::History, Pane::TwoRuns], 0.6),
         };
-        let below: &[Pane] = match room {
-            Room::Pair => &[Pane::Parameters, Pane::Layers, Pane::Sweep],
-            _ => &[Pane::Parameters, Pane::Layers],
-        };
-        let right = vec![(tabs(inspector), 1.0), (tabs(below), share)];
+        let right = vec![(tabs(inspector), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), share)];
         let mut columns = Vec::new();
         let right_width = if room == Room::Pair { BESIDE } else { RIGHT };
         for (column, width) in [(left, LEFT), (vec![(view, 1.0)], 0.0), (lens, LENS), (right, right_width)] {

@@ -463,7 +463,7 @@ mod tests {
             ("turn = [0, 0, 0, 1]", "turn = [0, 0, 1]", "four numbers"),
             ("height = 1.25", "height = 0", "positive"),
             ("[camera]", "[kamera]", "camera"),
-            ("step = 900\nname", "step = -900\nname", "whole number"),
+            ("step = 900\nnote", "step = -900\nnote", "whole number"),
         ] {
             let fault = parse(&good.replace(from, to), "a.toml", Path::new("")).unwrap_err();
             assert!(fault.to_string().contains(what), "{to}: {fault}");
