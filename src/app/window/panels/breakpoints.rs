@@ -53,16 +53,19 @@ fn conditions(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: 
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 icon_button(ui, icons::X, 13.0, Command::RemoveBreakpoint(k), true, commands);
-                let response = ui.small_button("Reduce");
-                let name = format!("Reduce this: {}", breakpoint.condition);
-                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name.clone()));
-                let tip = "Find the smallest case in which it is still met, and write it as a case file";
-                on_click(&response.on_hover_text(tip), Command::Reduce(k), commands);
-                if let Some(hits) = state.run().hits.get(k) {
-                    let text = format!("{} in this run", words::grouped(hits.len() as u64));
-                    ui.label(note(text, palette)).on_hover_text("How often it holds in the recorded part of the run");
-                }
             });
+        });
+        ui.horizontal(|ui| {
+            ui.add_space(ui.spacing().icon_width + ui.spacing().icon_spacing);
+            if let Some(hits) = state.run().hits.get(k) {
+                let text = format!("{} in this run", words::grouped(hits.len() as u64));
+                ui.label(note(text, palette)).on_hover_text("How often it holds in the recorded part of the run");
+            }
+            let response = ui.small_button("Reduce");
+            let name = format!("Reduce this: {}", breakpoint.condition);
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name.clone()));
+            let tip = "Find the smallest case in which it is still met, and write it as a case file";
+            on_click(&response.on_hover_text(tip), Command::Reduce(k), commands);
         });
     }
 }
