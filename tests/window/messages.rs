@@ -50,7 +50,7 @@ fn nothing_moves(size: Vec2) {
         harness.run_steps(2);
         assert_eq!(splitters(&harness), before);
         // One message is shown.
-        assert_eq!(harness.query_all_by_label_contains("is not a step").count(), 1);
+        assert_eq!(harness.query_all_by_label_contains("names nothing that can be found").count(), 1);
         if number % 2 == 1 {
             harness.get_by_label("Close").click();
             harness.run_steps(2);

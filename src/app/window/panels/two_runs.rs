@@ -32,6 +32,9 @@ const FIGURES: [(&str, usize); 13] = [
     ("seconds", 2),
 ];
 
+/// The width of the names of figures in points.
+const NAMES: f32 = 150.0;
+
 /// Shows the panel; `state` is the first run.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -230,7 +233,10 @@ fn row(ui: &mut Ui, figure: &Figure, digits: usize, reports: [&Report; 2], palet
     let values = reports.map(|report| figure.of(report));
     let unit = if figure.unit.is_empty() { String::new() } else { format!(", {}", figure.unit) };
     let name = format!("{}{unit}", figure.doc);
-    ui.add_sized(Vec2::new(132.0, 0.0), Label::new(note(name, palette)).wrap().halign(Align::Min));
+    ui.vertical(|ui| {
+        ui.set_width(NAMES);
+        ui.add(Label::new(note(name, palette)).wrap());
+    });
     let right = |ui: &mut Ui, text: String, colour: Rgba| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(line(text, colour))).inner
     };
