@@ -227,7 +227,18 @@ fn a_second_run_that_is_closed_unsaved_is_offered_and_runs_can_be_exchanged() {
     assert_eq!(harness.state().state.document().edits.len(), 1, "what was B is A now");
     assert!(harness.state().state.of(Which::B).document().edits.is_empty());
     assert_eq!(harness.state().state.active_run(), Which::A);
+    // What can be undone belongs to each run.
+    apply(&mut harness, Command::Undo);
+    both_settle(&mut harness);
+    let edits = |harness: &Window| Which::ALL.map(|which| harness.state().state.of(which).document().edits.len());
+    assert_eq!(edits(&harness), [0, 0]);
+    apply(&mut harness, Command::Redo);
+    both_settle(&mut harness);
+    assert_eq!(edits(&harness), [1, 0]);
+    harness.get_by_label("A was forked from B at step 0.");
     pair(&mut harness, PairCommand::Exchange);
+    harness.get_by_label("B was forked from A at step 0.");
+    assert_eq!(edits(&harness), [0, 1]);
     harness.get_by_label("Close the second run").click_accesskit();
     harness.run_steps(2);
     assert!(harness.state().state.pair().is_none());

@@ -106,7 +106,7 @@ pub(super) fn convert(
     shows_data: bool,
     watch: &mut dyn Watch,
 ) -> Result<Quads, Fault> {
-    let case = &run.case;
+    let case = &run.case_in_force();
     let mut end = (Phase::Done, case.parameters.clone());
     let mut births = None;
     let converted = conversion::convert_by(case, watch, &mut |converter, watch| {
@@ -184,7 +184,7 @@ pub(super) fn frames(
     let mut frames = Vec::new();
     let mut meshes = Vec::new();
     let watches_changes = look.layers.has(Layer::Changed);
-    let converted = conversion::convert_by(&run.case, watch, &mut |converter, watch| {
+    let converted = conversion::convert_by(&run.case_in_force(), watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
         if watches_changes {
             converter.keep_history();

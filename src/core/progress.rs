@@ -50,9 +50,17 @@ impl Watch for Nobody {
     fn tell(&mut self, _: Stage, _: u64, _: u64) {}
 }
 
-/// Cancels work from any thread. Clones share one flag.
+/// Cancels work from any thread. Clones share one flag. As a watch it ignores progress.
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Option<Arc<AtomicBool>>);
+
+impl Watch for Cancel {
+    fn tell(&mut self, _: Stage, _: u64, _: u64) {}
+
+    fn cancel(&self) -> Cancel {
+        self.clone()
+    }
+}
 
 impl Cancel {
     /// A handle that can be cancelled.

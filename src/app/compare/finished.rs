@@ -59,12 +59,11 @@ pub(super) fn compare(run: &Run, other: &MeshFile, watch: &mut dyn Watch) -> Res
     let quads: Vec<ElementId> = mesh.elements().filter(|e| mesh.is_quad(*e)).collect();
     let nodes = Nodes::of(mesh);
     let corners = |e: ElementId| mesh.quad(e).map(|n| mesh.xyz(n));
-    let ours: Vec<[usize; 4]> = quads.iter().filter_map(|e| nodes.sorted(corners(*e))).collect();
+    let ours: Vec<Option<[usize; 4]>> = quads.iter().map(|e| nodes.sorted(corners(*e))).collect();
     let theirs: Vec<Option<[usize; 4]>> =
         other.quads.iter().map(|quad| nodes.sorted(quad.map(|n| other.points[n as usize]))).collect();
-    let known = |all: &mut dyn Iterator<Item = [usize; 4]>| all.collect::<BTreeSet<[usize; 4]>>();
-    let (of_ours, of_theirs) = (known(&mut ours.iter().copied()), known(&mut theirs.iter().flatten().copied()));
-    let missing = quads.iter().zip(&ours).filter(|(_, quad)| !of_theirs.contains(*quad));
+    let [of_ours, of_theirs] = [&ours, &theirs].map(|all| all.iter().flatten().collect::<BTreeSet<_>>());
+    let missing = quads.iter().zip(&ours).filter(|(_, quad)| quad.is_none_or(|quad| !of_theirs.contains(&quad)));
     let missing: Vec<ElementId> = missing.map(|(e, _)| *e).collect();
     let both = quads.len() - missing.len();
     // Two quadrilaterals of the mesh near one of the run count once.

@@ -6,7 +6,7 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use crate::app::work;
-use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::progress::{Cancel, Stage};
 use crate::core::record::sweep::{Cell, Sweep};
 use crate::core::run::Run;
 
@@ -76,7 +76,7 @@ impl Work {
 fn cell_of(run: &Run, cancel: &Cancel) -> Option<Cell> {
     cancel.check().ok()?;
     let begin = Instant::now();
-    let converted = work::convert(run, None, None, false, &mut OnlyCancel(cancel));
+    let converted = work::convert(run, None, None, false, &mut cancel.clone());
     match converted {
         Ok(mut quads) => Some(match quads.flaw {
             Some(flaw) => Cell::Refused(flaw.to_string()),
@@ -88,16 +88,5 @@ fn cell_of(run: &Run, cancel: &Cancel) -> Option<Cell> {
         }),
         Err(fault) if fault.is_stop() => None,
         Err(fault) => Some(Cell::Refused(fault.to_string())),
-    }
-}
-
-/// Reports nothing, and can be cancelled.
-struct OnlyCancel<'c>(&'c Cancel);
-
-impl Watch for OnlyCancel<'_> {
-    fn tell(&mut self, _: Stage, _: u64, _: u64) {}
-
-    fn cancel(&self) -> Cancel {
-        self.0.clone()
     }
 }

@@ -192,6 +192,12 @@ impl Autosave {
         Autosave { folder, wake, saver, offers: Vec::new(), scan, opened: None, saved: None, kept: None, opening: None }
     }
 
+    /// Exchanges what is offered with another one.
+    pub fn swap_offers(&mut self, other: &mut Autosave) {
+        std::mem::swap(&mut self.offers, &mut other.offers);
+        std::mem::swap(&mut self.scan, &mut other.scan);
+    }
+
     /// Searches again for abandoned runs.
     pub fn search(&mut self) {
         self.scan = scan(&self.folder, &self.wake);

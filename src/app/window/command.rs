@@ -241,6 +241,9 @@ impl Command {
     /// Whether it works while a mesh is about to be converted. What belongs to a run has to wait until there is one,
     /// unless a panel asked for it by itself in the frame in which the import began.
     pub fn fits_import(&self) -> bool {
+        if let Command::Pair(PairCommand::In(_, command)) = self {
+            return command.fits_import();
+        }
         matches!(
             self,
             Command::Hover(_)

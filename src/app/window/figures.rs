@@ -259,11 +259,7 @@ fn maker(state: &State) -> Result<Option<Maker>, Fault> {
     let options = form.options(part, side.map(|side| (side, state.workspace().surfaces.hidden)))?;
     let wanted = if form.is_strip() { Some(form.wanted(&state.document().bookmarks)?) } else { None };
     Ok(Some(Box::new(move || match wanted {
-        Some(wanted) => {
-            let mut run = current;
-            run.case.parameters = run.parameters.clone();
-            Ok(figure::make(&run, &wanted, &options, true, &mut Nobody)?.0)
-        }
+        Some(wanted) => Ok(figure::make(&current, &wanted, &options, true, &mut Nobody)?.0),
         None => of_state(&moment, &opened, &current, &options),
     })))
 }
@@ -274,7 +270,7 @@ fn maker(state: &State) -> Result<Option<Maker>, Fault> {
 /// # Errors
 /// If there is no bookmark, or the form has no meaning.
 pub fn begin_notes(state: &State, wake: Wake) -> Result<Option<Writing>, Fault> {
-    let Some(mut run) = state.current_run() else { return Ok(None) };
+    let Some(run) = state.current_run() else { return Ok(None) };
     if run.bookmarks.is_empty() {
         return Err(Fault::new("There are no bookmarks").remedy("Ctrl+B bookmarks the current step"));
     }
@@ -282,7 +278,6 @@ pub fn begin_notes(state: &State, wake: Wake) -> Result<Option<Writing>, Fault> 
     let side = state.view().space.camera.filter(|_| state.is_in_space()).map(|camera| Bearing::of_turn(camera.turn));
     let options = form.options(None, side.map(|side| (side, state.workspace().surfaces.hidden)))?;
     Ok(Some(files::work(wake, move || {
-        run.case.parameters = run.parameters.clone();
         let page = notes::page(&run, &options, true, &mut Nobody)?;
         let path = free_path(&format!("{}-notes", run.case.name), "html");
         save::save(&path, |file| file.write_all(page.as_bytes()))?;

@@ -8,7 +8,7 @@ use super::session::Wake;
 use crate::app::reduce::Reduction;
 use crate::core::fault::Fault;
 use crate::core::kernel::number::counted;
-use crate::core::progress::{Cancel, Nobody};
+use crate::core::progress::Cancel;
 use crate::core::reduce::{Draft, Question, Written};
 use crate::core::run::Run;
 
@@ -99,7 +99,7 @@ fn reduce(
     tell: &mut dyn FnMut(String),
 ) -> Result<String, Fault> {
     let question = Question::parse(condition)?;
-    let original = Draft::of(run, &mut Nobody)?;
+    let original = Draft::of(run, &mut cancel.clone())?;
     let mut written = Written::new(path, &original, &question)?;
     let work = Reduction { question: &question, run, original: &original, tries: TRIES, cancel };
     let reduced = work.go(&run.case.name, &mut written, tell).0?;

@@ -9,7 +9,7 @@ use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::condition::{self, Field, Holds, Value, fields};
 use crate::core::mesh::Mesh;
-use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::progress::Cancel;
 use crate::core::record::report::figures::{self, Figure};
 use crate::core::record::{Export, Report};
 use crate::core::run::breakpoint::{self, Condition, StepFacts};
@@ -98,17 +98,6 @@ impl Budget {
     }
 }
 
-/// Passes cancellation on, and nothing else.
-struct Quiet(Cancel);
-
-impl Watch for Quiet {
-    fn tell(&mut self, _: Stage, _: u64, _: u64) {}
-
-    fn cancel(&self) -> Cancel {
-        self.0.clone()
-    }
-}
-
 impl Question {
     /// Reads a question: a breakpoint condition, a condition on the end (`last_resort > 0`, `exit 1`, `is refused`), or
     /// `panics`.
@@ -169,7 +158,6 @@ impl Question {
         let mut run = run.clone();
         if let Some(quads) = budget.quads {
             run.parameters.max_quads = run.parameters.max_quads.min(quads);
-            run.case.parameters = run.parameters.clone();
         }
         let found = catch_unwind(AssertUnwindSafe(|| match &self.kind {
             Kind::Step(condition) => find_step(condition, &run, budget, cancel),
@@ -259,7 +247,7 @@ impl Head {
 }
 
 fn find_step(condition: &Condition, run: &Run, budget: Budget, cancel: &Cancel) -> Result<Option<Finding>, Fault> {
-    let background = run.background(&mut Quiet(cancel.clone()))?;
+    let background = run.background(&mut cancel.clone())?;
     let (triangles, extent) = measured(&background.mesh);
     let mut history = History::of(run.clone(), &background, MEMORY)?;
     let mut from = 0;
@@ -385,7 +373,7 @@ fn ended(run: &Run, budget: Budget, cancel: &Cancel) -> Result<(End, Cost), Faul
     let mut cost = Cost { steps: 0, triangles: None, extent: 1.0, worst: Vec::new() };
     let mut is_over = false;
     let case = run.case_in_force();
-    let converted = conversion::convert_by(&case, &mut Quiet(cancel.clone()), &mut |converter, watch| {
+    let converted = conversion::convert_by(&case, &mut cancel.clone(), &mut |converter, watch| {
         let (triangles, extent) = measured(&converter.mesh);
         (cost.triangles, cost.extent) = (Some(triangles), extent);
         run.make_edits(converter, 0)?;

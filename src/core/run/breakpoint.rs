@@ -12,7 +12,7 @@ use super::history::History;
 use super::log::Angles;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
-use crate::core::kernel::condition::{self, Value};
+use crate::core::kernel::condition;
 
 /// The facts about a step that conditions test.
 #[derive(Clone, Copy, Debug)]
@@ -27,11 +27,6 @@ pub struct StepFacts<'a> {
     pub front: FrontCount,
     /// The angles of the quadrilateral that it formed.
     pub angles: Option<Angles>,
-}
-
-/// The value of a field of a step, by its index in [`FIELDS`].
-pub fn value(facts: &StepFacts<'_>, field: usize) -> Option<Value> {
-    VALUES[field](facts)
 }
 
 /// A condition on steps.
@@ -54,7 +49,7 @@ impl Condition {
 
     /// Whether it holds for a step.
     pub fn holds(&self, facts: &StepFacts<'_>) -> bool {
-        self.0.holds(|field| value(facts, field))
+        self.0.holds(|field| VALUES[field](facts))
     }
 }
 

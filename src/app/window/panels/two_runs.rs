@@ -3,13 +3,12 @@
 use eframe::egui::{Align, Align2, ComboBox, Grid, Label, Layout, Rect, RichText, ScrollArea, Sense, Ui, Vec2};
 
 use super::{heading, inset, line, note, on_click};
-use crate::app::compare::{Comparison, kinds};
+use crate::app::compare::{Comparison, kinds, values_that_differ};
 use crate::app::window::command::{Command, Rules};
 use crate::app::window::pair::{Arrangement, LinkedBy, PairCommand, Which};
 use crate::app::window::state::{Pair, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
-use crate::core::case::Parameters;
 use crate::core::record::Report;
 use crate::core::record::report::figures::{Better, Figure};
 use crate::core::run::compare::{Did, FirstDifference};
@@ -92,11 +91,10 @@ fn runs(ui: &mut Ui, state: &State, pair: &Pair, commands: &mut Vec<Command>, pa
             ui.label(line(about(state, which), palette.text));
         });
     }
-    let text = match pair.forked {
-        Some(step) => format!("B was forked at step {}.", words::grouped(step)),
-        None => "B was opened beside A.".to_owned(),
-    };
-    ui.label(note(text, palette));
+    if let Some((which, step)) = pair.fork(Which::ALL.map(|which| state.of(which).run().number)) {
+        let (forked, from) = (which.name(), which.other().name());
+        ui.label(note(format!("{forked} was forked from {from} at step {}.", words::grouped(step)), palette));
+    }
     ui.horizontal_wrapped(|ui| {
         ui.label(note("linked by", palette));
         let list = ComboBox::from_id_salt("link").selected_text(pair.link.name()).width(96.0).show_ui(ui, |ui| {
@@ -143,14 +141,10 @@ pub fn about(state: &State, which: Which) -> String {
         if opened.run.case != beside.run.case {
             parts.push(opened.run.case.name.clone());
         }
-        parts.extend(values_that_differ(&now.parameters, &others.parameters));
+        let differ = values_that_differ(&now.parameters, &others.parameters);
+        parts.extend((!differ.is_empty()).then_some(differ));
     }
     if parts.is_empty() { "no parameter differs here".to_owned() } else { parts.join(", ") }
-}
-
-fn values_that_differ(parameters: &Parameters, others: &Parameters) -> Vec<String> {
-    let differ = crate::app::compare::values_that_differ(parameters, others);
-    differ.split(", ").filter(|text| !text.is_empty()).map(str::to_owned).collect()
 }
 
 fn first_difference(ui: &mut Ui, pair: &Pair, commands: &mut Vec<Command>, palette: &Palette) {

@@ -31,6 +31,9 @@ use crate::render::scene::Outlined;
 impl State {
     /// Does what the user asks for.
     pub(in crate::app::window) fn apply(&mut self, command: Command) {
+        if self.run.import.is_some() && !command.fits_import() {
+            return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
+        }
         match command {
             Command::Pair(command) => self.apply_to_pair(command),
             command if self.pair.is_some() => self.apply_beside(command),
@@ -40,9 +43,6 @@ impl State {
 
     /// The same in this run, whether or not there is a second one.
     fn apply_alone(&mut self, command: Command) {
-        if self.run.import.is_some() && !command.fits_import() {
-            return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
-        }
         match command {
             Command::Go(goal) => self.go(goal),
             Command::GoToText(text) => self.go_to_text(&text),

@@ -19,8 +19,10 @@ pub struct Pair {
     pub link: LinkedBy,
     /// How they are shown.
     pub arrangement: Arrangement,
-    /// The step at which B was forked from A; `None` where it was opened from elsewhere.
-    pub forked: Option<u64>,
+    /// The step of the fork; `None` where B was opened from elsewhere.
+    forked: Option<u64>,
+    /// The numbers of both runs once B was open.
+    pub(super) numbers: Option<[u64; 2]>,
     /// What the comparison of both found, once it is known.
     pub comparison: Option<Arc<Comparison>>,
     /// Whether both have the same case, parameters and changes.
@@ -42,8 +44,8 @@ pub struct Pair {
     pub(super) first_step: Option<u64>,
     /// The parameters that B takes there.
     pub(super) first_rules: Option<Rules>,
-    /// Whether both meshes lie in one place, so that one camera shows both.
-    pub(super) is_in_one_place: bool,
+    /// Whether both meshes lie in one place, so that one camera shows both; and the numbers of the runs.
+    pub(super) is_in_one_place: Option<(bool, [u64; 2])>,
 }
 
 /// The number of a run and its changes.
@@ -57,6 +59,7 @@ impl Pair {
             link: LinkedBy::default(),
             arrangement: Arrangement::default(),
             forked,
+            numbers: None,
             comparison: None,
             is_same: false,
             progress: None,
@@ -68,7 +71,18 @@ impl Pair {
             overlapped: None,
             first_step: None,
             first_rules: None,
-            is_in_one_place: false,
+            is_in_one_place: None,
+        }
+    }
+
+    /// The run that was forked from the other one, and at which step; `None` where B was opened from elsewhere, and
+    /// where one of them has been replaced since.
+    pub fn fork(&self, numbers: [u64; 2]) -> Option<(Which, u64)> {
+        let (step, [a, b]) = (self.forked?, self.numbers?);
+        match numbers {
+            _ if numbers == [a, b] => Some((Which::B, step)),
+            _ if numbers == [b, a] => Some((Which::A, step)),
+            _ => None,
         }
     }
 

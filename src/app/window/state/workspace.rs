@@ -143,6 +143,24 @@ impl Workspace {
         is_new
     }
 
+    /// Exchanges the documents of two runs with all that can be undone. The arrangement of the panels is that of the
+    /// window and stays.
+    pub(super) fn exchange(&mut self, other: &mut Workspace) {
+        std::mem::swap(&mut self.document, &mut other.document);
+        std::mem::swap(&mut self.document.layout, &mut other.document.layout);
+        std::mem::swap(&mut self.undo, &mut other.undo);
+        std::mem::swap(&mut self.redo, &mut other.redo);
+        std::mem::swap(&mut self.noted, &mut other.noted);
+        for workspace in [self, other] {
+            let layout = &workspace.document.layout;
+            workspace
+                .undo
+                .iter_mut()
+                .chain(&mut workspace.redo)
+                .for_each(|document| document.layout.clone_from(layout));
+        }
+    }
+
     /// Changes the document so that undo takes it back. Returns the document as it was before, if there is a
     /// difference.
     pub(super) fn change(&mut self, change: impl FnOnce(&mut Document)) -> Option<Document> {

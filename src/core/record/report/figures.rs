@@ -1,7 +1,7 @@
 //! The figures of a report by name: for sweeps, comparisons, and conditions on what a conversion ends with.
 
 use super::Report;
-use crate::core::kernel::condition::{Field, Holds, Value};
+use crate::core::kernel::condition::{Field, Holds};
 use crate::core::record::statistics::Range;
 
 /// Whether less or more of a figure is better.
@@ -43,11 +43,6 @@ impl Figure {
 /// The figures as fields of conditions, in the order of [`FIGURES`].
 pub fn fields() -> Vec<Field> {
     FIGURES.iter().map(|figure| Field { name: figure.name, holds: Holds::Number, doc: figure.doc }).collect()
-}
-
-/// The value of a field of a condition on a report.
-pub fn value(report: &Report, field: usize) -> Option<Value> {
-    FIGURES[field].of(report).map(Value::Number)
 }
 
 /// Makes the table of figures: for each its name, its unit, which direction is better, its meaning and its value.

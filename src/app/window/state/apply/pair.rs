@@ -110,7 +110,7 @@ impl State {
     /// The camera of the other run follows one that has moved.
     fn link_cameras(&mut self, which: Which, moved: Option<ViewKind>) {
         let (Some(pair), Some(view)) = (&mut self.pair, moved) else { return };
-        if !pair.is_in_one_place {
+        if !pair.is_in_one_place.is_some_and(|known| known.0) {
             return;
         }
         let (from, to) = match which {
@@ -200,15 +200,18 @@ impl State {
 
     /// Makes A the second run and B the first.
     fn exchange(&mut self) {
+        if self.run.is_opening() || self.of(Which::B).run.is_opening() {
+            return self.notice("The runs can be exchanged once both are open.".to_owned());
+        }
         let Some(mut pair) = self.pair.take() else { return };
         let other = &mut pair.other;
-        if other.run.opened.is_none() {
-            self.pair = Some(pair);
-            return self.notice("The second run is not open yet.".to_owned());
-        }
         std::mem::swap(&mut self.run, &mut other.run);
-        std::mem::swap(&mut self.workspace.document, &mut other.workspace.document);
-        std::mem::swap(&mut self.workspace.document.layout, &mut other.workspace.document.layout);
+        // What the window asks the user belongs to it, whichever run is the first.
+        std::mem::swap(&mut self.run.dialog, &mut other.run.dialog);
+        if let (Some(autosave), Some(of_other)) = (&mut self.run.autosave, &mut other.run.autosave) {
+            autosave.swap_offers(of_other);
+        }
+        self.workspace.exchange(&mut other.workspace);
         std::mem::swap(&mut self.view.plane, &mut other.view.plane);
         std::mem::swap(&mut self.view.space, &mut other.view.space);
         for state in [&mut *self, &mut **other] {
@@ -226,9 +229,7 @@ impl State {
 pub(in crate::app::window::state) fn are_in_one_place(a: &Arc<Opened>, b: &Arc<Opened>) -> bool {
     let bounds = |opened: &Opened| {
         let mesh = &opened.background.mesh;
-        mesh.nodes().map(|n| mesh.xyz(n)).fold(None, |bounds: Option<[glam::DVec3; 2]>, p| {
-            Some(bounds.map_or([p, p], |[low, high]| [low.min(p), high.max(p)]))
-        })
+        mesh.nodes().map(|n| [mesh.xyz(n); 2]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     };
     let (Some([a, b]), Some([c, d])) = (bounds(a), bounds(b)) else { return false };
     let size = (b - a).length().max((d - c).length());

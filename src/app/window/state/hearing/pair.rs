@@ -37,11 +37,15 @@ impl State {
         self.pair = Some(pair);
     }
 
-    /// Brings the second run to the state of the first, once it is open.
+    /// Brings the second run to the state of the first, once it is open, and looks whether both lie in one place.
     fn start(&mut self, pair: &mut Pair) {
         let (Some(a), Some(b)) = (&self.run.opened, &pair.other.run.opened) else { return };
+        let numbers = [self.run.number, pair.other.run.number];
+        if pair.is_in_one_place.is_none_or(|known| known.1 != numbers) {
+            pair.is_in_one_place = Some((are_in_one_place(a, b), numbers));
+        }
         if let Some(step) = pair.first_step.take() {
-            pair.is_in_one_place = are_in_one_place(a, b);
+            pair.numbers = Some(numbers);
             pair.other.view.notes = self.view.notes;
             pair.other.go(Goal::Step(step));
         } else if pair.is_starting && !pair.other.run.is_busy() {
@@ -89,16 +93,14 @@ impl State {
 
     /// Compares the runs anew when one of them has changed.
     fn compare_runs(&mut self, pair: &mut Pair) {
-        let now = [compared(self), compared(&pair.other)];
-        if pair.compared.as_ref() != Some(&now)
-            && let (Some(a), Some(b)) = (self.current_run(), pair.other.current_run())
-        {
+        let is_known = pair.compared.as_ref().is_some_and(|[a, b]| is_of(a, self) && is_of(b, &pair.other));
+        if !is_known && let (Some(a), Some(b)) = (self.current_run(), pair.other.current_run()) {
             pair.is_same = are_same(&a, &b);
             (pair.comparison, pair.progress, pair.comparing) = (None, None, None);
             if !pair.is_same {
                 pair.comparing = Some(Comparing::begin([a, b], self.wake.clone()));
             }
-            pair.compared = Some(now);
+            pair.compared = Some([compared(self), compared(&pair.other)]);
         }
         while let Some(comparing) = &pair.comparing {
             match comparing.hear() {
@@ -118,12 +120,15 @@ impl State {
         if a.is_busy() || b.is_busy() {
             return;
         }
-        let now = Some([(compared(self), of_a.step), (compared(&pair.other), of_b.step)]);
+        let is_known = pair.overlapped.as_ref().is_some_and(|[(a, at_a), (b, at_b)]| {
+            (*at_a, *at_b) == (of_a.step, of_b.step) && is_of(a, self) && is_of(b, &pair.other)
+        });
         let is_playing = a.playing.is_some() || b.playing.is_some();
         let is_large = of_a.mesh.element_count() + of_b.mesh.element_count() > QUICK;
-        if pair.overlapped != now && !(is_playing && is_large) {
+        let waits = is_playing && is_large;
+        if !is_known && !waits {
             pair.overlap = Some(Arc::new(Overlap::of(&of_a.mesh, &of_b.mesh)));
-            pair.overlapped = now;
+            pair.overlapped = Some([(compared(self), of_a.step), (compared(&pair.other), of_b.step)]);
         }
     }
 }
@@ -131,6 +136,11 @@ impl State {
 /// What the states of a run depend on.
 fn compared(state: &State) -> Compared {
     (state.run.number, state.document().edits.clone())
+}
+
+/// Whether this is what the states of a run depend on.
+fn is_of((number, edits): &Compared, state: &State) -> bool {
+    *number == state.run.number && *edits == state.document().edits
 }
 
 /// Where the active run is.
