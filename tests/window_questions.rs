@@ -239,6 +239,8 @@ fn a_second_run_that_is_closed_unsaved_is_offered_and_runs_can_be_exchanged() {
     pair(&mut harness, PairCommand::Exchange);
     harness.get_by_label("B was forked from A at step 0.");
     assert_eq!(edits(&harness), [0, 1]);
+    // What stands above the button changes in between, since the comparison goes on or ends: the click counts all the
+    // same.
     harness.get_by_label("Close the second run").click_accesskit();
     harness.run_steps(2);
     assert!(harness.state().state.pair().is_none());

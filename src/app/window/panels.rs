@@ -24,7 +24,8 @@ pub mod over;
 pub mod sweep;
 
 use eframe::egui::{
-    self, Align, Button, ComboBox, Frame, Margin, Response, RichText, Role, Ui, WidgetInfo, WidgetText,
+    self, Align, AsIdSalt, Button, ComboBox, Frame, Margin, Response, RichText, Role, Ui, UiBuilder, WidgetInfo,
+    WidgetText,
 };
 
 use super::command::Command;
@@ -76,6 +77,14 @@ pub fn on_click(response: &Response, command: Command, commands: &mut Vec<Comman
     if response.clicked() {
         commands.push(command);
     }
+}
+
+/// A part of a panel with ids of its own, by its name within the panel. An automatic id counts the widgets before it, and
+/// only what is pressed and released under one id is clicked: so what follows content that changes by itself, such as
+/// the progress of a work, is such a part.
+pub fn part<R>(ui: &mut Ui, name: impl AsIdSalt, show: impl FnOnce(&mut Ui) -> R) -> R {
+    let id = ui.scope_id().with(("part", name));
+    ui.scope_builder(UiBuilder::new().scope_id(id), show).inner
 }
 
 /// A widget that stands for something: points at it, and selects it when it is clicked.

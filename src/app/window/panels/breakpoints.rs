@@ -3,7 +3,7 @@
 use eframe::egui::{self, Align, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
 
 use super::condition_field::ConditionField;
-use super::{icon_button, inset, note, on_click};
+use super::{icon_button, inset, note, on_click, part};
 use crate::app::window::command::Command;
 use crate::app::window::session::Source;
 use crate::app::window::state::{State, outlined};
@@ -35,8 +35,8 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut BreakpointsState, commands: 
                 ui.add(Label::new(note(text, palette)).wrap());
             }
             conditions(ui, state, commands, palette);
-            reduction(ui, state, commands, palette);
-            watches(ui, state, commands, palette);
+            part(ui, "reduction", |ui| reduction(ui, state, commands, palette));
+            part(ui, "watches", |ui| watches(ui, state, commands, palette));
         });
         if field.show(ui, &mut local.field, palette).is_entered() {
             commands.push(Command::AddBreakpoint(std::mem::take(&mut local.field)));

@@ -16,7 +16,7 @@ use eframe::egui::{
     Align, Align2, Id, Label, Layout, Response, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, Vec2, WidgetInfo,
 };
 
-use super::{inset, line, note, on_click, stands_for};
+use super::{inset, line, note, on_click, part, stands_for};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -77,7 +77,7 @@ fn title(ui: &mut Ui, text: String, palette: &Palette) {
 /// Actions on what is shown.
 fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Command>) {
     ui.add_space(3.0);
-    ui.horizontal_wrapped(|ui| past::actions(ui, state, what, commands));
+    part(ui, "actions", |ui| ui.horizontal_wrapped(|ui| past::actions(ui, state, what, commands)));
 }
 
 /// A line of formulas: `_{x}` is a subscript, `**x**` is emphasised.
@@ -100,7 +100,8 @@ fn section(ui: &mut Ui, title: &str, source: &str, palette: &Palette) -> bool {
     ui.add_space(8.0);
     let id = Id::unique(("section of the inspector", title));
     let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, true);
-    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 22.0), Sense::click());
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 22.0), Sense::hover());
+    let response = ui.interact(rect, id.with("head"), Sense::click());
     if response.clicked() {
         state.toggle(ui);
         state.store(ui.ctx());

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Align, Align2, ComboBox, Grid, Label, Layout, Rect, RichText, ScrollArea, Sense, Ui, Vec2};
 
-use super::{heading, inset, line, note, on_click};
+use super::{heading, inset, line, note, on_click, part};
 use crate::app::compare::{Comparison, kinds, values_that_differ};
 use crate::app::window::command::{Command, Rules};
 use crate::app::window::pair::{Arrangement, LinkedBy, PairCommand, Which};
@@ -47,10 +47,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                 }
                 overlap(ui, pair, palette);
                 ui.add_space(8.0);
-                ui.horizontal_wrapped(|ui| {
-                    for command in [PairCommand::Exchange, PairCommand::Close] {
-                        button(ui, &command.name(), command, commands);
-                    }
+                part(ui, "runs", |ui| {
+                    ui.horizontal_wrapped(|ui| {
+                        for command in [PairCommand::Exchange, PairCommand::Close] {
+                            button(ui, &command.name(), command, commands);
+                        }
+                    });
                 });
             }
         });

@@ -2,9 +2,9 @@
 
 use eframe::egui::{CursorIcon, Label, RichText, Role, Sense, Ui, WidgetInfo};
 
-use super::{note, section, sentence};
+use super::{note, part, section, sentence};
 use crate::app::window::command::Command;
-use crate::app::window::session::Goal;
+use crate::app::window::session::{Goal, ToldChain};
 use crate::app::window::state::{Lookup, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -18,9 +18,12 @@ pub fn show(ui: &mut Ui, state: &State, element: ElementId, commands: &mut Vec<C
         Lookup::Pending => return,
         Lookup::Unasked => return commands.push(Command::TellChain(element)),
     };
-    if !section(ui, "Decision chain", "up to this step", palette) {
-        return;
+    if section(ui, "Decision chain", "up to this step", palette) {
+        part(ui, "chain", |ui| links(ui, told, commands, palette));
     }
+}
+
+fn links(ui: &mut Ui, told: &ToldChain, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(chain) = &told.chain else {
         ui.label(note("It is part of the background mesh.", palette));
         return;

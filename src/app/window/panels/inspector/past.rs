@@ -3,9 +3,9 @@
 
 use eframe::egui::{Label, Sense, Ui};
 
-use super::{elements, line, note, on_click, section};
+use super::{elements, line, note, on_click, part, section};
 use crate::app::window::command::Command;
-use crate::app::window::session::Goal;
+use crate::app::window::session::{Goal, Past};
 use crate::app::window::state::{Lookup, State, watched};
 use crate::app::window::words;
 use crate::render::palette::Palette;
@@ -18,9 +18,12 @@ pub fn show(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Comma
         Lookup::Pending => return,
         Lookup::Unasked => return commands.push(Command::TellPast(watched)),
     };
-    if !section(ui, "Past steps", "up to this step", palette) {
-        return;
+    if section(ui, "Past steps", "up to this step", palette) {
+        part(ui, "past", |ui| steps(ui, past, commands, palette));
     }
+}
+
+fn steps(ui: &mut Ui, past: &Past, commands: &mut Vec<Command>, palette: &Palette) {
     if let Some((step, merged)) = &past.made {
         step_link(ui, *step, "made", commands, palette);
         elements(ui, "made of the triangles", merged, commands, palette);

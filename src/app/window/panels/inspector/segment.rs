@@ -3,7 +3,7 @@
 use eframe::egui::Ui;
 
 use super::rows::{self, Last, TableRow};
-use super::{attempts, ends, formula, length, note, section, sentence, stands_for, step, title, why};
+use super::{attempts, ends, formula, length, note, part, section, sentence, stands_for, step, title, why};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -45,12 +45,15 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
     });
     let what = [s.a, s.b];
     ui.add_space(3.0);
-    ui.horizontal_wrapped(|ui| {
-        let tip = "Replaces the base that was just selected, or the next base, whatever the rank. This changes the run";
-        if !is_base && ui.button("Choose as base").on_hover_text(tip).clicked() {
-            commands.push(Command::ChooseBase([s.a, s.b]));
-        }
-        super::past::actions(ui, state, Outlined::Edge(what), commands);
+    part(ui, "actions", |ui| {
+        ui.horizontal_wrapped(|ui| {
+            let tip =
+                "Replaces the base that was just selected, or the next base, whatever the rank. This changes the run";
+            if !is_base && ui.button("Choose as base").on_hover_text(tip).clicked() {
+                commands.push(Command::ChooseBase([s.a, s.b]));
+            }
+            super::past::actions(ui, state, Outlined::Edge(what), commands);
+        })
     });
     // What the last step decided comes first: the choice of a side among candidates, or of the base.
     let tried = moment.candidates.as_ref().filter(|_| is_base);
