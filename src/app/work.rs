@@ -2,15 +2,18 @@
 
 use std::io;
 
+use serde::Serialize;
+
 use crate::core::case::{Case, DomainSource, MeshUse, Parameters};
 use crate::core::convert::walk::walk_editing;
-use crate::core::convert::{Converter, Phase, StepReport, Stop, Tell, conversion};
+use crate::core::convert::{Converter, Event, Phase, StepReport, Stop, Tell, conversion};
 use crate::core::fault::Fault;
 use crate::core::mesh::{Mesh, Names, Touched};
 use crate::core::metric::Sizing;
 use crate::core::prepare::{self, Background};
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::{Export, Measured, Report, Statistics};
+use crate::core::run::explain::{narration, plain};
 use crate::core::run::shown::fingerprint;
 use crate::core::run::{Births, Run, ShownState};
 use crate::core::soup::MeshFile;
@@ -67,6 +70,14 @@ pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -
     Ok(Triangles { frame, file: export.file, statistics, repairs })
 }
 
+/// A line of the file of events: what a step did, and the same in a sentence.
+#[derive(Serialize)]
+struct EventLine<'e> {
+    #[serde(flatten)]
+    step: &'e StepReport<'e>,
+    text: String,
+}
+
 /// Converts the case of a run and writes each event to `events` as it happens. The file appears when the conversion is
 /// finished.
 pub(super) fn convert_writing_events(
@@ -80,9 +91,14 @@ pub(super) fn convert_writing_events(
     let mut quads = None;
     let written = events.write(|out| {
         let mut written = Ok(());
+        let mut base = None;
         let mut tell = |step: &StepReport<'_>| {
+            if let Event::BaseSelected { a, b, .. } = *step.event {
+                base = Some([a, b]);
+            }
             if written.is_ok() {
-                written = serde_json::to_writer(&mut *out, step).map_err(io::Error::from).and_then(|()| writeln!(out));
+                let line = EventLine { step, text: plain(&narration(step.event, base)) };
+                written = serde_json::to_writer(&mut *out, &line).map_err(io::Error::from).and_then(|()| writeln!(out));
             }
         };
         let done = quads.insert(convert(run, at, Some(&mut tell), shows_data, watch));

@@ -12,8 +12,10 @@ mod why;
 mod side;
 mod event;
 mod next;
+mod narration;
 
 pub use event::{about, attempt, event, why_rolled_back};
+pub use narration::narration;
 pub use next::next;
 pub use numbers::{angles_apart, apart, capital, edge, plain, segment};
 pub use segment::{SegmentFacts, Verdict};

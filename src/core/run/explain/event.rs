@@ -175,7 +175,7 @@ pub fn why_rolled_back(why: Why) -> String {
 }
 
 /// Why two nodes of the front were not joined.
-fn why_unmerged(why: Unmerged) -> String {
+pub(super) fn why_unmerged(why: Unmerged) -> String {
     match why {
         Unmerged::BothFixed => "both nodes are fixed".to_owned(),
         Unmerged::Unlike => "the longer segment cannot be divided".to_owned(),
