@@ -117,9 +117,9 @@ pub fn did_at(run: &mut History, step: u64) -> Result<Option<Did>, Fault> {
 fn did(run: &mut History, step: u64, event: Option<Event>, other: Option<[NodeId; 2]>) -> Result<Option<Did>, Fault> {
     let Some(event) = event else { return Ok(None) };
     run.seek(step - 1)?;
-    let (candidates, narrow) = (run.state().candidates(), run.state().narrow());
+    let looked_at = run.state().looks_at();
     run.seek(step)?;
-    let mut why = explain::about(&event, candidates.as_ref(), narrow.as_ref());
+    let mut why = explain::about(&event, &looked_at, run.state());
     if let Some([a, b]) = base(&event) {
         let selecting = run.selecting()?;
         why.extend(about_segment(&selecting, run.state(), [a, b]));
