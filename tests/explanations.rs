@@ -75,11 +75,11 @@ fn told(name: &str) -> String {
     writeln!(text, "step 0").unwrap();
     next(&mut text, &mut history);
     loop {
-        let (candidates, narrow) = (history.state().candidates(), history.state().narrow());
+        let before = history.state().looks_at();
         let Some(event) = history.forward().unwrap() else { return text };
         writeln!(text, "step {}, {} quads", history.step(), history.state().standing()).unwrap();
         tell(&mut text, "did", &explain::event(&event));
-        for sentence in explain::about(&event, candidates.as_ref(), narrow.as_ref()) {
+        for sentence in explain::about(&event, &before, history.state()) {
             tell(&mut text, "about", &sentence);
         }
         if matches!(event, Event::BaseSelected { .. }) {

@@ -12,9 +12,10 @@ use std::process::Command as Process;
 
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use quadfront::app::window::{App, Arrangement, Command, Goal, LinkedBy, PairCommand, Source, Which};
+use quadfront::app::window::{App, Arrangement, Command, Direction, Goal, LinkedBy, PairCommand, Source, Which};
 use quadfront::core::convert::EventKind;
 use quadfront::core::mesh::{Mesh, NodeId};
+use quadfront::core::run::explain::{self, plain};
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -141,7 +142,7 @@ fn the_runs_go_together_by_step_by_quadrilateral_and_by_phase() {
     assert_eq!(standing(&harness, Which::A), standing(&harness, Which::B));
     assert_ne!(steps(&harness)[0], steps(&harness)[1]);
     pair(&mut harness, PairCommand::Link(LinkedBy::Event));
-    go(&mut harness, Goal::Kind(EventKind::Seamed, quadfront::app::window::Direction::Back));
+    go(&mut harness, Goal::Kind(EventKind::Seamed, Direction::Back));
     let number = |which: Which| {
         let run = harness.state().state.of(which).run();
         let step = run.moment.as_ref().unwrap().step as usize;
@@ -162,14 +163,77 @@ fn the_runs_go_together_by_step_by_quadrilateral_and_by_phase() {
     assert_eq!(steps(&harness), [9, before[1] - 40]);
 }
 
+/// The panel with the two runs at a difference: both stand at its steps, and what each did there is told.
+fn stands_at_difference(harness: &mut Window, place: usize) {
+    both_settle(harness);
+    until(harness, "the difference is told", |harness| {
+        let shown = harness.state().state.pair().unwrap().shown.as_ref();
+        shown.is_some_and(|shown| shown.place == place && shown.did.is_some())
+    });
+    let comparison = harness.state().state.pair().unwrap().comparison.clone().unwrap();
+    let difference = &comparison.differences[place];
+    assert_eq!(steps(harness), difference.steps);
+    let count = comparison.differences.len();
+    harness.get_by_label(&format!("Difference {} of {count}", place + 1));
+    for (k, which) in Which::ALL.into_iter().enumerate() {
+        let state = harness.state().state.of(which);
+        assert_eq!(state.document().picked, Some(Outlined::Edge(difference.bases[k])), "it is selected in {which:?}");
+        let event = state.run().moment.as_ref().unwrap().event.unwrap();
+        let told = plain(&explain::event(&event));
+        harness.get_by_label(&format!("{}: {told}", which.name()));
+    }
+}
+
+#[test]
+fn further_differences_are_stepped_through_with_both_reasons_and_then_the_runs_are_linked_again() {
+    let Some(mut harness) = window() else { return };
+    fork(&mut harness);
+    apply(&mut harness, Command::Set("placement".to_owned(), "false".to_owned()));
+    both_settle(&mut harness);
+    compared(&mut harness);
+    let all = harness.state().state.pair().unwrap().comparison.as_ref().unwrap().differences.clone();
+    assert!(all.len() > 5, "{}", all.len());
+    harness.get_by_label("Go there").click();
+    harness.run_steps(3);
+    both_settle(&mut harness);
+    let first = steps(&harness)[0];
+    let next = all.iter().position(|difference| difference.steps[0] > first).unwrap();
+    harness.get_by_label("Next difference").click();
+    harness.run_steps(3);
+    stands_at_difference(&mut harness, next);
+    // The keys do the same; each press counts, whether or not the runs have arrived.
+    harness.key_press(Key::F8);
+    harness.key_press(Key::F8);
+    harness.run_steps(3);
+    stands_at_difference(&mut harness, next + 2);
+    harness.key_press_modifiers(Modifiers::ALT, Key::F8);
+    harness.run_steps(3);
+    stands_at_difference(&mut harness, next + 1);
+    // Which run the panels show makes no difference; a step moves on from there, linked as before.
+    pair(&mut harness, PairCommand::Switch);
+    assert_eq!(steps(&harness), all[next + 1].steps);
+    pair(&mut harness, PairCommand::Switch);
+    go(&mut harness, Goal::Steps(1));
+    assert_eq!(steps(&harness), [all[next + 1].steps[1] + 1; 2]);
+    // Beyond the last one there is none.
+    go(&mut harness, Goal::End);
+    harness.state_mut().apply(Command::Pair(PairCommand::SeekDifference(Direction::Forward)));
+    assert!(harness.state().state.view().notice().unwrap().0.starts_with("No decision after this one"));
+    harness.get_by_label("First difference").click();
+    harness.run_steps(3);
+    both_settle(&mut harness);
+    assert_eq!(steps(&harness), [first; 2]);
+    harness.get_by_label(&format!("First difference: step {first}"));
+}
+
 /// How many quadrilaterals of a mesh have a partner in another one: each corner within a tenth of a unit length in the
-/// metric of a corner of the partner, one to one.
+/// metric of the corner, one to one.
 fn with_partners(mesh: &Mesh, other: &Mesh) -> usize {
     let quads = |mesh: &Mesh| -> Vec<Vec<NodeId>> {
         mesh.elements().filter(|e| mesh.is_quad(*e)).map(|e| mesh.corners(e).collect()).collect()
     };
     let is_near = |a: NodeId, b: NodeId| {
-        let (d, m) = (mesh.uv(a) - other.uv(b), other.metric(b));
+        let (d, m) = (mesh.uv(a) - other.uv(b), mesh.metric(a));
         m.uu * d.x * d.x + 2.0 * m.uv * d.x * d.y + m.vv * d.y * d.y <= 0.01
     };
     let others = quads(other);

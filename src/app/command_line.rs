@@ -287,7 +287,10 @@ pub(super) struct CompareArguments {
     /// Use the paper's rules and values in the other run, as --paper does in both
     #[arg(long)]
     pub with_paper: bool,
-    /// Print the difference and both reports as JSON
+    /// Print the first N decisions, too, in which both differ although their fronts are the same around the base
+    #[arg(long, value_name = "N")]
+    pub differences: Option<usize>,
+    /// Print the differences and both reports as JSON
     #[arg(long)]
     pub json: bool,
 }

@@ -16,7 +16,7 @@ use crate::core::kernel::number::{UNDEFINED, counted, fixed, grouped, size};
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::statistics::Range;
 use crate::core::record::{Report, Statistics};
-use crate::core::run::compare::{Did, FirstDifference, first_difference};
+use crate::core::run::compare::{Did, Difference, FirstDifference, differences, first_difference};
 use crate::core::run::{History, Run};
 use crate::core::soup::MeshFile;
 use finished::{Finished, Parted};
@@ -24,31 +24,60 @@ use finished::{Finished, Parted};
 /// The names of the two runs in what is printed.
 const NAMES: [&str; 2] = ["A", "B"];
 
-/// Where two runs differ first, and what they end with.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// Where two runs differ, and what they end with.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// `None` where they never differ.
     pub first_difference: Option<FirstDifference>,
+    /// The decisions in which they differ although their fronts are the same there, where they were asked for.
+    pub differences: Vec<Difference>,
     /// The report of each at its end, with the time that it takes by itself.
     pub reports: [Report; 2],
 }
 
 impl Comparison {
-    /// Compares two runs; `report` gives the report of each at its end.
+    /// Compares two runs, of which these are the histories; with all differences where `all` is set. `report` gives the
+    /// report of each at its end.
     ///
     /// # Errors
     /// A conversion that cannot continue, and cancellation.
     pub fn of(
-        runs: &[Run; 2],
+        [a, b]: [&mut History; 2],
+        all: bool,
         watch: &mut dyn Watch,
         mut report: impl FnMut(&Run) -> Result<Report, Fault>,
     ) -> Result<Comparison, Fault> {
-        let first_difference = {
-            let [mut a, mut b] = [History::open(runs[0].clone(), watch)?, History::open(runs[1].clone(), watch)?];
-            first_difference([&mut a, &mut b], watch)?
+        let first_difference = first_difference([a, b], watch)?;
+        let differences = match &first_difference {
+            Some(first) if all => differences([a, b], first.step, watch)?,
+            _ => Vec::new(),
         };
-        Ok(Comparison { first_difference, reports: [report(&runs[0])?, report(&runs[1])?] })
+        Ok(Comparison { first_difference, differences, reports: [report(a.run())?, report(b.run())?] })
     }
+}
+
+/// A difference, and what both did there.
+#[derive(Serialize)]
+struct ToldDifference {
+    #[serde(flatten)]
+    difference: Difference,
+    did: [Option<Did>; 2],
+}
+
+/// The first ones of all differences.
+#[derive(Serialize)]
+struct ToldDifferences {
+    number: usize,
+    first: Vec<ToldDifference>,
+}
+
+/// A comparison as it is written as JSON.
+#[derive(Serialize)]
+struct WrittenComparison<'c> {
+    first_difference: Option<&'c FirstDifference>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    differences: Option<ToldDifferences>,
+    reports: &'c [Report; 2],
 }
 
 /// The report of a run at its end, without its times.
@@ -59,7 +88,7 @@ pub(super) fn report(run: &Run, watch: &mut dyn Watch) -> Result<Report, Fault> 
 
 /// Compares two runs: success where they never differ, exit code 1 where they do.
 pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
-    let CompareArguments { source, mesh, other, with, with_paper, json } = arguments;
+    let CompareArguments { source, mesh, other, with, with_paper, differences, json } = arguments;
     let first = input::read(source, &mesh.options())?;
     if let Some(name) = other
         && let Some(found) = input::read_mesh(name, None, &mut Progress::new(source.quiet))?
@@ -67,6 +96,10 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
     {
         if !with.is_empty() || *with_paper {
             return Err(Fault::new("A finished mesh has no parameters").at(name.clone()).remedy("Leave --with out"));
+        }
+        if differences.is_some() {
+            let fault = Fault::new("A finished mesh has no decisions").at(name.clone());
+            return Err(fault.remedy("Leave --differences out"));
         }
         return with_mesh(&first.run, [&source.input, name], &found, *json, source.quiet);
     }
@@ -88,25 +121,45 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
     let changes = Overrides { set: with.clone(), paper: *with_paper, ..Overrides::default() };
     changes.apply(&mut runs[1], "--with")?;
     let mut progress = Progress::new(source.quiet);
-    let comparison = Comparison::of(&runs, &mut progress, |run| {
+    let [mut a, mut b] =
+        [History::open(runs[0].clone(), &mut progress)?, History::open(runs[1].clone(), &mut progress)?];
+    let comparison = Comparison::of([&mut a, &mut b], differences.is_some(), &mut progress, |run| {
         let mut progress = Progress::new(source.quiet);
         let mut report = report(run, &mut progress)?;
         report.timing = progress.finish();
         Ok(report)
     })?;
+    let all = comparison.differences.as_slice();
+    let told = differences.map(|n| {
+        let first = all
+            .iter()
+            .take(n)
+            .map(|difference| Ok(ToldDifference { difference: *difference, did: difference.told([&mut a, &mut b])? }));
+        Ok::<_, Fault>(ToldDifferences { number: all.len(), first: first.collect::<Result<_, Fault>>()? })
+    });
+    let told = told.transpose()?;
     progress.finish();
-    let differ = comparison.first_difference.is_some();
+    let Comparison { first_difference, reports, .. } = &comparison;
+    let first_difference = first_difference.as_ref();
+    let differ = first_difference.is_some();
     if *json {
-        let text = serde_json::to_string_pretty(&comparison).expect("JSON can express all figures");
+        let written = WrittenComparison { first_difference, differences: told, reports };
+        let text = serde_json::to_string_pretty(&written).expect("JSON can express all figures");
         Stream::Output.print(&format!("{text}\n"));
     } else {
         let inputs = [&source.input, other.as_ref().unwrap_or(&source.input)];
-        Stream::Output.print(&text(inputs, &runs, comparison.first_difference.as_ref(), &comparison.reports));
+        Stream::Output.print(&text(inputs, &runs, first_difference, told.as_ref(), reports));
     }
     Ok(if differ { ExitCode::from(FALLS_SHORT) } else { ExitCode::SUCCESS })
 }
 
-fn text(inputs: [&String; 2], runs: &[Run; 2], found: Option<&FirstDifference>, reports: &[Report; 2]) -> String {
+fn text(
+    inputs: [&String; 2],
+    runs: &[Run; 2],
+    found: Option<&FirstDifference>,
+    differences: Option<&ToldDifferences>,
+    reports: &[Report; 2],
+) -> String {
     let mut text = String::new();
     for (k, name) in NAMES.into_iter().enumerate() {
         let run = &runs[k];
@@ -122,18 +175,35 @@ fn text(inputs: [&String; 2], runs: &[Run; 2], found: Option<&FirstDifference>, 
         Some(FirstDifference { step: 0, .. }) => text += "first difference: step 0 (the background meshes differ)\n",
         Some(found) => {
             text += &format!("first difference: step {} ({})\n", found.step, kinds(&found.did));
-            for (name, did) in NAMES.iter().zip(&found.did) {
-                match did {
-                    Some(Did { text: line, why, .. }) => {
-                        text += &format!("  {name}: {line}\n");
-                        why.iter().for_each(|sentence| text += &format!("     {sentence}\n"));
-                    }
-                    None => text += &format!("  {name}: had ended\n"),
-                }
-            }
+            text += &decisions(&found.did);
+        }
+    }
+    if let Some(ToldDifferences { number, first }) = differences {
+        let differ = if *number == 1 { "differs" } else { "differ" };
+        let all = counted(*number as u64, "decision");
+        text += &format!("{all} {differ} although both fronts are the same around the base\n");
+        for (k, ToldDifference { difference, did }) in first.iter().enumerate() {
+            let [a, b] = difference.steps.map(grouped);
+            text += &format!("difference {} of {number}: A at step {a}, B at step {b} ({})\n", k + 1, kinds(did));
+            text += &decisions(did);
         }
     }
     text + &table(reports.each_ref().map(Ends::of))
+}
+
+/// What both did, and why.
+fn decisions(did: &[Option<Did>; 2]) -> String {
+    let mut text = String::new();
+    for (name, did) in NAMES.iter().zip(did) {
+        match did {
+            Some(Did { text: line, why, .. }) => {
+                text += &format!("  {name}: {line}\n");
+                why.iter().for_each(|sentence| text += &format!("     {sentence}\n"));
+            }
+            None => text += &format!("  {name}: had ended\n"),
+        }
+    }
+    text
 }
 
 /// The parameters that differ from others, with their values.
@@ -146,7 +216,7 @@ pub(super) fn values_that_differ(parameters: &Parameters, others: &Parameters) -
 }
 
 /// The kinds of what both did.
-pub(super) fn kinds(did: &[Option<Did>; 2]) -> String {
+fn kinds(did: &[Option<Did>; 2]) -> String {
     let [a, b] = did.each_ref().map(|did| did.as_ref().map_or("ended", |did| did.event.kind().name()));
     if a == b { a.replace('_', " ") } else { format!("A {}, B {}", a.replace('_', " "), b.replace('_', " ")) }
 }

@@ -1,9 +1,9 @@
 //! Two runs side by side: what can be done with them, and the thread that compares them.
 
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use super::command::{Command, Rules};
-use super::session::{Source, Wake, words_of};
+use super::session::{Direction, Source, Wake, words_of};
 use super::state::Progress;
 use crate::app::command_line::Overrides;
 use crate::app::compare::Comparison;
@@ -11,7 +11,9 @@ use crate::app::progress::StageTimes;
 use crate::core::fault::Fault;
 use crate::core::kernel::worded::worded;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::Run;
+use crate::core::run::compare::Did;
+use crate::core::run::history::BUDGET;
+use crate::core::run::{History, Run};
 
 worded! {
     /// One of two runs.
@@ -81,7 +83,7 @@ pub enum PairCommand {
     Activate(Which),
     /// Go on with the other run.
     Switch,
-    /// LinkedBy the steps of the runs in another way.
+    /// Link the steps of the runs in another way.
     Link(LinkedBy),
     /// Show the runs in another way.
     Show(Arrangement),
@@ -91,6 +93,8 @@ pub enum PairCommand {
     Close,
     /// Go to the first difference.
     ToDifference,
+    /// Go to the next decision, or the one before, in which both differ although their fronts are the same there.
+    SeekDifference(Direction),
     /// Do something in one of the runs.
     In(Which, Box<Command>),
 }
@@ -106,11 +110,13 @@ impl PairCommand {
             PairCommand::Activate(which) => format!("Show run {} in the panels", which.name()),
             PairCommand::Switch => "Show the other run in the panels".into(),
             PairCommand::Link(LinkedBy::Free) => "Move each run by itself".into(),
-            PairCommand::Link(link) => format!("LinkedBy the runs by {}", link.name()),
+            PairCommand::Link(link) => format!("Link the runs by {}", link.name()),
             PairCommand::Show(arrangement) => format!("Two runs: {}", arrangement.name().to_lowercase()),
             PairCommand::Exchange => "Exchange the two runs".into(),
             PairCommand::Close => "Close the second run".into(),
             PairCommand::ToDifference => "To the first difference of the two runs".into(),
+            PairCommand::SeekDifference(Direction::Forward) => "To the next difference of the two runs".into(),
+            PairCommand::SeekDifference(Direction::Back) => "To the previous difference of the two runs".into(),
             PairCommand::In(_, command) => command.name(),
         }
     }
@@ -131,12 +137,18 @@ impl PairCommand {
 pub enum CompareNews {
     Progress(Progress),
     Found(Box<Comparison>),
+    /// What both did at a difference, by its place in the list, and why.
+    Told(usize, [Option<Did>; 2]),
     Fault(Fault),
 }
 
-/// A thread that compares two runs; it stops when this is dropped.
+/// The memory of each of the histories that answer questions about differences, in bytes.
+const KEPT: usize = BUDGET / 8;
+
+/// A thread that compares two runs and then tells of their differences; it stops when this is dropped.
 pub struct Comparing {
     told: Receiver<CompareNews>,
+    ask: Sender<usize>,
     cancel: Cancel,
 }
 
@@ -144,6 +156,7 @@ impl Comparing {
     /// Begins to compare two runs; `wake` is called when there is something to hear.
     pub fn begin(runs: [Run; 2], wake: Wake) -> Comparing {
         let (tell, told) = channel();
+        let (ask, asked) = channel();
         let cancel = Cancel::new();
         let stop = cancel.clone();
         std::thread::spawn(move || {
@@ -152,19 +165,18 @@ impl Comparing {
                 let _ = tell.send(news);
                 wake();
             };
-            let new_watch = || CompareWatch { say: &said, cancel: stop.clone(), times: StageTimes::default() };
-            match Comparison::of(&runs, &mut new_watch(), |run| {
-                let mut watch = new_watch();
-                let mut report = crate::app::compare::report(run, &mut watch)?;
-                report.timing = watch.times.finish();
-                Ok(report)
-            }) {
-                Ok(comparison) => said(CompareNews::Found(Box::new(comparison))),
-                Err(fault) if fault.is_stop() => {}
-                Err(fault) => said(CompareNews::Fault(fault)),
+            match compare(runs, &said, &stop, &asked) {
+                Err(fault) if !fault.is_stop() => said(CompareNews::Fault(fault)),
+                _ => {}
             }
         });
-        Comparing { told, cancel }
+        Comparing { told, ask, cancel }
+    }
+
+    /// Asks what both did at a difference, by its place in the list.
+    pub fn ask(&self, difference: usize) {
+        // Where the thread has ended with a fault, that has been told.
+        let _ = self.ask.send(difference);
     }
 
     /// The next report, if there is one.
@@ -177,6 +189,28 @@ impl Drop for Comparing {
     fn drop(&mut self) {
         self.cancel.ask();
     }
+}
+
+/// Compares two runs, and then tells what is asked about their differences.
+fn compare([a, b]: [Run; 2], said: &dyn Fn(CompareNews), stop: &Cancel, asked: &Receiver<usize>) -> Result<(), Fault> {
+    let new_watch = || CompareWatch { say: said, cancel: stop.clone(), times: StageTimes::default() };
+    let mut watch = new_watch();
+    let backgrounds = [a.background(&mut watch)?, b.background(&mut watch)?];
+    let [mut a, mut b] = [History::of(a, &backgrounds[0], KEPT)?, History::of(b, &backgrounds[1], KEPT)?];
+    let comparison = Comparison::of([&mut a, &mut b], true, &mut watch, |run| {
+        let mut watch = new_watch();
+        let mut report = crate::app::compare::report(run, &mut watch)?;
+        report.timing = watch.times.finish();
+        Ok(report)
+    })?;
+    let differences = comparison.differences.clone();
+    said(CompareNews::Found(Box::new(comparison)));
+    while let Ok(k) = asked.recv() {
+        if let Some(difference) = differences.get(k) {
+            said(CompareNews::Told(k, difference.told([&mut a, &mut b])?));
+        }
+    }
+    Ok(())
 }
 
 /// Reports the progress of a comparison, and measures the time of its stages.

@@ -12,7 +12,7 @@ mod view_state;
 mod apply;
 mod hearing;
 
-pub use pair::Pair;
+pub use pair::{Pair, ShownDifference};
 use run_state::Opening;
 pub use run_state::{Lookup, Missing, Progress, RunState};
 pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState};

@@ -13,9 +13,18 @@ pub(super) type Done = (Phase, Option<Event>);
 
 /// Least quality and largest new edge that a formation may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Gates {
+pub struct Gates {
+    /// The least quality.
     pub quality: f64,
+    /// The largest metric length of a side or top that was live and is on the front now.
     pub length: f64,
+}
+
+impl Gates {
+    /// The gates; wide in the second pass (docs/algorithm.md, "Rescue").
+    pub fn of(second_pass: bool) -> Gates {
+        if second_pass { Gates { quality: 0.05, length: 4.0 } } else { Gates { quality: 0.15, length: 2.0 } }
+    }
 }
 
 /// The merging front at work: the mesh that it runs through, what steps look up, and the queue of segments.
@@ -51,7 +60,7 @@ impl Front<'_> {
 
     /// The gates that a formation must pass.
     pub fn gates(&self) -> Gates {
-        if *self.second_pass { Gates { quality: 0.05, length: 4.0 } } else { Gates { quality: 0.15, length: 2.0 } }
+        Gates::of(*self.second_pass)
     }
 
     /// Clears the journal where it is not kept.

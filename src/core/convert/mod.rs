@@ -31,18 +31,22 @@ pub mod walk;
 pub mod conversion;
 
 pub use candidates::{Candidate, Candidates, Passed, SideRule};
+pub(in crate::core) use close::{MOST_SEGMENTS, MOST_TRIANGLES};
 pub use conversion::Converted;
-pub use converter::{Converter, Counts};
+pub use converter::{Converter, Counts, LookedAt};
 pub use event::{Cleaning, Event, EventKind, FewNodes, Mending, Purpose, SeamCorner, SideEdge, Unmerged, Why, WhyKind};
 pub use finish::Finished;
 pub use finish::clean_up::CleanedUp;
 pub use finish::unfold::Unfolded;
+pub use form::{Aim, Stays};
+pub use front::Gates;
 pub use last_resort::component::Component;
 pub use last_resort::{Means, Outcome, Plan, Stuck};
 pub use phase::{Attempt, Base, FinishPart, Phase};
 pub(in crate::core) use seam::{AROUND, MOST_UNLIKE, SHORT};
 pub(in crate::core) use split::LEAST_PART;
 pub use split::{Narrow, NotSlender, OnFront, SideToCollapse, Slender};
+pub(in crate::core) use top::{MOST_CROSSINGS, MOST_SWAPS};
 pub use walk::{StepReport, Stop, Tell};
 
 pub use side::candidates;

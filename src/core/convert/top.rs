@@ -9,9 +9,9 @@ use crate::core::kernel::predicates::orient;
 use crate::core::mesh::{HalfEdgeId, Mesh, NodeId};
 
 /// More edges across the top edge than this are not worth swapping.
-const MOST_CROSSINGS: usize = 24;
+pub(in crate::core) const MOST_CROSSINGS: usize = 24;
 /// Swaps and removals of one recovery.
-pub(super) const MOST_SWAPS: u8 = 48;
+pub(in crate::core) const MOST_SWAPS: u8 = 48;
 
 /// What a step of the recovery came to.
 pub(super) enum Recovery {

@@ -3,15 +3,23 @@
 //! The state is the mesh with the phase of the converter; a parameter, or a number that a step looks at, is no part of
 //! it. So runs with different parameters are the same until one of them decides something else.
 
+mod differences;
+mod in_space;
+mod overlap;
+mod places;
+
 use serde::Serialize;
 
-use rustc_hash::FxHashSet;
+pub use differences::{Difference, differences};
+pub use in_space::NodesInSpace;
+pub use overlap::Overlap;
+pub use places::NEAR;
 
 use super::explain::{self, Selecting, plain};
 use super::history::{Changes, History};
 use crate::core::convert::{Converter, Event};
 use crate::core::fault::Fault;
-use crate::core::mesh::{ElementId, Mesh, NodeId};
+use crate::core::mesh::NodeId;
 use crate::core::progress::{Stage, Watch};
 
 /// Steps between two reports of progress.
@@ -117,9 +125,9 @@ pub fn did_at(run: &mut History, step: u64) -> Result<Option<Did>, Fault> {
 fn did(run: &mut History, step: u64, event: Option<Event>, other: Option<[NodeId; 2]>) -> Result<Option<Did>, Fault> {
     let Some(event) = event else { return Ok(None) };
     run.seek(step - 1)?;
-    let (candidates, narrow) = (run.state().candidates(), run.state().narrow());
+    let looked_at = run.state().looks_at();
     run.seek(step)?;
-    let mut why = explain::about(&event, candidates.as_ref(), narrow.as_ref());
+    let mut why = explain::about(&event, &looked_at, run.state());
     if let Some([a, b]) = base(&event) {
         let selecting = run.selecting()?;
         why.extend(about_segment(&selecting, run.state(), [a, b]));
@@ -135,80 +143,4 @@ fn did(run: &mut History, step: u64, event: Option<Event>, other: Option<[NodeId
 /// Why a segment was selected or not; nothing where it was not on the front.
 fn about_segment(selecting: &Selecting, state: &Converter<'_>, [a, b]: [NodeId; 2]) -> Vec<String> {
     selecting.explain(state, a, b).map_or_else(|| vec!["It is not on this front.".to_owned()], |told| told.why)
-}
-
-/// The quadrilaterals that two meshes have in common.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Overlap {
-    /// How many both have: their nodes lie within [`NEAR`] of each other.
-    pub both: usize,
-    /// Those that only the first mesh has, and those that only the second one has, in the order of their ids.
-    pub only: [Vec<ElementId>; 2],
-}
-
-/// How near two nodes must be to count as one, as a length in the metric, in which an edge has length 1.
-pub const NEAR: f64 = 0.1;
-
-impl Overlap {
-    /// Compares the quadrilaterals of two meshes by the places of their nodes in the parametric plane.
-    pub fn of(a: &Mesh, b: &Mesh) -> Overlap {
-        let [first, second] = [a, b].map(quads);
-        let near = nearest_nodes(a, b);
-        let corners_in_a = |corners: [NodeId; 4]| -> Option<[NodeId; 4]> {
-            let mut found = corners;
-            for node in &mut found {
-                *node = near[node.index()]?;
-            }
-            found.sort_unstable();
-            Some(found)
-        };
-        let mut of_b = FxHashSet::default();
-        let mut only_b = Vec::new();
-        let of_a: FxHashSet<[NodeId; 4]> = first.iter().map(|quad| quad.1).collect();
-        for &(element, corners) in &second {
-            // Two quadrilaterals of B that lie near one of A count once.
-            match corners_in_a(corners).filter(|corners| of_a.contains(corners)) {
-                Some(corners) if of_b.insert(corners) => {}
-                _ => only_b.push(element),
-            }
-        }
-        let only_a = first.iter().filter(|quad| !of_b.contains(&quad.1)).map(|quad| quad.0).collect();
-        Overlap { both: of_b.len(), only: [only_a, only_b] }
-    }
-
-    /// The share of the quadrilaterals that both have among those of either; 1 where there are none.
-    pub fn share(&self) -> f64 {
-        let all = self.both + self.only[0].len() + self.only[1].len();
-        if all == 0 { 1.0 } else { self.both as f64 / all as f64 }
-    }
-}
-
-/// The quadrilaterals of a mesh with their corners, sorted.
-fn quads(mesh: &Mesh) -> Vec<(ElementId, [NodeId; 4])> {
-    let sorted = |element: ElementId| {
-        let mut corners = [NodeId(0); 4];
-        for (corner, node) in corners.iter_mut().zip(mesh.corners(element)) {
-            *corner = node;
-        }
-        corners.sort_unstable();
-        (element, corners)
-    };
-    mesh.elements().filter(|e| mesh.is_quad(*e)).map(sorted).collect()
-}
-
-/// For each node of `b`, by its index, the nearest node of `a` in the metric at `b`, if it is near enough.
-fn nearest_nodes(a: &Mesh, b: &Mesh) -> Vec<Option<NodeId>> {
-    let mut by_u: Vec<NodeId> = a.nodes().collect();
-    by_u.sort_unstable_by(|x, y| a.uv(*x).x.total_cmp(&a.uv(*y).x));
-    let mut near = vec![None; b.nodes().map(|n| n.index() + 1).max().unwrap_or(0)];
-    for node in b.nodes() {
-        let (at, metric) = (b.uv(node), b.metric(node));
-        // Half the width of the ball of this radius along u.
-        let width = NEAR * (metric.vv / metric.det()).sqrt();
-        let start = by_u.partition_point(|n| a.uv(*n).x < at.x - width);
-        let strip = by_u[start..].iter().take_while(|n| a.uv(**n).x <= at.x + width);
-        let found = strip.map(|n| (metric.norm2(a.uv(*n) - at), *n)).min_by(|x, y| x.0.total_cmp(&y.0));
-        near[node.index()] = found.filter(|found| found.0 <= NEAR * NEAR).map(|found| found.1);
-    }
-    near
 }

@@ -10,11 +10,15 @@ mod words;
 mod selecting;
 mod why;
 mod side;
+mod narrow;
 mod event;
+mod formation;
+mod about;
 mod next;
 mod narration;
 
-pub use event::{about, attempt, event, why_rolled_back};
+pub use about::about;
+pub use event::{attempt, event, why_rolled_back};
 pub use narration::narration;
 pub use next::next;
 pub use numbers::{angles_apart, apart, capital, edge, plain, segment};

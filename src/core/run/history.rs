@@ -355,14 +355,27 @@ impl History {
         until: u64,
         visit: &mut dyn FnMut(u64, &Converter<'static>, Option<&Event>),
     ) -> Result<(), Fault> {
+        self.replay_while(from, until, &mut |step, state, event| {
+            visit(step, state, event);
+            Ok(())
+        })
+    }
+
+    /// As [`replay`](History::replay), until `visit` fails.
+    pub(super) fn replay_while(
+        &self,
+        from: u64,
+        until: u64,
+        visit: &mut dyn FnMut(u64, &Converter<'static>, Option<&Event>) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
         let mut cursor = self.cursor_before(from, Mesh::default())?;
         while cursor.step < from {
             cursor.advance(&self.run)?;
         }
-        visit(cursor.step, &cursor.converter, None);
+        visit(cursor.step, &cursor.converter, None)?;
         while cursor.step < until.min(self.log.known()) {
             let event = cursor.advance(&self.run)?;
-            visit(cursor.step, &cursor.converter, Some(&event));
+            visit(cursor.step, &cursor.converter, Some(&event))?;
         }
         Ok(())
     }

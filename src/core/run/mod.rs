@@ -8,6 +8,7 @@
 //! | copies of the mesh for other threads, updated by what changed | [`Copies`] |
 //! | what a figure shows of a run | [`Shown`] |
 //! | the first step after which two runs differ | [`compare::first_difference`] |
+//! | later decisions that differ although the fronts are the same there | [`compare::differences`] |
 //! | running ahead on another thread | [`Recorder`], which [`History::lend`] lends |
 //! | one event per step, the number of quadrilaterals, where to go next | [`Log`] |
 //! | invariants and statistics along a run, lanes of its work | [`Sample`], [`timeline`] |

@@ -3,15 +3,16 @@
 use eframe::egui::{Align, Align2, ComboBox, Grid, Label, Layout, Rect, RichText, ScrollArea, Sense, Ui, Vec2};
 
 use super::{heading, inset, line, note, on_click, part};
-use crate::app::compare::{Comparison, kinds, values_that_differ};
+use crate::app::compare::{Comparison, values_that_differ};
 use crate::app::window::command::{Command, Rules};
 use crate::app::window::pair::{Arrangement, LinkedBy, PairCommand, Which};
-use crate::app::window::state::{Pair, State};
+use crate::app::window::session::Direction;
+use crate::app::window::state::{Pair, ShownDifference, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::record::Report;
 use crate::core::record::report::figures::{Better, Figure};
-use crate::core::run::compare::{Did, FirstDifference};
+use crate::core::run::compare::{Did, Difference, FirstDifference};
 use crate::render::palette::{Palette, Rgba};
 
 /// The figures of the table, with their digits after the point.
@@ -41,7 +42,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             None => begin(ui, state, commands, palette),
             Some(pair) => {
                 runs(ui, state, pair, commands, palette);
-                first_difference(ui, pair, commands, palette);
+                difference(ui, pair, commands, palette);
                 if let Some(comparison) = &pair.comparison {
                     ends(ui, comparison, palette);
                 }
@@ -149,50 +150,110 @@ pub fn about(state: &State, which: Which) -> String {
     if parts.is_empty() { "no parameter differs here".to_owned() } else { parts.join(", ") }
 }
 
-fn first_difference(ui: &mut Ui, pair: &Pair, commands: &mut Vec<Command>, palette: &Palette) {
-    let title = |ui: &mut Ui, text: &str| {
-        ui.add_space(8.0);
-        let text = RichText::new(text).font(theme::semibold(theme::TITLE)).color(ink(palette.strong));
-        ui.add(Label::new(text).wrap());
-    };
-    let weak = |ui: &mut Ui, text: &str| drop(ui.add(Label::new(note(text, palette)).wrap()));
+fn difference(ui: &mut Ui, pair: &Pair, commands: &mut Vec<Command>, palette: &Palette) {
     match &pair.comparison {
         _ if pair.is_same => {
-            title(ui, "No difference yet");
-            weak(
-                ui,
-                "Both runs have the same case, parameters and changes. Change a parameter of B, or choose its base.",
-            );
+            title(ui, "No difference yet", palette);
+            let text =
+                "Both runs have the same case, parameters and changes. Change a parameter of B, or choose its base.";
+            weak(ui, text, palette);
         }
         None => {
-            title(ui, "Comparing");
+            title(ui, "Comparing", palette);
             let text = pair.progress.as_ref().map_or_else(|| "Working".to_owned(), words::progress);
-            weak(ui, &format!("{text}…"));
+            weak(ui, &format!("{text}…"), palette);
         }
-        Some(comparison) => match &comparison.first_difference {
-            None => {
-                title(ui, "No difference");
-                weak(ui, "Every step of both leads to the same state.");
+        Some(comparison) => match (&pair.shown, &comparison.first_difference) {
+            (_, None) => {
+                title(ui, "No difference", palette);
+                weak(ui, "Every step of both leads to the same state.", palette);
             }
-            Some(FirstDifference { step: 0, .. }) => {
-                title(ui, "First difference: step 0");
-                weak(ui, "The background meshes differ.");
-            }
-            Some(found) => {
-                title(ui, &format!("First difference: step {}", words::grouped(found.step)));
-                let before = words::counted(found.step - 1, "step");
-                weak(ui, &format!("The first {before} lead to the same states, to the last bit."));
-                ui.add_space(4.0);
-                ui.horizontal_wrapped(|ui| {
-                    button(ui, "Go there", PairCommand::ToDifference, commands);
-                    ui.label(note(kinds(&found.did), palette));
-                });
-                for (which, did) in Which::ALL.into_iter().zip(&found.did) {
-                    decision(ui, which, did.as_ref(), palette);
-                }
-            }
+            (None, Some(found)) => first_difference(ui, found, &comparison.differences, commands, palette),
+            (Some(shown), Some(_)) => further_difference(ui, shown, &comparison.differences, commands, palette),
         },
     }
+}
+
+fn title(ui: &mut Ui, text: &str, palette: &Palette) {
+    ui.add_space(8.0);
+    let text = RichText::new(text).font(theme::semibold(theme::TITLE)).color(ink(palette.strong));
+    ui.add(Label::new(text).wrap());
+}
+
+fn weak(ui: &mut Ui, text: &str, palette: &Palette) {
+    ui.add(Label::new(note(text, palette)).wrap());
+}
+
+/// The first step after which the states differ.
+fn first_difference(
+    ui: &mut Ui,
+    found: &FirstDifference,
+    all: &[Difference],
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    title(ui, &format!("First difference: step {}", words::grouped(found.step)), palette);
+    if found.step == 0 {
+        weak(ui, "The background meshes differ.", palette);
+    } else {
+        let before = words::counted(found.step - 1, "step");
+        weak(ui, &format!("The first {before} lead to the same states, to the last bit."), palette);
+    }
+    let further = match all.len() as u64 {
+        0 => "No decision differs where both fronts are the same around the base.".to_owned(),
+        1 => "One decision differs although both fronts are the same around the base.".to_owned(),
+        n => format!("{} decisions differ although both fronts are the same around the base.", words::grouped(n)),
+    };
+    weak(ui, &further, palette);
+    seek(ui, "Go there", all, commands);
+    if found.step > 0 {
+        decisions(ui, &found.did, palette);
+    }
+}
+
+/// A decision that differs although both fronts are the same there.
+fn further_difference(
+    ui: &mut Ui,
+    shown: &ShownDifference,
+    all: &[Difference],
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    let (place, count) = (words::grouped(shown.place as u64 + 1), words::grouped(all.len() as u64));
+    title(ui, &format!("Difference {place} of {count}"), palette);
+    let Some(difference) = all.get(shown.place) else { return };
+    let [a, b] = difference.steps.map(words::grouped);
+    let bases = match difference.not_selected {
+        None => "Both fronts are the same around this base; the runs do not make the same of it.",
+        Some(_) => "Both fronts are the same around two segments side by side; each run selects another one.",
+    };
+    weak(ui, &format!("A at step {a}, B at step {b}. {bases}"), palette);
+    seek(ui, "First difference", all, commands);
+    match &shown.did {
+        Some(did) => decisions(ui, did, palette),
+        None => weak(ui, "Working…", palette),
+    }
+}
+
+/// The buttons that lead to the differences.
+fn seek(ui: &mut Ui, to_first: &str, all: &[Difference], commands: &mut Vec<Command>) {
+    ui.add_space(4.0);
+    part(ui, "differences", |ui| {
+        ui.horizontal_wrapped(|ui| {
+            button(ui, to_first, PairCommand::ToDifference, commands);
+            ui.add_enabled_ui(!all.is_empty(), |ui| {
+                for (text, direction) in
+                    [("Previous difference", Direction::Back), ("Next difference", Direction::Forward)]
+                {
+                    button(ui, text, PairCommand::SeekDifference(direction), commands);
+                }
+            });
+        });
+    });
+}
+
+fn decisions(ui: &mut Ui, did: &[Option<Did>; 2], palette: &Palette) {
+    Which::ALL.into_iter().zip(did).for_each(|(which, did)| decision(ui, which, did.as_ref(), palette));
 }
 
 /// What a run did, and why.
@@ -272,8 +333,8 @@ fn overlap(ui: &mut Ui, pair: &Pair, palette: &Palette) {
     let percent = words::fixed((share * 1000.0).floor() / 10.0, 1);
     let both = words::counted(overlap.both as u64, "quadrilateral");
     let text = format!(
-        "{both} in both ({percent} %): their nodes lie within a tenth of an edge in the metric; {a} only in A, {b} only \
-         in B."
+        "{both} in both ({percent} %): their nodes lie within a tenth of an edge in the metric of A; {a} only in A, {b} \
+         only in B."
     );
     ui.add(Label::new(note(text, palette)).wrap());
 }

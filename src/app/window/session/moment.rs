@@ -28,6 +28,8 @@ pub struct Moment {
     pub standing: u64,
     pub phase: Phase,
     pub event: Option<Event>,
+    /// What the last step looked at, and why it did what it did.
+    pub about: Vec<String>,
     pub mesh: Arc<Mesh>,
     pub parameters: Parameters,
     /// The differences from the moment that was reported before.

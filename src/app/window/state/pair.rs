@@ -6,7 +6,7 @@ use super::{Progress, State, Workspace};
 use crate::app::compare::Comparison;
 use crate::app::window::command::Rules;
 use crate::app::window::pair::{Arrangement, Comparing, LinkedBy, Which};
-use crate::core::run::compare::Overlap;
+use crate::core::run::compare::{Did, Overlap};
 use crate::core::run::{Edit, Run};
 
 /// Two runs.
@@ -25,6 +25,11 @@ pub struct Pair {
     pub(super) numbers: Option<[u64; 2]>,
     /// What the comparison of both found, once it is known.
     pub comparison: Option<Arc<Comparison>>,
+    /// The difference that is shown in place of the first one.
+    pub shown: Option<ShownDifference>,
+    /// The steps of the two runs at a difference to which both were sent; until one of them moves on, they are not
+    /// linked.
+    pub(super) apart: Option<[u64; 2]>,
     /// Whether both have the same case, parameters and changes.
     pub is_same: bool,
     /// How far the comparison is.
@@ -48,6 +53,14 @@ pub struct Pair {
     pub(super) is_in_one_place: Option<(bool, [u64; 2])>,
 }
 
+/// A decision in which both runs differ although their fronts are the same there.
+pub struct ShownDifference {
+    /// Its place in the list of the comparison.
+    pub place: usize,
+    /// What both did, and why, once that is known.
+    pub did: Option<[Option<Did>; 2]>,
+}
+
 /// The number of a run and its changes.
 pub(super) type Compared = (u64, Vec<Edit>);
 
@@ -61,6 +74,8 @@ impl Pair {
             forked,
             numbers: None,
             comparison: None,
+            shown: None,
+            apart: None,
             is_same: false,
             progress: None,
             overlap: None,
@@ -84,6 +99,12 @@ impl Pair {
             _ if numbers == [b, a] => Some((Which::A, step)),
             _ => None,
         }
+    }
+
+    /// Forgets what was compared.
+    pub(super) fn forget_comparison(&mut self) {
+        (self.comparison, self.progress, self.comparing) = (None, None, None);
+        (self.shown, self.apart) = (None, None);
     }
 
     /// The step at which the runs differ first, once it is known.

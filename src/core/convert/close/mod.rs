@@ -14,10 +14,10 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{HalfEdgeId, Mesh};
 
 /// Longer loops are left to the last resort.
-const MOST_SEGMENTS: usize = 10;
+pub(in crate::core) const MOST_SEGMENTS: usize = 10;
 
 /// So are those with more triangles.
-const MOST_TRIANGLES: usize = 64;
+pub(in crate::core) const MOST_TRIANGLES: usize = 64;
 
 /// Closes the loop of a segment from which no quadrilateral can be formed, where it is a small one; else puts the
 /// segment off until something near it changes.

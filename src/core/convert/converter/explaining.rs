@@ -1,17 +1,89 @@
 //! What the events leave out, computed from the state on demand: a run that nobody watches pays nothing for it.
 
+use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::Converter;
+use crate::core::case::Parameters;
 use crate::core::convert::event::Event;
-use crate::core::convert::phase::Phase;
+use crate::core::convert::form::{self, Aim, Stays};
+use crate::core::convert::front::Gates;
+use crate::core::convert::phase::{Attempt, Base, FinishPart, Phase};
 use crate::core::convert::side::candidates::{self, Candidates};
 use crate::core::convert::side::choice::BaseSide;
 use crate::core::convert::split::{self, Narrow};
-use crate::core::convert::top;
+use crate::core::convert::{close, top};
 use crate::core::mesh::{ElementId, Mesh, NodeId};
 
+/// What a step looks at beside what its event says, computed from the state before it. What does not bear on the step
+/// is absent.
+#[derive(Clone, Debug)]
+pub struct LookedAt {
+    /// The parameters in force.
+    pub parameters: Parameters,
+    /// The quadrilateral under way: its base, and the attempt at it.
+    pub base: Option<Base>,
+    /// The attempt at it.
+    pub attempt: Option<Attempt>,
+    /// The candidates for a side edge.
+    pub candidates: Option<Candidates>,
+    /// The top edge, and the live edges that lie across it.
+    pub top: Option<([NodeId; 2], Vec<[NodeId; 2]>)>,
+    /// What a formation must pass, and the gates of the second pass.
+    pub gates: [Gates; 2],
+    /// Places of the tops C and D before they are placed, with where each is to go, or why it stays.
+    pub tops: Option<[(DVec2, Result<Aim, Stays>); 2]>,
+    /// The number of segments of the loop of a segment that every attempt has failed at, up to one more than a small
+    /// loop has.
+    pub segments: Option<usize>,
+    /// Whether the front has ended.
+    pub front_has_ended: bool,
+    /// The triangles at which the front may be split.
+    pub narrow: Option<Narrow>,
+    /// The part of the post-processing.
+    pub part: Option<FinishPart>,
+}
+
 impl Converter<'_> {
+    /// What the next step looks at.
+    pub fn looks_at(&self) -> LookedAt {
+        let mesh = &self.mesh;
+        let top = match self.phase {
+            Phase::RecoverTop { tops, .. } => self.top_crossings().map(|crossings| (tops, crossings)),
+            _ => None,
+        };
+        let tops = match &self.phase {
+            Phase::Form { base, tops, .. } => {
+                let [c, d] = form::aims(mesh, &*self.source, &self.parameters, base, *tops);
+                Some([(mesh.uv(tops[0]), c), (mesh.uv(tops[1]), d)])
+            }
+            _ => None,
+        };
+        let segments = match &self.phase {
+            Phase::Defer { base } => {
+                base.half_edge(mesh).map(|h| mesh.front_loop(h).take(close::MOST_SEGMENTS + 1).count())
+            }
+            _ => None,
+        };
+        let part = match self.phase {
+            Phase::PostProcess { part } => Some(part),
+            _ => None,
+        };
+        LookedAt {
+            parameters: self.parameters.clone(),
+            base: self.phase.base().copied(),
+            attempt: self.phase.attempt().copied(),
+            candidates: self.candidates(),
+            top,
+            gates: [self.second_pass, true].map(Gates::of),
+            tops,
+            segments,
+            front_has_ended: matches!(self.phase, Phase::Close { .. }),
+            narrow: self.narrow(),
+            part,
+        }
+    }
+
     /// What the next step chooses a side edge from; `None` where it chooses none.
     pub fn candidates(&self) -> Option<Candidates> {
         let Phase::PrepareSide { base, attempt, side, left } = &self.phase else { return None };

@@ -11,6 +11,7 @@ mod faces;
 mod taking_back;
 
 pub use counts::Counts;
+pub use explaining::LookedAt;
 
 use std::sync::Arc;
 

@@ -6,15 +6,19 @@ pub(super) mod attempts;
 mod parity;
 mod placement;
 
+pub use placement::{Aim, Stays};
+
 use smallvec::SmallVec;
 
 use super::event::{Event, FewNodes, Why};
 use super::front::{Done, Front};
 use super::local;
 use super::phase::{Attempt, Base};
+use crate::core::case::Parameters;
 use crate::core::front::Side;
 use crate::core::kernel::predicates::convex;
 use crate::core::mesh::{ElementId, Mesh, NewElement, NodeId, Operation};
+use crate::core::metric::MetricSource;
 
 /// A quadrilateral does not replace more triangles than this; its event names all nodes inside.
 const MOST_TRIANGLES: usize = 2 + 2 * FewNodes::MOST;
@@ -31,16 +35,15 @@ struct Enclosed {
 pub(super) fn form(front: &mut Front<'_>, base: Base, attempt: Attempt, [c, d]: [NodeId; 2]) -> Result<Done, Why> {
     let nodes = [base.a, base.b, d, c];
     let was_on_front = [c, d].map(|n| front.mesh.is_on_front(n));
-    let placement = front.parameters.placement;
-    let is_placed = [0, 1].map(|k| was_on_front[k] || (placement && front.mesh.is_in_cut_grid([c, d][k])));
     let sides = [[base.a, c], [base.b, d]];
     let were_live = sides.map(|[at, top]| front.mesh.is_live_edge(at, top));
     let Enclosed { triangles, inside } = enclosed(front.mesh, &base, nodes)?;
+    let aims = aims(front.mesh, front.source, front.parameters, &base, [c, d]);
     let element = merge(front.mesh, nodes, &triangles, &inside);
     front.mesh.set_level(element, base.level);
-    if placement {
-        for side in Side::BOTH.into_iter().filter(|side| !is_placed[side.index()]) {
-            placement::place(front, &base, element, side, [c, d]);
+    for (aim, tops) in aims.iter().zip([[c, d], [d, c]]) {
+        if let Ok(aim) = aim {
+            placement::place(front, element, aim, tops);
         }
     }
     let quality = check_shape(front, element)?;
@@ -54,6 +57,17 @@ pub(super) fn form(front: &mut Front<'_>, base: Base, attempt: Attempt, [c, d]: 
     let (level, swallowed) = (base.level, FewNodes::of(&inside));
     let event = Event::Formed { element, nodes, quality, merged, level, attempt: attempt.number, swallowed };
     Ok((local::begin(front, element, attempt.mark), Some(event)))
+}
+
+/// Where the tops C and D are to go, or why they stay; of the mesh before the quadrilateral is merged.
+pub(super) fn aims(
+    mesh: &Mesh,
+    source: &dyn MetricSource,
+    parameters: &Parameters,
+    base: &Base,
+    tops: [NodeId; 2],
+) -> [Result<Aim, Stays>; 2] {
+    Side::BOTH.map(|side| placement::judge(mesh, source, parameters, base, side, tops[side.index()]))
 }
 
 /// The live triangles between the four sides A-B-D-C and the nodes wholly inside; they must form a disc.

@@ -1,12 +1,12 @@
 //! What comes next: what is decided of the quadrilateral under way, and which rule has its turn.
 
-use super::numbers::{apart, capital, count, edge, segment};
+use super::about::divided;
+use super::numbers::{capital, count, edge, segment};
 use super::selecting::Selecting;
 use super::side::name;
 use crate::core::case::CleanUpBy;
 use crate::core::convert::{Attempt, Base, Converter, FinishPart, Phase, SideRule};
 use crate::core::front::Side;
-use crate::core::kernel::number::fixed;
 use crate::core::mesh::NodeId;
 
 /// What the next step does, as far as the state says it.
@@ -110,17 +110,8 @@ fn divide(state: &Converter<'_>, base: &Base, attempt: &Attempt, side: Side, top
     let which = name(side);
     let Some(top) = tops[side.index()] else { return String::new() };
     let ends = [base.node(side), top];
-    if attempt.divide[side.index()] {
-        return format!("The {which} side, {}, is to be divided, as this attempt says.", edge(ends));
-    }
-    let split = state.parameters().side_split;
-    let [length, bound] = apart(state.mesh.distance(ends[0], top), split * base.length);
-    let of_base = fixed(base.length, 3);
-    format!(
-        "The {which} side, {}, is to be divided: its metric length {length} is above {split} l_{{AB}} = {split} \u{d7} {of_base} \
-         = {bound} (4.3.4, vi).",
-        edge(ends)
-    )
+    let why = divided(state.parameters(), base, attempt, side, state.mesh.distance(ends[0], top));
+    format!("The {which} side, {}, is to be divided: {why}", edge(ends))
 }
 
 fn recover(state: &Converter<'_>, c: NodeId, d: NodeId) -> String {

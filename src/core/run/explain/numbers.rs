@@ -1,5 +1,6 @@
 //! Words and numbers that several explanations share.
 
+use crate::core::case::Parameters;
 use crate::core::kernel::number::{degrees, fixed, size};
 use crate::core::mesh::NodeId;
 
@@ -85,6 +86,11 @@ pub(super) fn down(x: f64, decimals: i32) -> String {
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// A parameter with its value, as a case has it.
+pub(super) fn value(parameters: &Parameters, key: &str) -> String {
+    format!("{key} = {}", parameters.text_of(key).unwrap_or_default())
 }
 
 #[cfg(test)]

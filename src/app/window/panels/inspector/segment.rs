@@ -63,6 +63,8 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
     let is_selected = !is_base || matches!(moment.event, Some(Event::BaseSelected { .. }));
     if is_selected {
         why::show(ui, state, moment, what, commands, palette);
+    } else if tried.is_none() {
+        step::show(ui, moment, palette);
     }
     if is_base {
         step::next(ui, moment, palette);

@@ -7,21 +7,20 @@ use super::{note, section, sentence};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::words;
-use crate::core::run::explain;
 use crate::render::palette::Palette;
 
 /// How many steps of the quadrilateral under way are listed, at most.
 const LISTED: usize = 12;
 
-/// The last step, where no quadrilateral is under way.
+/// The last step, and why it did what it did.
 pub fn show(ui: &mut Ui, moment: &Moment, palette: &Palette) {
     let Some(event) = &moment.event else { return };
     if !section(ui, "Last step", &format!("step {}", words::grouped(moment.step)), palette) {
         return;
     }
     sentence(ui, &format!("{}.", words::capital(&words::event(event))), palette.text, palette);
-    for text in explain::about(event, moment.candidates.as_ref(), moment.narrow.as_ref()) {
-        sentence(ui, &text, palette.weak, palette);
+    for text in &moment.about {
+        sentence(ui, text, palette.weak, palette);
     }
 }
 

@@ -7,20 +7,11 @@ use std::time::Instant;
 use super::super::SessionNews;
 use super::super::moment::{Moment, Verdict, segment};
 use super::{RECENT, Worker};
-use crate::core::convert::{Candidates, Event, EventKind, Narrow};
+use crate::core::convert::{Event, EventKind, LookedAt};
 use crate::core::fault::Fault;
 use crate::core::mesh::ElementId;
 use crate::core::run::front_table::Row;
 use crate::core::run::{Changes, explain};
-
-/// What a step looked at, computed from the state before it.
-#[derive(Default)]
-struct LookedAt {
-    /// The candidates for a side edge.
-    candidates: Option<Candidates>,
-    /// The triangles at which the front may be split.
-    narrow: Option<Narrow>,
-}
 
 impl Worker {
     /// Goes to a step and notes the changes.
@@ -33,20 +24,19 @@ impl Worker {
     }
 
     /// Goes to a step such that the changes of the last steps are known. Returns what the last step looked at.
-    fn walk_with_recent(&mut self, step: u64) -> Result<LookedAt, Fault> {
+    fn walk_with_recent(&mut self, step: u64) -> Result<Option<LookedAt>, Fault> {
         let first = (step + 1).saturating_sub(RECENT).max(1);
         let is_known = |recent: &VecDeque<(u64, _)>, step: u64| recent.iter().any(|known| known.0 == step);
         let unknown = (first..=step).find(|k| !is_known(&self.recent, *k)).unwrap_or(step);
         if step == 0 {
             self.walk(0)?;
-            return Ok(LookedAt::default());
+            return Ok(None);
         }
         self.walk(unknown - 1)?;
-        let mut looked_at = LookedAt::default();
+        let mut looked_at = None;
         for k in unknown..=step {
             if k == step {
-                let before = self.history.state();
-                looked_at = LookedAt { candidates: before.candidates(), narrow: before.narrow() };
+                looked_at = Some(self.history.state().looks_at());
             }
             let changed: Arc<[ElementId]> = match self.walk(k)? {
                 Changes::Some { elements, .. } => elements.into(),
@@ -64,7 +54,7 @@ impl Worker {
 
     pub(super) fn moment(&mut self, step: u64, since: Instant) -> Result<Moment, Fault> {
         let step = step.min(self.history.log().known());
-        let LookedAt { candidates, narrow } = self.walk_with_recent(step)?;
+        let looked_at = self.walk_with_recent(step)?;
         let selecting = self.history.selecting()?;
         // That may have gone back and come again.
         self.walk(step)?;
@@ -91,6 +81,11 @@ impl Worker {
             Changes::Everything => Ok(()),
             Changes::Some { nodes, elements } => state.mesh.check_around(nodes, elements),
         };
+        let about = match (&event, &looked_at) {
+            (Some(event), Some(before)) => explain::about(event, before, state),
+            _ => Vec::new(),
+        };
+        let (candidates, narrow) = looked_at.map_or((None, None), |before| (before.candidates, before.narrow));
         let odd = table.loops.iter().position(|ring| self.even && !ring.segments.is_multiple_of(2));
         let odd = odd.map(|k| format!("loop {} of the front is odd, with {} segments", k + 1, table.loops[k].segments));
         let verdict = match found.err().or(odd) {
@@ -106,6 +101,7 @@ impl Worker {
             standing: state.standing(),
             phase: state.phase().plain(),
             event,
+            about,
             mesh: self.copies.of(&state.mesh),
             parameters: state.parameters().clone(),
             changes,

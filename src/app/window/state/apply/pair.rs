@@ -8,13 +8,14 @@ use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::layout::Pane;
 use crate::app::window::pair::{PairCommand, Which};
-use crate::app::window::session::{Goal, Opened, Session, Source};
-use crate::app::window::state::pair::Pair;
+use crate::app::window::session::{Direction, Goal, Opened, Session, Source};
+use crate::app::window::state::pair::{Pair, ShownDifference};
 use crate::app::window::state::{Opening, Overlay, ViewKind};
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
 use crate::core::run::Run;
 use crate::core::run::copies::Since;
+use crate::render::scene::Outlined;
 
 /// What a command is for, where there are two runs.
 enum Scope {
@@ -50,9 +51,13 @@ impl State {
             PairCommand::Exchange => self.exchange(),
             PairCommand::Close => self.close_second(),
             PairCommand::ToDifference => match self.pair.as_ref().map(Pair::first_difference) {
-                Some(Some(step)) => self.apply_beside(Command::Go(Goal::Step(step))),
+                Some(Some(step)) => {
+                    self.change_pair(|pair| (pair.shown, pair.apart) = (None, None));
+                    self.apply_beside(Command::Go(Goal::Step(step)));
+                }
                 _ => self.notice("No difference of the two runs is known.".to_owned()),
             },
+            PairCommand::SeekDifference(direction) => self.seek_difference(direction),
             PairCommand::In(which, command) => {
                 if matches!(*command, Command::Pick(_) | Command::Show(_)) {
                     self.change_pair(|pair| pair.active = which);
@@ -60,6 +65,35 @@ impl State {
                 self.apply_in(which, *command);
             }
         }
+    }
+
+    /// Sends both runs to the next decision, or the one before, in which they differ although their fronts are the same
+    /// there, and shows it.
+    fn seek_difference(&mut self, direction: Direction) {
+        let step = self.run.moment.as_ref().map_or(0, |moment| moment.step);
+        let Some(pair) = &mut self.pair else { return };
+        let Some(comparison) = pair.comparison.clone() else {
+            return self.notice("No difference of the two runs is known.".to_owned());
+        };
+        let all = &comparison.differences;
+        // On the way to one, the next is the one after it.
+        let step = pair.apart.map_or(step, |steps| steps[0]);
+        let place = match direction {
+            Direction::Forward => Some(all.partition_point(|difference| difference.steps[0] <= step)),
+            Direction::Back => all.partition_point(|difference| difference.steps[0] < step).checked_sub(1),
+        };
+        let Some((place, difference)) = place.and_then(|place| Some((place, *all.get(place)?))) else {
+            let which = if direction == Direction::Forward { "after" } else { "before" };
+            return self.notice(format!("No decision {which} this one differs at the same front."));
+        };
+        pair.shown = Some(ShownDifference { place, did: None });
+        pair.apart = Some(difference.steps);
+        if let Some(comparing) = &pair.comparing {
+            comparing.ask(place);
+        }
+        let [base, other] = difference.bases.map(Outlined::Edge);
+        pair.other.find_at(difference.steps[1], other);
+        self.find_at(difference.steps[0], base);
     }
 
     fn change_pair(&mut self, change: impl FnOnce(&mut Pair)) {
@@ -220,7 +254,8 @@ impl State {
             state.view.over_epoch += 1;
         }
         pair.active = pair.active.other();
-        (pair.compared, pair.comparison, pair.followed, pair.overlapped) = (None, None, None, None);
+        (pair.compared, pair.followed, pair.overlapped) = (None, None, None);
+        pair.forget_comparison();
         self.pair = Some(pair);
     }
 }

@@ -59,10 +59,24 @@ impl State {
 
     /// Sends the other run where the active one is, as their steps are linked.
     fn follow_run(&mut self, pair: &mut Pair) {
-        if pair.is_starting || pair.link == LinkedBy::Free {
+        if pair.is_starting {
             return;
         }
         let at = position(pair, self);
+        if let Some(steps) = pair.apart {
+            let runs = [&self.run, &pair.other.run];
+            if runs.iter().any(|run| run.is_busy()) {
+                return;
+            }
+            if runs.map(|run| run.moment.as_ref().map(|moment| moment.step)) == steps.map(Some) {
+                pair.followed = Some(at);
+                return;
+            }
+            pair.apart = None;
+        }
+        if pair.link == LinkedBy::Free {
+            return;
+        }
         let active = pair.active;
         let (leader, follower) = match active {
             Which::A => (&*self, &mut *pair.other),
@@ -96,7 +110,7 @@ impl State {
         let is_known = pair.compared.as_ref().is_some_and(|[a, b]| is_of(a, self) && is_of(b, &pair.other));
         if !is_known && let (Some(a), Some(b)) = (self.current_run(), pair.other.current_run()) {
             pair.is_same = are_same(&a, &b);
-            (pair.comparison, pair.progress, pair.comparing) = (None, None, None);
+            pair.forget_comparison();
             if !pair.is_same {
                 pair.comparing = Some(Comparing::begin([a, b], self.wake.clone()));
             }
@@ -105,7 +119,14 @@ impl State {
         while let Some(comparing) = &pair.comparing {
             match comparing.hear() {
                 Ok(CompareNews::Progress(progress)) => pair.progress = Some(progress),
-                Ok(CompareNews::Found(found)) => pair.comparison = Some(Arc::from(found)),
+                Ok(CompareNews::Found(found)) => {
+                    (pair.comparison, pair.progress) = (Some(Arc::from(found)), None);
+                }
+                Ok(CompareNews::Told(place, did)) => {
+                    if let Some(shown) = pair.shown.as_mut().filter(|shown| shown.place == place) {
+                        shown.did = Some(did);
+                    }
+                }
                 Ok(CompareNews::Fault(fault)) => self.complain(&fault),
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => (pair.comparing, pair.progress) = (None, None),
