@@ -22,8 +22,8 @@ pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {
             format!("top: node {} stood in the way of the top edge, so it is removed", node.0)
         }
         Event::NodeRemoved { node, purpose: Purpose::Enhancement } => format!(
-            "beside the new quadrilateral node {} has only three or four triangles, too few for good quadrilaterals, so it \
-             is removed",
+            "beside the new quadrilateral node {} has only three or four triangles, too few for good quadrilaterals, \
+             so it is removed",
             node.0
         ),
         Event::Formed { .. } => formed(event),
@@ -33,8 +33,8 @@ pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {
             why_rolled_back(why)
         ),
         Event::Enhanced { new } => format!(
-            "beside the new quadrilateral a swap makes the edge {}, since the largest angle of the two triangles becomes \
-             smaller",
+            "beside the new quadrilateral a swap makes the edge {}, since the largest angle of the two triangles \
+             becomes smaller",
             edge(new)
         ),
         Event::Smoothed { nodes } => format!(
@@ -129,16 +129,16 @@ fn side(event: &Event, base: Option<[NodeId; 2]>) -> String {
     };
     match *event {
         Event::SideIsFront { side, node } => format!(
-            "{} side: the angle to the neighbouring segment of the front, {}, is below \u{3b8}_{{rect}}, so this serves as \
-             it is",
+            "{} side: the angle to the neighbouring segment of the front, {}, is below \u{3b8}_{{rect}}, so this \
+             serves as it is",
             name(side),
             edge_to(side, node)
         ),
         Event::SideChosen { edge } => {
             let (which, text, angle, off) = found(&edge);
             format!(
-                "{which} side: the edge {text}, at {angle}\u{b0} with the base, is {off}\u{b0} off the direction aimed at and \
-                 is taken"
+                "{which} side: the edge {text}, at {angle}\u{b0} with the base, is {off}\u{b0} off the direction aimed \
+                 at and is taken"
             )
         }
         Event::SideSwapped { edge, instead_of } => {
@@ -148,8 +148,8 @@ fn side(event: &Event, base: Option<[NodeId; 2]>) -> String {
                 None => "where no edge was to be had".to_owned(),
             };
             format!(
-                "{which} side: a swap makes the edge {text}, at {angle}\u{b0} with the base and {off}\u{b0} off the direction \
-                 aimed at, {best}"
+                "{which} side: a swap makes the edge {text}, at {angle}\u{b0} with the base and {off}\u{b0} off the \
+                 direction aimed at, {best}"
             )
         }
         Event::SideDivided { side, node, length } => format!(
@@ -217,8 +217,8 @@ fn seam(event: &Event) -> String {
             node.0
         ),
         Event::TransitionSeamed { at, node, corner, .. } => format!(
-            "seam: the two segments at node {} make only {}\u{b0}, but one is {} times as long as the other, so the longer \
-             one is divided first, and then they become one edge to node {}",
+            "seam: the two segments at node {} make only {}\u{b0}, but one is {} times as long as the other, so the \
+             longer one is divided first, and then they become one edge to node {}",
             at.0,
             degrees(corner.angle),
             fixed(corner.ratio, 1),
@@ -238,8 +238,8 @@ fn seam(event: &Event) -> String {
 fn split(event: &Event) -> String {
     match *event {
         Event::Split { node, gone, segments: [first, second], .. } => format!(
-            "split: the front is narrow here, so node {} is joined to node {}, and the loop becomes two, of {first} and \
-             {second} segments",
+            "split: the front is narrow here, so node {} is joined to node {}, and the loop becomes two, of {first} \
+             and {second} segments",
             gone.0, node.0
         ),
         Event::SplitRefused { slender, why, .. } => {
@@ -309,7 +309,8 @@ fn cleaned(what: Cleaning, energy: [f64; 2]) -> String {
 fn refilled(event: &Event) -> String {
     let Event::Refilled { quads: [old, new], irregular: [from, to], energy, .. } = *event else { return String::new() };
     format!(
-        "clean-up: a cavity is filled with {} instead of {old}, with {} instead of {from}, and the energy of the place {}",
+        "clean-up: a cavity is filled with {} instead of {old}, with {} instead of {from}, and the energy of the place \
+         {}",
         count(new as usize, "quadrilateral"),
         count(to as usize, "irregular node"),
         falls(energy)
