@@ -176,20 +176,99 @@ fn a_case_of_many_faces_becomes_the_one_that_is_refused() {
     assert!(text(&output.stderr).contains("\"hole 17\" does not lie on the surface"), "{}", text(&output.stderr));
 }
 
-#[test]
-fn a_run_keeps_the_edits_that_matter() {
-    let folder = tempfile::tempdir().unwrap();
+/// A run of a plate with these edits.
+fn plate_run(edits: &str) -> String {
     let case = "version = 1\n[[metric]]\nkind = \"uniform\"\nh = 0.2\n[[curve]]\nname = \"o\"\nkind = \"polyline\"\n\
                 closed = true\npoints = [[0, 0], [2, 0], [2, 1], [0, 1]]\n[[face]]\nname = \"f\"\nouter = [\"o\"]\n";
-    let run_file = format!(
-        "run = 1\n[case]\nname = \"plate\"\ntext = '''\n{case}'''\n[[edit]]\nstep = 3\nc = 1.5\n\
-         [[edit]]\nstep = 5\nselection = \"level\"\n[[edit]]\nstep = 9\ntheta_rect = 120\n"
-    );
-    fs::write(folder.path().join("plate.run.toml"), run_file).unwrap();
+    format!("run = 1\n[case]\nname = \"plate\"\ntext = '''\n{case}'''\n{edits}")
+}
+
+/// The first event of a run that a test is after, and how many there are before it that form quadrilaterals.
+fn first_event(folder: &Path, kind: &str) -> (Value, usize) {
+    let output = run(folder, &["convert", "small.toml", "--events", "-", "--quiet"]);
+    let events: Vec<Value> = text(&output.stdout).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let at = events.iter().position(|event| event["kind"] == kind).unwrap();
+    (events[at].clone(), events[..at].iter().filter(|event| event["kind"] == "formed").count())
+}
+
+#[test]
+fn edits_that_do_not_matter_are_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let edits = "[[edit]]\nstep = 3\nc = 1.5\n[[edit]]\nstep = 5\nselection = \"level\"\n\
+                 [[edit]]\nstep = 9\ntheta_rect = 120\n";
+    fs::write(folder.path().join("plate.run.toml"), plate_run(edits)).unwrap();
     let (own, files) = reduced(folder.path(), "plate.run.toml", "kind == formed");
     let small = text(&files[0].1);
     assert!(!small.contains("[[edit]]") && small.contains("3 edits -> 0"), "{small}");
     assert!(run(&own, &["convert", "small.toml", "--quiet"]).status.success());
+}
+
+#[test]
+fn a_choice_of_a_base_that_matters_stays_and_moves_to_the_first_step_at_which_it_does() {
+    let folder = tempfile::tempdir().unwrap();
+    // The segment is never on the front, so that the choice is lost.
+    let edits = "[[edit]]\nstep = 3\nc = 1.5\n[[edit]]\nstep = 40\nbase = [900, 901]\n\
+                 [[edit]]\nstep = 90\ntheta_rect = 120\n";
+    fs::write(folder.path().join("plate.run.toml"), plate_run(edits)).unwrap();
+    let (own, files) = reduced(folder.path(), "plate.run.toml", "kind == pick_lost && nq >= 3");
+    let small = text(&files[0].1);
+    let run_file: toml::Table = small.parse().unwrap();
+    let [edit] = run_file["edit"].as_array().unwrap().as_slice() else { panic!("{small}") };
+    let step = edit["step"].as_integer().unwrap();
+    assert!(small.contains("3 edits -> 1") && edit["base"].as_array().unwrap().len() == 2, "{small}");
+    let (lost, formed) = first_event(&own, "pick_lost");
+    assert!(formed >= 3 && (1..40).contains(&step) && lost["step"].as_i64().unwrap() > step, "{small}");
+    // One step earlier it would be lost too early.
+    let earlier = small.replace(&format!("step = {step}\nbase"), &format!("step = {}\nbase", step - 1));
+    assert_ne!(earlier, small);
+    fs::write(own.join("small.toml"), earlier).unwrap();
+    assert!(first_event(&own, "pick_lost").1 < 3);
+}
+
+#[test]
+fn a_changed_parameter_that_matters_becomes_one_of_the_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let edits = "[[edit]]\nstep = 3\nc = 1.5\n[[edit]]\nstep = 20\ntheta_rect = 90\n\
+                 [[edit]]\nstep = 90\nselection = \"level\"\n";
+    fs::write(folder.path().join("plate.run.toml"), plate_run(edits)).unwrap();
+    let (own, files) = reduced(folder.path(), "plate.run.toml", "kind == rolled_back");
+    let small = text(&files[0].1);
+    assert!(small.contains("3 edits -> 0") && small.contains("0 parameters -> 1"), "{small}");
+    assert!(small.contains("[parameters]\ntheta_rect = 90"), "{small}");
+    first_event(&own, "rolled_back");
+    // Without it nothing is rolled back.
+    fs::write(own.join("small.toml"), small.replace("theta_rect = 90", "")).unwrap();
+    let output = run(&own, &["convert", "small.toml", "--events", "-", "--quiet"]);
+    assert!(output.status.success() && !text(&output.stdout).contains("rolled_back"), "{small}");
+}
+
+/// The panic is planted by the environment alone: no thread can have a stack of this size, and faces are converted on
+/// threads where there are two.
+#[cfg(unix)]
+#[test]
+fn a_case_that_panics_becomes_the_smallest_one_that_panics_at_the_same_place() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("plates.toml"), plates().replace(", 0.3]", ", 0]")).unwrap();
+    let program = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_quadfront"));
+        command.current_dir(folder.path()).args(arguments).env("RUST_MIN_STACK", (1_u64 << 62).to_string());
+        command.output().unwrap()
+    };
+    let [one, two] = ["one.toml", "two.toml"].map(|name| {
+        let output = program(&["reduce", "plates.toml", "--while", "panics", "-o", name]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(!text(&output.stderr).contains("panicked"), "tries say nothing: {}", text(&output.stderr));
+        fs::read_to_string(folder.path().join(name)).unwrap()
+    });
+    assert_eq!(one.replace("one.", "two."), two, "the same bytes twice");
+    assert_eq!(["surface", "face", "curve"].map(|key| count(&one, key)), [2, 2, 0], "{one}");
+    let said = one.split_once("The program panics at ").unwrap().1.split_once(": ").unwrap().0;
+    assert!(said.starts_with("rayon-core-") && said.contains("/src/registry.rs:"), "{said}");
+    let output = program(&["convert", "one.toml"]);
+    assert_eq!(output.status.code(), Some(101));
+    assert!(text(&output.stderr).contains(&format!("/{said}:")), "{}", text(&output.stderr));
+    let harmless = run(folder.path(), &["convert", "one.toml", "--quiet"]);
+    assert!(harmless.status.success(), "{}", text(&harmless.stderr));
 }
 
 #[test]
@@ -209,5 +288,6 @@ fn what_is_not_shown_and_what_is_not_known_are_errors() {
     assert!(message("last_resrt > 0").contains("\"last_resort\""));
     assert!(message("last_resort > 0 && kind == seamed").contains("is about a step"));
     assert!(message("panics").contains("does not show it"));
+    assert!(message("exit 1").contains("does not show it: exit 1. The case is converted to a valid mesh"));
     assert!(!folder.path().join("small.toml").exists());
 }

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::Vec2;
 use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
-use quadfront::app::window::{App, Command, Goal, PairCommand, Source, SweepCommand, Which};
+use quadfront::app::window::{App, Command, Goal, Lost, PairCommand, Source, SweepCommand, Which};
 use quadfront::core::case::Parameters;
 use quadfront::core::record::report::figures::Figure;
 use quadfront::core::record::sweep::Sweep;
@@ -174,4 +174,34 @@ fn what_cannot_be_swept_is_said_where_it_is_typed() {
         window.query_by_label_contains("The run changes c at step 50").is_some()
     });
     assert!(!is_running(&window));
+}
+
+#[test]
+fn what_is_swept_is_kept_from_one_start_to_the_next_also_when_the_window_is_killed() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("window.json");
+    let begin = || {
+        let (source, path) = (Source::BuiltIn("example1".to_owned()), path.clone());
+        let mut window = start(LAPTOP, |cc| App::kept(cc, Some(source), Some(path), Lost::default()));
+        settle(&mut window);
+        window.get_by_label("Sweep").click();
+        window.run_steps(2);
+        window
+    };
+    let mut killed = begin();
+    type_over(&mut killed, "Values across", "1.625,2.25");
+    let mut form = killed.state().state.workspace().sweep.clone();
+    (form.axes[1], form.figure) = ((None, form.axes[1].1.clone()), "quality.mean");
+    apply(&mut killed, Command::Sweep(SweepCommand::Set(Box::new(form.clone()))));
+    until(&mut killed, "it is written", |_| {
+        std::fs::read_to_string(&path).is_ok_and(|text| text.contains("1.625,2.25") && text.contains("quality.mean"))
+    });
+    // The first window is never closed in order.
+    let again = begin();
+    assert_eq!(again.state().state.workspace().sweep, form);
+    assert_eq!(again.get_by_label("Values across").value().as_deref(), Some("1.625,2.25"));
+    assert!(again.query_by_label("2 runs").is_some());
 }

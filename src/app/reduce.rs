@@ -1,9 +1,8 @@
 //! `reduce`: the smallest case that still shows something.
 
-use std::io;
+pub(super) mod child;
+
 use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -18,9 +17,6 @@ use crate::core::progress::Cancel;
 use crate::core::reduce::{Budget, Draft, Finding, Question, Reduced, Size, Written, does_not_show, reduce as search};
 use crate::core::run::Run;
 
-/// How often a child is looked after.
-const PAUSE: Duration = Duration::from_millis(5);
-
 /// Reduces a case, and writes the smallest one after each success, so that an interruption keeps it.
 pub(super) fn reduce(arguments: &ReduceArguments) -> Result<(), Fault> {
     let ReduceArguments { source, mesh, condition, out, tries } = arguments;
@@ -34,7 +30,8 @@ pub(super) fn reduce(arguments: &ReduceArguments) -> Result<(), Fault> {
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
     let (bar, cancel) = (bar(source.quiet), INTERRUPT.clone());
-    let work = Reduction { question: &question, run: &input.run, original: &original, tries: *tries, cancel };
+    let (run, start) = (&input.run, &child::convert);
+    let work = Reduction { question: &question, run, original: &original, tries: *tries, cancel, start };
     let mut tell = |text: String| {
         bar.set_message(text);
         bar.tick();
@@ -70,6 +67,8 @@ pub(super) struct Reduction<'r> {
     pub tries: u64,
     /// Stops it.
     pub cancel: Cancel,
+    /// Starts a try in a process of its own, where it may panic.
+    pub start: &'r child::Start,
 }
 
 impl Reduction<'_> {
@@ -93,21 +92,24 @@ impl Reduction<'_> {
         tell: &mut dyn FnMut(String),
         smallest: &mut Option<Size>,
     ) -> Result<Reduced, Fault> {
-        let Reduction { question, run, original, tries, cancel } = self;
+        let Reduction { question, run, original, tries, cancel, start } = self;
         tell("Looking at the case as it is".to_owned());
         let folder =
             tempfile::tempdir().map_err(|error| Fault::new(format!("Cannot make a temporary folder: {error}")))?;
+        let panic_of = |path: &Path| -> Result<Option<Finding>, Fault> {
+            Ok(child::panic_of(start(path), cancel)?.map(|panic| Finding::panic(&panic)))
+        };
         // A try in a file of its own, for another process.
-        let child = |draft: &Draft, written: &Written| -> Result<Option<Finding>, Fault> {
+        let in_child = |draft: &Draft, written: &Written| -> Result<Option<Finding>, Fault> {
             let file = written.beside(folder.path());
-            file.write(draft, &Finding::panic(), "")?;
-            Ok(panics(file.path(), cancel)?.then(Finding::panic))
+            file.write_try(draft)?;
+            panic_of(file.path())
         };
         let mut found = None;
         for (format, draft) in written.drafts(original) {
             written.choose(format);
             let finding = if question.asks_for_a_panic() {
-                child(&draft, written)?
+                in_child(&draft, written)?
             } else {
                 question.find(&draft.run()?, Budget::UNLIMITED, cancel)?
             };
@@ -123,7 +125,7 @@ impl Reduction<'_> {
         let mut judge = |draft: &Draft| -> Result<Option<Finding>, Fault> {
             let Ok(run) = draft.run() else { return Ok(None) };
             let found = if question.asks_for_a_panic() {
-                child(draft, written)?
+                in_child(draft, written)?
             } else {
                 question.find(&run, budget, cancel)?
             };
@@ -144,14 +146,13 @@ impl Reduction<'_> {
             format!("{} tried; more tries may leave out more.", counted(done.tests, "smaller case"))
         };
         written.write(&done.draft, &done.finding, &how)?;
-        let shows = if question.asks_for_a_panic() {
-            panics(written.path(), cancel)?
+        let shown = if question.asks_for_a_panic() {
+            panic_of(written.path())?
         } else {
             let file = Source { input: written.path().display().to_string(), quiet: true, ..Source::default() };
-            let found = question.find(&input::read(&file, &ImportOptions::default())?.run, budget, cancel)?;
-            found.is_some_and(|found| found.is_like(&first))
+            question.find(&input::read(&file, &ImportOptions::default())?.run, budget, cancel)?
         };
-        if shows {
+        if shown.is_some_and(|found| found.is_like(&first)) {
             return Ok(done);
         }
         Err(Fault::new("The case that was written does not show it, though it did in memory")
@@ -164,36 +165,4 @@ fn bar(quiet: bool) -> ProgressBar {
     let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let style = ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::with_draw_target(None, target).with_style(style)
-}
-
-/// Whether converting a file ends in a panic or an abort, seen from another process.
-fn panics(path: &Path, cancel: &Cancel) -> Result<bool, Fault> {
-    let refuse = |error: io::Error| Fault::new(format!("Cannot start another process: {error}"));
-    let program = std::env::current_exe().map_err(refuse)?;
-    let mut command = Command::new(program);
-    command.arg("convert").arg(path).arg("--quiet");
-    let mut child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().map_err(refuse)?;
-    let status = wait(&mut child, cancel).map_err(refuse)?;
-    cancel.check()?;
-    Ok(status.is_some_and(is_panic))
-}
-
-/// Waits for a process, and ends it when the work is cancelled.
-fn wait(child: &mut Child, cancel: &Cancel) -> io::Result<Option<ExitStatus>> {
-    loop {
-        if let Some(status) = child.try_wait()? {
-            return Ok(Some(status));
-        }
-        if cancel.is_asked() {
-            child.kill()?;
-            child.wait()?;
-            return Ok(None);
-        }
-        std::thread::sleep(PAUSE);
-    }
-}
-
-/// Rust ends with 101 after a panic, and by a signal after an abort or a stack overflow.
-fn is_panic(status: ExitStatus) -> bool {
-    status.code().is_none_or(|code| code == 101)
 }

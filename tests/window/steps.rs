@@ -2,7 +2,7 @@
 
 use eframe::egui::{Event as Input, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::kittest::Queryable;
-use quadfront::app::window::{Command, Direction, Goal};
+use quadfront::app::window::{Command, Direction, Goal, ViewLayer};
 use quadfront::core::convert::{Event, EventKind};
 use quadfront::render::scene::Outlined;
 
@@ -69,6 +69,39 @@ fn a_stop_at_a_breakpoint_selects_what_it_stopped_for() {
     let moment = harness.state().state.run().moment.clone().unwrap();
     let Some(Event::BaseSelected { a, b, .. }) = moment.event else { panic!("{:?}", moment.event) };
     assert_eq!(picked(&harness), Some(Outlined::Edge([a, b])));
+}
+
+#[test]
+fn undo_takes_back_what_a_person_changed_and_no_stop_at_a_breakpoint() {
+    let Some(mut harness) = window() else { return };
+    let document = |harness: &Window| harness.state().state.document().clone();
+    apply(&mut harness, Command::AddBreakpoint("kind == formed".to_owned()));
+    apply(&mut harness, Command::Layer(ViewLayer::MetricEllipses));
+    let mut stopped_at = Vec::new();
+    for _ in 0..3 {
+        let before = step(&harness);
+        press(&mut harness, Modifiers::NONE, Key::F5);
+        let picked = document(&harness).picked;
+        until(&mut harness, "the next one is selected", |harness| {
+            step(harness) > before && document(harness).picked != picked
+        });
+        stopped_at.push(document(&harness).picked);
+    }
+    // The first undo is of the layer, and what the last stop selected stays selected.
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    let now = document(&harness);
+    assert_eq!((now.layers.ellipses, now.picked, now.breakpoints.len()), (false, stopped_at[2], 1));
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!((document(&harness).picked, document(&harness).breakpoints.len()), (stopped_at[2], 0));
+    for _ in 0..2 {
+        press(&mut harness, Modifiers::COMMAND, Key::Y);
+    }
+    let now = document(&harness);
+    assert_eq!((now.layers.ellipses, now.picked, now.breakpoints.len()), (true, stopped_at[2], 1));
+    // A selection of the person's own is taken back to what was selected before it.
+    apply(&mut harness, Command::Pick(None));
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(document(&harness).picked, stopped_at[2]);
 }
 
 #[test]

@@ -60,7 +60,24 @@ enum Room {
     Pair,
 }
 
+/// A column of the first arrangement.
+struct Column {
+    /// Its tabs from top to bottom, with their shares of the height.
+    groups: Vec<(Vec<Pane>, f32)>,
+    /// Its width in points; none for the view, which takes the rest.
+    width: Option<f32>,
+}
+
+impl Column {
+    /// Its panels, from top to bottom.
+    fn panes(&self) -> impl Iterator<Item = Pane> {
+        self.groups.iter().flat_map(|group| &group.0).copied()
+    }
+}
+
 impl Room {
+    const ALL: [Room; 4] = [Room::Wide, Room::Middle, Room::Narrow, Room::Pair];
+
     fn name(self) -> &'static str {
         match self {
             Room::Wide => "wide",
@@ -80,6 +97,65 @@ impl Room {
         } else {
             Room::Narrow
         }
+    }
+
+    /// The first arrangement, in a window of this height.
+    fn columns(self, height: f32) -> Vec<Column> {
+        let beside: &[Pane] = match self {
+            Room::Wide => &[Pane::Sweep],
+            // The map of a sweep beside two runs opens others.
+            Room::Pair => &[Pane::MetricLens, Pane::Parametric],
+            _ => &[Pane::Sweep, Pane::MetricLens, Pane::Parametric],
+        };
+        let mut columns = Vec::new();
+        if matches!(self, Room::Wide | Room::Middle) {
+            let groups = vec![
+                // The plots are beside the mesh, in which their bars light elements.
+                (vec![Pane::Front, Pane::Elements, Pane::Nodes, Pane::Quality], 1.0),
+                (vec![Pane::Breakpoints, Pane::Bookmarks], 0.42),
+            ];
+            columns.push(Column { groups, width: Some(LEFT) });
+        }
+        columns.push(Column { groups: vec![([&[Pane::Space], beside].concat(), 1.0)], width: None });
+        if self == Room::Wide {
+            let groups = vec![(vec![Pane::MetricLens], 1.0), (vec![Pane::Parametric], 1.0)];
+            columns.push(Column { groups, width: Some(LENS) });
+        }
+        let (inspector, share): (&[Pane], f32) = match self {
+            Room::Narrow => (
+                &[
+                    Pane::Inspector,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Quality,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                    Pane::History,
+                    Pane::TwoRuns,
+                ],
+                210.0 / height.max(420.0),
+            ),
+            Room::Pair => (
+                &[
+                    Pane::TwoRuns,
+                    Pane::Sweep,
+                    Pane::Inspector,
+                    Pane::History,
+                    Pane::Front,
+                    Pane::Elements,
+                    Pane::Nodes,
+                    Pane::Quality,
+                    Pane::Breakpoints,
+                    Pane::Bookmarks,
+                ],
+                0.42,
+            ),
+            _ => (&[Pane::Inspector, Pane::History, Pane::TwoRuns], 0.6),
+        };
+        let groups = vec![(inspector.to_vec(), 1.0), (vec![Pane::Parameters, Pane::Layers], share)];
+        columns.push(Column { groups, width: Some(if self == Room::Pair { BESIDE } else { RIGHT }) });
+        columns
     }
 }
 
@@ -130,7 +206,7 @@ impl Layout {
             self.tree = None;
         }
         if self.tree.as_ref().is_none_or(|tree| tree.1 != room) {
-            match self.arranged.get(room.name()).and_then(written::read) {
+            match self.arranged.get(room.name()).and_then(|docks| written::read(docks, &room.columns(size.y))) {
                 Some((tree, middle)) => {
                     (self.tree, self.middle) = (Some((tree, room)), Some(middle));
                     self.size = size;
@@ -173,93 +249,48 @@ impl Layout {
         Value::Object(self.arranged.iter().map(|(room, docks)| (room.clone(), docks.clone())).collect())
     }
 
-    /// Arranges the docks as they were; those that cannot be read go back to their first places.
+    /// Arranges the docks as they were, with panels that they lack at their first places; what are no docks is left
+    /// out.
     pub fn arrange(&mut self, arranged: Option<&Value>) {
         self.arranged.clear();
-        for (room, docks) in arranged.and_then(Value::as_object).into_iter().flatten() {
-            if written::read(docks).is_some() {
-                self.arranged.insert(room.clone(), docks.clone());
+        for room in Room::ALL {
+            let docks = arranged.and_then(|arranged| arranged.get(room.name()));
+            if let Some(docks) = docks.filter(|docks| written::read(docks, &room.columns(0.0)).is_some()) {
+                self.arranged.insert(room.name().to_owned(), docks.clone());
             }
         }
     }
 
     fn build(&mut self, room: Room, size: Vec2) {
         let mut tiles = Tiles::default();
-        let mut tabs = |panes: &[Pane]| {
-            let panes = panes.iter().map(|pane| tiles.insert_pane(*pane)).collect();
-            tiles.insert_tab_tile(panes)
-        };
-        let view = match room {
-            Room::Wide => tabs(&[Pane::Space, Pane::Sweep]),
-            // The map of a sweep beside two runs opens others.
-            Room::Pair => tabs(&[Pane::Space, Pane::MetricLens, Pane::Parametric]),
-            _ => tabs(&[Pane::Space, Pane::Sweep, Pane::MetricLens, Pane::Parametric]),
-        };
-        let (mut left, mut lens) = (Vec::new(), Vec::new());
-        if matches!(room, Room::Wide | Room::Middle) {
-            left = vec![
-                // The plots are beside the mesh, in which their bars light elements.
-                (tabs(&[Pane::Front, Pane::Elements, Pane::Nodes, Pane::Quality]), 1.0),
-                (tabs(&[Pane::Breakpoints, Pane::Bookmarks]), 0.42),
-            ];
-        }
-        if room == Room::Wide {
-            lens = vec![(tabs(&[Pane::MetricLens]), 1.0), (tabs(&[Pane::Parametric]), 1.0)];
-        }
-        let (inspector, share): (&[Pane], f32) = match room {
-            Room::Narrow => (
-                &[
-                    Pane::Inspector,
-                    Pane::Front,
-                    Pane::Elements,
-                    Pane::Nodes,
-                    Pane::Quality,
-                    Pane::Breakpoints,
-                    Pane::Bookmarks,
-                    Pane::History,
-                    Pane::TwoRuns,
-                ],
-                210.0 / size.y.max(420.0),
-            ),
-            Room::Pair => (
-                &[
-                    Pane::TwoRuns,
-                    Pane::Sweep,
-                    Pane::Inspector,
-                    Pane::History,
-                    Pane::Front,
-                    Pane::Elements,
-                    Pane::Nodes,
-                    Pane::Quality,
-                    Pane::Breakpoints,
-                    Pane::Bookmarks,
-                ],
-                0.42,
-            ),
-            _ => (&[Pane::Inspector, Pane::History, Pane::TwoRuns], 0.6),
-        };
-        let right = vec![(tabs(inspector), 1.0), (tabs(&[Pane::Parameters, Pane::Layers]), share)];
+        let mut middle = None;
         let mut columns = Vec::new();
-        let right_width = if room == Room::Pair { BESIDE } else { RIGHT };
-        for (column, width) in [(left, LEFT), (vec![(view, 1.0)], 0.0), (lens, LENS), (right, right_width)] {
-            let id = match column.len() {
-                0 => continue,
-                1 => column[0].0,
+        for Column { groups, width } in room.columns(size.y) {
+            let mut tabs: Vec<(TileId, f32)> = Vec::new();
+            for (panes, share) in groups {
+                let panes = panes.into_iter().map(|pane| tiles.insert_pane(pane)).collect();
+                tabs.push((tiles.insert_tab_tile(panes), share));
+            }
+            let id = match tabs[..] {
+                [(only, _)] => only,
                 _ => {
-                    let mut linear = Linear::new(LinearDir::Vertical, column.iter().map(|c| c.0).collect());
-                    column.iter().for_each(|c| linear.shares.set_share(c.0, c.1));
+                    let mut linear = Linear::new(LinearDir::Vertical, tabs.iter().map(|tab| tab.0).collect());
+                    tabs.iter().for_each(|tab| linear.shares.set_share(tab.0, tab.1));
                     tiles.insert_container(Container::Linear(linear))
                 }
             };
+            if width.is_none() {
+                middle = Some(id);
+            }
             columns.push((id, width));
         }
         let mut row = Linear::new(LinearDir::Horizontal, columns.iter().map(|c| c.0).collect());
-        let rest = size.x - gaps(&row) - columns.iter().map(|c| c.1).sum::<f32>();
+        let rest = size.x - gaps(&row) - columns.iter().filter_map(|c| c.1).sum::<f32>();
         for (id, width) in columns {
-            row.shares.set_share(id, if width > 0.0 { width } else { rest.max(1.0) });
+            row.shares.set_share(id, width.unwrap_or(rest.max(1.0)));
         }
         let root = tiles.insert_container(Container::Linear(row));
-        self.middle = Some(view);
+        self.middle = middle;
         self.tree = Some((Tree::new(egui::Id::unique("docks"), root, tiles), room));
     }
 

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use super::files::free_path;
 use super::session::Wake;
-use crate::app::reduce::Reduction;
+use crate::app::reduce::{Reduction, child};
 use crate::core::fault::Fault;
 use crate::core::kernel::number::counted;
 use crate::core::progress::Cancel;
@@ -101,7 +101,8 @@ fn reduce(
     let question = Question::parse(condition)?;
     let original = Draft::of(run, &mut cancel.clone())?;
     let mut written = Written::new(path, &original, &question)?;
-    let work = Reduction { question: &question, run, original: &original, tries: TRIES, cancel };
+    let start = &child::convert;
+    let work = Reduction { question: &question, run, original: &original, tries: TRIES, cancel, start };
     let reduced = work.go(&run.case.name, &mut written, tell).0?;
     let lines = reduced.draft.size().changes(&original.size());
     Ok(format!("{}. {} tried; {}", reduced.finding.sentence, counted(reduced.tests, "smaller case"), lines.join(", ")))

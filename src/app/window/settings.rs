@@ -1,5 +1,5 @@
-//! Settings that outlast the window: where its panels are, what it draws, and how large it is, in a small file in the
-//! user's state folder. A file that cannot be read is reported and ignored.
+//! Settings that outlast the window: where its panels are, what it draws and sweeps, and how large it is, in a small
+//! file in the user's state folder. A file that cannot be read is reported and ignored.
 
 use std::path::{Path, PathBuf};
 
@@ -8,9 +8,12 @@ use serde_json::Value;
 
 use super::layout::{Layout, TIMELINE_HEIGHTS};
 use super::state::{Document, SurfaceStyle, SurfaceView, Workspace};
+use super::sweep::SweepForm;
 use super::view_layer::ViewLayer;
+use crate::core::case::Parameters;
 use crate::core::fault::Fault;
 use crate::core::formats::save;
+use crate::core::record::report::figures::Figure;
 use crate::render::look::HiddenLines;
 use crate::render::scene::{ColourBy, Layers};
 
@@ -42,6 +45,37 @@ pub struct Settings {
     pub window: Option<[f32; 2]>,
     /// How the user has arranged the docks, by the room for columns.
     pub docks: Value,
+    /// What is swept.
+    #[serde(default)]
+    sweep: Option<KeptSweep>,
+}
+
+/// What is swept, by names. Those that another quadfront does not have are left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct KeptSweep {
+    axes: [(Option<String>, String); 2],
+    figure: String,
+}
+
+impl KeptSweep {
+    fn of(form: &SweepForm) -> KeptSweep {
+        let axes = form.axes.clone().map(|(key, values)| (key.map(str::to_owned), values));
+        KeptSweep { axes, figure: form.figure.to_owned() }
+    }
+
+    /// The form; an axis whose key is unknown is the usual one.
+    fn form(&self) -> SweepForm {
+        let mut form = SweepForm::default();
+        for (k, (own, (key, values))) in form.axes.iter_mut().zip(&self.axes).enumerate() {
+            let known = key.as_ref().and_then(|key| Parameters::KEYS.into_iter().find(|known| known == key));
+            // Only the second axis may be without a key.
+            if known.is_some() || key.is_none() && k == 1 {
+                *own = (known, values.clone());
+            }
+        }
+        form.figure = Figure::named(&self.figure).map_or(form.figure, |figure| figure.name);
+        form
+    }
 }
 
 impl Settings {
@@ -60,6 +94,7 @@ impl Settings {
             curved,
             window,
             docks: layout.arranged(),
+            sweep: (workspace.sweep != SweepForm::default()).then(|| KeptSweep::of(&workspace.sweep)),
         }
     }
 
@@ -76,6 +111,7 @@ impl Settings {
         if self.speed.is_finite() && (0.1..=1000.0).contains(&self.speed) {
             workspace.speed = self.speed;
         }
+        workspace.sweep = self.sweep.as_ref().map_or_else(SweepForm::default, KeptSweep::form);
         workspace
     }
 
@@ -150,6 +186,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_was_swept_by_names_that_are_gone_is_as_usual() {
+        let usual = SweepForm::default();
+        let axis = |key: &str| (Some(key.to_owned()), "7".to_owned());
+        let kept = |axes, figure: &str| KeptSweep { axes, figure: figure.to_owned() }.form();
+        let form = kept([axis("no_such_key"), axis("c")], "quality.mean");
+        assert_eq!((&form.axes[0], &form.axes[1]), (&usual.axes[0], &(Some("c"), "7".to_owned())));
+        assert_eq!(form.figure, "quality.mean");
+        assert_eq!(kept([axis("c"), axis("theta_rect")], "no such figure").figure, usual.figure);
+        // The first axis always has a key.
+        assert_eq!(kept([(None, "7".to_owned()), axis("c")], "quality.mean").axes[0], usual.axes[0]);
+    }
+
+    #[test]
     fn what_is_kept_is_read_as_it_was_written_and_nonsense_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("deep").join("window.json");
@@ -159,13 +208,15 @@ mod tests {
         workspace.document.colour_by = ColourBy::Level;
         (workspace.speed, layout.timeline_height) = (30.0, 300.0);
         workspace.surfaces = SurfaceStyle { view: SurfaceView::Both, hidden: HiddenLines::Faint, curved: true };
+        workspace.sweep =
+            SweepForm { axes: [(Some("c"), "1.5,2".to_owned()), (None, "1:2:.5".to_owned())], figure: "min_angle" };
         let settings = Settings::of(&workspace, &layout, false, Some([1280.0, 800.0]));
         settings.write(&path).unwrap();
         let read = Settings::read(&path).unwrap().unwrap();
         assert_eq!(read, settings);
         let other = read.workspace();
         assert_eq!(other.document, workspace.document);
-        assert_eq!((other.speed, other.surfaces), (30.0, workspace.surfaces));
+        assert_eq!((other.speed, other.surfaces, other.sweep), (30.0, workspace.surfaces, workspace.sweep));
         assert_eq!(read.layout().timeline_height, 300.0);
         // Older files have no settings for space.
         let text = std::fs::read_to_string(&path).unwrap();

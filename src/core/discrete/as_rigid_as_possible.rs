@@ -41,16 +41,20 @@ pub fn map(
     // Node 0 is fixed, which makes the solution unique.
     let n = xyz.len();
     let mut row: Vec<Vec<(u32, f64)>> = vec![Vec::with_capacity(8); n];
-    for (at, (t, w)) in triangles.iter().zip(&weights).enumerate() {
+    // Where in the rows of its ends each edge is: a node may have many.
+    let mut places: Vec<Option<[u32; 2]>> = vec![None; edges.len()];
+    for (at, w) in weights.iter().enumerate() {
         if at.is_multiple_of(BATCH) {
             go_on()?;
         }
         for k in 0..3 {
-            let (a, b, w) = (t[(k + 1) % 3], t[(k + 2) % 3], w[k]);
-            for (from, to) in [(a, b), (b, a)] {
-                match row[from as usize].iter_mut().find(|r| r.0 == to) {
-                    Some(found) => found.1 += w,
-                    None => row[from as usize].push((to, w)),
+            let edge = edges.of_side((3 * at + (k + 1) % 3) as u32);
+            let ends = edges.get(edge).ends;
+            match places[edge] {
+                Some(places) => (0..2).for_each(|i| row[ends[i] as usize][places[i] as usize].1 += w[k]),
+                None => {
+                    places[edge] = Some(ends.map(|end| row[end as usize].len() as u32));
+                    (0..2).for_each(|i| row[ends[i] as usize].push((ends[1 - i], w[k])));
                 }
             }
         }

@@ -92,6 +92,23 @@ pub fn tube(nu: u32, nv: u32, length: f64) -> Triangles {
     wrapped(nu, nv, false, |u, v| DVec3::new(libm::cos(TAU * u), libm::sin(TAU * u), length * v))
 }
 
+/// A strip of about `n` nodes: squares of two triangles, so many times as wide as long.
+pub fn strip(n: u32, width: f64) -> Triangles {
+    let points = (0..n).map(|k| DVec3::new(f64::from(k / 2), width * f64::from(k % 2), 0.0));
+    let squares = (0..n / 2 - 1).flat_map(|k| [[2 * k, 2 * k + 2, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 1]]);
+    whole(points.collect(), squares.collect())
+}
+
+/// Two cones over one circle of `n` nodes, with one tip each.
+pub fn double_cone(n: u32) -> Triangles {
+    let at = |k: u32| {
+        let (sin, cos) = libm::sincos(TAU * f64::from(k) / f64::from(n));
+        DVec3::new(cos, sin, 0.0)
+    };
+    let triangles = (0..n).flat_map(|k| [[k, (k + 1) % n, n], [(k + 1) % n, k, n + 1]]);
+    whole((0..n).map(at).chain([DVec3::Z, -DVec3::Z]).collect(), triangles.collect())
+}
+
 /// The unit sphere: a projected cube.
 pub fn sphere(n: u32) -> Triangles {
     let mut mesh = cube(n);

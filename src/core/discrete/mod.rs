@@ -12,6 +12,7 @@ pub mod repair;
 pub mod features;
 mod planar_map;
 pub mod chart;
+mod dissection;
 mod sparse;
 mod tutte;
 mod as_rigid_as_possible;

@@ -1,14 +1,14 @@
 //! Sparse linear systems of weighted means: x_i = sum_j w_ij x_j + b_i, with positive weights whose sum is at most 1
 //! and a symmetric pattern. Solved by LU factors, which need no pivoting here, row by row along the elimination tree
 //! (Davis, Direct Methods for Sparse Linear Systems, 2006, chapter 4, there for symmetric matrices), in the order of a
-//! geometric nested dissection (George 1973). Plain loops in a fixed order give the same numbers on every machine,
-//! unlike libraries that dispatch on the processor.
+//! nested dissection. Plain loops in a fixed order give the same numbers on every machine, unlike libraries that
+//! dispatch on the processor.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use crate::core::kernel::box_tree::extent;
+use super::dissection::{self, Pattern};
 
 /// The matrix I - W in rows, with ascending columns including the diagonal.
 pub struct Means {
@@ -17,8 +17,6 @@ pub struct Means {
     value: Vec<f64>,
 }
 
-/// Largest set of nodes that is not dissected.
-const LEAF: usize = 24;
 /// Limit on the mean number of entries of L in a column; large surfaces need about 60.
 const MOST_FILLED: usize = 400;
 /// Rows eliminated between two checks for cancellation.
@@ -58,7 +56,7 @@ impl Means {
     /// the limit, or when `goes_on`, called at intervals, returns false.
     pub fn factored(self, places: &[DVec3], goes_on: &dyn Fn() -> bool) -> Option<Solver> {
         let n = self.rows();
-        let order = self.dissection(places);
+        let order = dissection::order(Pattern { start: &self.start, column: &self.column }, places, goes_on)?;
         let mut position = vec![0_u32; n];
         order.iter().zip(0..).for_each(|(&old, new)| position[old as usize] = new);
         let tree = self.tree(&order, &position);
@@ -142,38 +140,6 @@ impl Means {
         }
         parent
     }
-
-    /// An order with little fill-in: both halves by position, then their separator.
-    fn dissection(&self, places: &[DVec3]) -> Vec<u32> {
-        let mut nodes: Vec<u32> = (0..self.rows() as u32).collect();
-        let mut order = Vec::with_capacity(nodes.len());
-        let mut side = vec![0; nodes.len()];
-        let mut sides = 0;
-        self.dissect(&mut nodes, places, &mut side, &mut sides, &mut order);
-        order
-    }
-
-    fn dissect(&self, nodes: &mut [u32], places: &[DVec3], side: &mut [u32], sides: &mut u32, order: &mut Vec<u32>) {
-        if nodes.len() <= LEAF {
-            order.extend_from_slice(nodes);
-            return;
-        }
-        let (low, high) = extent(nodes.iter().map(|&node| places[node as usize]));
-        let extent = (high - low).to_array();
-        let axis = (1..3).fold(0, |axis, k| if extent[k] > extent[axis] { k } else { axis });
-        let at = |node: u32| places[node as usize][axis];
-        let half = nodes.len() / 2;
-        nodes.select_nth_unstable_by(half, |&a, &b| at(a).total_cmp(&at(b)).then(a.cmp(&b)));
-        let (left, right) = nodes.split_at_mut(half);
-        *sides += 1;
-        right.iter().for_each(|&node| side[node as usize] = *sides);
-        // The separator: the nodes of the left half adjacent to the right one.
-        let touches = |node: &u32| self.row(*node as usize).any(|k| side[self.column[k] as usize] == *sides);
-        let (between, mut left): (Vec<u32>, Vec<u32>) = left.iter().partition(|node| touches(node));
-        self.dissect(&mut left, places, side, sides, order);
-        self.dissect(right, places, side, sides, order);
-        order.extend(between);
-    }
 }
 
 /// Finds the earlier rows that take part in the elimination of a row, along the elimination tree.
@@ -252,6 +218,47 @@ impl Solver {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::discrete::edges::{Edges, Triangles};
+    use crate::core::discrete::fixtures::{double_cone, strip, tube};
+
+    /// Entries of L per node, for means of a node of triangles and its neighbours.
+    fn fill_in(mesh: &Triangles) -> f64 {
+        let n = mesh.points.len();
+        let mut near: Vec<Vec<u32>> = vec![Vec::new(); n];
+        let edges = Edges::of(&mesh.triangles);
+        for [a, b] in (0..edges.len()).map(|edge| edges.get(edge).ends) {
+            near[a as usize].push(b);
+            near[b as usize].push(a);
+        }
+        let rows = near.into_iter().map(|near| {
+            let weight = 1.0 / (near.len() + 1) as f64;
+            near.into_iter().map(|other| (other, weight)).collect()
+        });
+        let solver = Means::new(rows).factored(&mesh.points, &|| true).expect("little fill-in");
+        let x = solver.solve(&vec![1.0; n]).expect("a solution");
+        let largest = solver.means.residual(&x, &vec![1.0; n]).into_iter().fold(0.0_f64, |most, r| most.max(r.abs()));
+        assert!(largest < 1e-9, "{largest}");
+        solver.entries.len() as f64 / n as f64
+    }
+
+    #[test]
+    fn fill_in_grows_with_the_number_of_nodes_whatever_the_shape_of_triangles() {
+        for (name, make, most) in [
+            ("a ring of long triangles", (|n| tube(n, 1, 30.0)) as fn(u32) -> Triangles, 12.0),
+            ("a ring of short triangles", |n| tube(n, 1, 0.01), 16.0),
+            ("two rows", |n| tube(n, 2, 30.0), 20.0),
+            ("a tube of eight sides", |n| tube(8, n / 8, 30.0), 40.0),
+            ("a strip", |n| strip(n, 1.0), 12.0),
+            ("a strip of slivers", |n| strip(n, 1e4), 12.0),
+            ("two hubs", double_cone, 12.0),
+        ] {
+            let entries = [4000, 32_000].map(|n| fill_in(&make(n)));
+            assert!(entries.into_iter().all(|own| own < most), "{name}: {entries:?}");
+        }
+        // A grid has more than a proportional part, as it must.
+        let [small, large] = [32, 128].map(|n| fill_in(&tube(n, n, 1.0)));
+        assert!(large < 70.0 && large < 2.0 * small, "{small} and {large}");
+    }
 
     #[test]
     fn means_between_two_fixed_ends_solve_their_equations() {

@@ -82,15 +82,17 @@ fn weights(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize) -> Vec<Vec<(u32
             let tangent = half_angle_tangent(to_b, to_c);
             for (node, long) in [(b, long_b), (c, long_c)] {
                 let weight = tangent / long.max(f64::MIN_POSITIVE);
-                match weights[row].iter_mut().find(|w| w.0 == node) {
-                    Some(found) => found.1 += weight,
-                    None => weights[row].push((node, weight)),
-                }
+                weights[row].push((node, weight));
             }
         }
     }
     for row in &mut weights {
-        row.sort_unstable_by_key(|w| w.0);
+        row.sort_by_key(|w| w.0);
+        row.dedup_by(|next, first| {
+            let is_same = next.0 == first.0;
+            first.1 += if is_same { next.1 } else { 0.0 };
+            is_same
+        });
         let greatest = row.iter().map(|w| w.1).filter(|w| w.is_finite()).fold(0.0, f64::max);
         for (_, weight) in row.iter_mut() {
             let bound = if weight.is_finite() { *weight } else { greatest };

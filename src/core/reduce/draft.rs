@@ -142,7 +142,7 @@ impl Draft {
 }
 
 /// The parameters that differ from the default.
-fn changed_parameters(parameters: &Parameters) -> Vec<(String, Node)> {
+pub(super) fn changed_parameters(parameters: &Parameters) -> Vec<(String, Node)> {
     let usual = Parameters::default();
     let changed = Parameters::KEYS.iter().filter(|key| parameters.text_of(key) != usual.text_of(key));
     let value = |key: &str| match (key, Parameters::kind_of(key)) {

@@ -2,20 +2,23 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | what a case must show: a condition on a step or on the end | [`Question`], [`Finding`] |
+//! | what a case must show: a condition on a step or on the end, a panic | [`Question`], [`Finding`], [`Panic`] |
 //! | the case as a tree that can be changed and written | [`Draft`] |
 //! | dropping parts in large pieces first | `search` |
 //! | the files of the smallest case | [`Written`] |
-//! | parts that can be left out; simpler curves, metrics and meshes | `parts`, `shapes`, `sizes`, `mesh` |
+//! | edits and parts that can be left out | `edits`, `parts` |
+//! | simpler curves, metrics and meshes | `shapes`, `sizes`, `mesh` |
 //!
 //! A draft is judged by its text, as it will be written. What costs much more than the original is abandoned, by steps
 //! and triangles and not by time, so that the same case gives the same smallest case on every machine.
 
 mod document;
 mod draft;
+mod failure;
 mod question;
 mod search;
 mod corners;
+mod edits;
 mod parts;
 mod shapes;
 mod sizes;
@@ -23,6 +26,7 @@ mod mesh;
 mod written;
 
 pub use draft::{Draft, Size};
+pub use failure::Panic;
 use parts::OPTIONS;
 pub use question::{Budget, Finding, Question, end_fields};
 use search::Search;

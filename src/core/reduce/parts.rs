@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use super::document::{Keys, Node};
 use super::draft::Draft;
+use super::edits;
 use super::search::Search;
 use crate::core::fault::Fault;
 
@@ -26,10 +27,7 @@ impl Draft {
 
 /// Leaves out what it can.
 pub(super) fn reduce(search: &mut Search<'_>) -> Result<(), Fault> {
-    let edits = search.best.edits.clone();
-    search.thin(edits.len(), |base, kept| {
-        Some(Draft { edits: kept.iter().map(|&i| edits[i].clone()).collect(), ..base.clone() })
-    })?;
+    edits::reduce(search)?;
     reduce_list(search, "face")?;
     within_faces(search)?;
     reduce_list(search, "metric")?;

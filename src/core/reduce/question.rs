@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::DVec3;
 
+use super::failure::{Failure, Panic};
 use crate::core::convert::{Converter, Event, conversion, walk::walk_editing};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::box_tree::extent;
@@ -72,12 +73,8 @@ pub struct Finding {
     pub extent: f64,
     /// Where it shows, in coordinates of the case.
     pub places: Vec<DVec3>,
-    fault: Option<Head>,
+    failure: Option<Failure>,
 }
-
-/// What is the same about two faults with different names and numbers.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Head(FaultKind, Vec<String>);
 
 /// What may be spent on one case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +89,7 @@ impl Budget {
 
     /// For cases that should cost no more than one in which this was found, with room for detours.
     pub fn like(finding: &Finding) -> Budget {
-        let is_limit = finding.fault.as_ref().is_some_and(|head| head.0 == FaultKind::Limit);
+        let is_limit = finding.failure.as_ref().is_some_and(Failure::is_limit);
         let quads = 2 * finding.triangles.unwrap_or(50_000) + 10_000;
         Budget { steps: finding.steps.saturating_mul(2) + 1000, quads: (!is_limit).then_some(quads) }
     }
@@ -162,15 +159,13 @@ impl Question {
         let found = catch_unwind(AssertUnwindSafe(|| match &self.kind {
             Kind::Step(condition) => find_step(condition, &run, budget, cancel),
             Kind::End(condition) => find_end(condition, self.text(), &run, budget, cancel),
-            Kind::Panics => {
-                find_end(&condition::Condition::parse("refused", FIELDS)?, "", &run, budget, cancel).map(|_| None)
-            }
+            Kind::Panics => ended(&run, budget, cancel).map(|_| None),
         }));
         cancel.check()?;
         match found {
             Ok(Err(fault)) if fault.is_stop() => Err(fault),
             Ok(found) => Ok(found.unwrap_or_default()),
-            Err(_) if self.asks_for_a_panic() => Ok(Some(Finding::panic())),
+            Err(payload) if self.asks_for_a_panic() => Ok(Some(Finding::panic(&Panic::caught(&*payload)))),
             Err(_) => Ok(None),
         }
     }
@@ -186,14 +181,22 @@ impl Question {
 
 impl Finding {
     /// A panic.
-    pub fn panic() -> Finding {
-        let sentence = "The program panics".to_owned();
-        Finding { step: None, sentence, steps: 0, triangles: None, extent: 1.0, places: Vec::new(), fault: None }
+    pub fn panic(panic: &Panic) -> Finding {
+        Finding {
+            step: None,
+            sentence: panic.sentence(),
+            steps: 0,
+            triangles: None,
+            extent: 1.0,
+            places: Vec::new(),
+            failure: Some(Failure::of_panic(panic)),
+        }
     }
 
-    /// Whether another finding is of the same kind: a case that is refused for another reason is another failure.
+    /// Whether another finding is of the same kind: a case that is refused for another reason, or a panic at another
+    /// place, is another failure.
     pub fn is_like(&self, other: &Finding) -> bool {
-        self.fault == other.fault
+        self.failure == other.failure
     }
 }
 
@@ -234,18 +237,6 @@ fn named_in<'t>(text: &'t str, fields: &'t [Field]) -> impl Iterator<Item = &'t 
     words.filter(|word| fields.iter().any(|field| field.name == *word))
 }
 
-impl Head {
-    /// The kind of a fault and its words, without what follows a colon or a parenthesis, names in quotes, numbers, and
-    /// the s of plurals.
-    fn of(fault: &Fault) -> Head {
-        let unquoted: String = fault.what.split('"').step_by(2).collect::<Vec<_>>().join(" ");
-        let head = unquoted.split([':', '(']).next().unwrap_or_default();
-        let words = head.split_whitespace().map(|word| word.trim_matches(|c: char| !c.is_alphanumeric()));
-        let is_word = |word: &&str| !word.is_empty() && !word.contains(|c: char| c.is_ascii_digit()) && *word != "and";
-        Head(fault.kind(), words.filter(is_word).map(|word| word.trim_end_matches('s').to_owned()).collect())
-    }
-}
-
 fn find_step(condition: &Condition, run: &Run, budget: Budget, cancel: &Cancel) -> Result<Option<Finding>, Fault> {
     let background = run.background(&mut cancel.clone())?;
     let (triangles, extent) = measured(&background.mesh);
@@ -277,7 +268,7 @@ fn find_step(condition: &Condition, run: &Run, budget: Budget, cancel: &Cancel) 
                 triangles: Some(triangles),
                 extent,
                 places,
-                fault: None,
+                failure: None,
             }));
         }
         if known < from + STRETCH {
@@ -332,7 +323,7 @@ fn find_end(
         triangles: cost.triangles,
         extent: cost.extent,
         places,
-        fault: end.fault.as_ref().map(Head::of),
+        failure: end.fault.as_ref().map(Failure::of_fault),
     }))
 }
 
@@ -404,15 +395,6 @@ fn ended(run: &Run, budget: Budget, cancel: &Cancel) -> Result<(End, Cost), Faul
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn faults_are_alike_whatever_their_names_and_numbers() {
-        let head = |what: &str| Head::of(&Fault::new(what).of_kind(FaultKind::Mesh));
-        assert_eq!(head("The loop \"a b\" has 27 segments (at 0, 1)"), head("The loop \"hole\" has 1 segment"));
-        assert_eq!(head("Triangles 3, 7 and 9 overlap: they lie on"), head("Triangles 1 and 2 overlap"));
-        assert_ne!(head("Triangles 1 and 2 overlap"), head("Triangles 1 and 2 are the same"));
-        assert_ne!(head("It fails"), Head::of(&Fault::new("It fails").of_kind(FaultKind::Metric)));
-    }
 
     #[test]
     fn each_question_is_about_a_step_the_end_or_a_panic() {

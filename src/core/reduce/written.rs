@@ -77,6 +77,18 @@ impl Written {
     /// # Errors
     /// As [`save::save`].
     pub fn write(&self, draft: &Draft, finding: &Finding, how: &str) -> Result<(), Fault> {
+        self.write_below(&self.head(draft, finding, how), draft)
+    }
+
+    /// Writes a draft of which nothing is known yet, for another process.
+    ///
+    /// # Errors
+    /// As [`save::save`].
+    pub fn write_try(&self, draft: &Draft) -> Result<(), Fault> {
+        self.write_below("", draft)
+    }
+
+    fn write_below(&self, head: &str, draft: &Draft) -> Result<(), Fault> {
         let mesh = self.format.map(|format| self.path.with_extension(format.extension()));
         if let (Some(path), Some(format), Some(mesh)) = (&mesh, self.format, draft.mesh()) {
             write_mesh(path, format, mesh, WriteOptions::default())?;
@@ -96,7 +108,6 @@ impl Written {
             run.set_edits(draft.edits().to_vec());
             run_file::written_in(&run, folder)?
         };
-        let head = self.head(draft, finding, how);
         save::save(&self.path, |out| out.write_all(format!("{head}{text}").as_bytes()))
     }
 

@@ -316,7 +316,7 @@ impl State {
     }
 
     /// Has the run and the views follow a change of the document.
-    fn follow(&mut self, before: &Document) {
+    pub(super) fn follow(&mut self, before: &Document) {
         let document = &self.workspace.document;
         if document.layers != before.layers || document.colour_by != before.colour_by {
             self.view.style_epoch += 1;

@@ -8,7 +8,7 @@ mod stopping;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::State;
+use super::{Look, State};
 use crate::app::figure::another_state;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Moment, SessionNews, Source};
@@ -85,8 +85,8 @@ impl State {
             SessionNews::Moment(moment, asks) => self.arrive(moment, asks),
             SessionNews::Stopped(watched) => {
                 let subject = run.moment.as_ref().and_then(|moment| stopping::subject(moment, watched));
-                if subject.is_some() {
-                    self.change(|document| document.picked = subject);
+                if let Some(before) = subject.and_then(|subject| self.workspace.come_upon(subject)) {
+                    self.follow(&before);
                 }
             }
             SessionNews::Track { from, steps, samples, born, end } => {
@@ -147,7 +147,10 @@ impl State {
         self.view.over_epoch += 1;
         self.answered(asks);
         if let Some(what) = self.run.find_at.take_if(|at| at.0 == moment.step).map(|at| at.1) {
-            self.find(what);
+            if let Some(before) = self.workspace.come_upon(what) {
+                self.follow(&before);
+            }
+            self.view.look.ask(Look::Near(what));
         }
         self.compare(&moment);
     }

@@ -13,8 +13,8 @@ use crate::render::scene::{ColourBy, Form, Layers, Outlined};
 /// How many changes can be undone.
 const UNDO: usize = 200;
 
-/// What the user has set up. A small file keeps the layers, the colours, the speed and the surface style from one start
-/// to the next (`settings`).
+/// What the user has set up. A small file keeps the layers, the colours, the speed, the surface style and what is swept
+/// from one start to the next (`settings`).
 pub struct Workspace {
     pub document: Document,
     /// Quadrilaterals a second while playing.
@@ -25,8 +25,8 @@ pub struct Workspace {
     pub figure: FigureForm,
     /// What is swept.
     pub sweep: SweepForm,
-    undo: Vec<Document>,
-    redo: Vec<Document>,
+    undo: Vec<Change>,
+    redo: Vec<Change>,
     /// The step whose note was changed last: what is typed there is undone as one change.
     noted: Option<u64>,
 }
@@ -48,6 +48,16 @@ pub struct Document {
     pub bookmarks: Vec<Bookmark>,
     /// Where the panels are, once the user has moved them.
     pub layout: Option<String>,
+}
+
+/// A change that can be undone or redone.
+#[derive(Clone, Debug)]
+struct Change {
+    /// The document beyond it.
+    document: Document,
+    /// The selection on this side of it. Stops select as well, without a change: what was selected since stays, unless
+    /// the change was one of the selection.
+    picked: Option<Outlined>,
 }
 
 /// A condition to stop at.
@@ -153,11 +163,8 @@ impl Workspace {
         std::mem::swap(&mut self.noted, &mut other.noted);
         for workspace in [self, other] {
             let layout = &workspace.document.layout;
-            workspace
-                .undo
-                .iter_mut()
-                .chain(&mut workspace.redo)
-                .for_each(|document| document.layout.clone_from(layout));
+            let changes = workspace.undo.iter_mut().chain(&mut workspace.redo);
+            changes.for_each(|change| change.document.layout.clone_from(layout));
         }
     }
 
@@ -170,12 +177,20 @@ impl Workspace {
             return None;
         }
         self.noted = None;
-        self.undo.push(before.clone());
+        self.undo.push(Change { document: before.clone(), picked: self.document.picked });
         if self.undo.len() > UNDO {
             self.undo.remove(0);
         }
         self.redo.clear();
         Some(before)
+    }
+
+    /// Selects what the run has come upon: not a change of the user's, so that undo does not take it back. Returns the
+    /// document as it was before, if there is a difference.
+    pub(super) fn come_upon(&mut self, what: Outlined) -> Option<Document> {
+        let before = self.document.clone();
+        self.document.picked = Some(what);
+        (self.document != before).then_some(before)
     }
 
     /// Changes the note on a bookmarked step. What is typed in one go is one change.
@@ -194,9 +209,49 @@ impl Workspace {
             Direction::Back => (&mut self.undo, &mut self.redo),
             Direction::Forward => (&mut self.redo, &mut self.undo),
         };
-        let before = std::mem::replace(&mut self.document, from.pop()?);
+        let Change { mut document, picked } = from.pop()?;
+        if document.picked == picked {
+            document.picked = self.document.picked;
+        }
         self.noted = None;
-        to.push(before.clone());
+        let picked = document.picked;
+        let before = std::mem::replace(&mut self.document, document);
+        to.push(Change { document: before.clone(), picked });
         Some(before)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::mesh::NodeId;
+
+    fn node(n: u32) -> Option<Outlined> {
+        Some(Outlined::Node(NodeId(n)))
+    }
+
+    fn stop(workspace: &mut Workspace, n: u32) {
+        workspace.come_upon(Outlined::Node(NodeId(n)));
+    }
+
+    #[test]
+    fn what_a_stop_selects_is_neither_undone_nor_lost_when_something_else_is() {
+        let mut all = Workspace::default();
+        stop(&mut all, 1);
+        assert!(all.take_back(Direction::Back).is_none(), "nothing that the user did");
+        all.change(|document| document.colour_by = ColourBy::Level);
+        stop(&mut all, 2);
+        all.take_back(Direction::Back).unwrap();
+        assert_eq!((all.document.colour_by, all.document.picked), (ColourBy::default(), node(2)));
+        stop(&mut all, 3);
+        all.take_back(Direction::Forward).unwrap();
+        assert_eq!((all.document.colour_by, all.document.picked), (ColourBy::Level, node(3)));
+        // A selection of the user's is undone to what was selected before, and redone.
+        all.change(|document| document.picked = node(9));
+        stop(&mut all, 4);
+        all.take_back(Direction::Back).unwrap();
+        assert_eq!(all.document.picked, node(3));
+        all.take_back(Direction::Forward).unwrap();
+        assert_eq!(all.document.picked, node(9));
     }
 }
