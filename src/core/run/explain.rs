@@ -18,7 +18,7 @@ pub use next::next;
 pub use numbers::{angles_apart, apart, capital, edge, plain, segment};
 pub use segment::{SegmentFacts, Verdict};
 pub use selecting::{SelectedBase, Selecting};
-pub use side::{corner, passed, side_rule};
+pub use side::{corner, passed, second, side_margins, side_rule};
 pub use why::{key_name, key_text, margins};
 
 use glam::DVec3;

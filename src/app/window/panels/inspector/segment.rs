@@ -156,6 +156,9 @@ fn candidates(
     let edges = tried.edges.len() - swaps;
     let told = format!("{} tried, {}", count(edges, "edge"), count(swaps, "swap"));
     if !section(ui, &format!("{side} side at {end}"), &told, palette) {
+    if let Some(margins) = explain::side_margins(tried) {
+        sentence(ui, &margins, palette.weak, palette);
+    }
         return;
     }
     sentence(ui, &explain::side_rule(tried), palette.text, palette);
