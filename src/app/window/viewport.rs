@@ -3,7 +3,6 @@
 mod cameras;
 mod faces;
 mod given;
-mod refused;
 pub mod pair;
 mod space;
 mod stage;
@@ -18,7 +17,6 @@ use glam::{DVec2, DVec3};
 
 use cameras::{aim, metric_lens, other_end, steer};
 pub use cameras::{lens_node, middle};
-pub use refused::refused;
 
 use super::command::Command;
 use super::labels;
