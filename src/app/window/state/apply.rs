@@ -17,7 +17,7 @@ use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
 use crate::app::window::layout::Pane;
-use crate::app::window::lists::ListKind;
+use crate::app::window::lists::{ListKind, RecordedSteps};
 use crate::app::window::measure::Measuring;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
@@ -408,7 +408,8 @@ impl State {
             ListKind::Elements => self.run.born.of_quads(moment.step, mesh.element_slots()),
             ListKind::Nodes => self.run.born.of_nodes(moment.step, mesh.node_slots()),
         };
-        self.run.lists.make(kind, query, as_text, mesh, born, self.wake.clone());
+        let recorded = RecordedSteps { step: moment.step, born, changes: self.run.change_log.clone() };
+        self.run.lists.make(kind, query, as_text, mesh, recorded, self.wake.clone());
     }
 
     fn move_camera(&mut self, view: ViewKind, camera: ViewCamera) {
