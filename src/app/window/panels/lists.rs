@@ -10,7 +10,7 @@ use egui_extras::{Column, TableBuilder, TableRow};
 
 use self::columns::{Described, Head};
 use super::condition_field::ConditionField;
-use super::{inset, inspector, line, note};
+use super::{actions, inset, line, note};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::lists::Shown;
@@ -239,7 +239,7 @@ fn act<R: Described>(
     if response.hovered() {
         commands.push(Command::Hover(what));
     }
-    response.context_menu(|ui| inspector::past::actions(ui, state, what, commands));
+    response.context_menu(|ui| actions::menu(ui, state, what, commands));
     if response.double_clicked() {
         commands.push(Command::Show(what));
     } else if response.clicked() {

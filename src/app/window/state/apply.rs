@@ -59,13 +59,18 @@ impl State {
                 self.view.over_epoch += 1;
             }
             Command::LastTouch(what) => self.ask(Ask::Touch(watched(what))),
-            Command::Made(element) => self.ask(Ask::Made(element)),
+            Command::Made(what) => self.go_to_creation(what),
             Command::Explain(ends) => self.run.asked = self.inquire(Ask::Explain(ends)).map(|step| (step, ends)),
             Command::TellPast(watched) => {
                 self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
             }
             Command::TellChain(element) => {
                 self.run.asked_chain = self.inquire(Ask::Chain(element)).map(|step| (step, element));
+            }
+            Command::ShowChain(element) => {
+                self.change(|document| document.picked = Some(Outlined::Element(element)));
+                self.view.reveal.ask(Some(Pane::Inspector));
+                self.view.chain.ask(Some(element));
             }
             Command::List(kind, query) => self.list(kind, query, false),
             Command::CopyList(kind, query) => self.list(kind, query, true),
