@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 
 use quadfront::core::case::built_in;
-use quadfront::core::convert::{Converter, Event, EventKind, Phase};
-use quadfront::core::mesh::ElementId;
+use quadfront::core::convert::{Candidate, Candidates, Converter, Event, EventKind, Passed, Phase, SideRule};
+use quadfront::core::mesh::{ElementId, NodeId};
 use quadfront::core::progress::Nobody;
-use quadfront::core::run::{History, Run, Selecting, explain};
+use quadfront::core::run::{EditKind, History, Run, Selecting, explain};
 
 /// What a quadrilateral looks like: its nodes with the bits of their positions.
 type Look = Vec<(u32, [u64; 2])>;
@@ -128,6 +128,109 @@ fn the_margin_of_a_base_in_a_chain_is_the_one_that_its_selection_had() {
         seen += 1;
     }
     assert!(seen > 3, "{seen}");
+}
+
+/// What a step does about a side.
+fn side(event: Event) -> (EventKind, Option<NodeId>) {
+    let node = match event {
+        Event::SideIsFront { node, .. } => Some(node),
+        Event::SideChosen { edge } | Event::SideSwapped { edge, .. } => Some(edge.node),
+        _ => None,
+    };
+    (event.kind(), node)
+}
+
+/// The same, with a parameter changed right before the step, in degrees.
+fn side_with(history: &mut History, step: u64, key: &str, degrees: f64) -> (EventKind, Option<NodeId>) {
+    history.seek(step - 1).unwrap();
+    let (key, value) = (key.to_owned(), degrees.to_string());
+    history.edit(EditKind::Parameter { key, value }).unwrap();
+    history.seek(step).unwrap();
+    let done = side(history.event(step).unwrap().unwrap());
+    history.set_edits(Vec::new()).unwrap();
+    done
+}
+
+/// The number after a text, with its unit.
+fn number_after(text: &str, before: &str) -> Option<f64> {
+    text.split_once(before).map(|(_, rest)| rest.split('\u{b0}').next().unwrap().parse().unwrap())
+}
+
+/// The candidate that comes after the chosen one.
+fn second(tried: &Candidates, chosen: NodeId) -> Option<&Candidate> {
+    let can_be =
+        |c: &&Candidate| !matches!(c.passed, None | Some(Passed::Taken | Passed::WideAngle | Passed::NotPositive));
+    let mut others: Vec<_> = tried.edges.iter().filter(can_be).collect();
+    if tried.rule == SideRule::Near {
+        others.retain(|candidate| candidate.swap.is_none());
+    }
+    assert!(tried.edges.iter().any(|c| c.passed.is_none() && c.node == chosen));
+    others.into_iter().reduce(|a, b| if b.deviation < a.deviation { b } else { a })
+}
+
+#[test]
+fn a_side_that_was_found_is_the_same_within_its_margins_and_another_beyond_them() {
+    // Sides that are near, sides with a bound of the deviation, sides by a swap.
+    let (mut near, mut bounded, mut swapped) = (0, 0, 0);
+    for (name, scale) in [("example1", 3.0), ("two-faces", 2.0)] {
+        let mut run = Run::of(built_in::named(name).unwrap().unwrap());
+        run.parameters.size_scale *= scale;
+        let mut history = History::open(run, &mut Nobody).unwrap();
+        history.seek(u64::MAX).unwrap();
+        let quads: Vec<ElementId> = history.state().mesh.elements().collect();
+        let chains: Vec<_> = quads.iter().map(|&e| history.chain(e).unwrap().unwrap()).collect();
+        for link in chains.into_iter().flat_map(|chain| chain.links) {
+            let (Event::SideChosen { edge } | Event::SideSwapped { edge, .. }) = link.event else { continue };
+            history.seek(link.step - 1).unwrap();
+            let tried = history.state().candidates().unwrap();
+            if tried.rule == SideRule::Attempt {
+                assert!(link.margin.is_none() && link.text.ends_with("whatever its angle"), "{link:?}");
+                continue;
+            }
+            match second(&tried, edge.node) {
+                Some(second) => {
+                    let by = if second.swap.is_some() { " by a swap" } else { "" };
+                    let off = number_after(&link.text, &format!("; the second best, node {}{by}, is ", second.node.0));
+                    assert!((off.unwrap() - second.deviation.to_degrees()).abs() < 0.051, "{} {second:?}", link.text);
+                }
+                None => assert!(link.text.ends_with("there is no other"), "{}", link.text),
+            }
+            let is_swap = matches!(link.event, Event::SideSwapped { .. });
+            // Every link by a swap, and some of the others.
+            if !is_swap && near > 12 && !link.margin.as_ref().unwrap().contains("deviation") {
+                continue;
+            }
+            let (step, done) = (link.step, side(link.event));
+            let margin = explain::plain(link.margin.as_ref().unwrap());
+            let mut with = |key: &str, degrees: f64| side_with(&mut history, step, key, degrees);
+            let most = number_after(&margin, "< \u{3b8}rect \u{2264} ").unwrap();
+            assert_eq!([with("theta_rect", 90.0), with("theta_rect", most)], [done; 2], "{margin}");
+            let theta = tried.theta.to_degrees();
+            assert!(most <= theta && (theta - most < 0.101 || most == 180.0), "{margin}: {theta}");
+            if theta < 180.0 {
+                assert_ne!(with("theta_rect", theta + 1e-9), done, "{margin}: {theta}");
+            }
+            let own = edge.deviation.to_degrees();
+            let edges = tried.edges.iter().filter(|c| c.swap.is_none() && c.passed == Some(Passed::Farther));
+            let best = edges.map(|c| c.deviation.to_degrees()).fold(f64::INFINITY, f64::min);
+            let least = number_after(&margin, "side_deviation \u{2265} ");
+            let below = number_after(&margin, "side_deviation < ");
+            assert_eq!(with("side_deviation", least.unwrap_or(0.0)), done, "{margin}");
+            assert_eq!(with("side_deviation", below.map_or(90.0, |below| below - 1e-9)), done, "{margin}");
+            if let Some(least) = least {
+                assert!(!is_swap && (0.0..0.101).contains(&(least - own)), "{margin}: {own}");
+                assert_ne!(with("side_deviation", own - 1e-9), done, "{margin}: {own}");
+                bounded += 1;
+            }
+            if let Some(below) = below {
+                assert!(is_swap && (0.0..0.101).contains(&(best - below)), "{margin}: {best}");
+                assert_ne!(with("side_deviation", best + 1e-9), done, "{margin}: {best}");
+                swapped += 1;
+            }
+            near += usize::from(!is_swap);
+        }
+    }
+    assert!(near > 12 && bounded > 3 && swapped > 0, "{near} {bounded} {swapped}");
 }
 
 #[test]

@@ -8,7 +8,11 @@ mod environment;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use quadfront::core::case::built_in;
+use quadfront::core::convert::EventKind;
+use quadfront::core::progress::Nobody;
 use quadfront::core::record::{figure, run_file};
+use quadfront::core::run::{History, Run, explain};
 
 fn run(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_quadfront")).args(arguments).current_dir(folder).output().unwrap()
@@ -45,6 +49,7 @@ fn a_figure_is_drawn_again_from_itself_to_the_same_bytes() {
         "--at nq=20",
         "--at step=90 --ink grey --layers +changed,+nodes,-letters --size 60x40mm",
         "--strip nq=5,20,end --columns 2 --transparent",
+        "--at nq=20 --layers +candidates",
         "--at nq=20 --part 0.5,0.5,0.4 --size 300x200 --layers +h,+angles,+ellipses,+scale",
         "--plot lengths --ink grey",
         "--at nq=20 --plot angles",
@@ -62,6 +67,59 @@ fn a_figure_is_drawn_again_from_itself_to_the_same_bytes() {
         assert_eq!(done(&["render", "c.svg", "-q", "-o", "d.svg"], here), "");
         assert!(read(here, "c.svg") == read(here, "d.svg"), "{options}");
     }
+}
+
+#[test]
+fn candidates_that_were_refused_are_dotted_with_their_reasons_where_a_side_was_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let mut run = Run::of(built_in::named("example1").unwrap().unwrap());
+    run.parameters.set("size_scale", "2").unwrap();
+    let mut history = History::open(run, &mut Nobody).unwrap();
+    history.seek(u64::MAX).unwrap();
+    let is_swap = |kind| kind == EventKind::SideSwapped;
+    let step = history.log().next_of(0, is_swap).unwrap();
+    history.seek(step - 1).unwrap();
+    let tried = history.state().candidates().unwrap();
+    history.seek(step).unwrap();
+    let (mesh, base) = (&history.state().mesh, *history.state().phase().base().unwrap());
+    let from = [base.a, base.b][tried.side.index()];
+    let on_front = |n| mesh.front_between(from, n).or(mesh.front_between(n, from)).is_some();
+    let others = tried.edges.iter().filter(|edge| edge.passed.is_some() && !on_front(edge.node));
+    let reasons: Vec<String> =
+        others.map(|edge| explain::plain(&explain::passed(edge.passed.unwrap(), edge, &tried))).collect();
+    assert!(reasons.len() > 1, "{reasons:?}");
+    let centre = 0.5 * (mesh.uv(base.a) + mesh.uv(base.b));
+    let part = format!("{},{},{}", centre.x, centre.y, 4.0 * mesh.uv(base.a).distance(mesh.uv(base.b)));
+    let at = format!("step={step}");
+    let svg = |layers: &str, at: &str, part: &str| {
+        let asked = ["render", "example1", "--set", COARSE, "--at", at, "--part", part, "--layers", layers];
+        done(&[&asked[..], &["-q", "-o", "a.svg"]].concat(), here);
+        String::from_utf8(read(here, "a.svg")).unwrap()
+    };
+    const DOTTED: &str = "stroke-dasharray=\"0.6 1.6\"";
+    let drawn = svg("+candidates", &at, &part);
+    assert_eq!(drawn.matches(DOTTED).count(), 1, "one path for all of them");
+    let path = drawn.split(DOTTED).next().unwrap().rsplit_once(" d=\"").unwrap().1.split('"').next().unwrap();
+    assert_eq!(path.matches('M').count(), reasons.len(), "{path}");
+    let told = reasons.iter().filter(|reason| drawn.contains(reason.as_str())).count();
+    assert!(told > 0, "{reasons:?}");
+    assert!(!svg("+changed", &at, &part).contains(DOTTED), "they are drawn where they are asked for");
+    // The step that follows chooses no side.
+    let next = (step + 1..).find(|step| history.log().kind(*step) == Some(EventKind::Formed)).unwrap();
+    assert!(!svg("+candidates", &format!("step={next}"), &part).contains(DOTTED));
+    let gone = refused(&["render", "example1", "-q", "-o", "a.svg", "--layers", "+candidate"], here);
+    assert!(gone.contains("candidates"), "{gone}");
+    // On surfaces they are drawn too.
+    let surface = Run::of(built_in::named("two-faces").unwrap().unwrap());
+    let mut history = History::open(surface, &mut Nobody).unwrap();
+    history.extend(2000);
+    let step = history.log().next_of(0, |kind| kind == EventKind::SideChosen).unwrap();
+    let at = format!("step={step}");
+    done(&["render", "two-faces", "--at", &at, "--layers", "+candidates", "-q", "-o", "a.svg"], here);
+    history.seek(step - 1).unwrap();
+    let told = history.state().candidates().unwrap().edges.len();
+    assert_eq!(String::from_utf8(read(here, "a.svg")).unwrap().contains(DOTTED), told > 1, "{told}");
 }
 
 #[cfg(feature = "window")]

@@ -1,6 +1,7 @@
 //! Promise: the tables of elements and nodes agree with the report, and with numbers recomputed from coordinates.
 #![allow(clippy::unwrap_used)]
 
+use glam::DVec3;
 use quadfront::core::case::built_in;
 use quadfront::core::convert::Converter;
 use quadfront::core::kernel::condition::Condition;
@@ -9,7 +10,11 @@ use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use quadfront::core::record::statistics::Statistics;
-use quadfront::core::run::{Changes, ElementRow, ElementTable, History, NodePlace, NodeTable, Query, Row, Run, csv};
+use quadfront::core::run::{
+    Changes, ElementFacts, ElementRow, ElementTable, History, LastChanges, NodePlace, NodeTable, Query, Row, Run,
+    Steps, Watched, csv,
+};
+use quadfront::render::scene::space_angles;
 
 fn history(name: &str, scale: f64) -> (History, Background) {
     let mut run = Run::of(built_in::named(name).unwrap().unwrap());
@@ -21,8 +26,13 @@ fn history(name: &str, scale: f64) -> (History, Background) {
 /// The table of the elements of a state, measured as a whole.
 fn elements(state: &Converter<'_>, born: &[u64]) -> ElementTable {
     let mut table = ElementTable::default();
-    table.follow(&state.mesh, &Changes::Everything, born);
+    table.follow(&state.mesh, &Changes::Everything, |slot| steps(born, 0, slot));
     table
+}
+
+/// The steps of a slot, from those of birth by slot.
+fn steps(born: &[u64], changed: u64, slot: u32) -> Steps {
+    Steps { born: born.get(slot as usize).copied().unwrap_or(0), changed }
 }
 
 fn least(rows: &ElementTable, value: impl Fn(&ElementRow) -> f64) -> f64 {
@@ -51,19 +61,85 @@ fn the_tables_of_a_finished_mesh_have_the_extremes_and_counts_of_its_report() {
         close(least(&table, jacobian), report.physical_scaled_jacobian.unwrap().min, "Jacobian in space");
         let mean = table.rows().map(jacobian).sum::<f64>() / report.quads as f64;
         close(mean, report.physical_scaled_jacobian.unwrap().mean, "mean Jacobian in space");
-        if mesh.embedding().is_none() {
-            close(least(&table, |e| e.angles_space[0]), report.physical_angles.min, "angle in space");
-        }
+        close(least(&table, |e| e.angles_space[0]), report.physical_angles.min, "angle in space");
+        close(-least(&table, |e| -e.angles_space[1]), report.physical_angles.max, "angle in space");
         // The report integrates the metric along edges; the table has it at both ends.
         if name == "two-faces" {
             assert!((least(&table, |e| e.lengths_metric[0]) / report.lengths.min - 1.0).abs() < 0.02);
             assert!((least(&table, |e| -e.lengths_metric[1]) / -report.lengths.max - 1.0).abs() < 0.02);
         }
         let mut nodes = NodeTable::default();
-        nodes.follow(mesh, &Changes::Everything, &[]);
+        nodes.follow(mesh, &Changes::Everything, |_| Steps::default());
         let inside = nodes.rows().filter(|n| n.is_irregular.is_some()).count();
         let irregular = nodes.rows().filter(|n| n.is_irregular == Some(true)).count();
         assert_eq!([inside, irregular], [report.irregular.interior, report.irregular.irregular], "{name}");
+    }
+}
+
+/// The angles of an element from the coordinates of its corners, in degrees: by the arc cosine, and its complement to a
+/// full turn where the corner turns against the diagonals.
+fn from_coordinates(corners: &[DVec3]) -> Vec<f64> {
+    let count = corners.len();
+    let normal = match corners {
+        [a, b, c, d] => (*c - *a).cross(*d - *b),
+        [a, b, c] => (*b - *a).cross(*c - *a),
+        _ => unreachable!(),
+    };
+    let angle = |k: usize| {
+        let [last, p, next] = [k + count - 1, k, k + 1].map(|k| corners[k % count]);
+        let (out, back) = ((next - p).normalize(), (last - p).normalize());
+        let theta = libm::acos(out.dot(back).clamp(-1.0, 1.0)).to_degrees();
+        if out.cross(back).dot(normal) < 0.0 { 360.0 - theta } else { theta }
+    };
+    (0..count).map(angle).collect()
+}
+
+#[test]
+fn angles_in_space_follow_from_the_coordinates_of_the_file_in_the_report_the_tables_and_the_explanations() {
+    for (name, scale) in [("wing", 2.0), ("torus", 2.0), ("sphere", 2.0), ("example1", 2.0)] {
+        let (mut history, background) = history(name, scale);
+        history.extend(u64::MAX);
+        let end = history.end().unwrap();
+        let mut bent: f64 = 0.0;
+        for step in [end / 2, end] {
+            history.seek(step).unwrap();
+            let mesh = &history.state().mesh;
+            let export = Export::of_state(mesh, &background.names);
+            let report = Statistics::measure(export.measured(), &background.sizing).unwrap();
+            let table = elements(history.state(), &[]);
+            let file = &export.file;
+            let points = |nodes: &[u32]| nodes.iter().map(|n| file.points[*n as usize]).collect::<Vec<_>>();
+            let all = file.triangles.iter().map(|t| points(t)).chain(file.quads.iter().map(|q| points(q)));
+            let all: Vec<Vec<f64>> = all.map(|corners| from_coordinates(&corners)).collect();
+            // The file has the triangles first.
+            let (live, dead): (Vec<ElementId>, Vec<ElementId>) = mesh.elements().partition(|e| mesh.is_triangle(*e));
+            let close = |found: f64, expected: f64, what: &str| {
+                assert!((found - expected).abs() < 1e-5, "{name} at {step}: {what} {found} {expected}");
+            };
+            for (e, angles) in live.iter().chain(&dead).zip(&all) {
+                let told = ElementFacts::of(mesh, *e).unwrap();
+                let row = table.row(e.0).unwrap();
+                let shown = space_angles(mesh, *e).map(f64::to_degrees);
+                assert_eq!(told.angles_physical.len(), angles.len());
+                told.angles_physical.iter().zip(angles).for_each(|(a, b)| close(*a, *b, "explained"));
+                let ends = [angles.iter().copied().fold(360.0, f64::min), angles.iter().copied().fold(0.0, f64::max)];
+                for k in 0..2 {
+                    close(row.angles_space[k], ends[k], "in the table");
+                    close(shown[k], ends[k], "plotted");
+                }
+                if angles.len() == 4 {
+                    // Flat quadrilaterals have a full turn.
+                    bent = bent.max(360.0 - angles.iter().sum::<f64>());
+                }
+            }
+            let angles = || all.iter().flatten().copied();
+            close(report.physical_angles.min, angles().fold(360.0, f64::min), "reported");
+            close(report.physical_angles.max, angles().fold(0.0, f64::max), "reported");
+            let good = angles().filter(|angle| (60.0..=120.0).contains(angle)).count() as f64;
+            let share = good / angles().count() as f64;
+            assert!((report.physical_angles.share_60_120 - share).abs() < 2e-3, "{name}: {share}");
+        }
+        assert_eq!(bent > 1.0, name != "example1", "{name} is curved: {bent}");
     }
 }
 
@@ -117,21 +193,24 @@ fn a_table_that_follows_a_run_is_that_of_the_whole_mesh_wherever_one_goes() {
         history.seek(u64::MAX).unwrap();
         let end = history.step();
         let (mut elements, mut nodes) = (ElementTable::default(), NodeTable::default());
-        let (mut small, mut seen) = (0, Vec::new());
+        let (mut small, mut seen, mut last) = (0, Vec::new(), LastChanges::default());
         for step in [0, 1, 2, 3, 60, 61, 62, 61, 30, end / 2, end / 2 + 1, end / 2 - 3, end - 1, end, end - 2, 5] {
             history.seek(step).unwrap();
             let changes = history.take_changes();
             small += u32::from(changes != Changes::Everything);
             let mesh = history.state().mesh.without_journal();
             let born = history.log().born().of_quads(step, mesh.element_slots());
-            elements.follow(&mesh, &changes, &born);
+            last.follow(history.log().changes(), step);
+            let of_element = |slot| steps(&born, last.of_element(slot), slot);
+            elements.follow(&mesh, &changes, of_element);
             let mut whole = ElementTable::default();
-            whole.follow(&mesh, &Changes::Everything, &born);
+            whole.follow(&mesh, &Changes::Everything, of_element);
             assert!(elements.rows().eq(whole.rows()), "{name}: elements at step {step}");
             let born = history.log().born().of_nodes(step, mesh.node_slots());
-            nodes.follow(&mesh, &changes, &born);
+            let of_node = |slot| steps(&born, last.of_node(slot), slot);
+            nodes.follow(&mesh, &changes, of_node);
             let mut whole = NodeTable::default();
-            whole.follow(&mesh, &Changes::Everything, &born);
+            whole.follow(&mesh, &Changes::Everything, of_node);
             assert!(nodes.rows().eq(whole.rows()), "{name}: nodes at step {step}");
             let segments: Vec<[NodeId; 2]> = mesh.front().map(|h| mesh.ends(h)).collect();
             for node in nodes.rows() {
@@ -151,7 +230,11 @@ fn a_list_is_filtered_and_sorted_and_what_lacks_the_field_comes_last() {
     history.seek(history.end().unwrap() / 2).unwrap();
     let step = history.step();
     let born = history.log().born().of_quads(step, history.state().mesh.element_slots());
-    let table = elements(history.state(), &born);
+    let mut last = LastChanges::default();
+    last.follow(history.log().changes(), step);
+    let mut table = ElementTable::default();
+    let steps = |slot| steps(&born, last.of_element(slot), slot);
+    table.follow(&history.state().mesh, &Changes::Everything, steps);
     let field = |name: &str| ElementRow::FIELDS.iter().position(|field| field.name == name).unwrap();
     let filter = Condition::parse("quad && quality < .9", ElementRow::FIELDS).unwrap();
     let query = Query { field: field("quality"), descending: false, filter: Some(filter) };
@@ -181,6 +264,9 @@ fn a_list_is_filtered_and_sorted_and_what_lacks_the_field_comes_last() {
         assert_eq!(values[0].parse::<u32>().unwrap(), slot);
         assert_eq!(values[field("quality")].parse::<f64>().unwrap(), row.quality);
         assert_eq!(values[field("born")].parse::<u64>().ok(), row.born);
+        assert_eq!(values[field("changed")].parse::<u64>().ok(), Some(row.changed));
+        let touched = history.touches(Watched::Element(ElementId(slot)), 1).unwrap().pop();
+        assert_eq!(row.changed, touched.unwrap_or(0), "{row:?}");
         assert_eq!(history.made(ElementId(slot)).unwrap(), row.born);
     }
 }

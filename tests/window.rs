@@ -23,6 +23,7 @@ use pictures::{difference, picture};
 use quadfront::app::window::{App, Command, Direction, Goal, Lost, Source, SurfaceView, ViewLayer};
 use quadfront::core::convert::EventKind;
 use quadfront::core::mesh::NodeId;
+use quadfront::render::camera::Bearing;
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -615,4 +616,73 @@ fn hidden_lines_go_round_and_show_more() {
     }
     let apart: Vec<f64> = pictures[1..].iter().map(|p| difference(&pictures[0], p)).collect();
     assert!(apart[1] > 0.005 && apart[1] > apart[0] && apart[2] < 0.002, "{apart:?}");
+}
+
+/// The texts that the last frame has painted and that say this.
+fn painted(harness: &Window, said: &str) -> Vec<eframe::egui::Rect> {
+    texts::texts(harness).into_iter().filter(|text| text.said == said).map(|text| text.rect).collect()
+}
+
+#[test]
+fn a_base_on_the_far_side_is_pointed_at_and_a_key_turns_to_it() {
+    let Some(mut harness) = window_on("sphere") else { return };
+    apply(&mut harness, Command::Go(Goal::ToQuads(40)));
+    apply(&mut harness, Command::Go(Goal::Kind(EventKind::BaseSelected, Direction::Forward)));
+    let moment = harness.state().state.run().moment.clone().unwrap();
+    let base = moment.phase.base().unwrap();
+    let normal = (moment.mesh.normal(base.a) + moment.mesh.normal(base.b)).normalize();
+    let facing = |harness: &Window| harness.state().state.view().space.camera.unwrap().towards().dot(normal);
+    const HINT: &str = "base, on the far side: F turns to it";
+    // From the side that is opposite to it.
+    for [azimuth, elevation] in (-9..9).flat_map(|a| (-4..=4).map(move |e| [20 * a, 20 * e].map(f64::from))) {
+        apply(&mut harness, Command::LookFrom(Bearing::Angles([azimuth, elevation, 0.0])));
+        if facing(&harness) < -0.95 {
+            break;
+        }
+    }
+    assert!(facing(&harness) < -0.95, "{}", facing(&harness));
+    let rect = harness.query_all_by_label_contains("Mesh at step").map(|node| node.rect()).next().unwrap();
+    let at = painted(&harness, HINT);
+    assert!(at.len() == 1 && rect.contains_rect(at[0]), "{at:?}");
+    press(&mut harness, Modifiers::NONE, Key::F);
+    harness.run_steps(3);
+    assert!(facing(&harness) > 0.2, "{}", facing(&harness));
+    assert!(painted(&harness, HINT).is_empty() && painted(&harness, "base").is_empty());
+    let view = harness.state().state.view().space;
+    for node in [base.a, base.b] {
+        let at = view.camera.unwrap().project(moment.mesh.xyz(node), view.size);
+        assert!(at.cmpgt(glam::DVec2::ZERO).all() && at.cmplt(view.size).all(), "{at}");
+    }
+}
+
+#[test]
+fn a_base_outside_of_the_view_is_pointed_at_from_its_rim() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::Go(Goal::Kind(EventKind::BaseSelected, Direction::Forward)));
+    let moment = harness.state().state.run().moment.clone().unwrap();
+    let (mesh, base) = (&moment.mesh, moment.phase.base().unwrap());
+    assert!(painted(&harness, "base").is_empty());
+    // What is farthest from the base, from near.
+    let far = mesh.nodes().max_by(|a, b| {
+        let [a, b] = [a, b].map(|n| mesh.uv(*n).distance(mesh.uv(base.a)));
+        a.total_cmp(&b)
+    });
+    let far = far.unwrap();
+    apply(&mut harness, Command::Find(Outlined::Node(far)));
+    harness.run_steps(3);
+    let rect = harness.query_all_by_label_contains("Mesh at step").map(|node| node.rect()).next().unwrap();
+    let view = harness.state().state.view().plane;
+    let to = view.camera.unwrap().project(mesh.uv(base.a).extend(0.0), view.size);
+    let is_inside = to.cmpgt(glam::DVec2::ZERO).all() && to.cmplt(view.size).all();
+    let at = painted(&harness, "base");
+    assert!(!is_inside && at.len() == 1 && rect.contains_rect(at[0]), "{to} {at:?}");
+    // It stands where the way to the base leaves the view.
+    let way = Vec2::new(to.x as f32, to.y as f32) - 0.5 * rect.size();
+    let from = at[0].center() - rect.center();
+    assert!(way.normalized().dot(from.normalized()) > 0.95, "{way:?} {from:?}");
+    let gap = (0.5 * rect.size() - from.abs()).min_elem();
+    assert!((0.0..80.0).contains(&gap), "{gap}");
+    press(&mut harness, Modifiers::NONE, Key::F);
+    harness.run_steps(3);
+    assert!(painted(&harness, "base").is_empty());
 }

@@ -6,13 +6,14 @@
 
 mod window_harness;
 
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Shape};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
 use quadfront::app::window::{App, Command, Direction, Goal, Source};
 use quadfront::core::convert::{Event, EventKind};
 use quadfront::core::kernel::number::grouped;
 use quadfront::core::mesh::{ElementId, Mesh, NodeId};
+use quadfront::core::run::LastChanges;
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -248,4 +249,184 @@ fn attempts_that_were_taken_back_are_a_tree_with_links_and_reasons() {
     window.get_all_by_label_contains(&link).next().unwrap().click_accesskit();
     settle(&mut window);
     assert_eq!(run(&window).step, first);
+}
+
+/// The entries of the menu of a thing that is open, from top to bottom, and closes it.
+fn entries(window: &mut Window, heading: &str) -> Vec<String> {
+    const KNOWN: [&str; 8] = [
+        "Select",
+        "Show in the middle",
+        "Decision chain",
+        "Go to creation",
+        "Last change",
+        "Choose as base",
+        "Watch",
+        "Stop watching",
+    ];
+    window.run_steps(3);
+    let head = window.get_by_label(heading).rect();
+    // The inspector has buttons of the same names elsewhere.
+    let is_below = |node: &Node<'_>| node.rect().left() < head.right() && node.rect().right() > head.left();
+    let mut found: Vec<(f32, String)> = Vec::new();
+    for name in KNOWN {
+        let here = window.query_all_by_label(name).filter(is_below).filter(|node| node.rect().top() > head.top());
+        found.extend(here.map(|node| (node.rect().top(), name.to_owned())));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    window.key_press(Key::Escape);
+    window.run_steps(3);
+    assert!(window.query_by_label(heading).is_none(), "the menu is closed");
+    found.into_iter().map(|entry| entry.1).collect()
+}
+
+const OF_A_QUAD: [&str; 6] =
+    ["Select", "Show in the middle", "Decision chain", "Go to creation", "Last change", "Watch"];
+const OF_A_NODE: [&str; 5] = ["Select", "Show in the middle", "Go to creation", "Last change", "Watch"];
+const OF_AN_EDGE: [&str; 4] = ["Select", "Show in the middle", "Last change", "Watch"];
+const OF_A_SEGMENT: [&str; 5] = ["Select", "Show in the middle", "Last change", "Choose as base", "Watch"];
+
+#[test]
+fn rows_and_views_have_the_menu_of_what_they_stand_for() {
+    let Some(mut window) = at_the_end("Elements") else { return };
+    let worst = window.state().state.run().moment.as_ref().unwrap().worst.unwrap().0;
+    let name = format!("Quadrilateral {}", worst.0);
+    row(&mut window, &name);
+    window.get_by_label(&name).click_secondary();
+    assert_eq!(entries(&mut window, &format!("element {}", worst.0)), OF_A_QUAD);
+    // In the view.
+    apply(&mut window, Command::Show(Outlined::Element(worst)));
+    let middle = window.query_all_by_label_contains("Mesh at step").next().unwrap().rect().center();
+    window.hover_at(middle);
+    window.run_steps(3);
+    let heading = match window.state().state.frame().hovered.unwrap() {
+        Outlined::Element(e) => (format!("element {}", e.0), &OF_A_QUAD[..]),
+        Outlined::Node(n) => (format!("node {}", n.0), &OF_A_NODE[..]),
+        Outlined::Edge([a, b]) => (format!("edge {}\u{2013}{}", a.0, b.0), &OF_AN_EDGE[..]),
+    };
+    for pressed in [true, false] {
+        let (pos, button, modifiers) = (middle, PointerButton::Secondary, Modifiers::NONE);
+        window.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+        window.run_steps(1);
+    }
+    assert_eq!(entries(&mut window, &heading.0), heading.1);
+    window.get_by_label("Nodes").click();
+    row(&mut window, "Node 0");
+    window.get_by_label("Node 0").click_secondary();
+    assert_eq!(entries(&mut window, "node 0"), OF_A_NODE);
+    // On the front, and among the candidates for a side.
+    apply(&mut window, Command::Go(Goal::Step(0)));
+    let chosen = Goal::Kind(EventKind::SideSwapped, Direction::Forward);
+    apply(&mut window, Command::Go(chosen));
+    let moment = window.state().state.run().moment.clone().unwrap();
+    let base = moment.phase.base().unwrap();
+    let segment = moment.front.iter().map(|s| [s.a, s.b]).find(|ends| *ends != [base.a, base.b]).unwrap();
+    window.get_by_label("Front").click();
+    let name = format!("Segment {} \u{2192} {}", segment[0].0, segment[1].0);
+    row(&mut window, &name);
+    window.get_by_label(&name).click_secondary();
+    let heading = format!("edge {}\u{2013}{}", segment[0].0, segment[1].0);
+    assert_eq!(entries(&mut window, &heading), OF_A_SEGMENT);
+    let refused = moment.refused().into_iter().find(|candidate| !candidate.reason.starts_with("swap")).unwrap();
+    let [from, top] = refused.ends;
+    let edge = format!("{}\u{2013}{}", from.0, top.0);
+    window.get_by_label_contains(&format!("{edge}  ")).click_secondary();
+    assert_eq!(entries(&mut window, &format!("edge {edge}")), OF_AN_EDGE);
+}
+
+/// All texts that the last frame has painted.
+fn painted(window: &Window) -> Vec<String> {
+    fn add(shape: &Shape, texts: &mut Vec<String>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, texts)),
+            Shape::Text(text) => texts.push(text.galley.text().to_owned()),
+            _ => {}
+        }
+    }
+    let mut texts = Vec::new();
+    window.output().shapes.iter().for_each(|shape| add(&shape.shape, &mut texts));
+    texts
+}
+
+#[test]
+fn a_candidate_whose_row_is_pointed_at_has_its_name_and_its_reason_in_the_view() {
+    let Some(mut window) = at_the_end("Front") else { return };
+    apply(&mut window, Command::Go(Goal::Step(0)));
+    apply(&mut window, Command::Go(Goal::Kind(EventKind::SideSwapped, Direction::Forward)));
+    let refused = window.state().state.run().moment.as_ref().unwrap().refused();
+    // In a view of the whole mesh they have no room.
+    apply(&mut window, Command::Fit);
+    let is_edge = |reason: &str| !reason.starts_with("swap");
+    let mut seen = 0;
+    for candidate in refused.iter().filter(|candidate| is_edge(&candidate.reason)) {
+        let [from, top] = candidate.ends.map(|n| n.0);
+        let label = format!("{from}\u{2013}{top}  \u{b7}  {}", candidate.reason);
+        assert!(!painted(&window).contains(&label), "{label}");
+        window.get_by_label_contains(&format!("{from}\u{2013}{top}  ")).hover();
+        window.run_steps(3);
+        assert!(painted(&window).contains(&label), "{label}: {:?}", painted(&window));
+        seen += 1;
+    }
+    assert!(seen > 0, "{} candidates", refused.len());
+}
+
+#[test]
+fn the_chain_of_a_row_is_unfolded_and_scrolled_to_and_a_node_leads_to_the_step_that_made_it() {
+    let Some(mut window) = at_the_end("Elements") else { return };
+    let worst = window.state().state.run().moment.as_ref().unwrap().worst.unwrap().0;
+    // The section is folded.
+    apply(&mut window, Command::Find(Outlined::Element(worst)));
+    row(&mut window, "Decision chain");
+    window.get_by_label("Decision chain").click();
+    window.run_steps(3);
+    assert!(window.query_by_label_contains("Chain, step ").is_none());
+    apply(&mut window, Command::Pick(None));
+    let name = format!("Quadrilateral {}", worst.0);
+    row(&mut window, &name);
+    window.get_by_label(&name).click_secondary();
+    window.run_steps(3);
+    window.get_by_label("Decision chain").click();
+    until(&mut window, "the chain is unfolded", |window| {
+        window.query_all_by_label_contains("Chain, step ").next().is_some()
+    });
+    assert_eq!(picked(&window), Some(Outlined::Element(worst)));
+    window.run_steps(20);
+    let (head, first) =
+        (window.get_by_label("Decision chain").rect(), window.get_all_by_label_contains("Chain, step "));
+    let first = first.map(|node| node.rect().top()).fold(f32::INFINITY, f32::min);
+    assert!(head.bottom() <= first && first < LAPTOP.y, "{head} {first}");
+    // A node that was made after the beginning.
+    let born = window.state().state.run().born.nodes.clone();
+    let made = born.into_iter().rev().find(|born| mesh(&window).has_node(born.1)).unwrap();
+    apply(&mut window, Command::Made(Outlined::Node(made.1)));
+    assert!(mesh(&window).has_node(made.1));
+    assert_eq!(window.state().state.run().moment.as_ref().unwrap().step, made.0);
+    apply(&mut window, Command::Go(Goal::Steps(-1)));
+    assert!(!mesh(&window).has_node(made.1));
+}
+
+#[test]
+fn the_last_change_of_a_row_is_that_of_its_history() {
+    let Some(mut window) = at_the_end("Nodes") else { return };
+    row(&mut window, "Node 0");
+    window.get_by_label("Sort by last, change").click();
+    window.run_steps(2);
+    window.get_by_label("Sort by last, change").click();
+    // The node that a step changed last comes first, and its history ends with that step.
+    let mut log = LastChanges::default();
+    let run = window.state().state.run();
+    let step = run.moment.as_ref().unwrap().step;
+    log.follow(&run.change_log, step);
+    let latest = mesh(&window).nodes().max_by_key(|n| (log.of_node(n.0), std::cmp::Reverse(*n))).unwrap();
+    let name = format!("Node {}", latest.0);
+    until(&mut window, &name, |window| {
+        let rows = window.query_all_by_label_contains("Node ");
+        let top = rows.min_by(|a, b| a.rect().top().total_cmp(&b.rect().top()));
+        top.is_some_and(|node| label(&node) == name)
+    });
+    apply(&mut window, Command::Pick(Some(Outlined::Node(latest))));
+    let link = format!("step {}  ", grouped(log.of_node(latest.0)));
+    until(&mut window, &link, |window| window.query_all_by_label_contains(&link).next().is_some());
+    let newest = window.get_all_by_label_contains("step ").filter(|node| label(node).starts_with("step "));
+    let newest = newest.min_by(|a, b| a.rect().top().total_cmp(&b.rect().top())).unwrap();
+    assert!(label(&newest).starts_with(&link), "{}", label(&newest));
 }

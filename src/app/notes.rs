@@ -89,6 +89,7 @@ fn section(
     let note = to_html(note);
     history.seek(step.saturating_sub(1))?;
     history.take_changes();
+    let candidates = history.state().candidates().filter(|_| *step > 0);
     history.seek(*step)?;
     if history.step() < *step {
         let end = grouped(history.step());
@@ -105,7 +106,7 @@ fn section(
     let state = history.state();
     let (mesh, phase) = (&state.mesh, state.phase());
     let shown = ShownState { step: *step, at: Some(Stop::Step(*step)), state: fingerprint(mesh, phase) };
-    let seen = Seen { mesh, parameters: state.parameters(), phase, changed: &changed };
+    let seen = Seen { mesh, parameters: state.parameters(), phase, changed: &changed, candidates: candidates.as_ref() };
     let frame = FigureFrame::of(&seen, &options.look(false), shown);
     let figure = Figure::of_run(run, &[frame], options, embeds)?;
     let quads = counted(state.standing(), "quadrilateral");

@@ -57,7 +57,8 @@ pub(super) struct Quads {
 pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
     let Background { mesh, sizing, names, repairs, .. } = prepare::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
-    let seen = Seen { mesh: &mesh, parameters: &case.parameters, phase: &Phase::Select, changed: &[] };
+    let seen =
+        Seen { mesh: &mesh, parameters: &case.parameters, phase: &Phase::Select, changed: &[], candidates: None };
     let shown = ShownState { step: 0, at: Some(Stop::Step(0)), state: fingerprint(&mesh, seen.phase) };
     let frame = FigureFrame::of(&seen, &Look::default(), shown);
     let mut export = Export::of(&mesh, &names);
@@ -164,7 +165,8 @@ pub(super) fn convert(
 impl Quads {
     /// Its frame for a figure.
     pub fn frame(&self, look: &Look) -> FigureFrame {
-        let seen = Seen { mesh: &self.mesh, parameters: &self.in_force, phase: &self.phase, changed: &[] };
+        let seen =
+            Seen { mesh: &self.mesh, parameters: &self.in_force, phase: &self.phase, changed: &[], candidates: None };
         FigureFrame::of(&seen, look, self.shown)
     }
 }
@@ -205,15 +207,23 @@ pub(super) fn frames(
         if watches_changes {
             converter.keep_history();
         }
+        // What the last step chose a side from, and what the next one does.
+        let watches_candidates = look.layers.has(Layer::Candidates);
+        let (mut tried, mut next) = (None, converter.candidates());
         for wanted in wanted {
             walk_editing(converter, wanted.stop, watch, None, &mut |c| {
                 shorten(c);
-                run.make_edits(c, c.counts.steps)
+                run.make_edits(c, c.counts.steps)?;
+                if watches_candidates {
+                    (tried, next) = (next.take(), c.candidates());
+                }
+                Ok(())
             })?;
             let mut changed = Touched::default();
             converter.note_last_step(&mut changed);
             let (mesh, phase) = (&converter.mesh, converter.phase());
-            let seen = Seen { mesh, parameters: converter.parameters(), phase, changed: changed.elements() };
+            let (changed, candidates) = (changed.elements(), tried.as_ref());
+            let seen = Seen { mesh, parameters: converter.parameters(), phase, changed, candidates };
             let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
             frames.push(FigureFrame::of(&seen, look, shown));
             if plotted {

@@ -36,6 +36,9 @@ worded! {
         Wedges = "wedges",
         /// Base, sides and top of the current quadrilateral.
         Decision = "decision",
+        /// Candidates for a side edge that the last step did not choose, dotted, each with the reason; on surfaces
+        /// without it.
+        Candidates = "candidates",
         /// The letters A, B, C and D.
         Letters = "letters",
         /// Nodes.
@@ -60,6 +63,7 @@ impl Layer {
             Role::Changed | Role::ChangedEdge => Layer::Changed,
             Role::Boundary => Layer::Boundary,
             Role::Front(_) => Layer::Front,
+            Role::Refused => Layer::Candidates,
             Role::Side | Role::Top | Role::Base => Layer::Decision,
         }
     }

@@ -7,6 +7,7 @@ pub mod look;
 pub mod picture;
 pub mod orthographic;
 pub mod scene;
+pub mod refused;
 pub mod pick;
 pub mod vector;
 #[cfg(feature = "window")]

@@ -253,6 +253,7 @@ pub fn figure(role: Role, ink: Ink) -> Style {
         Role::Front(3) => line("#404040", "#7C70DA", 0.75),
         Role::Front(2) => line("#404040", "#00659C", 0.75),
         Role::Front(_) => line("#000000", "#002B45", 0.85),
+        Role::Refused => Style { dash: Some([0.6, 1.6]), ..line("#404040", "#616A74", 0.6) },
         Role::Side => line("#000000", "#C77812", 0.85),
         Role::Top => Style { dash: Some([2.4, 1.6]), ..line("#000000", "#C77812", 0.7) },
         Role::Base => line("#000000", "#AD4E00", 1.25),

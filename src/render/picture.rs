@@ -6,9 +6,10 @@ use glam::{DVec2, DVec3};
 use super::orthographic::{self, Cover, View};
 
 use super::look::{Layer, Layers, Look};
+use super::refused::{Refused, refused};
 use super::scene::Decision;
 use crate::core::case::Parameters;
-use crate::core::convert::Phase;
+use crate::core::convert::{Candidates, Phase};
 use crate::core::front::{Segment, Side};
 use crate::core::kernel::number;
 use crate::core::mesh::{ElementId, Mesh, Names, NodeId};
@@ -37,6 +38,8 @@ pub enum Role {
     Boundary,
     /// A segment of the merging front, with its class of table 1 (1 to 4).
     Front(u8),
+    /// A candidate for a side edge that was not chosen.
+    Refused,
     /// A side edge of the current quadrilateral.
     Side,
     /// Its top edge, existing or still to be recovered.
@@ -47,7 +50,7 @@ pub enum Role {
 
 impl Role {
     /// All roles from back to front.
-    pub const ALL: [Role; 14] = [
+    pub const ALL: [Role; 15] = [
         Role::LiveTriangle,
         Role::DeadQuad,
         Role::Changed,
@@ -59,6 +62,7 @@ impl Role {
         Role::Front(3),
         Role::Front(2),
         Role::Front(1),
+        Role::Refused,
         Role::Side,
         Role::Top,
         Role::Base,
@@ -124,6 +128,13 @@ pub enum Mark {
         /// The text.
         text: String,
     },
+    /// A text over the far part of a line.
+    Over {
+        /// The line.
+        ends: [DVec2; 2],
+        /// The text.
+        text: String,
+    },
     /// A node.
     Node(DVec2),
     /// An ellipse given by its semi-axes.
@@ -161,6 +172,8 @@ pub struct Seen<'a> {
     pub phase: &'a Phase,
     /// Elements that the last step changed.
     pub changed: &'a [ElementId],
+    /// What the last step chose a side edge from.
+    pub candidates: Option<&'a Candidates>,
 }
 
 /// One side of an element, which becomes a line.
@@ -240,19 +253,25 @@ impl Picture {
     /// The picture of a conversion on surfaces: the mesh, and over it the front by the classes of table 1 and the base
     /// segment. Marks are drawn only in planar domains.
     fn of_state_in_space(seen: &Seen<'_>, look: &Look) -> Picture {
-        let Seen { mesh, parameters, phase, .. } = *seen;
+        let Seen { mesh, parameters, phase, candidates, .. } = *seen;
         let file = Export::of(mesh, &Names::default()).file;
         let (mut picture, cover) = Picture::with_cover(&file, look);
         let base = Decision::of(phase).base.and_then(|[a, b]| mesh.front_between(a, b));
         let (mut front, mut space) = (Picture::default(), Vec::new());
-        for h in mesh.front() {
-            let segment = Segment::measure(mesh, h, parameters);
-            let is_base = base == Some(h) && look.layers.has(Layer::Decision);
-            let role = if is_base { Role::Base } else { Role::Front(segment.class) };
-            let in_space = [segment.a, segment.b].map(|n| mesh.xyz(n));
+        let mut add = |role: Role, ends: [NodeId; 2]| {
+            let in_space = ends.map(|n| mesh.xyz(n));
             let ends = in_space.map(|p| cover.as_ref().map_or(p.truncate(), |cover| cover.view().place(p)));
             front.lines.push(Line { role, ends, room: f64::INFINITY, hidden: false });
             space.push(in_space);
+        };
+        for h in mesh.front() {
+            let segment = Segment::measure(mesh, h, parameters);
+            let is_base = base == Some(h) && look.layers.has(Layer::Decision);
+            add(if is_base { Role::Base } else { Role::Front(segment.class) }, [segment.a, segment.b]);
+        }
+        if look.layers.has(Layer::Candidates) {
+            let there = refused(mesh, phase, candidates).into_iter().map(|candidate| candidate.ends);
+            there.filter(|ends| ends.iter().all(|n| mesh.has_node(*n))).for_each(|ends| add(Role::Refused, ends));
         }
         if let Some(cover) = &cover {
             cover.hide_lines(&mut front, &space, look.hidden);
@@ -264,7 +283,7 @@ impl Picture {
     /// The picture of a conversion at some step: the mesh, and over it the front by the classes of table 1, the current
     /// quadrilateral, and the marks of the layers that are on.
     pub fn of_state(seen: &Seen<'_>, look: &Look) -> Picture {
-        let (Seen { mesh, parameters, phase, changed }, layers) = (*seen, look.layers);
+        let (Seen { mesh, parameters, phase, changed, candidates }, layers) = (*seen, look.layers);
         if mesh.embedding().is_some() {
             return Picture::of_state_in_space(seen, look);
         }
@@ -289,6 +308,14 @@ impl Picture {
             }
         }
         picture.add_marks(mesh, parameters, &decision, &segments, layers);
+        if layers.has(Layer::Candidates) {
+            for Refused { ends, reason } in refused(mesh, phase, candidates) {
+                picture.add_line(mesh, Role::Refused, ends);
+                if ends.iter().all(|n| mesh.has_node(*n)) {
+                    picture.marks.push(Mark::Over { ends: ends.map(|n| mesh.uv(n)), text: reason });
+                }
+            }
+        }
         picture
     }
 
@@ -409,7 +436,7 @@ mod tests {
         let phase = Phase::Defer { base };
         let parameters = Parameters::default();
         let changed = [ElementId(0), ElementId(9)];
-        let seen = Seen { mesh: &mesh, parameters: &parameters, phase: &phase, changed: &changed };
+        let seen = Seen { mesh: &mesh, parameters: &parameters, phase: &phase, changed: &changed, candidates: None };
         let mut layers = Layers::usual(Ink::Grey, false);
         layers.set(Layer::Changed, true);
         layers.set(Layer::H, true);

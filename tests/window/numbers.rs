@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use eframe::egui::Vec2;
+use eframe::egui::{Rect, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{DVec2, DVec3};
 use quadfront::app::window::{App, Command, Goal, Source};
 use quadfront::core::mesh::{ElementId, Mesh, NodeId};
 use quadfront::render::scene::Outlined;
 
+use crate::pictures::{difference, picture};
 use crate::window_harness::{Window, apply, has_adapter, settle, start};
 
 /// Lengths and angles from coordinates and tensors alone.
@@ -205,4 +206,79 @@ fn links_of_a_curved_surface_lead_to_what_has_their_number() {
 #[test]
 fn links_of_several_faces_lead_to_what_has_their_number() {
     follow_all("wing");
+}
+
+/// The part of a picture of the window inside a rectangle, in points.
+fn inside(picture: &[u8], width: usize, rect: Rect) -> Vec<u8> {
+    let [left, top, right, bottom] =
+        [rect.left(), rect.top(), rect.right(), rect.bottom()].map(|x| x.round().max(0.0) as usize);
+    (top..bottom).flat_map(|y| picture[4 * (y * width + left)..4 * (y * width + right)].iter().copied()).collect()
+}
+
+/// The numbers in a text.
+fn numbers(text: &str) -> Vec<f64> {
+    let text = text.replace('\u{2009}', "");
+    text.split(|c: char| !c.is_ascii_digit() && c != '.').filter_map(|word| word.parse().ok()).collect()
+}
+
+#[test]
+fn a_click_on_a_bar_lights_what_it_stands_for_in_the_main_view() {
+    if !has_adapter() {
+        return;
+    }
+    let size = Vec2::new(1800.0, 1100.0);
+    let source = Source::BuiltIn("example1".to_owned());
+    let mut harness = start(size, |cc| App::new(cc, Some(source)));
+    settle(&mut harness);
+    let end = harness.state().state.run().track.len() as u64;
+    apply(&mut harness, Command::Go(Goal::Step(end / 2)));
+    harness.get_by_label("Quality").click();
+    harness.run_steps(3);
+    let mesh = mesh(&harness);
+    let view = harness.query_all_by_label_contains("Mesh at step").map(|node| node.rect()).next().unwrap();
+    let mut found = [0; 2];
+    for (k, (plot, head)) in
+        [("Plot of angles", "quads whose"), ("Plot of lengths", "edges of")].into_iter().enumerate()
+    {
+        for share in [0.35, 0.45, 0.55, 0.65] {
+            harness.hover_at(view.center());
+            harness.run_steps(3);
+            let before = picture(&mut harness, "bar-before");
+            let rect = harness.get_by_label(plot).rect();
+            let at = rect.left_top() + rect.size() * Vec2::new(share, 0.6);
+            harness.drag_at(at);
+            harness.run_steps(1);
+            harness.drop_at(at);
+            harness.run_steps(3);
+            let told = harness.state().state.view().notice().map(|notice| notice.0.to_owned());
+            let told = told.filter(|told| told.contains(head)).unwrap_or_else(|| panic!("{plot}: no bar at {share}"));
+            let [count, low, high] = <[f64; 3]>::try_from(numbers(&told)).unwrap();
+            // By the oracle, but for what lies at an end of the bar.
+            let least = if k == 0 { 1e-6 } else { 0.005 };
+            let counted = |slack: f64| {
+                let fits = |x: f64| x >= low - slack && x < high + slack;
+                if k == 0 {
+                    let quads = mesh.elements().filter(|e| mesh.is_quad(*e));
+                    let ends = |e| {
+                        [true, false].map(|is_least| extreme(oracle::metric_angles(&mesh, e).into_iter(), is_least))
+                    };
+                    quads.filter(|e| ends(*e).into_iter().any(fits)).count()
+                } else {
+                    mesh.edges().filter(|h| fits(oracle::length(&mesh, mesh.ends(*h)))).count()
+                }
+            };
+            let lit = harness.state().state.view().lit.clone();
+            assert_eq!(lit.len() as f64, count, "{told}");
+            assert!((counted(-least)..=counted(least)).contains(&lit.len()), "{told}: {}", counted(0.0));
+            assert!(lit.iter().all(|what| matches!(what, Outlined::Element(_)) == (k == 0)));
+            harness.hover_at(view.center());
+            harness.run_steps(3);
+            let after = picture(&mut harness, "bar-after");
+            let [before, after] = [before, after].map(|picture| inside(&picture, size.x as usize, view));
+            let apart = difference(&before, &after);
+            assert!(apart > 1e-4 || lit.is_empty() || found[k] > 0, "{told}: {apart}");
+            found[k] += lit.len();
+        }
+    }
+    assert!(found[0] > 0 && found[1] > 0, "{found:?}");
 }

@@ -20,15 +20,15 @@ const TAB_BAR: f32 = 28.0;
 type Found = BTreeMap<String, String>;
 
 /// A text on the screen: what it says, where, and what of it is seen.
-struct Text {
-    said: String,
-    rect: Rect,
+pub struct Text {
+    pub said: String,
+    pub rect: Rect,
     seen: Rect,
     is_elided: bool,
 }
 
 /// All texts that were painted in the last frame.
-fn texts(harness: &Window) -> Vec<Text> {
+pub fn texts(harness: &Window) -> Vec<Text> {
     fn add(shape: &Shape, clip: Rect, texts: &mut Vec<Text>) {
         match shape {
             Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, clip, texts)),

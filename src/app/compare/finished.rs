@@ -76,7 +76,7 @@ pub(super) fn compare(run: &Run, other: &MeshFile, watch: &mut dyn Watch) -> Res
         None => {
             let uv: Vec<_> = other.points.iter().map(|p| p.truncate()).collect();
             let points: Vec<_> = (0..uv.len() as u32).map(PointId).collect();
-            let measured = Measured { uv: &uv, points: &points, triangles: &[], quads: &other.quads, atlas: None };
+            let measured = Measured { uv: &uv, points: &points, triangles: &[], quads: &other.quads, surfaces: None };
             Some(Statistics::measure(measured, &background.sizing)?)
         }
     };

@@ -180,8 +180,8 @@ pub(in crate::app) struct FigureOptions {
     /// Leave out the white background
     #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     pub transparent: Option<bool>,
-    /// Layers to draw: names out of live, dead, changed, boundary, front, wedges, decision, letters, nodes, h, angles,
-    /// ellipses, scale; or changes to the default (--layers=+h,-letters)
+    /// Layers to draw: names out of live, dead, changed, boundary, front, wedges, decision, candidates, letters, nodes,
+    /// h, angles, ellipses, scale; or changes to the default (--layers=+h,-letters)
     #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
     pub layers: Option<LayerWords>,
     /// Draw a histogram instead of the mesh

@@ -49,14 +49,16 @@ pub enum Command {
     LightUp(Vec<Outlined>, String),
     /// Go back to the step that touched something last.
     LastTouch(Outlined),
-    /// Go to the step that made the quadrilateral of an element.
-    Made(ElementId),
+    /// Go to the step that made a node, or the quadrilateral of an element.
+    Made(Outlined),
     /// Ask why a segment of the front was or was not chosen.
     Explain([NodeId; 2]),
     /// Ask for the history of something.
     TellPast(Watched),
     /// Ask for the decision chain of a quadrilateral.
     TellChain(ElementId),
+    /// Select a quadrilateral and show its decision chain in the inspector.
+    ShowChain(ElementId),
     /// Make a list of elements or nodes.
     List(ListKind, Query),
     /// Copy such a list as comma-separated values.

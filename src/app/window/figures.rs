@@ -300,8 +300,8 @@ fn shown(moment: &Moment) -> ShownState {
 
 /// The figure of the current state.
 fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &FigureOptions) -> Result<Figure, Fault> {
-    let Moment { mesh, parameters, phase, just_changed, .. } = moment.as_ref();
-    let seen = Seen { mesh, parameters, phase, changed: just_changed };
+    let Moment { mesh, parameters, phase, just_changed, candidates, .. } = moment.as_ref();
+    let seen = Seen { mesh, parameters, phase, changed: just_changed, candidates: candidates.as_ref() };
     let statistics = match options.plot {
         Some(_) => Some(work::statistics(&Export::of(mesh, &Names::default()), &opened.background.sizing)?),
         None => None,

@@ -15,7 +15,7 @@ pub use measures::shading;
 use super::session::Moment;
 use super::state::State;
 use super::theme::{self, ink};
-use super::viewport::{ViewFrame, class_colour, refused};
+use super::viewport::{ViewFrame, class_colour};
 use super::words;
 use crate::core::front::Segment;
 use crate::core::mesh::NodeId;
@@ -114,14 +114,18 @@ pub fn show(
     if state.document().layers.labels && which != ViewRole::Whole {
         over.base(&decision, which);
     }
+    let names_things = state.document().layers.labels && which == ViewRole::Main;
+    // What is pointed at has its name, whatever else stands there.
+    if names_things {
+        over.pointed(state);
+    }
     if which != ViewRole::Whole {
-        over.refused();
+        over.refused(state.frame().hovered.filter(|_| names_things));
     }
     if state.document().layers.arcs && !small {
         over.wedges_and_arcs(&decision, which);
     }
-    if state.document().layers.labels && which == ViewRole::Main {
-        over.pointed(state);
+    if names_things {
         over.front_labels(&decision);
         over.node_ids(&decision);
     }
@@ -254,7 +258,7 @@ impl Labels<'_> {
                 Outlined::Element(e) if self.moment.mesh.is_quad(e) => format!("quadrilateral {}", e.0),
                 Outlined::Element(e) => format!("triangle {}", e.0),
             };
-            let why = refused(self.moment).into_iter().find(|candidate| candidate.is(what));
+            let why = self.moment.refused().into_iter().find(|candidate| candidate.is(what));
             let text = why.map_or(text.clone(), |candidate| format!("{text}  ·  {}", candidate.reason));
             let font = if strong { theme::semibold(12.5) } else { theme::regular(12.0) };
             let Some(at) = self.on_screen(self.lifted(p)) else { continue };

@@ -9,7 +9,7 @@ use super::session::Wake;
 use crate::core::kernel::worded::worded;
 use crate::core::mesh::Mesh;
 use crate::core::run::copies::Since;
-use crate::core::run::{Changes, ElementRow, Listed, Listing, NodeRow, Query, Row, csv};
+use crate::core::run::{ChangeLog, Changes, ElementRow, LastChanges, Listed, Listing, NodeRow, Query, Row, Steps, csv};
 
 worded! {
     /// A list.
@@ -36,16 +36,35 @@ pub struct Shown {
 struct Work {
     mesh: Arc<Mesh>,
     changes: Changes,
-    /// The steps of birth by slot.
-    born: Vec<u64>,
+    recorded: RecordedSteps,
     query: Query,
     /// Whether the list is wanted as text.
     as_text: bool,
 }
 
+/// What a run has recorded of the steps that made and changed things, for one of its states.
+pub struct RecordedSteps {
+    pub step: u64,
+    /// The steps of birth by slot.
+    pub born: Vec<u64>,
+    pub changes: ChangeLog,
+}
+
+/// A table, and the last changes in the state that it shows.
+struct Table<R> {
+    rows: Listed<R>,
+    changes: LastChanges,
+}
+
+impl<R: Row> Default for Table<R> {
+    fn default() -> Self {
+        Table { rows: Listed::default(), changes: LastChanges::default() }
+    }
+}
+
 /// What a thread has done.
 struct Done<R> {
-    table: Listed<R>,
+    table: Table<R>,
     shown: Shown,
     text: Option<String>,
 }
@@ -55,7 +74,7 @@ pub struct Lister<R> {
     /// What has changed since the table followed last.
     since: Since,
     /// The table, while no thread works with it.
-    table: Option<Listed<R>>,
+    table: Option<Table<R>>,
     under_way: Option<Receiver<Done<R>>>,
     shown: Option<Arc<Shown>>,
     /// The list as text, and how often one was asked for.
@@ -90,11 +109,16 @@ impl<R: Row + Send + 'static> Lister<R> {
         self.under_way = Some(told);
         std::thread::spawn(move || {
             let begin = Instant::now();
-            let Work { mesh, changes, born, query, as_text } = work;
-            table.follow(&mesh, &changes, &born);
+            let Work { mesh, changes, recorded, query, as_text } = work;
+            let Table { rows, changes: last } = &mut table;
+            last.follow(&recorded.changes, recorded.step);
+            rows.follow(&mesh, &changes, |slot| Steps {
+                born: recorded.born.get(slot as usize).copied().unwrap_or(0),
+                changed: R::last_change(last, slot),
+            });
             drop(mesh);
-            let listing = table.list(&query);
-            let text = as_text.then(|| csv(listing.slots.iter().filter_map(|&slot| table.row(slot))));
+            let listing = rows.list(&query);
+            let text = as_text.then(|| csv(listing.slots.iter().filter_map(|&slot| rows.row(slot))));
             let shown = Shown { state, query, listing, took: begin.elapsed() };
             // The run may have been closed meanwhile.
             let _ = tell.send(Done { table, shown, text });
@@ -143,18 +167,25 @@ impl Lists {
         self.nodes.since.note(changes, mesh.element_slots());
     }
 
-    /// Makes a list of the current state, unless one is being made; `as_text` for the clipboard too. `born` has the
-    /// steps of birth by slot.
-    pub fn make(&mut self, kind: ListKind, query: Query, as_text: bool, mesh: Arc<Mesh>, born: Vec<u64>, wake: Wake) {
+    /// Makes a list of the current state, unless one is being made; `as_text` for the clipboard too.
+    pub fn make(
+        &mut self,
+        kind: ListKind,
+        query: Query,
+        as_text: bool,
+        mesh: Arc<Mesh>,
+        recorded: RecordedSteps,
+        wake: Wake,
+    ) {
         let state = self.state;
         match kind {
             ListKind::Elements if self.elements.under_way.is_none() => {
                 let changes = self.elements.since.take();
-                self.elements.start(state, Work { mesh, changes, born, query, as_text }, wake);
+                self.elements.start(state, Work { mesh, changes, recorded, query, as_text }, wake);
             }
             ListKind::Nodes if self.nodes.under_way.is_none() => {
                 let changes = self.nodes.since.take();
-                self.nodes.start(state, Work { mesh, changes, born, query, as_text }, wake);
+                self.nodes.start(state, Work { mesh, changes, recorded, query, as_text }, wake);
             }
             _ => {}
         }

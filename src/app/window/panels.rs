@@ -7,6 +7,7 @@ pub mod time;
 pub mod timeline;
 pub mod front;
 pub mod lists;
+pub mod actions;
 mod condition_field;
 pub mod bookmarks;
 pub mod breakpoints;
@@ -39,6 +40,7 @@ pub struct PanelStates {
     pub time: time::TimeState,
     pub front: front::FrontState,
     pub lists: lists::ListStates,
+    pub inspector: inspector::InspectorState,
     pub breakpoints: breakpoints::BreakpointsState,
     pub parameters: parameters::ParametersState,
     pub plots: plots::PlotsState,

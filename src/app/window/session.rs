@@ -26,7 +26,9 @@ use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::{Born, Chain, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched};
+use crate::core::run::{
+    Born, Chain, ChangeLog, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched,
+};
 use worker::Worker;
 
 /// How often progress is reported.
@@ -75,6 +77,8 @@ pub enum SessionNews {
         steps: Vec<Tracked>,
         samples: Vec<Sample>,
         born: Born,
+        /// What all known steps changed.
+        change_log: ChangeLog,
         end: bool,
     },
     /// The result of the checks of the whole mesh at a step.

@@ -3,7 +3,6 @@
 mod cameras;
 mod faces;
 mod given;
-mod refused;
 pub mod pair;
 mod space;
 mod stage;
@@ -18,11 +17,10 @@ use glam::{DVec2, DVec3};
 
 use cameras::{aim, metric_lens, other_end, steer};
 pub use cameras::{lens_node, middle};
-pub use refused::refused;
 
 use super::command::Command;
 use super::labels;
-use super::panels::{self, inspector, on_click};
+use super::panels::{self, actions, on_click};
 use super::session::Moment;
 use super::state::{Look, State, SurfaceView, ViewCamera, ViewKind};
 use super::theme::ink;
@@ -234,16 +232,7 @@ impl Views {
         }
         if let Some(what) = self.menu_of {
             response.context_menu(|ui| {
-                ui.label(super::words::thing(what));
-                if ui.button("Select").clicked() {
-                    commands.push(Command::Pick(Some(what)));
-                    ui.close();
-                }
-                if ui.button(Command::Show(what).name()).clicked() {
-                    commands.push(Command::Show(what));
-                    ui.close();
-                }
-                inspector::past::actions(ui, state, what, commands);
+                actions::menu(ui, state, what, commands);
             });
         }
         if hovered.is_some() && response.hovered() {

@@ -1,8 +1,8 @@
-//! Lengths, angles, areas and shape in a metric (eqs. 4, 5; docs/algorithm.md, "Lengths and angles").
+//! Lengths, angles, areas and shape in a metric, angles in space (eqs. 4, 5; docs/algorithm.md, "Lengths and angles").
 
 use std::f64::consts::TAU;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::field::{BadMetric, MetricSource};
 use crate::core::kernel::Metric2;
@@ -29,6 +29,20 @@ pub fn angle(m: &Metric2, du: DVec2, dv: DVec2) -> f64 {
         // Turns -0 into 0.
         t + 0.0
     }
+}
+
+/// The angles at the corners of an element in space, between its straight sides, in radians: what programs that check
+/// meshes compute from coordinates alone. Corners go anticlockwise. A corner that turns against the normal of the
+/// element is reflex, beyond pi; the normal is that of its area vector, for a quadrilateral that of its diagonals.
+pub fn angles_in_space(corners: &[DVec3]) -> impl Iterator<Item = f64> {
+    let (n, at) = (corners.len(), move |k: usize| corners[k % corners.len()]);
+    let normal: DVec3 = (2..n).map(|k| (at(k - 1) - at(0)).cross(at(k) - at(0))).sum();
+    (0..n).map(move |k| {
+        let (out, back) = (at(k + 1) - at(k), at(k + n - 1) - at(k));
+        let turn = out.cross(back);
+        let angle = libm::atan2(turn.length(), out.dot(back));
+        if turn.dot(normal) < 0.0 { TAU - angle } else { angle }
+    })
 }
 
 /// Positive nodes and weights of the symmetric Gauss-Legendre rule of eight points on (-1, 1).
@@ -149,6 +163,26 @@ mod tests {
         assert_eq!(angle(&stretched(), d, d), 0.0);
         assert_eq!(angle(&stretched(), d, -d), PI);
         assert!(angle(&stretched(), d, -d).is_sign_positive());
+    }
+
+    #[test]
+    fn angles_in_space_are_those_between_straight_sides_and_reflex_where_the_element_turns_back() {
+        let degrees = |corners: &[DVec3]| angles_in_space(corners).map(f64::to_degrees).collect::<Vec<_>>();
+        let close = |found: Vec<f64>, expected: &[f64]| {
+            assert_eq!(found.len(), expected.len());
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        };
+        // A right-angled triangle in a slanted plane; a dart, seen from either side; a square bent along a diagonal.
+        let (x, y) = (DVec3::new(0.0, 0.6, 0.8), DVec3::new(1.0, 0.0, 0.0));
+        close(degrees(&[DVec3::ZERO, x, y]), &[90.0, 45.0, 45.0]);
+        let dart = [DVec3::ZERO, 2.0 * x, 0.5 * (x + y), 2.0 * y];
+        let tip = libm::atan2(1.0, 3.0).to_degrees();
+        close(degrees(&dart), &[90.0, tip, 270.0 - 2.0 * tip, tip]);
+        let turned = [dart[0], dart[3], dart[2], dart[1]];
+        close(degrees(&turned), &[90.0, tip, 270.0 - 2.0 * tip, tip]);
+        let bent = [DVec3::ZERO, DVec3::X, DVec3::new(0.5, 0.5, 0.5f64.sqrt()), DVec3::Y];
+        close(degrees(&bent), &[90.0, 60.0, 90.0, 60.0]);
+        close(degrees(&[DVec3::ZERO; 2]), &[0.0, 0.0]);
     }
 
     #[test]

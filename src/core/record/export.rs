@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
-use super::statistics::Measured;
+use super::statistics::{Measured, OnSurfaces};
 use crate::core::fault::Fault;
 use crate::core::geometry::Atlas;
 use crate::core::mesh::{ElementId, Mesh, Named, Names, PointId};
@@ -204,7 +204,7 @@ impl Export {
             points: &self.points,
             triangles: &self.triangles,
             quads: &self.quads,
-            atlas: self.atlas.as_deref(),
+            surfaces: self.atlas.as_deref().map(|atlas| OnSurfaces { atlas, xyz: &self.file.points }),
         }
     }
 }

@@ -361,7 +361,7 @@ mod tests {
             .to_vec();
         let points: Vec<_> = (0..7).map(PointId).collect();
         let quads = [[0, 1, 2, 3], [0, 3, 4, 5], [0, 5, 6, 1]];
-        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, surfaces: None };
         Report {
             program: Program { name: "quadfront".to_owned(), version: "0.0.0".to_owned() },
             case: CaseRecord {

@@ -1,13 +1,15 @@
 //! Statistics of a mesh, in its metric and physically: distributions of angles (fig. 24) and edge lengths (fig. 23),
 //! irregular nodes, scaled Jacobian, quality. Computed from plain arrays, so that any mesh can be measured.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use serde::Serialize;
 
 use crate::core::geometry::Atlas;
 use crate::core::kernel::Metric2;
 use crate::core::mesh::{FULL_TURN, PointId, twelfths};
-use crate::core::metric::measure::{angle, length_exact, quad_quality, scaled_jacobian, triangle_quality};
+use crate::core::metric::measure::{
+    angle, angles_in_space, length_exact, quad_quality, scaled_jacobian, triangle_quality,
+};
 use crate::core::metric::{BadMetric, MetricSource};
 
 /// Number of angle classes, each 10 degrees wide; the last has no upper limit.
@@ -30,8 +32,17 @@ pub struct Measured<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Quadrilaterals, anticlockwise.
     pub quads: &'a [[u32; 4]],
-    /// The surfaces of the mesh; `None` in the plane.
-    pub atlas: Option<&'a Atlas>,
+    /// Where the mesh lies in space; `None` in the plane.
+    pub surfaces: Option<OnSurfaces<'a>>,
+}
+
+/// Where a mesh lies in space.
+#[derive(Clone, Copy)]
+pub struct OnSurfaces<'a> {
+    /// The charts of its surfaces.
+    pub atlas: &'a Atlas,
+    /// The position of each output point.
+    pub xyz: &'a [DVec3],
 }
 
 /// Statistics of a mesh.
@@ -48,7 +59,7 @@ pub struct Statistics {
     pub edges: usize,
     /// Angles in the metric at the corner.
     pub metric_angles: Angles,
-    /// Physical angles.
+    /// Physical angles: in space, between straight sides.
     pub physical_angles: Angles,
     /// Edge lengths in the metric, integrated along the edge.
     pub lengths: Lengths,
@@ -56,7 +67,8 @@ pub struct Statistics {
     pub irregular: Irregular,
     /// Scaled Jacobian of the quadrilaterals in the metric, minimum over the corners; `None` without quadrilaterals.
     pub metric_scaled_jacobian: Option<Range>,
-    /// Physical scaled Jacobian of the quadrilaterals, minimum over the corners; `None` without quadrilaterals.
+    /// Physical scaled Jacobian of the quadrilaterals, on surfaces in the tangent planes of the corners, minimum over
+    /// the corners; `None` without quadrilaterals.
     pub physical_scaled_jacobian: Option<Range>,
     /// Shape in the metric (docs/algorithm.md, "Quality"): 1 for the square and the equilateral triangle.
     pub quality: Option<Range>,
@@ -126,22 +138,26 @@ impl Statistics {
     pub fn measure(mesh: Measured<'_>, source: &dyn MetricSource) -> Result<Statistics, Box<BadMetric>> {
         let metrics = mesh.uv.iter().map(|&uv| source.metric(uv)).collect::<Result<Vec<_>, _>>()?;
         // The physical metric at a node: Euclidean, or the first fundamental form of the surface.
-        let seen: Vec<Metric2> = match mesh.atlas {
+        let seen: Vec<Metric2> = match mesh.surfaces {
             None => Vec::new(),
-            Some(atlas) => mesh.uv.iter().map(|&uv| atlas.at(uv).first_form()).collect(),
+            Some(OnSurfaces { atlas, .. }) => mesh.uv.iter().map(|&uv| atlas.at(uv).first_form()).collect(),
         };
         let seen = |n: u32| seen.get(n as usize).copied().unwrap_or(PLANE);
+        let xyz = |n: u32| match mesh.surfaces {
+            None => mesh.uv[n as usize].extend(0.0),
+            Some(OnSurfaces { xyz, .. }) => xyz[mesh.points[n as usize].index()],
+        };
         let mut tally = Tally::default();
         for triangle in mesh.triangles {
             let p = triangle.map(|n| mesh.uv[n as usize]);
-            tally.angles(&p, &triangle.map(|n| metrics[n as usize]), &triangle.map(seen));
+            tally.angles(&p, &triangle.map(|n| metrics[n as usize]), &triangle.map(xyz));
             let at_centroid = source.metric((p[0] + p[1] + p[2]) / 3.0)?;
             tally.quality.add(triangle_quality(&at_centroid, p[0], p[1], p[2]));
         }
         for quad in mesh.quads {
             let p = quad.map(|n| mesh.uv[n as usize]);
             let m = quad.map(|n| metrics[n as usize]);
-            tally.angles(&p, &m, &quad.map(seen));
+            tally.angles(&p, &m, &quad.map(xyz));
             tally.quality.add(quad_quality(m.each_ref(), p));
             tally.metric_jacobian.add(scaled_jacobian(&m, p));
             tally.physical_jacobian.add(scaled_jacobian(&quad.map(seen), p));
@@ -223,9 +239,10 @@ struct Tally {
 }
 
 impl Tally {
-    fn angles<const N: usize>(&mut self, p: &[DVec2; N], m: &[Metric2; N], seen: &[Metric2; N]) {
-        self.metric_angles.add(p, m);
-        self.physical_angles.add(p, seen);
+    fn angles<const N: usize>(&mut self, p: &[DVec2; N], m: &[Metric2; N], xyz: &[DVec3; N]) {
+        let in_metric = |k: usize| angle(&m[k], p[(k + 1) % N] - p[k], p[(k + N - 1) % N] - p[k]);
+        self.metric_angles.add((0..N).map(in_metric));
+        self.physical_angles.add(angles_in_space(xyz));
     }
 }
 
@@ -261,24 +278,24 @@ struct AngleTally {
 }
 
 impl AngleTally {
-    fn add<const N: usize>(&mut self, p: &[DVec2; N], m: &[Metric2; N]) {
+    /// Adds the angles of an element, in radians.
+    fn add(&mut self, angles: impl Iterator<Item = f64>) {
+        let first = self.count == 0;
         let class = |degrees: f64| ((degrees / 10.0) as usize).min(ANGLE_CLASSES - 1);
         let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for k in 0..N {
-            let theta = angle(&m[k], p[(k + 1) % N] - p[k], p[(k + N - 1) % N] - p[k]).to_degrees();
+        for theta in angles.map(f64::to_degrees) {
             // Tolerates rounding at the limits.
             let within = |low: f64, high: f64| u64::from(theta > low - 1e-9 && theta < high + 1e-9);
             self.within_60_120 += within(60.0, 120.0);
             self.within_30_160 += within(30.0, 160.0);
             self.corners[class(theta)] += 1;
+            self.count += 1;
             (least, greatest) = (least.min(theta), greatest.max(theta));
         }
         self.least[class(least)] += 1;
         self.greatest[class(greatest)] += 1;
-        let first = self.count == 0;
         self.min = if first { least } else { self.min.min(least) };
         self.max = if first { greatest } else { self.max.max(greatest) };
-        self.count += N as u64;
     }
 
     fn angles(self) -> Angles {
@@ -343,7 +360,7 @@ mod tests {
     #[test]
     fn squares_of_unit_size_are_perfect() {
         let (uv, points, quads) = squares(4);
-        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, surfaces: None };
         let found = Statistics::measure(mesh, &Constant(Metric2::isotropic(0.25))).unwrap();
         assert_eq!((found.nodes, found.quads, found.edges), (25, 16, 40));
         assert_eq!((found.irregular.interior, found.irregular.irregular), (9, 0));
@@ -359,7 +376,7 @@ mod tests {
     fn a_sheared_metric_changes_metric_but_not_physical_angles_and_lengths() {
         let uv = [(0.0, 0.0), (2.0, 0.0), (2.5, 1.0), (0.5, 1.0)].map(|(x, y)| DVec2::new(x, y));
         let points = [0, 1, 2, 3].map(PointId);
-        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &[[0, 1, 2, 3]], atlas: None };
+        let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &[[0, 1, 2, 3]], surfaces: None };
         let sheared = Metric2 { uu: 0.25, uv: -0.125, vv: 1.0625 };
         let found = Statistics::measure(mesh, &Constant(sheared)).unwrap();
         assert!((found.metric_scaled_jacobian.unwrap().min - 1.0).abs() < 1e-12, "a unit square of that metric");
@@ -378,7 +395,7 @@ mod tests {
         let quads = [[0, 1, 2, 3], [4, 5, 6, 7]];
         let measured = |points: [u32; 8]| {
             let points = points.map(PointId);
-            let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, atlas: None };
+            let mesh = Measured { uv: &uv, points: &points, triangles: &[], quads: &quads, surfaces: None };
             let found = Statistics::measure(mesh, &Constant(Metric2::isotropic(1.0))).unwrap();
             (found.nodes, found.edges, found.irregular.interior)
         };
@@ -391,11 +408,11 @@ mod tests {
         let (uv, points, quads) = squares(2);
         let cut: Vec<_> = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
         let source = Constant(Metric2::isotropic(0.5));
-        let all = Measured { uv: &uv, points: &points, triangles: &cut, quads: &[], atlas: None };
+        let all = Measured { uv: &uv, points: &points, triangles: &cut, quads: &[], surfaces: None };
         let found = Statistics::measure(all, &source).unwrap();
         assert_eq!((found.triangles, found.edges, found.irregular.irregular), (8, 16, 0), "six triangles meet inside");
         assert!(found.metric_scaled_jacobian.is_none());
-        let mixed = Measured { uv: &uv, points: &points, triangles: &cut[..2], quads: &quads[1..], atlas: None };
+        let mixed = Measured { uv: &uv, points: &points, triangles: &cut[..2], quads: &quads[1..], surfaces: None };
         let found = Statistics::measure(mixed, &source).unwrap();
         assert_eq!((found.triangles, found.quads, found.edges), (2, 3, 13));
         assert_eq!(found.irregular.irregular, 1, "three quadrilaterals and two triangles are more than a turn");

@@ -1,13 +1,14 @@
 //! The decision chain of a quadrilateral: the base segment it was formed on and why, its sides, its top, its formation,
 //! and every later step that moved or changed it, with its quality after each.
 
+use std::collections::BTreeMap;
+
 use super::explain::{self, margins};
 use super::front_table::FrontTable;
 use super::history::History;
 use crate::core::case::Selection;
-use crate::core::convert::{Event, EventKind};
+use crate::core::convert::{Candidates, Event, EventKind};
 use crate::core::fault::Fault;
-use crate::core::front::Side;
 use crate::core::mesh::ElementId;
 
 /// The number of later changes that a chain has at most: the newest.
@@ -103,63 +104,64 @@ impl History {
         let Some(selected) = base else { return Ok(vec![link(made, last, explain::event(&last), None)]) };
         let events = self.events(selected, made)?;
         let failed = events.iter().rposition(|event| event.kind() == EventKind::RolledBack);
+        // What the selection of the base and that of each side looked at.
+        let (mut table, mut tried) = (None, BTreeMap::new());
+        self.replay(selected - 1, made - 1, &mut |step, before, _| {
+            table.get_or_insert_with(|| FrontTable::of(before));
+            tried.extend(before.candidates().map(|candidates| (step + 1, candidates)));
+        })?;
         let mut links = Vec::new();
         for (k, (&event, step)) in events.iter().zip(selected..).enumerate() {
             let is_of_failed = failed.is_some_and(|failed| k < failed) && event.kind() != EventKind::RolledBack;
             if k > 0 && is_of_failed {
                 continue;
             }
-            let (text, margin) = match event {
-                Event::BaseSelected { .. } => self.base(step, &event)?,
-                Event::SideIsFront { side, .. } => self.front_side(step, &events[0], side, &event)?,
+            let (text, margin) = match (&table, tried.get(&step)) {
+                (Some(table), _) if k == 0 => of_base(table, &event),
+                (_, Some(tried)) => of_side(tried, &event),
                 _ => (explain::event(&event), None),
             };
             links.push(link(step, event, text, margin));
         }
         Ok(links)
     }
+}
 
-    /// The selection of a base: what decided, and for which parameters it would have been the same.
-    fn base(&self, step: u64, event: &Event) -> Result<(String, Option<String>), Fault> {
-        let Event::BaseSelected { a, b, key, reach, within_reach, picked, .. } = *event else {
-            return Ok((explain::event(event), None));
-        };
-        let mut table = None;
-        self.replay(step - 1, step - 1, &mut |_, before, _| table = Some(FrontTable::of(before)))?;
-        let table = table.expect("the state was visited");
-        let row = table.find(a, b);
-        let margin = row.and_then(|row| {
-            let theta_rect = table.margin_of_theta_rect(row).map(|margin| margin.map(f64::to_degrees));
-            margins(table.margin_of_c(row), theta_rect)
-        });
-        let mut text = explain::event(event);
-        if !picked && table.parameters().selection == Selection::Table1 {
-            if within_reach {
-                let [_, name] = explain::key_name(table.parameters());
-                let [key, reach] = explain::apart(key, reach);
-                text += &format!("; {name} = {key} < c\u{b7}H_{{min}} = {reach}");
-            } else {
-                text += "; no segment of classes 1 to 3 within reach, and none with a smaller H";
-            }
+/// The selection of a base: what decided, and for which parameters it would have been the same.
+fn of_base(table: &FrontTable, event: &Event) -> (String, Option<String>) {
+    let mut text = explain::event(event);
+    let Event::BaseSelected { a, b, key, reach, within_reach, picked, .. } = *event else { return (text, None) };
+    let row = table.find(a, b);
+    let margin = row.and_then(|row| {
+        let theta_rect = table.margin_of_theta_rect(row).map(|margin| margin.map(f64::to_degrees));
+        margins(table.margin_of_c(row), theta_rect)
+    });
+    if !picked && table.parameters().selection == Selection::Table1 {
+        if within_reach {
+            let [_, name] = explain::key_name(table.parameters());
+            let [key, reach] = explain::apart(key, reach);
+            text += &format!("; {name} = {key} < c\u{b7}H_{{min}} = {reach}");
+        } else {
+            text += "; no segment of classes 1 to 3 within reach, and none with a smaller H";
         }
-        Ok((text, margin))
     }
+    (text, margin)
+}
 
-    /// A side that is the front: the frontal angle, and for which theta_rect it would have been the same.
-    fn front_side(
-        &self,
-        step: u64,
-        base: &Event,
-        side: Side,
-        event: &Event,
-    ) -> Result<(String, Option<String>), Fault> {
-        let Event::BaseSelected { theta, .. } = base else { return Ok((explain::event(event), None)) };
-        let theta_rect = self.run().parameters_at(step - 1)?.theta_rect;
-        let theta = theta[side.index()];
-        let name = ["A", "B"][side.index()];
-        let [less, more] = explain::angles_apart(theta, theta_rect);
-        let told = explain::event(event);
-        let text = format!("{told}; \u{3b8}_{{{name}}} = {less}\u{b0} < \u{3b8}_{{rect}} = {more}\u{b0}");
-        Ok((text, margins(None, Some([theta.to_degrees(), 180.0]))))
+/// A side: the frontal angle where it is the front, else the second best, and for which parameters it would have been
+/// the same.
+fn of_side(tried: &Candidates, event: &Event) -> (String, Option<String>) {
+    let mut text = explain::event(event);
+    match event {
+        Event::SideIsFront { side, .. } => {
+            let name = ["A", "B"][side.index()];
+            let [less, more] = explain::angles_apart(tried.theta, tried.theta_rect);
+            text += &format!("; \u{3b8}_{{{name}}} = {less}\u{b0} < \u{3b8}_{{rect}} = {more}\u{b0}");
+        }
+        Event::SideChosen { .. } | Event::SideSwapped { .. } => {
+            text += &explain::second(tried).map_or(String::new(), |second| format!("; {second}"));
+        }
+        _ => return (text, None),
     }
+    (text, explain::side_margins(tried))
 }

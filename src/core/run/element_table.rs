@@ -2,7 +2,8 @@
 
 use super::explain::ElementFacts;
 use super::history::Changes;
-use super::listing::{Listed, Row, fields};
+use super::last_changes::LastChanges;
+use super::listing::{Listed, Row, Steps, fields};
 use crate::core::kernel::condition::Holds::{Degrees, Flag, Number};
 use crate::core::kernel::condition::{Field, Value};
 use crate::core::mesh::{ElementId, Mesh};
@@ -38,6 +39,8 @@ pub struct ElementRow {
     pub face: u32,
     /// The step that made the quadrilateral; 0 where it was given, `None` for a triangle.
     pub born: Option<u64>,
+    /// The last step that moved or changed it; 0 where none did.
+    pub changed: u64,
 }
 
 fields! {
@@ -67,11 +70,13 @@ fields! {
     "face": Number, "face of the case, from 1" => |e| Value::number(e.face);
     "born": Number, "step that made the quadrilateral; 0 where it was given" =>
         |e| e.born.map(|step| Value::Number(step as f64));
+    "changed": Number, "last step that moved or changed it; 0 where none did" =>
+        |e| Value::number(e.changed as f64);
 }
 
 impl ElementRow {
-    /// Measures an element that was born at a step; `None` where it does not exist.
-    pub fn of(mesh: &Mesh, element: ElementId, born: u64) -> Option<ElementRow> {
+    /// Measures an element that these steps made and changed; `None` where it does not exist.
+    pub fn of(mesh: &Mesh, element: ElementId, steps: Steps) -> Option<ElementRow> {
         let facts = ElementFacts::of(mesh, element)?;
         let [jacobian_metric, jacobian_space] = facts.jacobians.map_or([None; 2], |pair| pair.map(Some));
         Some(ElementRow {
@@ -88,7 +93,8 @@ impl ElementRow {
             jacobian_space,
             level: facts.level,
             face: facts.region + 1,
-            born: (!facts.is_live).then_some(born),
+            born: (!facts.is_live).then_some(steps.born),
+            changed: steps.changed,
         })
     }
 }
@@ -110,11 +116,16 @@ impl Row for ElementRow {
     }
 
     fn measure(mesh: &Mesh, slot: u32) -> Option<ElementRow> {
-        ElementRow::of(mesh, ElementId(slot), 0)
+        ElementRow::of(mesh, ElementId(slot), Steps::default())
     }
 
-    fn set_born(&mut self, born: u64) {
-        self.born = (!self.is_live).then_some(born);
+    fn set_steps(&mut self, steps: Steps) {
+        self.born = (!self.is_live).then_some(steps.born);
+        self.changed = steps.changed;
+    }
+
+    fn last_change(changes: &LastChanges, slot: u32) -> u64 {
+        changes.of_element(slot)
     }
 
     fn touched(mesh: &Mesh, changes: &Changes, touch: &mut dyn FnMut(u32)) {

@@ -24,7 +24,7 @@ pub use next::next;
 pub use numbers::{angles_apart, apart, capital, edge, plain, segment};
 pub use segment::{SegmentFacts, Verdict};
 pub use selecting::{SelectedBase, Selecting};
-pub use side::{corner, passed, side_rule};
+pub use side::{corner, passed, second, side_margins, side_rule};
 pub use why::{key_name, key_text, margins};
 
 use glam::DVec3;
@@ -206,7 +206,7 @@ pub struct ElementFacts {
     pub quality: f64,
     /// Angles at its nodes in their metrics, in degrees.
     pub angles_metric: Vec<f64>,
-    /// Angles at its nodes in space, in degrees.
+    /// Angles at its nodes in space, between straight sides, in degrees.
     pub angles_physical: Vec<f64>,
     /// Lengths of its sides in the metric, from its first node on.
     pub lengths_metric: Vec<f64>,
@@ -237,11 +237,6 @@ impl ElementFacts {
             let [p, next, last] = around(k).map(|n| mesh.uv(n));
             angle(mesh.metric_ref(nodes[k]), next - p, last - p).to_degrees()
         };
-        let in_space = |k: usize| {
-            let [p, next, last] = around(k).map(|n| mesh.xyz(n));
-            let (out, back) = (next - p, last - p);
-            libm::atan2(out.cross(back).length(), out.dot(back)).to_degrees()
-        };
         let sides = || (0..count).map(|k| (nodes[k], nodes[(k + 1) % count]));
         let jacobians = mesh.is_quad(element).then(|| {
             let n = mesh.quad(element);
@@ -258,7 +253,7 @@ impl ElementFacts {
             is_live: mesh.is_triangle(element),
             quality: mesh.quality(element),
             angles_metric: (0..count).map(in_metric).collect(),
-            angles_physical: (0..count).map(in_space).collect(),
+            angles_physical: mesh.angles_in_space(element).into_iter().map(f64::to_degrees).collect(),
             lengths_metric: sides().map(|(a, b)| mesh.distance(a, b)).collect(),
             lengths_physical: sides().map(|(a, b)| mesh.physical_distance(a, b)).collect(),
             jacobians,

@@ -2,6 +2,7 @@
 //! what changes.
 
 use super::history::Changes;
+use super::last_changes::LastChanges;
 use crate::core::kernel::condition::{Condition, Field, Value};
 use crate::core::mesh::Mesh;
 
@@ -27,6 +28,15 @@ pub struct Listing {
     pub of: usize,
 }
 
+/// The steps that made something and changed it last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Steps {
+    /// The step of its birth; 0 where the background mesh has it.
+    pub born: u64,
+    /// The last step that moved or changed it; 0 where none did.
+    pub changed: u64,
+}
+
 /// Something that can be listed.
 pub trait Row: Copy {
     /// Its fields.
@@ -41,8 +51,11 @@ pub trait Row: Copy {
     /// Measures what is in a slot.
     fn measure(mesh: &Mesh, slot: u32) -> Option<Self>;
 
-    /// Sets the step at which it was born.
-    fn set_born(&mut self, born: u64);
+    /// Sets the steps at which it was born and changed.
+    fn set_steps(&mut self, steps: Steps);
+
+    /// The step that changed what is in a slot last.
+    fn last_change(changes: &LastChanges, slot: u32) -> u64;
 
     /// Visits the slots that changes may concern.
     fn touched(mesh: &Mesh, changes: &Changes, touch: &mut dyn FnMut(u32));
@@ -72,8 +85,8 @@ impl<R> Default for Listed<R> {
 }
 
 impl<R: Row> Listed<R> {
-    /// Measures again what has changed since the last call; `born` has the step of birth by slot.
-    pub fn follow(&mut self, mesh: &Mesh, changes: &Changes, born: &[u64]) {
+    /// Measures again what has changed since the last call; `steps` has those of each slot.
+    pub fn follow(&mut self, mesh: &Mesh, changes: &Changes, steps: impl Fn(u32) -> Steps) {
         let slots = R::slots(mesh);
         self.rows.resize(slots, None);
         if *changes == Changes::Everything {
@@ -85,9 +98,9 @@ impl<R: Row> Listed<R> {
                 }
             });
         }
-        for (slot, row) in self.rows.iter_mut().enumerate() {
+        for (row, slot) in self.rows.iter_mut().zip(0..) {
             if let Some(row) = row {
-                row.set_born(born.get(slot).copied().unwrap_or(0));
+                row.set_steps(steps(slot));
             }
         }
     }

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::births::Born;
 use super::front_count::FrontCount;
+use super::last_changes::ChangeLog;
 use super::sample::Sample;
 use crate::core::convert::{Event, EventKind};
 
@@ -39,6 +40,7 @@ pub struct Log {
     quads: Vec<(u64, Angles)>,
     samples: Vec<Sample>,
     born: Born,
+    changes: ChangeLog,
     /// The events of all chunks before this one were dropped.
     given_up: usize,
 }
@@ -105,6 +107,15 @@ impl Log {
         &self.born
     }
 
+    /// What the steps changed.
+    pub fn changes(&self) -> &ChangeLog {
+        &self.changes
+    }
+
+    pub(super) fn changes_mut(&mut self) -> &mut ChangeLog {
+        &mut self.changes
+    }
+
     pub(super) fn born_mut(&mut self) -> &mut Born {
         &mut self.born
     }
@@ -157,6 +168,7 @@ impl Log {
         self.quads.extend(later.quads);
         self.samples.extend(later.samples);
         self.born.append(&later.born);
+        self.changes.append(later.changes);
         for event in later.chunks.into_iter().flatten().flatten().chain(later.tail) {
             self.push_event(event);
         }
@@ -172,6 +184,7 @@ impl Log {
         self.quads.truncate(self.quads.partition_point(|quad| quad.0 <= step));
         self.samples.truncate(self.samples.partition_point(|sample| sample.step <= step));
         self.born.truncate(step);
+        self.changes.truncate(step);
         if count < CHUNK * self.chunks.len() {
             let partial = self.chunks.swap_remove(count / CHUNK);
             self.chunks.truncate(count / CHUNK);
@@ -193,7 +206,8 @@ impl Log {
         let figures = self.fronts.capacity() * size_of::<(u64, FrontCount)>()
             + self.quads.capacity() * size_of::<(u64, Angles)>()
             + self.samples.capacity() * size_of::<Sample>()
-            + self.born.bytes();
+            + self.born.bytes()
+            + self.changes.bytes();
         self.kinds.capacity()
             + 4 * self.nq.capacity()
             + figures

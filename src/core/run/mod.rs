@@ -13,6 +13,7 @@
 //! | one event per step, the number of quadrilaterals, where to go next | [`Log`] |
 //! | invariants and statistics along a run, lanes of its work | [`Sample`], [`timeline`] |
 //! | the step that made each quadrilateral, without a history | [`Births`] |
+//! | the step that changed each node and element last | [`LastChanges`], [`ChangeLog`] |
 //! | elements and nodes with their measures, filtered and sorted | [`ElementTable`], [`NodeTable`] |
 //! | breakpoints and watchpoints | [`breakpoint`], [`Watched`] |
 //! | what a person looks for by number or coordinates | [`Sought`] |
@@ -37,6 +38,7 @@ pub mod history;
 pub mod compare;
 pub mod copies;
 mod births;
+mod last_changes;
 mod worst_quality;
 pub mod breakpoint;
 mod watch;
@@ -62,7 +64,8 @@ pub use find::Sought;
 pub use front_count::FrontCount;
 pub use front_table::FrontTable;
 pub use history::{Changes, History};
-pub use listing::{Listed, Listing, Query, Row, csv};
+pub use last_changes::{ChangeLog, LastChanges};
+pub use listing::{Listed, Listing, Query, Row, Steps, csv};
 pub use log::{Angles, Log};
 pub use node_table::{NodePlace, NodeRow, NodeTable};
 pub use recorder::{Recorder, Stretch};

@@ -1,7 +1,8 @@
 //! The table of the nodes of a state, for lists that are sorted and filtered.
 
 use super::history::Changes;
-use super::listing::{Listed, Row, fields};
+use super::last_changes::LastChanges;
+use super::listing::{Listed, Row, Steps, fields};
 use crate::core::kernel::condition::Holds::{Flag, Number};
 use crate::core::kernel::condition::{Field, Holds, Value};
 use crate::core::kernel::worded::worded;
@@ -40,8 +41,8 @@ pub struct NodeRow {
     pub place: NodePlace,
     /// Its face, from 1.
     pub face: u32,
-    /// The step that made it; 0 where the background mesh has it.
-    pub born: u64,
+    /// The steps that made it and changed it last.
+    pub steps: Steps,
 }
 
 fields! {
@@ -58,12 +59,14 @@ fields! {
     "place": PLACE, "where it is" => |n| Some(Value::Word(n.place.name()));
     "face": Number, "face of the case, from 1" => |n| Value::number(n.face);
     "born": Number, "step that made it; 0 where the background mesh has it" =>
-        |n| Value::number(n.born as f64);
+        |n| Value::number(n.steps.born as f64);
+    "changed": Number, "last step that moved it or changed its edges; 0 where none did" =>
+        |n| Value::number(n.steps.changed as f64);
 }
 
 impl NodeRow {
-    /// Measures a node that was born at a step; `None` where it does not exist.
-    pub fn of(mesh: &Mesh, node: NodeId, born: u64) -> Option<NodeRow> {
+    /// Measures a node that these steps made and changed; `None` where it does not exist.
+    pub fn of(mesh: &Mesh, node: NodeId, steps: Steps) -> Option<NodeRow> {
         if !mesh.has_node(node) {
             return None;
         }
@@ -85,7 +88,7 @@ impl NodeRow {
             is_irregular: (!is_fixed).then(|| !mesh.is_regular(node)),
             place,
             face: mesh.elements_at(node).next().map_or(0, |e| mesh.region(e) + 1),
-            born,
+            steps,
         })
     }
 }
@@ -102,11 +105,15 @@ impl Row for NodeRow {
     }
 
     fn measure(mesh: &Mesh, slot: u32) -> Option<NodeRow> {
-        NodeRow::of(mesh, NodeId(slot), 0)
+        NodeRow::of(mesh, NodeId(slot), Steps::default())
     }
 
-    fn set_born(&mut self, born: u64) {
-        self.born = born;
+    fn set_steps(&mut self, steps: Steps) {
+        self.steps = steps;
+    }
+
+    fn last_change(changes: &LastChanges, slot: u32) -> u64 {
+        changes.of_node(slot)
     }
 
     fn touched(mesh: &Mesh, changes: &Changes, touch: &mut dyn FnMut(u32)) {

@@ -7,10 +7,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::births::Appearing;
 use super::front_count::{FrontTracker, changes_front};
 use super::keyframes::{Keyframe, Keyframes};
+use super::last_changes::Changing;
 use super::log::{Angles, Log};
 use super::run::Run;
 use super::sample::{Measures, Sample};
-use crate::core::convert::{Converter, Event, Phase};
+use crate::core::convert::{Converter, Event, EventKind, Phase};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, FreeLists, Mesh, Touched};
 use crate::core::metric::measure::angle;
@@ -43,6 +44,7 @@ pub struct Recorder {
     /// What the last step touched.
     last: Touched,
     appearing: Appearing,
+    changing: Changing,
 }
 
 /// The log and keyframes of a stretch of steps.
@@ -78,7 +80,7 @@ impl Recorder {
         converter.keep_journal();
         let touched = Touched::default();
         let (front, measures) = (FrontTracker::of(&converter.mesh), Measures::of(&converter.mesh));
-        let appearing = Appearing::of(&converter.mesh);
+        let (appearing, changing) = (Appearing::of(&converter.mesh), Changing::of(&converter.mesh));
         Ok(Recorder {
             run,
             converter,
@@ -93,6 +95,7 @@ impl Recorder {
             measures,
             last: Touched::default(),
             appearing,
+            changing,
         })
     }
 
@@ -171,6 +174,8 @@ impl Recorder {
             || self.touched.nodes().len() > SWEPT + self.converter.mesh.node_slots() / 2;
         let can_be_kept = phase.mark().is_none();
         self.appearing.note(&self.converter.mesh, &self.last, self.step, can_be_kept, stretch.log.born_mut());
+        let ends = [can_be_kept, event.kind() == EventKind::RolledBack];
+        self.changing.note(&self.converter.mesh, &self.last, self.step, ends, stretch.log.changes_mut());
         stretch.log.push(event, self.converter.standing(), at_rest);
         if can_be_kept {
             self.converter.mesh.commit();

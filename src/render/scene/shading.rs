@@ -107,13 +107,9 @@ pub fn metric_angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
     }))
 }
 
-/// The smallest and the largest angle between straight sides of an element in space, in radians.
+/// The smallest and the largest angle of an element in space, in radians.
 pub fn space_angles(mesh: &Mesh, e: ElementId) -> [f64; 2] {
-    extremes(mesh.half_edges(e).map(|h| {
-        let p = mesh.xyz(mesh.origin(h));
-        let (out, back) = (mesh.xyz(mesh.target(h)) - p, mesh.xyz(mesh.apex(h)) - p);
-        libm::atan2(out.cross(back).length(), out.dot(back))
-    }))
+    extremes(mesh.angles_in_space(e).into_iter())
 }
 
 fn extremes(angles: impl Iterator<Item = f64>) -> [f64; 2] {

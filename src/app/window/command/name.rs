@@ -24,7 +24,7 @@ impl Command {
             Command::Made(_) => "Go to creation".into(),
             Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
             Command::TellPast(_) => "History".into(),
-            Command::TellChain(_) => "Decision chain".into(),
+            Command::TellChain(_) | Command::ShowChain(_) => "Decision chain".into(),
             Command::List(kind, _) => format!("List {}s", kind.name()),
             Command::CopyList(kind, _) => format!("Copy the {}s as CSV", kind.name()),
             Command::FindWorst => "Worst quadrilateral".into(),

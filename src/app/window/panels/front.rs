@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use eframe::egui::{self, Align, Align2, Layout, Rect, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
 use egui_extras::{Column, TableBuilder};
 
-use super::{inspector, line};
+use super::{actions, line};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::session::Moment;
@@ -261,7 +261,7 @@ fn table(
             if response.hovered() {
                 commands.push(Command::Hover(what));
             }
-            response.context_menu(|ui| inspector::past::actions(ui, state, what, commands));
+            response.context_menu(|ui| actions::menu(ui, state, what, commands));
             if response.double_clicked() {
                 commands.push(Command::Show(what));
             } else if response.clicked() {

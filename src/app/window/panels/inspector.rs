@@ -7,7 +7,7 @@ mod edge;
 mod node;
 mod element;
 mod step;
-pub mod past;
+mod past;
 mod chain;
 mod attempts;
 
@@ -16,7 +16,7 @@ use eframe::egui::{
     Align, Align2, Id, Label, Layout, Response, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, Vec2, WidgetInfo,
 };
 
-use super::{inset, line, note, on_click, part, stands_for};
+use super::{actions, inset, line, note, on_click, part, stands_for};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -28,8 +28,17 @@ use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{Decision, Outlined};
 use rows::{Last, TableRow};
 
+/// What the panel keeps for itself.
+#[derive(Default)]
+pub struct InspectorState {
+    /// The last request to show a chain that it has followed.
+    chained: u64,
+    /// The quadrilateral whose chain is still to be shown.
+    seeks: Option<ElementId>,
+}
+
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, local: &mut InspectorState, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(moment) = state.run().moment.as_deref() else { return };
     let decision = Decision::of(&moment.phase).base.map(Outlined::Edge);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -57,7 +66,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
                     }
                 }
                 Some(Outlined::Node(n)) => node::show(ui, state, moment, n, commands, palette),
-                Some(Outlined::Element(e)) => element::show(ui, state, moment, e, commands, palette),
+                Some(Outlined::Element(e)) => element::show(ui, state, local, moment, e, commands, palette),
             }
             if shown.is_some() && moment.base.is_none() {
                 step::show(ui, moment, palette);
@@ -74,10 +83,10 @@ fn title(ui: &mut Ui, text: String, palette: &Palette) {
     ui.label(RichText::new(text).font(theme::semibold(theme::TITLE)).color(ink(palette.strong)));
 }
 
-/// Actions on what is shown.
-fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Command>) {
+/// What can be done with what is shown.
+fn offered(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Command>) {
     ui.add_space(3.0);
-    part(ui, "actions", |ui| ui.horizontal_wrapped(|ui| past::actions(ui, state, what, commands)));
+    part(ui, "actions", |ui| ui.horizontal_wrapped(|ui| actions::buttons(ui, state, what, commands)));
 }
 
 /// A line of formulas: `_{x}` is a subscript, `**x**` is emphasised.
@@ -94,12 +103,17 @@ fn gone(ui: &mut Ui, what: &str, palette: &Palette) {
     ui.label(note(format!("{what} does not exist at this step."), palette));
 }
 
+/// Whether a section is unfolded.
+fn folding(ui: &Ui, title: &str) -> CollapsingState {
+    CollapsingState::load_with_default_open(ui.ctx(), Id::unique(("section of the inspector", title)), true)
+}
+
 /// The head of a section, which a click folds or unfolds; its source stands at the right where there is room. Returns
 /// whether the section is unfolded.
 fn section(ui: &mut Ui, title: &str, source: &str, palette: &Palette) -> bool {
     ui.add_space(8.0);
-    let id = Id::unique(("section of the inspector", title));
-    let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, true);
+    let mut state = folding(ui, title);
+    let id = state.id();
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 22.0), Sense::hover());
     let response = ui.interact(rect, id.with("head"), Sense::click());
     if response.clicked() {

@@ -10,7 +10,7 @@ use egui_extras::{Column, TableBuilder, TableRow};
 
 use self::columns::{Described, Head};
 use super::condition_field::ConditionField;
-use super::{inset, inspector, line, note};
+use super::{actions, inset, line, note};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::lists::Shown;
@@ -19,7 +19,7 @@ use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::kernel::condition::Condition;
-use crate::core::run::{ElementRow, NodeRow, Query};
+use crate::core::run::{ElementRow, LastChanges, NodeRow, Query, Steps};
 use crate::render::palette::Palette;
 
 const ROW: f32 = 20.0;
@@ -38,8 +38,8 @@ pub struct ListState {
     copied: u64,
     /// Whether it is still to scroll to the selection.
     seeks: bool,
-    /// The steps of birth by slot, and the state that they are of.
-    born: (Weak<Moment>, Vec<u64>),
+    /// The steps of births and last changes, and the run and the state that they are of.
+    recorded: Recorded,
 }
 
 impl ListState {
@@ -53,12 +53,41 @@ impl ListState {
             scrolled: 0,
             copied: 0,
             seeks: false,
-            born: (Weak::new(), Vec::new()),
+            recorded: Recorded::default(),
         }
     }
 
     fn query(&self) -> Query {
         Query { field: self.field, descending: self.descending, filter: self.filter.clone() }
+    }
+}
+
+/// The steps that made and changed what a state of a run has.
+#[derive(Default)]
+struct Recorded {
+    run: u64,
+    moment: Weak<Moment>,
+    born: Vec<u64>,
+    changes: LastChanges,
+}
+
+impl Recorded {
+    /// Looks them up for another state.
+    fn follow<R: Described>(&mut self, state: &State, moment: &Arc<Moment>) {
+        let run = state.run();
+        if std::mem::replace(&mut self.run, run.number) != run.number {
+            self.changes = LastChanges::default();
+        }
+        if !std::ptr::eq(self.moment.as_ptr(), Arc::as_ptr(moment)) {
+            self.moment = Arc::downgrade(moment);
+            self.born = R::born(state, moment);
+            self.changes.follow(&run.change_log, moment.step);
+        }
+    }
+
+    fn of<R: Described>(&self, slot: u32) -> Steps {
+        let born = self.born.get(slot as usize).copied().unwrap_or(0);
+        Steps { born, changed: R::last_change(&self.changes, slot) }
     }
 }
 
@@ -92,9 +121,7 @@ fn show<R: Described>(
     palette: &Palette,
 ) {
     let Some(moment) = &state.run().moment else { return };
-    if !std::ptr::eq(local.born.0.as_ptr(), Arc::as_ptr(moment)) {
-        local.born = (Arc::downgrade(moment), R::born(state, moment));
-    }
+    local.recorded.follow::<R>(state, moment);
     let lister = R::lister(&state.run().lists);
     inset().show(ui, |ui| {
         let field = ConditionField { name: R::FILTER, hint: R::HINT, fields: R::FIELDS };
@@ -175,7 +202,7 @@ fn table<R: Described>(
         }
         header.col(|_| {});
     });
-    let born = &local.born.1;
+    let recorded = &local.recorded;
     let hovered = state.frame().hovered.and_then(R::slot);
     table.body(|body| {
         body.rows(ROW, shown.listing.slots.len(), |mut row| {
@@ -183,7 +210,7 @@ fn table<R: Described>(
             let (is_picked, is_hovered) = (picked == Some(slot), hovered == Some(slot));
             row.set_selected(is_picked);
             row.set_hovered(is_hovered);
-            let measured = R::row(moment, slot, born);
+            let measured = R::row(moment, slot, recorded.of::<R>(slot));
             for (head, decimals) in heads.iter().zip(&decimals) {
                 // Until the thread has made the list of this state, it may name what is gone.
                 let text = measured.as_ref().map_or(String::new(), |row| columns::text(row, head.field, *decimals));
@@ -212,7 +239,7 @@ fn act<R: Described>(
     if response.hovered() {
         commands.push(Command::Hover(what));
     }
-    response.context_menu(|ui| inspector::past::actions(ui, state, what, commands));
+    response.context_menu(|ui| actions::menu(ui, state, what, commands));
     if response.double_clicked() {
         commands.push(Command::Show(what));
     } else if response.clicked() {

@@ -9,6 +9,7 @@ use crate::core::front::Segment;
 use crate::core::mesh::{ElementId, Mesh};
 use crate::core::run::front_table::{Loop, Row};
 use crate::core::run::{Changes, SegmentFacts, Selecting, Tried};
+use crate::render::refused::{Refused, refused};
 
 /// Whether the invariants hold.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -64,6 +65,13 @@ pub struct Moment {
     pub verdict: Verdict,
     /// The time from the request to the report.
     pub took: Duration,
+}
+
+impl Moment {
+    /// The candidates of the last step that were not chosen.
+    pub fn refused(&self) -> Vec<Refused> {
+        refused(&self.mesh, &self.phase, self.candidates.as_ref())
+    }
 }
 
 /// A row of the table in the form that the renderer takes.

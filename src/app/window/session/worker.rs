@@ -341,6 +341,7 @@ impl Worker {
             steps: steps.collect(),
             samples,
             born: log.born().after(self.tracked),
+            change_log: log.changes().clone(),
             end,
         };
         self.tracked = log.known();

@@ -17,7 +17,7 @@ use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
 use crate::app::window::layout::Pane;
-use crate::app::window::lists::ListKind;
+use crate::app::window::lists::{ListKind, RecordedSteps};
 use crate::app::window::measure::Measuring;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
@@ -59,13 +59,18 @@ impl State {
                 self.view.over_epoch += 1;
             }
             Command::LastTouch(what) => self.ask(Ask::Touch(watched(what))),
-            Command::Made(element) => self.ask(Ask::Made(element)),
+            Command::Made(what) => self.go_to_creation(what),
             Command::Explain(ends) => self.run.asked = self.inquire(Ask::Explain(ends)).map(|step| (step, ends)),
             Command::TellPast(watched) => {
                 self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
             }
             Command::TellChain(element) => {
                 self.run.asked_chain = self.inquire(Ask::Chain(element)).map(|step| (step, element));
+            }
+            Command::ShowChain(element) => {
+                self.change(|document| document.picked = Some(Outlined::Element(element)));
+                self.view.reveal.ask(Some(Pane::Inspector));
+                self.view.chain.ask(Some(element));
             }
             Command::List(kind, query) => self.list(kind, query, false),
             Command::CopyList(kind, query) => self.list(kind, query, true),
@@ -408,7 +413,8 @@ impl State {
             ListKind::Elements => self.run.born.of_quads(moment.step, mesh.element_slots()),
             ListKind::Nodes => self.run.born.of_nodes(moment.step, mesh.node_slots()),
         };
-        self.run.lists.make(kind, query, as_text, mesh, born, self.wake.clone());
+        let recorded = RecordedSteps { step: moment.step, born, changes: self.run.change_log.clone() };
+        self.run.lists.make(kind, query, as_text, mesh, recorded, self.wake.clone());
     }
 
     fn move_camera(&mut self, view: ViewKind, camera: ViewCamera) {

@@ -89,13 +89,14 @@ impl State {
                     self.follow(&before);
                 }
             }
-            SessionNews::Track { from, steps, samples, born, end } => {
+            SessionNews::Track { from, steps, samples, born, change_log, end } => {
                 run.track.truncate(from as usize);
                 run.track.extend(steps);
                 run.samples.retain(|sample| sample.step <= from && from > 0);
                 run.samples.extend(samples);
                 run.born.truncate(from);
                 run.born.append(&born);
+                run.change_log = change_log;
                 run.track_epoch += 1;
                 run.recorded = end;
             }

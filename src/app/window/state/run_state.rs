@@ -13,7 +13,7 @@ use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Sour
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
-use crate::core::run::{Born, Sample, ShownState, Sought, Watched};
+use crate::core::run::{Born, ChangeLog, Sample, ShownState, Sought, Watched};
 use crate::render::scene::Outlined;
 
 /// How far some work is.
@@ -78,6 +78,8 @@ pub struct RunState {
     pub samples: Vec<Sample>,
     /// The steps that made quadrilaterals and nodes.
     pub born: Born,
+    /// What the steps changed.
+    pub change_log: ChangeLog,
     /// Changes with all of them.
     pub track_epoch: u64,
     /// Whether all steps have been recorded.

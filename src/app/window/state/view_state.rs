@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::log::MessageLog;
 use crate::app::window::layout::Pane;
+use crate::core::mesh::ElementId;
 use crate::core::run::run;
 use crate::render::camera::{Bearing, Camera};
 use crate::render::scene::Outlined;
@@ -24,6 +25,8 @@ pub struct ViewState {
     pub look: Request<Look>,
     /// The row that the table of the front is to scroll to.
     pub scroll: Request<Option<Outlined>>,
+    /// The quadrilateral whose decision chain the inspector is to show.
+    pub chain: Request<Option<ElementId>>,
     /// The docks are to be arranged as the document says.
     pub relayout: Request<()>,
     /// The panel that is to be shown in its tabs.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{ViewFrame, refused};
+use super::ViewFrame;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::core::run::Changes;
@@ -89,7 +89,7 @@ impl Stage {
                 changed: &moment.changed,
                 decision: Decision::of(&moment.phase),
                 is_coloured: state.document().colour_by != ColourBy::State,
-                refused: &refused(moment).iter().map(|candidate| candidate.ends).collect::<Vec<_>>(),
+                refused: &moment.refused().iter().map(|candidate| candidate.ends).collect::<Vec<_>>(),
                 picked: state.document().picked,
                 hovered: state.frame().hovered,
                 lit: &state.view().lit,

@@ -1,6 +1,8 @@
 //! What a side edge is chosen from (paper 4.3.4, side edges i to vii): every edge and every swap, with what speaks
 //! against it. Computed from the state on demand: a run that nobody watches pays nothing for it.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use serde::Serialize;
 
 use super::choice::{BaseSide, SideChoice, Way};
@@ -89,6 +91,56 @@ pub struct Candidates {
     pub limit: f64,
     /// Edges in the order in which they are met from the base, then swaps.
     pub edges: Vec<Candidate>,
+}
+
+impl Candidates {
+    /// The one that is chosen.
+    pub fn chosen(&self) -> Option<&Candidate> {
+        self.edges.iter().find(|candidate| candidate.passed.is_none())
+    }
+
+    /// The nearest to the direction aimed at of those that the chosen one was compared with: other edges, and where no
+    /// edge is near enough, swaps too. `None` where nothing was compared, or where there is no other.
+    pub fn second(&self) -> Option<&Candidate> {
+        let compared = self.edges.iter().filter(|candidate| candidate.passed == Some(Passed::Farther));
+        compared.min_by(|a, b| a.deviation.total_cmp(&b.deviation)).filter(|_| self.is_found())
+    }
+
+    /// The interval of theta_rect in radians, from (excluded) to (included), between 90 and 180 degrees, in which the
+    /// same side is chosen, all else unchanged. `None` where the decision does not depend on it.
+    pub fn margin_of_theta_rect(&self) -> Option<[f64; 2]> {
+        match self.rule {
+            SideRule::Front => Some([self.theta.max(FRAC_PI_2), PI]),
+            _ if self.is_found() => Some([FRAC_PI_2, self.theta.min(PI)]),
+            _ => None,
+        }
+    }
+
+    /// The bounds of the limit (`side_deviation`) within which the same side is chosen, all else unchanged: at least
+    /// the first, and below the second; `None` where there is no such bound.
+    pub fn margin_of_limit(&self) -> [Option<f64>; 2] {
+        let least = |among: &dyn Fn(&Candidate) -> bool| {
+            let deviations =
+                self.edges.iter().filter(|candidate| among(candidate)).map(|candidate| candidate.deviation);
+            deviations.min_by(f64::total_cmp)
+        };
+        match self.rule {
+            // With a smaller limit swaps are weighed, and a nearer one is made.
+            SideRule::Near => {
+                let own = self.chosen().map(|chosen| chosen.deviation);
+                let swap = least(&|candidate| candidate.passed == Some(Passed::NotNeeded));
+                [own.filter(|own| swap.is_some_and(|swap| swap < *own)), None]
+            }
+            // With a larger one the nearest edge is near enough.
+            SideRule::Swap => [None, least(&|c| c.swap.is_none() && c.passed == Some(Passed::Farther))],
+            _ => [None; 2],
+        }
+    }
+
+    /// Whether the side was found among edges and swaps by their angles.
+    fn is_found(&self) -> bool {
+        matches!(self.rule, SideRule::Near | SideRule::Swap | SideRule::Nearest)
+    }
 }
 
 /// Everything that a side is chosen from.

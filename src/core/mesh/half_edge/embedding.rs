@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use super::Mesh;
 use crate::core::geometry::Atlas;
 use crate::core::kernel::Metric2;
-use crate::core::mesh::ids::NodeId;
+use crate::core::mesh::ids::{ElementId, NodeId};
+use crate::core::metric::measure::angles_in_space;
 
 /// The surfaces on which a mesh lies, and the positions of its boundary points in space, which all faces share.
 #[derive(Debug)]
@@ -36,6 +38,12 @@ impl Mesh {
             (Some(embedding), Some(point)) => embedding.points[point.index()],
             (Some(embedding), None) => embedding.atlas.xyz(self.uv(node)),
         }
+    }
+
+    /// The angles of an element in space, between straight sides, in radians and in the order of its corners.
+    pub fn angles_in_space(&self, element: ElementId) -> SmallVec<[f64; 4]> {
+        let corners: SmallVec<[DVec3; 4]> = self.corners(element).map(|n| self.xyz(n)).collect();
+        angles_in_space(&corners).collect()
     }
 
     /// The unit normal of the surface at a node; z in the plane.

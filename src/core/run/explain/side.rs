@@ -4,7 +4,8 @@
 use super::Corner;
 use std::f64::consts::FRAC_PI_2;
 
-use super::numbers::{angles_apart, edge};
+use super::numbers::{angles_apart, down, edge, up};
+use super::why::{range_of_theta_rect, same_choice};
 use crate::core::case::Parameters;
 use crate::core::convert::{Candidate, Candidates, Passed, Phase, SideRule};
 use crate::core::front::Side;
@@ -97,7 +98,7 @@ pub fn side_rule(tried: &Candidates) -> String {
     let direction = if *target == FRAC_PI_2 { "right angle" } else { "bisector" };
     let [target, bound] = [target, limit].map(|angle| degrees(*angle));
     let [theta, rect] = angles_apart(*theta, *theta_rect);
-    let chosen = tried.edges.iter().find(|candidate| candidate.passed.is_none());
+    let chosen = tried.chosen();
     let [off, limit] = chosen.map_or([String::new(), bound], |chosen| angles_apart(chosen.deviation, *limit));
     let is_front = tried.theta < tried.theta_rect;
     let nearest = tried.edges.iter().filter(|c| c.swap.is_none() && c.passed == Some(Passed::Farther));
@@ -139,6 +140,31 @@ pub fn side_rule(tried: &Candidates) -> String {
         ),
         SideRule::Nothing => format!("No edge can be the {which} side, and no swap makes one."),
     }
+}
+
+/// The candidate that comes next to the chosen one, with its deviation; `None` where a side was not found by angles.
+pub fn second(tried: &Candidates) -> Option<String> {
+    let chosen = tried.chosen()?;
+    Some(match (tried.second(), tried.rule) {
+        (Some(second), _) => {
+            let [_, off] = angles_apart(chosen.deviation, second.deviation);
+            let by = if second.swap.is_some() { " by a swap" } else { "" };
+            format!("the second best, node {}{by}, is {off}\u{b0} off", second.node.0)
+        }
+        (None, SideRule::Attempt) => "this attempt takes it, whatever its angle".to_owned(),
+        (None, SideRule::Front | SideRule::Nothing) => return None,
+        (None, _) => "there is no other".to_owned(),
+    })
+}
+
+/// For which parameters the same side would be chosen; `None` where no parameter decides.
+pub fn side_margins(tried: &Candidates) -> Option<String> {
+    let mut bounds = Vec::new();
+    bounds.extend(tried.margin_of_theta_rect().map(|margin| range_of_theta_rect(margin.map(f64::to_degrees))));
+    let [least, below] = tried.margin_of_limit().map(|bound| bound.map(f64::to_degrees));
+    bounds.extend(least.map(|bound| format!("side_deviation \u{2265} {}\u{b0}", up(bound, 1))));
+    bounds.extend(below.map(|bound| format!("side_deviation < {}\u{b0}", down(bound, 1))));
+    same_choice(&bounds)
 }
 
 /// Why a candidate is not the side.

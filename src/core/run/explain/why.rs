@@ -206,11 +206,18 @@ fn reasons(table: &FrontTable, told: &SegmentFacts, tense: Tense) -> Vec<String>
 /// For which values of c, and of theta_rect in degrees, a choice would be the same.
 pub fn margins(c: Option<[f64; 2]>, theta_rect: Option<[f64; 2]>) -> Option<String> {
     let mut bounds: Vec<String> = c.map(|[low, high]| range_of_c(low, high)).into_iter().collect();
-    bounds.extend(
-        theta_rect
-            .map(|[low, high]| format!("{}\u{b0} < \u{3b8}_{{rect}} \u{2264} {}\u{b0}", up(low, 1), down(high, 1))),
-    );
+    bounds.extend(theta_rect.map(range_of_theta_rect));
+    same_choice(&bounds)
+}
+
+/// That a choice would be the same for each of some bounds of parameters.
+pub(super) fn same_choice(bounds: &[String]) -> Option<String> {
     (!bounds.is_empty()).then(|| format!("Same choice for {}, all else unchanged.", bounds.join(", or for ")))
+}
+
+/// An interval of theta_rect in degrees; its lower end is excluded.
+pub(super) fn range_of_theta_rect([low, high]: [f64; 2]) -> String {
+    format!("{}\u{b0} < \u{3b8}_{{rect}} \u{2264} {}\u{b0}", up(low, 1), down(high, 1))
 }
 
 /// c Hmin with its factors.

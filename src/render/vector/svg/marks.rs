@@ -22,7 +22,7 @@ const MINOR: f64 = 0.8;
 
 /// Whether a mark is written as text.
 pub fn is_text(mark: &Mark) -> bool {
-    matches!(mark, Mark::Letter { .. } | Mark::Arc { .. } | Mark::Beside { .. })
+    matches!(mark, Mark::Letter { .. } | Mark::Arc { .. } | Mark::Beside { .. } | Mark::Over { .. })
 }
 
 /// Marks being placed on the page.
@@ -56,6 +56,7 @@ impl<'a> Marks<'a> {
                 Mark::Letter { at, from, letter } => self.letter(*at, *from, *letter),
                 Mark::Arc { at, legs, text, always } => self.arc(*at, *legs, text, *always),
                 Mark::Beside { ends, text } => self.beside(*ends, text),
+                Mark::Over { ends, text } => self.over(*ends, text),
                 Mark::Wedge { .. } | Mark::Node(_) | Mark::Ellipse { .. } => {}
             }
         }
@@ -162,6 +163,23 @@ impl<'a> Marks<'a> {
         for d in [right, -right] {
             let reach = half.x * d.x.abs() + half.y * d.y.abs() + 1.0;
             if self.put(0.5 * (p + q) + d * reach, half, text, NOTE_SIZE) {
+                return;
+            }
+        }
+    }
+
+    /// Places a text over the far part of a line that is not short.
+    fn over(&mut self, ends: [DVec2; 2], text: &str) {
+        let [p, q] = ends.map(|end| self.frame.place(end));
+        if !self.frame.sees(&ends) || (q - p).length() < LEGS {
+            return;
+        }
+        let half = DVec2::new(0.5 * width(text, NOTE_SIZE) + 0.4, 0.36 * NOTE_SIZE + 0.2);
+        let along = (q - p).normalize();
+        // Beyond the end there is always room for one of several lines from a common point.
+        let beyond = q + along * (half.x * along.x.abs() + half.y * along.y.abs() + 1.0);
+        for middle in [p + 0.62 * (q - p), p + 0.8 * (q - p), p + 0.45 * (q - p), beyond] {
+            if self.put(middle, half, text, NOTE_SIZE) {
                 return;
             }
         }

@@ -1,8 +1,8 @@
 //! The decision chain of a quadrilateral: each step that made it or changed it, with the number that decided.
 
-use eframe::egui::{CursorIcon, Label, RichText, Role, Sense, Ui, WidgetInfo};
+use eframe::egui::{Align, CursorIcon, Label, RichText, Role, Sense, Ui, WidgetInfo};
 
-use super::{note, part, section, sentence};
+use super::{InspectorState, folding, note, part, section, sentence};
 use crate::app::window::command::Command;
 use crate::app::window::session::{Goal, ToldChain};
 use crate::app::window::state::{Lookup, State};
@@ -12,13 +12,29 @@ use crate::core::mesh::ElementId;
 use crate::core::run::{Link, explain};
 use crate::render::palette::Palette;
 
-pub fn show(ui: &mut Ui, state: &State, element: ElementId, commands: &mut Vec<Command>, palette: &Palette) {
+const TITLE: &str = "Decision chain";
+
+pub fn show(
+    ui: &mut Ui,
+    state: &State,
+    local: &mut InspectorState,
+    element: ElementId,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    local.seeks = state.view().chain.take(&mut local.chained).unwrap_or(local.seeks);
     let told = match state.run().chain(element) {
         Lookup::Known(told) => told,
         Lookup::Pending => return,
         Lookup::Unasked => return commands.push(Command::TellChain(element)),
     };
-    if section(ui, "Decision chain", "up to this step", palette) {
+    if local.seeks.take_if(|sought| *sought == element).is_some() {
+        let mut folding = folding(ui, TITLE);
+        folding.set_open(true);
+        folding.store(ui.ctx());
+        ui.scroll_to_cursor(Some(Align::TOP));
+    }
+    if section(ui, TITLE, "up to this step", palette) {
         part(ui, "chain", |ui| links(ui, &told, commands, palette));
     }
 }

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{actions, elements, ends, gone, length, note, section, title};
+use super::{elements, ends, gone, length, note, offered, section, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -32,7 +32,7 @@ pub fn show(
     };
     let boundary = if told.is_boundary && told.kind != EdgeKind::Boundary { "  ·  on the boundary" } else { "" };
     ui.label(note(format!("{kind}{boundary}"), palette));
-    actions(ui, state, Outlined::Edge(between), commands);
+    offered(ui, state, Outlined::Edge(between), commands);
     length(ui, told.length_metric, told.length_physical, palette);
     let sides = [mesh.half_edge_between(a, b), mesh.half_edge_between(b, a)];
     let beside: Vec<ElementId> = sides.into_iter().flatten().map(|h| h.element()).collect();

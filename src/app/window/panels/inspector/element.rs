@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{actions, chain, ends, formula, gone, note, section, title};
+use super::{InspectorState, chain, ends, formula, gone, note, offered, section, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -12,7 +12,15 @@ use crate::core::run::ElementFacts;
 use crate::render::palette::Palette;
 use crate::render::scene::Outlined;
 
-pub fn show(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(
+    ui: &mut Ui,
+    state: &State,
+    local: &mut InspectorState,
+    moment: &Moment,
+    e: ElementId,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
     let Some(told) = ElementFacts::of(&moment.mesh, e) else {
         title(ui, format!("Element {}", e.0), palette);
         return gone(ui, "The element", palette);
@@ -20,12 +28,12 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, e: ElementId, commands:
     title(ui, format!("{} {}", if told.is_live { "Triangle" } else { "Quadrilateral" }, e.0), palette);
     let state_of = if told.is_live { "live".to_owned() } else { format!("dead  ·  level {}", told.level) };
     ui.label(note(format!("{state_of}  ·  region {}", told.region), palette));
-    actions(ui, state, Outlined::Element(e), commands);
+    offered(ui, state, Outlined::Element(e), commands);
     if section(ui, "Quality", "0 to 1, in the metric", palette) {
         formula(ui, &format!("**{}**", words::fixed(told.quality, 2)), palette);
     }
     if !told.is_live {
-        chain::show(ui, state, e, commands, palette);
+        chain::show(ui, state, local, e, commands, palette);
     }
     let list = |angles: &[f64]| angles.iter().map(|a| words::fixed(*a, 1)).collect::<Vec<_>>().join("   ");
     if section(ui, "Angles", "degrees, at its nodes", palette) {

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{actions, axis, elements, formula, gone, note, section, title};
+use super::{axis, elements, formula, gone, note, offered, section, title};
 use crate::app::window::command::Command;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, node: NodeId, commands:
     let Some(told) = NodeFacts::of(mesh, node) else { return gone(ui, "The node", palette) };
     let place = if told.is_fixed { "on the boundary: fixed" } else { "free: may be moved" };
     ui.label(note(format!("{place}  ·  {}", words::counted(told.valence as u64, "edge")), palette));
-    actions(ui, state, Outlined::Node(node), commands);
+    offered(ui, state, Outlined::Node(node), commands);
     let is_plane = mesh.embedding().is_none();
     if section(ui, "Place", if is_plane { "plane case: u = x, v = y" } else { "in space and in the chart" }, palette) {
         let [x, y, z] = told.xyz.map(words::size);

@@ -1,5 +1,5 @@
 //! The history of something: the step that made it or ended it, the triangles that it was made of, every step that
-//! touched it; and what can be done with it.
+//! touched it.
 
 use eframe::egui::{Label, Sense, Ui};
 
@@ -40,23 +40,6 @@ fn steps(ui: &mut Ui, past: &Past, commands: &mut Vec<Command>, palette: &Palett
     if past.more {
         ui.label(note("For earlier steps, go back to the first of these.", palette));
     }
-}
-
-/// Actions on something, for the inspector and for context menus.
-pub fn actions(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Command>) {
-    let mut offered = vec![(Command::LastTouch(what), "Go back to that step")];
-    if let Outlined::Element(e) = what
-        && state.run().moment.as_ref().is_some_and(|moment| moment.mesh.has_element(e) && moment.mesh.is_quad(e))
-    {
-        offered.push((Command::Made(e), "Go to the step that made this quadrilateral"));
-    }
-    for (command, tip) in offered {
-        on_click(&ui.button(command.name()).on_hover_text(tip), command, commands);
-    }
-    let is_watched = state.document().watches.iter().any(|watch| watch.watched == watched(what));
-    let name = if is_watched { "Stop watching" } else { "Watch" };
-    let tip = "F5 and Alt+F5 stop where it is touched";
-    on_click(&ui.button(name).on_hover_text(tip), Command::Watch(what), commands);
 }
 
 pub fn step_link(ui: &mut Ui, step: u64, what: &str, commands: &mut Vec<Command>, palette: &Palette) {

@@ -5,6 +5,7 @@ use eframe::egui::Ui;
 use super::rows::{self, Last, TableRow};
 use super::{attempts, ends, formula, length, note, part, section, sentence, stands_for, step, title, why};
 use crate::app::window::command::Command;
+use crate::app::window::panels;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
@@ -47,18 +48,13 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, place: usize, commands:
     ui.add_space(3.0);
     part(ui, "actions", |ui| {
         ui.horizontal_wrapped(|ui| {
-            let tip =
-                "Replaces the base that was just selected, or the next base, whatever the rank. This changes the run";
-            if !is_base && ui.button("Choose as base").on_hover_text(tip).clicked() {
-                commands.push(Command::ChooseBase([s.a, s.b]));
-            }
-            super::past::actions(ui, state, Outlined::Edge(what), commands);
+            panels::actions::buttons(ui, state, Outlined::Edge(what), commands);
         })
     });
     // What the last step decided comes first: the choice of a side among candidates, or of the base.
     let tried = moment.candidates.as_ref().filter(|_| is_base);
     if let Some(tried) = tried {
-        candidates(ui, moment, tried, s, commands, palette);
+        candidates(ui, state, moment, tried, s, commands, palette);
     }
     let is_selected = !is_base || matches!(moment.event, Some(Event::BaseSelected { .. }));
     if is_selected {
@@ -139,6 +135,7 @@ fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, pale
 /// The candidates for a side in the last step.
 fn candidates(
     ui: &mut Ui,
+    state: &State,
     moment: &Moment,
     tried: &Candidates,
     s: &Segment,
@@ -161,6 +158,9 @@ fn candidates(
         return;
     }
     sentence(ui, &explain::side_rule(tried), palette.text, palette);
+    if let Some(margins) = explain::side_margins(tried) {
+        sentence(ui, &margins, palette.weak, palette);
+    }
     // The edge that was taken comes first, then all others as they are met from the base.
     let (mut all, others): (Vec<&Candidate>, Vec<_>) = tried.edges.iter().partition(|edge| edge.passed.is_none());
     all.extend(others);
@@ -191,5 +191,6 @@ fn candidates(
         let there = moment.mesh.has_node(candidate.node) && moment.mesh.are_joined(from, candidate.node);
         let what = if there { Outlined::Edge([from, candidate.node]) } else { Outlined::Node(candidate.node) };
         stands_for(&response, what, commands);
+        response.context_menu(|ui| panels::actions::menu(ui, state, what, commands));
     }
 }

@@ -6,7 +6,7 @@ use crate::app::window::state::State;
 use crate::app::window::words;
 use crate::core::kernel::condition::Value;
 use crate::core::mesh::{ElementId, NodeId};
-use crate::core::run::{ElementRow, NodeRow, Row};
+use crate::core::run::{ElementRow, NodeRow, Row, Steps};
 use crate::render::scene::Outlined;
 
 /// The heading of a column.
@@ -51,20 +51,21 @@ pub trait Described: Row + Send + 'static {
     fn lister(lists: &Lists) -> &Lister<Self>;
     /// The steps of birth by slot.
     fn born(state: &State, moment: &Moment) -> Vec<u64>;
-    fn row(moment: &Moment, slot: u32, born: &[u64]) -> Option<Self>;
+    fn row(moment: &Moment, slot: u32, steps: Steps) -> Option<Self>;
     fn outlined(slot: u32) -> Outlined;
     fn slot(what: Outlined) -> Option<u32>;
     /// Its name for screen readers.
     fn name(&self) -> String;
 }
 
-const ELEMENTS: [(&str, &str, &str, f32, Decimals); 17] = [
+const ELEMENTS: [(&str, &str, &str, f32, Decimals); 18] = [
     ("id", "number", "", 50.0, Decimals::Whole),
     ("quad", "kind", "", 36.0, Decimals::Whole),
     ("quality", "quality", "metric", 47.0, Decimals::Fixed(3)),
     ("min_angle", "angle min", "metric °", 58.0, Decimals::Fixed(1)),
     ("max_angle", "angle max", "metric °", 60.0, Decimals::Fixed(1)),
     ("born", "step of", "birth", 52.0, Decimals::Whole),
+    ("changed", "last", "change", 52.0, Decimals::Whole),
     ("level", "level", "", 34.0, Decimals::Whole),
     ("jacobian", "Jacobian", "metric", 54.0, Decimals::Fixed(3)),
     ("area", "area", "metric", 44.0, Decimals::Fixed(2)),
@@ -78,12 +79,13 @@ const ELEMENTS: [(&str, &str, &str, f32, Decimals); 17] = [
     ("space.length.max", "side max", "space", 56.0, Decimals::Size),
 ];
 
-const NODES: [(&str, &str, &str, f32, Decimals); 7] = [
+const NODES: [(&str, &str, &str, f32, Decimals); 8] = [
     ("id", "number", "", 50.0, Decimals::Whole),
     ("valence", "valence", "edges", 48.0, Decimals::Whole),
     ("irregular", "irregular", "", 54.0, Decimals::Whole),
     ("place", "place", "", 60.0, Decimals::Whole),
     ("born", "step of", "birth", 52.0, Decimals::Whole),
+    ("changed", "last", "change", 52.0, Decimals::Whole),
     ("x", "x", "space", 56.0, Decimals::Size),
     ("y", "y", "space", 56.0, Decimals::Size),
 ];
@@ -119,8 +121,8 @@ impl Described for ElementRow {
         state.run().born.of_quads(moment.step, moment.mesh.element_slots())
     }
 
-    fn row(moment: &Moment, slot: u32, born: &[u64]) -> Option<ElementRow> {
-        ElementRow::of(&moment.mesh, ElementId(slot), born.get(slot as usize).copied().unwrap_or(0))
+    fn row(moment: &Moment, slot: u32, steps: Steps) -> Option<ElementRow> {
+        ElementRow::of(&moment.mesh, ElementId(slot), steps)
     }
 
     fn outlined(slot: u32) -> Outlined {
@@ -155,8 +157,8 @@ impl Described for NodeRow {
         state.run().born.of_nodes(moment.step, moment.mesh.node_slots())
     }
 
-    fn row(moment: &Moment, slot: u32, born: &[u64]) -> Option<NodeRow> {
-        NodeRow::of(&moment.mesh, NodeId(slot), born.get(slot as usize).copied().unwrap_or(0))
+    fn row(moment: &Moment, slot: u32, steps: Steps) -> Option<NodeRow> {
+        NodeRow::of(&moment.mesh, NodeId(slot), steps)
     }
 
     fn outlined(slot: u32) -> Outlined {

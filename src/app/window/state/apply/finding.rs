@@ -51,6 +51,22 @@ impl State {
         }
     }
 
+    /// Goes to the step that made something, as far as one is recorded.
+    pub(super) fn go_to_creation(&mut self, what: Outlined) {
+        let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
+        match what {
+            Outlined::Element(e) => self.ask(Ask::Made(e)),
+            Outlined::Node(n) => {
+                let made = self.run.born.nodes.iter().rev().find(|born| born.0 <= step && born.1 == n);
+                match made.map(|born| born.0) {
+                    Some(step) => self.go(Goal::Step(step)),
+                    None => self.notice("It exists from the beginning.".to_owned()),
+                }
+            }
+            Outlined::Edge(_) => {}
+        }
+    }
+
     /// Selects something and brings it into view.
     pub(in crate::app::window::state) fn find(&mut self, what: Outlined) {
         self.change(|document| document.picked = Some(what));

@@ -1,10 +1,10 @@
-//! The candidates for a side edge that were not chosen, as the views draw and label them.
+//! The candidates for a side edge that were not chosen, as views and figures draw and label them.
 
-use crate::app::window::session::Moment;
-use crate::app::window::words;
+use super::scene::{Decision, Outlined};
+use crate::core::convert::{Candidates, Phase};
 use crate::core::front::Side;
-use crate::core::mesh::NodeId;
-use crate::render::scene::{Decision, Outlined};
+use crate::core::mesh::{Mesh, NodeId};
+use crate::core::run::explain;
 
 /// A candidate that was not chosen.
 pub struct Refused {
@@ -26,19 +26,19 @@ impl Refused {
     }
 }
 
-/// The candidates that were not chosen in the last step, while a side is chosen.
-pub fn refused(moment: &Moment) -> Vec<Refused> {
-    let (Some(tried), Some([a, b])) = (&moment.candidates, Decision::of(&moment.phase).base) else { return Vec::new() };
+/// Those of the candidates of the last step, while a side is chosen.
+pub fn refused(mesh: &Mesh, phase: &Phase, candidates: Option<&Candidates>) -> Vec<Refused> {
+    let (Some(tried), Some([a, b])) = (candidates, Decision::of(phase).base) else { return Vec::new() };
     let from = if tried.side == Side::Left { a } else { b };
     // The edges of the front and the base are there without that.
-    let is_front = |node| moment.mesh.front_between(from, node).or(moment.mesh.front_between(node, from)).is_some();
+    let is_front = |node| mesh.front_between(from, node).or(mesh.front_between(node, from)).is_some();
     let edges = tried.edges.iter().filter(|edge| !is_front(edge.node));
     edges
         .filter_map(|edge| {
-            let reason = words::passed(edge.passed?, edge, tried);
+            let reason = explain::passed(edge.passed?, edge, tried);
             let reason = match edge.swap {
                 None => reason,
-                Some(across) => format!("swap {}: {reason}", words::edge(across)),
+                Some(across) => format!("swap {}: {reason}", explain::edge(across)),
             };
             Some(Refused { ends: [from, edge.node], reason })
         })
