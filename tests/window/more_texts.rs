@@ -91,7 +91,7 @@ fn no_text_of_a_finished_sweep_is_cut_or_covered() {
             work.is_some_and(|work| !work.is_running() && work.sweep.as_ref().is_some_and(|s| s.missing().is_empty()))
         });
         for theme in ["dark", "light"] {
-            for figure in &FIGURES {
+            for figure in FIGURES {
                 let mut form = harness.state().state.workspace().sweep.clone();
                 form.figure = figure.name;
                 harness.state_mut().apply(Command::Sweep(SweepCommand::Set(Box::new(form))));

@@ -81,7 +81,7 @@ pub enum PairCommand {
     Activate(Which),
     /// Go on with the other run.
     Switch,
-    /// LinkedBy the steps of the runs in another way.
+    /// Link the steps of the runs in another way.
     Link(LinkedBy),
     /// Show the runs in another way.
     Show(Arrangement),
@@ -106,7 +106,7 @@ impl PairCommand {
             PairCommand::Activate(which) => format!("Show run {} in the panels", which.name()),
             PairCommand::Switch => "Show the other run in the panels".into(),
             PairCommand::Link(LinkedBy::Free) => "Move each run by itself".into(),
-            PairCommand::Link(link) => format!("LinkedBy the runs by {}", link.name()),
+            PairCommand::Link(link) => format!("Link the runs by {}", link.name()),
             PairCommand::Show(arrangement) => format!("Two runs: {}", arrangement.name().to_lowercase()),
             PairCommand::Exchange => "Exchange the two runs".into(),
             PairCommand::Close => "Close the second run".into(),
@@ -222,6 +222,7 @@ impl Command {
                 | Command::Sweep(_)
                 | Command::Screenshot
                 | Command::SetFigure(_)
+                | Command::Reveal(_)
                 | Command::Arrange(_)
                 | Command::ResetLayout
                 | Command::ToggleTheme

@@ -40,6 +40,7 @@ pub struct PanelStates {
     pub front: front::FrontState,
     pub lists: lists::ListStates,
     pub breakpoints: breakpoints::BreakpointsState,
+    pub bookmarks: bookmarks::BookmarksState,
     pub parameters: parameters::ParametersState,
     pub plots: plots::PlotsState,
     pub figure: figure::PreviewState,
@@ -79,9 +80,9 @@ pub fn on_click(response: &Response, command: Command, commands: &mut Vec<Comman
     }
 }
 
-/// A part of a panel with ids of its own, by its name within the panel. An automatic id counts the widgets before it, and
-/// only what is pressed and released under one id is clicked: so what follows content that changes by itself, such as
-/// the progress of a work, is such a part.
+/// A part of a panel with ids of its own, by its name within the panel. An automatic id counts the widgets before it,
+/// and only what is pressed and released under one id is clicked: so what follows content that changes by itself, such
+/// as the progress of a work, is such a part.
 pub fn part<R>(ui: &mut Ui, name: impl AsIdSalt, show: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(("part", name));
     ui.scope_builder(UiBuilder::new().scope_id(id), show).inner

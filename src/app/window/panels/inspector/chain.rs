@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, state: &State, element: ElementId, commands: &mut Vec<C
         Lookup::Unasked => return commands.push(Command::TellChain(element)),
     };
     if section(ui, "Decision chain", "up to this step", palette) {
-        part(ui, "chain", |ui| links(ui, told, commands, palette));
+        part(ui, "chain", |ui| links(ui, &told, commands, palette));
     }
 }
 

@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, state: &State, what: Outlined, commands: &mut Vec<Comma
         Lookup::Unasked => return commands.push(Command::TellPast(watched)),
     };
     if section(ui, "Past steps", "up to this step", palette) {
-        part(ui, "past", |ui| steps(ui, past, commands, palette));
+        part(ui, "past", |ui| steps(ui, &past, commands, palette));
     }
 }
 
