@@ -71,3 +71,35 @@ fn a_run_without_bookmarks_is_refused_in_words() {
     let done = quadfront(&["notes", "a.toml", "-q", "--plot", "angles", "-o", "a.html"], folder.path());
     assert!(String::from_utf8(done.stderr).unwrap().contains("no histograms"));
 }
+
+#[test]
+fn a_step_tells_the_candidates_that_it_refused_and_the_attempts_so_far() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let done = quadfront(&["convert", "example1", "-q", "--events", "events.jsonl"], folder);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let text = std::fs::read_to_string(folder.join("events.jsonl")).unwrap();
+    let events: Vec<serde_json::Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let at = |kind: &str, from: usize| (from..events.len()).find(|k| events[*k]["kind"] == kind).unwrap();
+    // A side that was chosen, and the second attempt at one base that was taken back.
+    let chosen = at("side_chosen", 0);
+    let mut failed = at("rolled_back", 0);
+    while events[failed]["attempt"] != 1 {
+        failed = at("rolled_back", failed + 1);
+    }
+    let mut run = Run::of(built_in::named("example1").unwrap().unwrap());
+    run.bookmarks = [chosen, failed].map(|k| Bookmark { step: k as u64 + 1, note: String::new() }).to_vec();
+    run_file::write(&folder.join("a.toml"), &run).unwrap();
+    let done = quadfront(&["notes", "a.toml", "-q", "-o", "-"], folder);
+    let page = String::from_utf8(done.stdout).unwrap();
+    let sections: Vec<&str> = page.split("<section ").skip(1).collect();
+    let edges = events[chosen]["candidates"]["edges"].as_array().unwrap();
+    let (refused, taken): (Vec<_>, Vec<_>) = edges.iter().partition(|edge| edge["passed"].is_string());
+    assert!(refused.len() > 1 && taken.len() == 1);
+    assert_eq!(sections[0].matches("<li>Candidate to node ").count(), refused.len());
+    for edge in refused {
+        assert!(sections[0].contains(&format!("<li>Candidate to node {}", edge["node"])), "{edge}");
+    }
+    assert_eq!(sections[1].matches("<li>Attempt ").count() - sections[1].matches("Taken back: ").count(), 1);
+    assert_eq!(sections[1].matches("Taken back: ").count(), 2, "{}", sections[1]);
+}

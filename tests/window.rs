@@ -5,6 +5,8 @@
 
 #[path = "window/messages.rs"]
 mod messages;
+#[path = "window/more_texts.rs"]
+mod more_texts;
 #[path = "window/numbers.rs"]
 mod numbers;
 #[path = "window/steps.rs"]

@@ -1,6 +1,7 @@
-//! Promises. A fork shows what would change: where two runs differ first, why, and what both end with; their steps and
-//! cameras are linked, and what is changed is the run that the panels show. A bookmark takes a note while one types;
-//! the note is kept in the run and undone as one change, and all of them are exported as one page.
+//! Promises. Three keys lead to the decision that made the worst quadrilateral, and the list of commands leads where
+//! the panels do. A fork shows what would change: where two runs differ first, why, and what both end with; their
+//! steps and cameras are linked, and what is changed is the run that the panels show. A bookmark takes a note while
+//! one types; the note is kept in the run and undone as one change, and all of them are exported as one page.
 //!
 //! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
@@ -11,7 +12,7 @@ use std::path::Path;
 use std::process::Command as Process;
 
 use eframe::egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use quadfront::app::window::{App, Arrangement, Command, Direction, Goal, LinkedBy, PairCommand, Source, Which};
 use quadfront::core::convert::EventKind;
 use quadfront::core::mesh::{Mesh, NodeId};
@@ -116,6 +117,18 @@ fn a_fork_with_another_c_differs_first_where_the_event_files_do() {
     // A has not been changed.
     assert!(harness.state().state.document().edits.is_empty());
     assert_eq!(harness.state().state.of(Which::B).document().edits.len(), 1);
+}
+
+#[test]
+fn two_runs_are_drawn_anew_only_when_something_changes() {
+    let Some(mut harness) = window() else { return };
+    fork(&mut harness);
+    let view = harness.query_all_by_label_contains("Mesh at step").next().unwrap().rect();
+    harness.hover_at(view.center());
+    harness.run_steps(8);
+    assert!(harness.state().state.frame().hovered.is_some(), "the pointer is on the mesh");
+    let wanted = harness.output().viewport_output.values().map(|viewport| viewport.repaint_delay).min();
+    assert!(wanted.is_some_and(|delay| delay > std::time::Duration::from_millis(100)), "{wanted:?}");
 }
 
 #[test]
@@ -414,4 +427,70 @@ fn a_breakpoint_is_reduced_to_the_smallest_case_that_meets_it() {
     let corners = |text: &str| text.matches('[').count();
     let (_, original) = quadfront::core::case::built_in::all().find(|case| case.0 == "gear").unwrap();
     assert!(corners(&text) < corners(original) / 2, "{text}");
+}
+
+fn step(harness: &Window) -> u64 {
+    harness.state().state.run().moment.as_ref().unwrap().step
+}
+
+/// Chooses the first command of the list that has these words.
+fn choose(harness: &mut Window, words: &str) {
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+    harness.run_steps(2);
+    harness.get_by_label("Name of a command").type_text(words);
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    settle(harness);
+}
+
+#[test]
+fn three_keys_lead_to_the_guilty_step_also_in_one_frame() {
+    let Some(mut harness) = window() else { return };
+    harness.key_press(Key::End);
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::W);
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::G);
+    let end = harness.state().state.run().track.len() as u64;
+    until(&mut harness, "it is at another step than the last one", |harness| {
+        let run = harness.state().state.run();
+        !run.is_busy() && (1..end).contains(&run.moment.as_ref().unwrap().step)
+    });
+    let there = step(&harness);
+    // The chain at the end says the same.
+    apply(&mut harness, Command::Go(Goal::End));
+    until(&mut harness, "the chain is known", |harness| {
+        harness.query_by_label_contains("Largest loss: step").is_some()
+    });
+    let told = harness.get_by_label_contains("Largest loss: step").accesskit_node().label().unwrap();
+    let digits: String = told.chars().filter(char::is_ascii_digit).collect();
+    assert_eq!(digits, there.to_string());
+    // Nothing is selected: it is said what to do.
+    apply(&mut harness, Command::Pick(None));
+    apply(&mut harness, Command::ToLargestLoss);
+    assert!(harness.query_by_label_contains("Select a quadrilateral first").is_some());
+}
+
+#[test]
+fn the_list_of_commands_takes_values_and_leads_where_the_panels_do() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::Go(Goal::Step(40)));
+    choose(&mut harness, "c = 1.5");
+    assert_eq!(harness.state().state.document().edits.len(), 1);
+    assert_eq!(harness.state().state.parameter("c").as_deref(), Some("1.5"));
+    choose(&mut harness, "break where quad.min_angle < 40");
+    assert_eq!(harness.state().state.document().breakpoints[0].condition, "quad.min_angle < 40");
+    choose(&mut harness, "remove the breakpoint: quad.min");
+    assert!(harness.state().state.document().breakpoints.is_empty());
+    // A note is written where the keys lead, and the list leads back to its step.
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::B);
+    harness.run_steps(3);
+    assert!(harness.get_by_label("Note on step 40").accesskit_node().is_focused());
+    harness.get_by_label("Note on step 40").type_text("Here");
+    harness.run_steps(2);
+    assert_eq!(harness.state().state.document().bookmarks[0].note, "Here");
+    apply(&mut harness, Command::Go(Goal::Step(7)));
+    choose(&mut harness, "bookmark of step 40");
+    assert_eq!(step(&harness), 40);
+    choose(&mut harness, "show the panel nodes");
+    assert!(harness.query_by_label("Filter of nodes").is_some());
 }

@@ -111,6 +111,65 @@ fn a_cell_of_a_sweep_opens_the_run_with_the_same_figures() {
     until(&mut window, "the sweep has ended", |window| known(window) == 4 && !is_running(window));
 }
 
+/// How many threads of sweeps run or want to, as Linux counts them.
+fn at_work() -> usize {
+    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return 0 };
+    let is_at_work = |task: &std::fs::DirEntry| {
+        // One that has ended meanwhile has no files.
+        let read = |name: &str| std::fs::read_to_string(task.path().join(name)).unwrap_or_default();
+        let stat = read("stat");
+        let state = stat.rsplit(") ").next().unwrap_or_default().chars().next();
+        read("comm").trim() == "sweep" && state == Some('R')
+    };
+    tasks.filter_map(Result::ok).filter(is_at_work).count()
+}
+
+#[test]
+fn a_sweep_of_63_runs_takes_all_processors_and_each_stop_is_answered_at_once() {
+    let Some(mut window) = window(LAPTOP) else { return };
+    assert!(window.query_by_label("63 runs").is_some(), "7 values of c and 9 of theta_rect");
+    let processors = std::thread::available_parallelism().unwrap().get();
+    let mut took = Vec::new();
+    let mut most = 0;
+    let mut before = 0;
+    for _ in 0..20 {
+        window.get_by_label("Run the sweep").click();
+        window.run_steps(2);
+        until(&mut window, "another cell is known", |window| known(window) > before);
+        assert_eq!(window.state().state.sweep().unwrap().threads, processors);
+        for _ in 0..20 {
+            most = most.max(at_work());
+        }
+        window.get_by_label("Stop the sweep").click();
+        let begin = Instant::now();
+        while is_running(&window) {
+            window.step();
+        }
+        took.push(begin.elapsed());
+        let count = known(&window);
+        window.run_steps(2);
+        assert_eq!(known(&window), count, "what there is stays, and nothing comes after that");
+        before = count;
+    }
+    took.sort();
+    println!("{most} of {processors} threads at work; stopped in {:?} (median), {:?} at most", took[10], took[19]);
+    if cfg!(target_os = "linux") {
+        assert_eq!(most, processors);
+    }
+    // A tenth of a second and a few frames of a slow machine.
+    assert!(took[10] < Duration::from_millis(400), "{took:?}");
+    // A cell that was known when it was stopped is the run that it stands for.
+    let cell = (0..63).find(|cell| sweep(&window).cells()[*cell].is_some()).unwrap();
+    window.state_mut().apply(Command::Sweep(SweepCommand::OpenBeside(cell)));
+    window.run_steps(2);
+    until(&mut window, "its run is there", |window| {
+        let state = &window.state().state;
+        let run = state.of(Which::B).run();
+        state.pair().is_some() && run.moment.is_some() && !run.is_busy() && run.recorded
+    });
+    is_the_run_of(&mut window, cell, Which::B);
+}
+
 #[test]
 fn a_sweep_is_stopped_at_once_and_keeps_what_it_has_while_the_window_goes_on() {
     let Some(mut window) = window(Vec2::new(1600.0, 1000.0)) else { return };

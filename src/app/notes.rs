@@ -1,5 +1,5 @@
-//! `notes`: the notes on the bookmarked steps of a run as one page: for each step its figure, what it did, and the
-//! note.
+//! `notes`: the notes on the bookmarked steps of a run as one page: for each step its figure, what it did and why, the
+//! attempts so far at the quadrilateral under way, and the note.
 
 use std::fmt::Write;
 
@@ -15,18 +15,18 @@ use super::output;
 use super::progress::Progress;
 use super::work::FigureFrame;
 use crate::core::case::ImportOptions;
-use crate::core::convert::{Event as Did, Stop};
+use crate::core::convert::{Candidate, Candidates, Event as Did, EventKind, Stop};
 use crate::core::fault::Fault;
 use crate::core::kernel::number::{counted, grouped};
 use crate::core::progress::{Stage, Watch};
-use crate::core::run::explain::{capital, event, plain};
+use crate::core::run::explain::{about, attempt as words, capital, edge, event as did, passed, plain, why_rolled_back};
 use crate::core::run::shown::fingerprint;
-use crate::core::run::{Bookmark, Changes, History, Run, ShownState};
+use crate::core::run::{Bookmark, Changes, History, Run, ShownState, Tried};
 use crate::render::picture::Seen;
 
 const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:46rem;margin:2rem auto;padding:0 1rem;\
 color:#1b1f23;background:#fff}h1{font-size:1.6rem;line-height:1.25;margin-bottom:.3rem}h2{font-size:1.15rem;\
-margin:2.4rem 0 .2rem}.about,.did{color:#57606a;margin:.1rem 0 .6rem}figure{margin:.6rem 0}\
+margin:2.4rem 0 .2rem}.about,.did,.why{color:#57606a;margin:.1rem 0 .6rem}figure{margin:.6rem 0}\
 figure img{max-width:100%;height:auto;border:1px solid #d0d7de}code,pre{font-family:ui-monospace,monospace;\
 font-size:.92em}pre{overflow-x:auto;background:#f6f8fa;padding:.6rem}table{border-collapse:collapse}\
 td,th{border:1px solid #d0d7de;padding:.2rem .5rem}nav a{margin-right:.8rem}";
@@ -88,6 +88,7 @@ fn section(
     let Bookmark { step, note } = mark;
     let note = to_html(note);
     history.seek(step.saturating_sub(1))?;
+    let (candidates, narrow) = (history.state().candidates(), history.state().narrow());
     history.take_changes();
     let candidates = history.state().candidates().filter(|_| *step > 0);
     history.seek(*step)?;
@@ -110,14 +111,19 @@ fn section(
     let frame = FigureFrame::of(&seen, &options.look(false), shown);
     let figure = Figure::of_run(run, &[frame], options, embeds)?;
     let quads = counted(state.standing(), "quadrilateral");
-    let did = history.event(*step)?.map_or_else(|| "The front is the boundary".to_owned(), |event| said(&event));
+    let event = history.event(*step)?;
+    let did = event.map_or_else(|| "The front is the boundary".to_owned(), |event| said(&event));
+    let mut why = event.map_or_else(Vec::new, |event| about(&event, candidates.as_ref(), narrow.as_ref()));
+    why.extend(event.zip(candidates.as_ref()).map_or_else(Vec::new, |(event, tried)| not_chosen(&event, tried)));
+    why.extend(history.attempts()?.iter().map(attempt));
+    let why = list(&why);
     let alt = escaped(&figure.description);
     let mut text = String::new();
     // Writing to a String cannot fail. An image keeps the names within each SVG apart.
     let _ = write!(
         text,
-        "<section id=\"step-{step}\">\n<h2>Step {} · {quads}</h2>\n<p class=\"did\">{}.</p>\n<figure><img alt=\"{alt}\" \
-         src=\"data:image/svg+xml;base64,{}\"></figure>\n{note}</section>\n",
+        "<section id=\"step-{step}\">\n<h2>Step {} · {quads}</h2>\n<p class=\"did\">{}.</p>\n{why}<figure><img \
+         alt=\"{alt}\" src=\"data:image/svg+xml;base64,{}\"></figure>\n{note}</section>\n",
         grouped(*step),
         escaped(&did),
         STANDARD.encode(&figure.svg)
@@ -125,8 +131,47 @@ fn section(
     Ok(text)
 }
 
-fn said(did: &Did) -> String {
-    capital(&plain(&event(did)))
+fn said(event: &Did) -> String {
+    capital(&plain(&did(event)))
+}
+
+/// The candidates for a side edge that a step did not choose, each with the reason.
+fn not_chosen(event: &Did, tried: &Candidates) -> Vec<String> {
+    let chooses = [EventKind::SideIsFront, EventKind::SideChosen, EventKind::SideSwapped, EventKind::RolledBack];
+    if !chooses.contains(&event.kind()) {
+        return Vec::new();
+    }
+    let reason = |candidate: &Candidate| {
+        let reason = passed(candidate.passed?, candidate, tried);
+        Some(match candidate.swap {
+            None => format!("Candidate to node {}: {reason}.", candidate.node.0),
+            Some(across) => format!("Candidate to node {}, by a swap of {}: {reason}.", candidate.node.0, edge(across)),
+        })
+    };
+    tried.edges.iter().filter_map(reason).collect()
+}
+
+/// An attempt with its steps, and why it was taken back.
+fn attempt(tried: &Tried) -> String {
+    let number = u32::from(tried.attempt.number) + 1;
+    let steps = match (tried.steps.first(), tried.steps.last()) {
+        (Some((first, _)), Some((last, _))) if first < last => {
+            format!(", steps {} to {}", grouped(*first), grouped(*last))
+        }
+        (Some((only, _)), _) => format!(", step {}", grouped(*only)),
+        _ => String::new(),
+    };
+    let end = tried.failed().map_or_else(String::new, |why| format!(" Taken back: {}.", why_rolled_back(why)));
+    format!("Attempt {number}: {}{steps}.{end}", words(&tried.attempt))
+}
+
+/// Sentences as a list.
+fn list(sentences: &[String]) -> String {
+    if sentences.is_empty() {
+        return String::new();
+    }
+    let items: String = sentences.iter().map(|sentence| format!("<li>{}</li>\n", escaped(&plain(sentence)))).collect();
+    format!("<ul class=\"why\">\n{items}</ul>\n")
 }
 
 /// A note as HTML. HTML in it is shown as it is written, and links lead to pages or mail only.

@@ -292,6 +292,23 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "window")]
+    #[test]
+    fn edges_are_seen_on_surfaces_in_the_shadow_and_towards_the_lamp() {
+        for palette in [DARK, LIGHT] {
+            let light = crate::render::gpu::Light::on_surfaces(palette.dark);
+            for (area, edge) in [(palette.live, palette.live_edge), (palette.dead, palette.dead_edge)] {
+                for towards in [0.0, 1.0] {
+                    let Rgba([r, g, b, a]) = area;
+                    let lit = |c| f32::from(c) * (light.even + light.lit * towards) + 255.0 * light.shine * towards;
+                    let [r, g, b] = [r, g, b].map(|c: u8| lit(c).min(255.0) as u8);
+                    let contrast = contrast(edge, Rgba([r, g, b, a]));
+                    assert!(contrast >= 1.35, "dark: {}, {area:?} at {towards}: {contrast:.2}", palette.dark);
+                }
+            }
+        }
+    }
+
     #[test]
     fn text_can_be_read_on_panels() {
         for (palette, text, weak) in [(DARK, 11.2, 5.4), (LIGHT, 11.7, 4.9)] {

@@ -17,7 +17,7 @@ use super::window_harness::{Window, apply, has_adapter, settle, start};
 const TAB_BAR: f32 = 28.0;
 
 /// What is wrong, and where it was seen first.
-type Found = BTreeMap<String, String>;
+pub type Found = BTreeMap<String, String>;
 
 /// A text on the screen: what it says, where, and what of it is seen.
 pub struct Text {
@@ -52,7 +52,7 @@ pub fn texts(harness: &Window) -> Vec<Text> {
 }
 
 /// What is wrong with the texts of the last frame.
-fn faults(harness: &Window, over: bool) -> Vec<String> {
+pub fn faults(harness: &Window, over: bool) -> Vec<String> {
     let texts = texts(harness);
     let tabs: Vec<String> =
         harness.query_all_by_role(Role::Tab).filter_map(|tab| tab.accesskit_node().label()).collect();
@@ -80,7 +80,7 @@ fn faults(harness: &Window, over: bool) -> Vec<String> {
 }
 
 /// Controls without a name.
-fn nameless(harness: &Window, over: bool) -> Vec<String> {
+pub fn nameless(harness: &Window, over: bool) -> Vec<String> {
     // Splitters and the grounds of tab bars belong to the docks, and those of titles to the windows over the views.
     let is_dock = |rect: Rect| rect.width() < 8.0 || rect.height() < 8.0 || rect.height() == TAB_BAR;
     let is_nameless = |node: &egui_kittest::Node<'_>| {
@@ -97,14 +97,14 @@ fn nameless(harness: &Window, over: bool) -> Vec<String> {
     found.map(|node| format!("no name: {:?} at {:?}", node.accesskit_node().role(), node.rect())).collect()
 }
 
-fn note(found: &mut Found, faults: Vec<String>, place: &str) {
+pub fn note(found: &mut Found, faults: Vec<String>, place: &str) {
     for fault in faults {
         found.entry(fault).or_insert_with(|| place.to_owned());
     }
 }
 
 /// Clicks every tab, and looks at what it shows.
-fn walk(harness: &mut Window, what: &str, found: &mut Found) {
+pub fn walk(harness: &mut Window, what: &str, found: &mut Found) {
     let tabs: Vec<String> =
         harness.query_all_by_role(Role::Tab).filter_map(|tab| tab.accesskit_node().label()).collect();
     for tab in tabs.iter().rev() {
@@ -174,6 +174,10 @@ fn look_at(case: &str, sizes: &[Vec2]) {
             apply(&mut harness, Command::Escape);
         }
     }
+    are_none(&found);
+}
+
+pub fn are_none(found: &Found) {
     let list: Vec<String> = found.iter().take(60).map(|(fault, place)| format!("{fault} ({place})")).collect();
     assert!(found.is_empty(), "{} faults\n{}", found.len(), list.join("\n"));
 }

@@ -13,6 +13,9 @@ use crate::core::run::Run;
 /// The time between two calls while no cell is finished.
 const PATIENCE: Duration = Duration::from_millis(20);
 
+/// The name of each of the threads.
+const THREAD: &str = "sweep";
+
 /// The work that the threads share.
 struct Work {
     run: Run,
@@ -38,9 +41,10 @@ pub(in crate::app) fn convert(
     let work = Arc::new(Work { run, sweep, missing, next, cancel: Cancel::new() });
     let (sender, receiver) = channel();
     let threads: Vec<_> = (0..threads)
-        .map(|_| {
+        .filter_map(|_| {
             let (work, sender) = (Arc::clone(&work), sender.clone());
-            std::thread::spawn(move || work.convert(&sender))
+            // A machine that has no more threads makes do with those that there are.
+            std::thread::Builder::new().name(THREAD.to_owned()).spawn(move || work.convert(&sender)).ok()
         })
         .collect();
     drop(sender);

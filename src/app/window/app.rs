@@ -4,15 +4,16 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, Context, Event, Frame, InputState, Key, Modifiers, Panel, Popup, Ui, ViewportCommand};
+use eframe::egui::{self, Context, Frame, Key, Panel, Popup, RawInput, Ui, ViewportCommand};
 use eframe::{CreationContext, wgpu};
 
-use super::command::{Command, keys};
+use super::command::Command;
 use super::figures::carried;
 use super::files::{free_path, write_png};
 use super::graphics::{self, Lost};
 use super::layout::{Docks, Layout, Pane, TIMELINE_HEIGHTS};
 use super::panels::{self, PanelStates};
+use super::presses::{self, Presses};
 use super::session::Source;
 use super::settings::Settings;
 use super::state::State;
@@ -33,6 +34,7 @@ pub struct App {
     views: [Views; 2],
     layout: Layout,
     panels: [PanelStates; 2],
+    presses: Presses,
     taken: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
     /// Whether the last frame asked for this one at once.
     moving: bool,
@@ -86,6 +88,7 @@ impl App {
             views: [0, 1].map(Views::of_run),
             layout: settings.as_ref().map(Settings::layout).unwrap_or_default(),
             panels: Default::default(),
+            presses: Presses::default(),
             taken: Arc::default(),
             moving: false,
             lost,
@@ -138,22 +141,13 @@ impl App {
     }
 
     fn keys(&self, context: &Context) -> Vec<Command> {
-        let mut commands = Vec::new();
         let typing = context.egui_wants_keyboard_input();
-        for (modifiers, key, command) in keys() {
-            let bare = modifiers.is_none() || modifiers == Modifiers::SHIFT;
-            if bare && typing && command != Command::Escape {
-                continue;
-            }
-            let (presses, is_held) = context.input_mut(|input| take_presses(input, modifiers, key));
-            if presses > 0 && command == Command::Escape && Popup::is_any_open(context) {
-                // A menu with all its submenus.
-                Popup::close_all(context);
-                continue;
-            }
-            // A key that is held does not run ahead of what is shown, so that nothing goes on when it is let go.
-            let again = is_held && command.repeats() && !self.state.run().is_busy();
-            commands.extend(std::iter::repeat_n(command, presses + usize::from(again)));
+        let busy = self.state.run().is_busy();
+        let mut commands = context.input_mut(|input| presses::commands(&mut input.events, typing, busy));
+        if commands.contains(&Command::Escape) && Popup::is_any_open(context) {
+            // A menu with all its submenus.
+            Popup::close_all(context);
+            commands.retain(|command| *command != Command::Escape);
         }
         if !typing && context.input(|input| input.key_pressed(Key::Questionmark)) {
             commands.push(Command::Help);
@@ -336,6 +330,13 @@ impl eframe::App for App {
         }
     }
 
+    fn raw_input_hook(&mut self, context: &Context, input: &mut RawInput) {
+        let is_typing = context.egui_wants_keyboard_input();
+        if self.presses.take(&mut input.events, is_typing, self.state.awaits_note()) {
+            context.request_repaint();
+        }
+    }
+
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
     }
@@ -349,20 +350,4 @@ impl eframe::App for App {
             let _ = now.write(path);
         }
     }
-}
-
-/// Takes the presses of a key out of the input: how many there were, and whether it repeats because it is held.
-fn take_presses(input: &mut InputState, modifiers: Modifiers, key: Key) -> (usize, bool) {
-    let (mut presses, mut is_held) = (0, false);
-    input.events.retain(|event| match event {
-        Event::Key { key: pressed, modifiers: held, pressed: true, repeat, .. }
-            if *pressed == key && held.matches_logically(modifiers) =>
-        {
-            presses += usize::from(!repeat);
-            is_held |= repeat;
-            false
-        }
-        _ => true,
-    });
-    (presses, is_held)
 }

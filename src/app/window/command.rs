@@ -10,6 +10,7 @@ pub use rules::Rules;
 
 use super::figures::{FigureForm, Formats};
 use super::import::{Gesture, ImportOptions};
+use super::layout::Pane;
 use super::lists::ListKind;
 use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
@@ -59,6 +60,8 @@ pub enum Command {
     TellChain(ElementId),
     /// Select a quadrilateral and show its decision chain in the inspector.
     ShowChain(ElementId),
+    /// Go to the step of the decision chain that cost the selected quadrilateral most quality.
+    ToLargestLoss,
     /// Make a list of elements or nodes.
     List(ListKind, Query),
     /// Copy such a list as comma-separated values.
@@ -117,6 +120,8 @@ pub enum Command {
     StopReducing,
     /// Set a bookmark at this step, or remove it.
     Bookmark,
+    /// Bookmark this step, if it is not, and write the note on it.
+    NoteHere,
     /// Change the note on a bookmarked step.
     WriteNote(u64, String),
     /// Remove the bookmark of a step.
@@ -187,6 +192,8 @@ pub enum Command {
     CloseFault(usize),
     /// Show or hide the log of all messages.
     Messages,
+    /// Show a panel in its tabs.
+    Reveal(Pane),
     /// The user has arranged the panels like this.
     Arrange(String),
     /// Move all panels back to their first places.
@@ -238,6 +245,43 @@ impl Command {
     /// Whether its key repeats while it is held.
     pub fn repeats(&self) -> bool {
         matches!(self, Command::Go(Goal::Steps(_) | Goal::Quads(_)) | Command::Undo | Command::Redo)
+    }
+
+    /// Whether it says only what the pointer is on, in either of two runs.
+    pub fn is_hover(&self) -> bool {
+        match self {
+            Command::Pair(PairCommand::In(_, command)) => command.is_hover(),
+            command => matches!(command, Command::Hover(_)),
+        }
+    }
+
+    /// Whether it is about the state that is shown, and so waits while the session is on the way to another one: keys
+    /// that are pressed one after another mean the same on every machine.
+    pub fn is_about_the_state(&self) -> bool {
+        matches!(
+            self,
+            Command::FindWorst
+                | Command::ToLargestLoss
+                | Command::Bookmark
+                | Command::NoteHere
+                | Command::Export
+                | Command::Pair(PairCommand::Fork | PairCommand::ForkWith(_))
+        )
+    }
+
+    /// Whether it opens a field, which gets the focus.
+    pub fn opens_a_field(&self) -> bool {
+        matches!(
+            self,
+            Command::Palette
+                | Command::GoTo
+                | Command::FindField
+                | Command::OpenPath
+                | Command::SaveMesh
+                | Command::NoteHere
+                | Command::Pair(PairCommand::AskBeside)
+                | Command::Sweep(SweepCommand::Save)
+        )
     }
 
     /// Whether it works while a mesh is about to be converted. What belongs to a run has to wait until there is one,
@@ -299,6 +343,7 @@ impl Command {
             Command::ShowTimes,
             Command::Measure,
         ]);
+        all.extend(Pane::ALL.map(Command::Reveal));
         all.extend(SweepCommand::ALL.map(Command::Sweep));
         all.extend(Rules::ALL.map(Command::SetRules));
         all.extend(PairCommand::all().into_iter().map(Command::Pair));

@@ -26,6 +26,7 @@ mod viewport;
 mod labels;
 mod layout;
 mod panels;
+mod presses;
 mod app;
 
 use std::process::ExitCode;

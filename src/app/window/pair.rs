@@ -256,6 +256,7 @@ impl Command {
                 | Command::Sweep(_)
                 | Command::Screenshot
                 | Command::SetFigure(_)
+                | Command::Reveal(_)
                 | Command::Arrange(_)
                 | Command::ResetLayout
                 | Command::ToggleTheme

@@ -42,6 +42,7 @@ pub struct PanelStates {
     pub lists: lists::ListStates,
     pub inspector: inspector::InspectorState,
     pub breakpoints: breakpoints::BreakpointsState,
+    pub bookmarks: bookmarks::BookmarksState,
     pub parameters: parameters::ParametersState,
     pub plots: plots::PlotsState,
     pub figure: figure::PreviewState,

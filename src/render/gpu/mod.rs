@@ -59,9 +59,9 @@ impl Light {
     /// taken for others.
     pub const ON_DATA: Light = Light { even: 0.9, lit: 0.12, shine: 0.0 };
 
-    /// For surfaces, in the dark or light theme.
+    /// For surfaces, in the dark or light theme. Edges between elements are seen in the shadow and towards the lamp.
     pub fn on_surfaces(dark: bool) -> Light {
-        if dark { Light { even: 0.62, lit: 0.7, shine: 0.09 } } else { Light { even: 0.72, lit: 0.3, shine: 0.0 } }
+        if dark { Light { even: 0.62, lit: 0.7, shine: 0.09 } } else { Light { even: 0.87, lit: 0.14, shine: 0.0 } }
     }
 }
 

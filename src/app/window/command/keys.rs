@@ -28,6 +28,8 @@ impl Purpose {
             | Command::ToBreakpoint(_)
             | Command::Play
             | Command::Bookmark
+            | Command::NoteHere
+            | Command::ToLargestLoss
             | Command::FindField
             | Command::FindWorst
             | Command::Pair(_) => Purpose::Steps,
@@ -94,6 +96,8 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL_SHIFT, Key::L, Command::ToggleTheme),
         (CTRL_SHIFT, Key::E, Command::Figures),
         (CTRL_SHIFT, Key::W, Command::FindWorst),
+        (CTRL_SHIFT, Key::G, Command::ToLargestLoss),
+        (CTRL_SHIFT, Key::B, Command::NoteHere),
         (SHIFT, Key::V, Command::ToggleSplit),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),

@@ -41,7 +41,7 @@ impl Behavior<Pane> for Docks<'_> {
             Pane::Elements => panels::lists::elements(ui, state, &mut local.lists.elements, commands, palette),
             Pane::Nodes => panels::lists::nodes(ui, state, &mut local.lists.nodes, commands, palette),
             Pane::Breakpoints => panels::breakpoints::show(ui, state, &mut local.breakpoints, commands, palette),
-            Pane::Bookmarks => panels::bookmarks::show(ui, state, commands, palette),
+            Pane::Bookmarks => panels::bookmarks::show(ui, state, &mut local.bookmarks, commands, palette),
             Pane::Quality => panels::plots::show(ui, state, &mut local.plots, commands, palette),
             Pane::Sweep => panels::sweep::show(ui, window, &mut local.sweep, commands, palette),
             Pane::Inspector => panels::inspector::show(ui, state, &mut local.inspector, commands, palette),

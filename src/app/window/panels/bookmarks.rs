@@ -1,6 +1,6 @@
 //! Bookmarked steps with their notes.
 
-use eframe::egui::{Align, Label, Layout, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use eframe::egui::{Align, Label, Layout, Response, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use super::{icon_button, inset, note, on_click};
 use crate::app::window::command::Command;
@@ -12,19 +12,31 @@ use crate::app::window::words;
 use crate::core::run::Bookmark;
 use crate::render::palette::Palette;
 
+/// What the panel keeps for itself.
+#[derive(Default)]
+pub struct BookmarksState {
+    /// The last request to write a note that was carried out.
+    asked: u64,
+}
+
 /// Shows the bookmarks.
-pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, local: &mut BookmarksState, commands: &mut Vec<Command>, palette: &Palette) {
     inset().show(ui, |ui| {
         let marks = &state.document().bookmarks;
         if marks.is_empty() {
-            let text = "None yet. Ctrl+B bookmarks the current step. A bookmark can have a note, and all of them can be \
+            let text = "None yet. Ctrl+B bookmarks the current step, Ctrl+Shift+B writes a note on it, and all of them can be \
                         exported as one page with a figure of each step.";
             ui.add(Label::new(note(text, palette)).wrap());
             return;
         }
+        let written = state.view().note.take(&mut local.asked);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for mark in marks {
-                bookmark(ui, state, mark, commands, palette);
+                let note = bookmark(ui, state, mark, commands, palette);
+                if written == Some(mark.step) {
+                    note.request_focus();
+                    note.scroll_to_me(Some(Align::Center));
+                }
             }
             ui.add_space(4.0);
             on_click(&ui.button(Command::ExportNotes.name()), Command::ExportNotes, commands);
@@ -32,7 +44,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     });
 }
 
-fn bookmark(ui: &mut Ui, state: &State, mark: &Bookmark, commands: &mut Vec<Command>, palette: &Palette) {
+/// Shows a bookmark. Returns the field of its note.
+fn bookmark(ui: &mut Ui, state: &State, mark: &Bookmark, commands: &mut Vec<Command>, palette: &Palette) -> Response {
     let step = mark.step;
     let tracked = step.checked_sub(1).and_then(|k| state.run().track.get(k as usize));
     let what = tracked.map_or_else(String::new, |tracked| words::kind(tracked.kind));
@@ -59,4 +72,5 @@ fn bookmark(ui: &mut Ui, state: &State, mark: &Bookmark, commands: &mut Vec<Comm
         commands.push(Command::WriteNote(step, text));
     }
     ui.add_space(6.0);
+    response
 }

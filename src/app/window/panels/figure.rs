@@ -5,7 +5,8 @@ mod preview;
 use std::path::Path;
 
 use eframe::egui::{
-    self, Align, Align2, Context, DragValue, Grid, Label, Layout, RichText, TextEdit, Ui, Vec2, WidgetInfo, Window,
+    self, Align, Align2, Context, DragValue, Grid, Label, Layout, RichText, ScrollArea, TextEdit, Ui, Vec2, WidgetInfo,
+    Window,
 };
 
 pub use preview::PreviewState;
@@ -41,18 +42,20 @@ pub fn show(
         .frame(super::floating(palette))
         .pivot(Align2::CENTER_CENTER)
         .default_pos(context.content_rect().center() - Vec2::new(0.0, 60.0))
-        .vscroll(true)
-        .default_height(context.content_rect().height() - 140.0)
         .show(context, |ui| {
             let columns = if context.content_rect().width() > ROOMY {
                 Layout::left_to_right(Align::Min)
             } else {
                 Layout::top_down(Align::Min)
             };
-            ui.with_layout(columns, |ui| {
-                local.show(ui, state, palette);
-                ui.add_space(10.0);
-                ui.vertical(|ui| form(ui, state, commands, palette));
+            // As high as its content, where there is room for that.
+            let room = context.content_rect().height() - 140.0;
+            ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
+                ui.with_layout(columns, |ui| {
+                    local.show(ui, state, palette);
+                    ui.add_space(10.0);
+                    ui.vertical(|ui| form(ui, state, commands, palette));
+                });
             });
         });
     if !open {

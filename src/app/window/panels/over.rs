@@ -1,5 +1,8 @@
 //! What opens over the window: all commands by name, all keys, and fields for a step or a path.
 
+mod offers;
+
+use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, Align2, Area, Button, Context, Key, Label, Order, RichText, ScrollArea, TextEdit, Ui, Vec2};
 
 use super::on_click;
@@ -47,7 +50,7 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
         frame.show(ui, |ui| {
             ui.set_width(WIDTH);
             match over {
-                Overlay::Palette => palette_list(ui, &mut local.field, commands, palette),
+                Overlay::Palette => palette_list(ui, state, &mut local.field, commands, palette),
                 Overlay::Help => help(ui, palette),
                 Overlay::GoTo => {
                     if field(ui, &mut local.field, "A step such as 812, or nq=100", "Step or NQ") {
@@ -103,14 +106,20 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
     }
 }
 
-/// A field with the focus. Returns whether the user has pressed Enter.
+/// A field with the focus; what it suggests is selected at first, so that typing replaces it. Returns whether the user
+/// has pressed Enter.
 fn field(ui: &mut Ui, text: &mut String, hint: &str, name: &str) -> bool {
-    let field = TextEdit::singleline(text).hint_text(hint).desired_width(WIDTH);
+    let id = egui::Id::unique(("field over the window", name));
+    let field = TextEdit::singleline(text).id(id).hint_text(hint).desired_width(WIDTH);
     let response = ui.add(field);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, name));
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if !entered && !response.has_focus() {
         response.request_focus();
+        let mut edit = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+        let ends = [0, text.chars().count()].map(CCursor::new);
+        edit.cursor.set_char_range(Some(CCursorRange::two(ends[0], ends[1])));
+        edit.store(ui.ctx(), id);
     }
     entered
 }
@@ -164,17 +173,24 @@ fn tell(ui: &mut Ui, mut lines: Vec<String>, palette: &Palette) {
     }
 }
 
-fn palette_list(ui: &mut Ui, text: &mut String, commands: &mut Vec<Command>, palette: &Palette) {
-    let entered = field(ui, text, "All commands by name", "Name of a command");
+fn palette_list(ui: &mut Ui, state: &State, text: &mut String, commands: &mut Vec<Command>, palette: &Palette) {
+    let hint = "All commands by name; also c = 1.5, or break where quad.min_angle < 30";
+    let entered = field(ui, text, hint, "Name of a command");
     let wanted: Vec<String> = text.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let fits = |name: &str| wanted.iter().all(|word| name.to_lowercase().contains(word));
-    let found: Vec<Command> = Command::all().into_iter().filter(|c| *c != Command::Escape && fits(&c.name())).collect();
-    let mut chosen = found.first().filter(|_| entered).cloned();
+    let mut found: Vec<(String, Command)> =
+        Command::all().into_iter().filter(|c| *c != Command::Escape).map(|command| (command.name(), command)).collect();
+    found.extend(offers::at_hand(state, state.active()));
+    found.retain(|(name, _)| fits(name));
+    if let Some(command) = offers::typed(text) {
+        found.insert(0, (command.name(), command));
+    }
+    let mut chosen = found.first().filter(|_| entered).map(|found| found.1.clone());
     ui.add_space(4.0);
     ScrollArea::vertical().max_height(380.0).min_scrolled_height(380.0).show(ui, |ui| {
-        for (k, command) in found.iter().enumerate() {
+        for (k, (name, command)) in found.iter().enumerate() {
             let colour = if k == 0 { palette.strong } else { palette.text };
-            let name = RichText::new(command.name()).color(ink(colour));
+            let name = RichText::new(name).color(ink(colour));
             let button = Button::new(name)
                 .shortcut_text(command.key().unwrap_or_default())
                 .frame_when_inactive(k == 0)

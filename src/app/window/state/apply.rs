@@ -1,6 +1,7 @@
 //! Does what the user asks for. With `hearing` this is the only place that changes [`State`].
 
 mod finding;
+mod held;
 mod opening;
 mod pair;
 mod parameters;
@@ -43,6 +44,7 @@ impl State {
 
     /// The same in this run, whether or not there is a second one.
     fn apply_alone(&mut self, command: Command) {
+        let Some(command) = self.hold(command) else { return };
         match command {
             Command::Go(goal) => self.go(goal),
             Command::GoToText(text) => self.go_to_text(&text),
@@ -72,6 +74,7 @@ impl State {
                 self.view.reveal.ask(Some(Pane::Inspector));
                 self.view.chain.ask(Some(element));
             }
+            Command::ToLargestLoss => self.to_largest_loss(),
             Command::List(kind, query) => self.list(kind, query, false),
             Command::CopyList(kind, query) => self.list(kind, query, true),
             Command::Find(what) => self.find(what),
@@ -125,6 +128,7 @@ impl State {
                 }
             }
             Command::Bookmark => self.bookmark(),
+            Command::NoteHere => self.note_here(),
             Command::WriteNote(step, note) => self.workspace.write_note(step, note),
             Command::RemoveBookmark(step) => {
                 self.change(|document| document.bookmarks.retain(|mark| mark.step != step))
@@ -199,6 +203,7 @@ impl State {
             Command::Sweep(command) => self.apply_to_sweep(command),
             Command::Undo => self.take_back(Direction::Back),
             Command::Redo => self.take_back(Direction::Forward),
+            Command::Reveal(pane) => self.view.reveal.ask(Some(pane)),
             Command::Arrange(layout) => self.change(|document| document.layout = Some(layout)),
             Command::ResetLayout => {
                 self.change(|document| document.layout = None);
@@ -213,7 +218,7 @@ impl State {
     /// Ends a frame: does what its panels ask for. Returns whether the next frame has something new to show.
     pub(in crate::app::window) fn end_frame(&mut self, commands: Vec<Command>) -> bool {
         let hovered = self.begin_hovering();
-        let is_asked = commands.iter().any(|command| !matches!(command, Command::Hover(_)));
+        let is_asked = commands.iter().any(|command| !command.is_hover());
         commands.into_iter().for_each(|command| self.apply(command));
         is_asked | self.is_hovered_anew(hovered)
     }
@@ -398,6 +403,16 @@ impl State {
         });
     }
 
+    /// Has the note on the current step written, with a bookmark if there is none.
+    fn note_here(&mut self) {
+        let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
+        if self.document().bookmarks.iter().all(|mark| mark.step != step) {
+            self.bookmark();
+        }
+        self.view.reveal.ask(Some(Pane::Bookmarks));
+        self.view.note.ask(step);
+    }
+
     /// Asks the session about the current state. Returns its step.
     fn inquire(&self, ask: Ask) -> Option<u64> {
         let (moment, session) = (self.run.moment.as_ref()?, self.run.session.as_ref()?);
@@ -452,6 +467,7 @@ impl State {
     /// Stops all work under way: playing, opening, and what the session does.
     fn stop(&mut self) {
         self.run.playing = None;
+        self.run.held.clear();
         self.stop_opening();
         if let Some(session) = &self.run.session {
             session.stop();

@@ -39,6 +39,7 @@ impl State {
         let Some(session) = &self.run.session else { return };
         let told: Vec<SessionNews> = session.hear().collect();
         told.into_iter().for_each(|told| self.take(told));
+        self.release();
     }
 
     /// If the session owes an answer, waits for it, but not so long that anybody notices: most states are ready at
@@ -63,6 +64,7 @@ impl State {
         {
             self.take(told);
         }
+        self.release();
     }
 
     /// For each run the differences between the current state and the one at the last call, and how many slots for
@@ -112,7 +114,13 @@ impl State {
                     missing.ended = ended;
                 }
             }
-            SessionNews::Chain(told) => run.chain = Some(told),
+            SessionNews::Chain(told) => {
+                let wanted = run.to_loss.take_if(|wanted| *wanted == told.element);
+                run.chain = Some(told);
+                if wanted.is_some() {
+                    self.to_largest_loss();
+                }
+            }
             SessionNews::Hits(hits) => run.hits = hits,
             SessionNews::Explained(step, told) => run.explained = Some((step, told)),
             SessionNews::Nothing(words, asks) => {

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::app::command_line::Overrides;
 use crate::app::window::autosave::Autosave;
+use crate::app::window::command::Command;
 use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
 use crate::app::window::lists::Lists;
@@ -109,6 +110,10 @@ pub struct RunState {
     pub(super) awaited: Option<ShownState>,
     /// The differences between the current state and the one that the views took last.
     pub(super) changes: Since,
+    /// Commands that wait until it owes none.
+    pub(super) held: Vec<Command>,
+    /// The selected quadrilateral, if the run is to go to its largest loss once its decision chain is known.
+    pub(super) to_loss: Option<ElementId>,
     /// How many answers the session owes.
     pub(super) waiting: usize,
     /// Why the selected segment was or was not chosen, at a step; and the question asked last.
@@ -171,7 +176,7 @@ impl RunState {
     pub(super) fn forget_answers(&mut self) {
         (self.explained, self.asked) = (None, None);
         (self.past, self.asked_past) = (None, None);
-        (self.chain, self.asked_chain) = (None, None);
+        (self.chain, self.asked_chain, self.to_loss) = (None, None, None);
     }
 
     /// Why a segment of the front was or was not chosen at the current step.

@@ -29,6 +29,8 @@ pub struct ViewState {
     pub chain: Request<Option<ElementId>>,
     /// The docks are to be arranged as the document says.
     pub relayout: Request<()>,
+    /// The bookmarked step whose note is to be written.
+    pub note: Request<u64>,
     /// The panel that is to be shown in its tabs.
     pub reveal: Request<Option<Pane>>,
     /// What a bar of a plot stands for, lit up in the views until the next state comes.

@@ -58,6 +58,9 @@ pub trait Described: Row + Send + 'static {
     fn name(&self) -> String;
 }
 
+/// The width of a size or a coordinate such as −1.25e−16.
+const SIZE: f32 = 65.0;
+
 const ELEMENTS: [(&str, &str, &str, f32, Decimals); 18] = [
     ("id", "number", "", 50.0, Decimals::Whole),
     ("quad", "kind", "", 36.0, Decimals::Whole),
@@ -74,9 +77,9 @@ const ELEMENTS: [(&str, &str, &str, f32, Decimals); 18] = [
     ("space.min_angle", "angle min", "space °", 58.0, Decimals::Fixed(1)),
     ("space.max_angle", "angle max", "space °", 60.0, Decimals::Fixed(1)),
     ("space.jacobian", "Jacobian", "space", 54.0, Decimals::Fixed(3)),
-    ("space.area", "area", "space", 60.0, Decimals::Size),
-    ("space.length.min", "side min", "space", 56.0, Decimals::Size),
-    ("space.length.max", "side max", "space", 56.0, Decimals::Size),
+    ("space.area", "area", "space", SIZE, Decimals::Size),
+    ("space.length.min", "side min", "space", SIZE, Decimals::Size),
+    ("space.length.max", "side max", "space", SIZE, Decimals::Size),
 ];
 
 const NODES: [(&str, &str, &str, f32, Decimals); 8] = [
@@ -86,14 +89,14 @@ const NODES: [(&str, &str, &str, f32, Decimals); 8] = [
     ("place", "place", "", 60.0, Decimals::Whole),
     ("born", "step of", "birth", 52.0, Decimals::Whole),
     ("changed", "last", "change", 52.0, Decimals::Whole),
-    ("x", "x", "space", 56.0, Decimals::Size),
-    ("y", "y", "space", 56.0, Decimals::Size),
+    ("x", "x", "space", SIZE, Decimals::Size),
+    ("y", "y", "space", SIZE, Decimals::Size),
 ];
 
 const ON_SURFACES: [(&str, &str, &str, f32, Decimals); 3] = [
-    ("z", "z", "space", 56.0, Decimals::Size),
-    ("u", "u", "parametric", 60.0, Decimals::Size),
-    ("v", "v", "parametric", 60.0, Decimals::Size),
+    ("z", "z", "space", SIZE, Decimals::Size),
+    ("u", "u", "parametric", SIZE, Decimals::Size),
+    ("v", "v", "parametric", SIZE, Decimals::Size),
 ];
 
 const FACE: (&str, &str, &str, f32, Decimals) = ("face", "face", "", 34.0, Decimals::Whole);

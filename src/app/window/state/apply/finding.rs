@@ -1,7 +1,7 @@
 //! Finds things by number or coordinates, selects them and brings them into view.
 
 use crate::app::window::session::{Ask, Goal};
-use crate::app::window::state::{Look, Missing, Overlay, State, outlined};
+use crate::app::window::state::{Look, Lookup, Missing, Overlay, State, outlined};
 use crate::core::run::Sought;
 use crate::render::scene::Outlined;
 
@@ -78,6 +78,32 @@ impl State {
         match self.run.moment.as_ref().and_then(|moment| moment.worst) {
             Some((e, _)) => self.find(Outlined::Element(e)),
             None => self.notice("There is no quadrilateral yet.".to_owned()),
+        }
+    }
+
+    /// Goes to the step that cost the selected quadrilateral most quality, once its decision chain is known.
+    pub(in crate::app::window::state) fn to_largest_loss(&mut self) {
+        let is_quad = |e| self.run.moment.as_ref().is_some_and(|m| m.mesh.has_element(e) && m.mesh.is_quad(e));
+        let Some(Outlined::Element(element)) = self.document().picked.filter(|picked| match picked {
+            Outlined::Element(e) => is_quad(*e),
+            _ => false,
+        }) else {
+            let text = "Select a quadrilateral first: Ctrl+Shift+W selects the one of the lowest quality.";
+            return self.notice(text.to_owned());
+        };
+        // While the run is played, the chain waits.
+        self.run.playing = None;
+        match self.run.chain(element) {
+            Lookup::Known(told) => match told.chain.as_ref().map(|chain| chain.costliest().map(|k| &chain.links[k])) {
+                Some(Some(link)) => self.go(Goal::Step(link.step)),
+                Some(None) => self.notice("No step cost this quadrilateral quality.".to_owned()),
+                None => self.notice("This quadrilateral is part of the background mesh.".to_owned()),
+            },
+            Lookup::Pending => self.run.to_loss = Some(element),
+            Lookup::Unasked => {
+                self.run.asked_chain = self.inquire(Ask::Chain(element)).map(|step| (step, element));
+                self.run.to_loss = Some(element);
+            }
         }
     }
 

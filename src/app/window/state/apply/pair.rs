@@ -31,6 +31,9 @@ impl State {
     /// Does something with two runs, or begins to have two.
     pub(super) fn apply_to_pair(&mut self, command: PairCommand) {
         match command {
+            PairCommand::Fork | PairCommand::ForkWith(_) if self.active().run.is_busy() => {
+                self.run.held.push(Command::Pair(command));
+            }
             PairCommand::Fork => self.fork(),
             PairCommand::ForkWith(rules) => {
                 self.fork();

@@ -94,6 +94,7 @@ impl State {
             folder_dialog: old.folder_dialog,
             figures: old.figures,
             meshes: old.meshes,
+            held: old.held,
             session: Some(session),
             watcher,
             since: Some(Instant::now()),
