@@ -88,9 +88,9 @@ fn section(
     let Bookmark { step, note } = mark;
     let note = to_html(note);
     history.seek(step.saturating_sub(1))?;
-    let (candidates, narrow) = (history.state().candidates(), history.state().narrow());
+    let looked_at = history.state().looks_at();
+    let candidates = looked_at.candidates.as_ref().filter(|_| *step > 0);
     history.take_changes();
-    let candidates = history.state().candidates().filter(|_| *step > 0);
     history.seek(*step)?;
     if history.step() < *step {
         let end = grouped(history.step());
@@ -107,14 +107,14 @@ fn section(
     let state = history.state();
     let (mesh, phase) = (&state.mesh, state.phase());
     let shown = ShownState { step: *step, at: Some(Stop::Step(*step)), state: fingerprint(mesh, phase) };
-    let seen = Seen { mesh, parameters: state.parameters(), phase, changed: &changed, candidates: candidates.as_ref() };
+    let seen = Seen { mesh, parameters: state.parameters(), phase, changed: &changed, candidates };
     let frame = FigureFrame::of(&seen, &options.look(false), shown);
     let figure = Figure::of_run(run, &[frame], options, embeds)?;
     let quads = counted(state.standing(), "quadrilateral");
     let event = history.event(*step)?;
     let did = event.map_or_else(|| "The front is the boundary".to_owned(), |event| said(&event));
-    let mut why = event.map_or_else(Vec::new, |event| about(&event, candidates.as_ref(), narrow.as_ref()));
-    why.extend(event.zip(candidates.as_ref()).map_or_else(Vec::new, |(event, tried)| not_chosen(&event, tried)));
+    let mut why = event.map_or_else(Vec::new, |event| about(&event, &looked_at, state));
+    why.extend(event.zip(candidates).map_or_else(Vec::new, |(event, tried)| not_chosen(&event, tried)));
     why.extend(history.attempts()?.iter().map(attempt));
     let why = list(&why);
     let alt = escaped(&figure.description);
