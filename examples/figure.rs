@@ -35,6 +35,8 @@ fn main() -> Result<(), Fault> {
         phase: converter.phase(),
         // Elements to point out, such as those of the last step.
         changed: &[],
+        // What the last step chose a side edge from, for the layer of that name.
+        candidates: None,
     };
     let picture = Picture::of_state(&seen, &look);
     let sheet = Sheet::column(&case.title, "A state of the merging front", look);

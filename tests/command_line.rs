@@ -549,23 +549,16 @@ fn a_run_is_compared_with_a_finished_mesh() {
         assert!(cells.len() == 2 && cells[0] == cells[1], "{line}");
     }
     // The step is the first that made a quadrilateral of the one file which the other one does not have: each corner
-    // within a tenth of the shortest edge there.
+    // within a tenth in the metric there.
     let read = |name: &str| read_bytes(name, &std::fs::read(folder.join(name)).unwrap(), Format::Vtu).unwrap();
     let (own, other) = (read("own.vtu"), read("other.vtu"));
-    let shortest = |n: u32| {
-        let quads = own.quads.iter().filter(|quad| quad.contains(&n));
-        let ends = quads.flat_map(|quad| (0..4).map(|k| [quad[k], quad[(k + 1) % 4]]).filter(|ends| ends.contains(&n)));
-        let lengths = ends.map(|[a, b]| own.points[a as usize].distance(own.points[b as usize]));
-        lengths.fold(f64::INFINITY, f64::min)
+    let metric = own.metric.as_ref().unwrap();
+    let is_near = |a: u32, b: u32| {
+        let (m, d) = (metric[a as usize], other.points[b as usize] - own.points[a as usize]);
+        m.xx * d.x * d.x + 2.0 * m.xy * d.x * d.y + m.yy * d.y * d.y <= 0.1 * 0.1
     };
-    let near: Vec<f64> = (0..own.points.len() as u32).map(|n| 0.1 * shortest(n)).collect();
     let has_partner = |quad: &&[u32; 4]| {
-        other.quads.iter().any(|partner| {
-            quad.iter().all(|a| {
-                let is_at = |b: &u32| own.points[*a as usize].distance(other.points[*b as usize]) <= near[*a as usize];
-                partner.iter().any(is_at)
-            })
-        })
+        other.quads.iter().any(|partner| quad.iter().all(|a| partner.iter().any(|b| is_near(*a, *b))))
     };
     let steps = &own.element_data.iter().find(|data| data.name == "step").unwrap().values;
     let missing = own.quads.iter().zip(steps).filter(|(quad, _)| !has_partner(quad));

@@ -246,6 +246,8 @@ fn the_panel_for_figures_saves_what_it_says_and_a_bad_place_is_told() {
     let plain = render(Path::new("example1"), &again, &options);
     assert_ne!(plain.len(), svg.len(), "the nodes are missing there");
     type_over(&mut harness, "Name of the figure", &folder.path().join("no/where").display().to_string());
+    // The name may take another line, which moves the buttons.
+    harness.run_steps(4);
     harness.get_by_label("Save SVG").click();
     until(&mut harness, "a fault is shown", |harness| !harness.state().state.view().faults.is_empty());
     assert!(

@@ -10,8 +10,8 @@ use std::fmt::Write as _;
 
 use quadfront::core::case::built_in;
 use quadfront::core::convert::walk::walk;
-use quadfront::core::convert::{Converter, Event, EventKind, StepReport};
-use quadfront::core::mesh::NodeId;
+use quadfront::core::convert::{Converter, Event, EventKind, Mending, StepReport};
+use quadfront::core::mesh::{ElementId, NodeId};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::explain::{narration, plain};
@@ -77,23 +77,26 @@ fn told(text: &str) -> Vec<(f64, f64)> {
 #[test]
 fn every_kind_of_event_has_a_sentence_and_its_numbers_are_those_of_the_event() {
     let mut first: BTreeMap<EventKind, String> = BTreeMap::new();
+    let mut look = |event: &Event, base: Option<[NodeId; 2]>| {
+        let text = plain(&narration(event, base));
+        let starts = text.starts_with(|c: char| c.is_uppercase());
+        assert!(starts && text.ends_with('.') && !text.contains(['{', '}']), "{event:?}: {text}");
+        let mut known: Vec<f64> = base.iter().flatten().map(|node| f64::from(node.0)).collect();
+        numbers(&serde_json::to_value(event).unwrap(), "", &mut known);
+        for (value, half) in told(&text) {
+            let is_known = known.iter().any(|number| (number - value).abs() <= half * (1.0 + 1e-9));
+            assert!(is_known, "{value} is not in {event:?}: {text}");
+        }
+        first.entry(event.kind()).or_insert(text);
+    };
     for (name, set) in CASES {
-        events(name, set, |event, base| {
-            let text = plain(&narration(event, base));
-            let starts = text.starts_with(|c: char| c.is_uppercase());
-            assert!(starts && text.ends_with('.') && !text.contains(['{', '}']), "{event:?}: {text}");
-            let mut known: Vec<f64> = base.iter().flatten().map(|node| f64::from(node.0)).collect();
-            numbers(&serde_json::to_value(event).unwrap(), "", &mut known);
-            for (value, half) in told(&text) {
-                let is_known = known.iter().any(|number| (number - value).abs() <= half * (1.0 + 1e-9));
-                assert!(is_known, "{value} is not in {event:?}: {text}");
-            }
-            first.entry(event.kind()).or_insert(text);
-        });
+        events(name, set, &mut look);
     }
-    // What no case has is told here.
+    // What none of these cases has.
+    let how = Mending::Rotated { new: [NodeId(7), NodeId(9)] };
+    let unfolded = Event::Unfolded { element: ElementId(4), how, sine: [-0.1, 0.2] };
     let lost = Event::PickLost { a: NodeId(3), b: NodeId(5) };
-    first.insert(EventKind::PickLost, plain(&narration(&lost, None)));
+    [lost, unfolded, Event::Finished].iter().for_each(|event| look(event, None));
     let missing: Vec<&EventKind> = EventKind::ALL.iter().filter(|kind| !first.contains_key(kind)).collect();
     assert!(missing.is_empty(), "no case has {missing:?}");
     let mut text = String::new();

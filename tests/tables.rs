@@ -139,7 +139,7 @@ fn angles_in_space_follow_from_the_coordinates_of_the_file_in_the_report_the_tab
             let share = good / angles().count() as f64;
             assert!((report.physical_angles.share_60_120 - share).abs() < 2e-3, "{name}: {share}");
         }
-        assert_eq!(bent > 1.0, name != "example1", "{name} is curved: {bent}");
+        assert_eq!(bent > 0.1, name != "example1", "{name} is curved: {bent}");
     }
 }
 

@@ -620,9 +620,11 @@ fn hidden_lines_go_round_and_show_more() {
     assert!(apart[1] > 0.005 && apart[1] > apart[0] && apart[2] < 0.002, "{apart:?}");
 }
 
-/// The texts that the last frame has painted and that say this.
+/// The texts that the last frame has painted over the main view and that say this.
 fn painted(harness: &Window, said: &str) -> Vec<eframe::egui::Rect> {
-    texts::texts(harness).into_iter().filter(|text| text.said == said).map(|text| text.rect).collect()
+    let view = harness.query_all_by_label_contains("Mesh at step").map(|node| node.rect()).next().unwrap();
+    let texts = texts::texts(harness).into_iter().filter(|text| text.said == said).map(|text| text.rect);
+    texts.filter(|rect| view.contains_rect(*rect)).collect()
 }
 
 #[test]
@@ -673,6 +675,10 @@ fn a_base_outside_of_the_view_is_pointed_at_from_its_rim() {
     apply(&mut harness, Command::Find(Outlined::Node(far)));
     harness.run_steps(3);
     let rect = harness.query_all_by_label_contains("Mesh at step").map(|node| node.rect()).next().unwrap();
+    harness.hover_at(rect.center());
+    harness.run_steps(1);
+    harness.event(eframe::egui::Event::Zoom(8.0));
+    harness.run_steps(3);
     let view = harness.state().state.view().plane;
     let to = view.camera.unwrap().project(mesh.uv(base.a).extend(0.0), view.size);
     let is_inside = to.cmpgt(glam::DVec2::ZERO).all() && to.cmplt(view.size).all();

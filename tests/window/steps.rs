@@ -79,9 +79,8 @@ fn undo_takes_back_what_a_person_changed_and_no_stop_at_a_breakpoint() {
     apply(&mut harness, Command::Layer(ViewLayer::MetricEllipses));
     let mut stopped_at = Vec::new();
     for _ in 0..3 {
-        let before = step(&harness);
+        let (before, picked) = (step(&harness), document(&harness).picked);
         press(&mut harness, Modifiers::NONE, Key::F5);
-        let picked = document(&harness).picked;
         until(&mut harness, "the next one is selected", |harness| {
             step(harness) > before && document(harness).picked != picked
         });

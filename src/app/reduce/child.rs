@@ -19,7 +19,8 @@ const PAUSE: Duration = Duration::from_millis(5);
 const TAIL: u64 = 1 << 16;
 /// The exit code of Rust after a panic.
 const PANICKED: i32 = 101;
-/// Signals by which a program ends itself. The other ones come from outside, such as when the system has no memory left.
+/// Signals by which a program ends itself. The other ones come from outside, such as when the system has no memory
+/// left.
 #[cfg(unix)]
 const OWN_SIGNALS: [(i32, &str); 6] = [
     (4, "SIGILL"),

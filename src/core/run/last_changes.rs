@@ -1,9 +1,8 @@
 //! The step that changed each node and each element last: recorded along a run, looked up at any of its states. A
-//! change is what a watchpoint sees ([`Appearance`](super::watch::Appearance)).
+//! change is what a watchpoint sees ([`Appearance`](crate::core::run::Appearance)).
 
 use std::sync::Arc;
 
-use super::watch::Beside;
 use crate::core::mesh::{ElementId, Mesh, NodeId, Touched};
 
 /// What a slot without anything looks like.
@@ -258,8 +257,8 @@ fn differs(looks: &mut Vec<u64>, slot: u32, look: u64) -> bool {
 
 /// A fingerprint of a node: its position, and its neighbours in any order, each with the element before it.
 fn node(mesh: &Mesh, n: NodeId) -> u64 {
-    let beside = |e: ElementId| if mesh.is_triangle(e) { Beside::Live } else { Beside::Dead };
-    let around = mesh.fan(n).map(|h| mixed((u64::from(mesh.target(h).0) << 2) | beside(h.element()) as u64));
+    let is_live = |e: ElementId| u64::from(mesh.is_triangle(e));
+    let around = mesh.fan(n).map(|h| mixed((u64::from(mesh.target(h).0) << 1) | is_live(h.element())));
     place(mesh, n).wrapping_add(around.fold(0, u64::wrapping_add)).max(1)
 }
 

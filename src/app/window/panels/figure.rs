@@ -40,8 +40,9 @@ pub fn show(
         .resizable(false)
         .default_width(620.0)
         .frame(super::floating(palette))
-        .pivot(Align2::CENTER_CENTER)
-        .default_pos(context.content_rect().center() - Vec2::new(0.0, 60.0))
+        // Messages come at the bottom of the views.
+        .pivot(Align2::CENTER_TOP)
+        .default_pos(context.content_rect().center_top() + Vec2::new(0.0, 44.0))
         .show(context, |ui| {
             let columns = if context.content_rect().width() > ROOMY {
                 Layout::left_to_right(Align::Min)

@@ -33,6 +33,7 @@ pub fn show(context: &Context, views: Rect, state: &State, commands: &mut Vec<Co
 fn over(
     context: &Context,
     name: &str,
+    is_interactive: bool,
     at: Pos2,
     pivot: Align2,
     width: f32,
@@ -40,6 +41,7 @@ fn over(
     show: impl FnOnce(&mut Ui),
 ) {
     let area = Area::new(egui::Id::unique(name)).order(Order::Foreground).pivot(pivot).fixed_pos(at);
+    let area = area.interactable(is_interactive);
     area.show(context, |ui| {
         ui.set_max_width(width.clamp(120.0, WIDTH));
         floating(palette).inner_margin(egui::Margin::symmetric(12, 7)).show(ui, show);
@@ -53,7 +55,9 @@ fn message(context: &Context, views: Rect, state: &State, commands: &mut Vec<Com
         return;
     }
     let at = views.center_bottom() - Vec2::new(0.0, ROOM);
-    over(context, "message", at, Align2::CENTER_BOTTOM, views.width() - 2.0 * ROOM, palette, |ui| {
+    // What a notice lies over can be clicked.
+    let is_interactive = notice.is_none();
+    over(context, "message", is_interactive, at, Align2::CENTER_BOTTOM, views.width() - 2.0 * ROOM, palette, |ui| {
         if let Some((text, _)) = notice {
             ui.add(Label::new(RichText::new(text).color(ink(palette.text))).wrap());
             return;
@@ -78,7 +82,7 @@ fn message(context: &Context, views: Rect, state: &State, commands: &mut Vec<Com
 fn offer(context: &Context, views: Rect, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let Some((offer, more)) = state.run().autosave.as_ref().and_then(|autosave| autosave.offer()) else { return };
     let at = views.center_top() + Vec2::new(0.0, ROOM);
-    over(context, "offer", at, Align2::CENTER_TOP, views.width() - 2.0 * ROOM, palette, |ui| {
+    over(context, "offer", true, at, Align2::CENTER_TOP, views.width() - 2.0 * ROOM, palette, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(icons::RESET).font(theme::regular(theme::ICON)).color(ink(palette.accent)));
             ui.label(RichText::new(&offer.text).color(ink(palette.strong)));

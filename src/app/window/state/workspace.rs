@@ -210,14 +210,16 @@ impl Workspace {
             Direction::Forward => (&mut self.redo, &mut self.undo),
         };
         let Change { mut document, picked } = from.pop()?;
+        let mut there = self.document.clone();
         if document.picked == picked {
             document.picked = self.document.picked;
+        } else {
+            // The change was a selection: what a stop has selected since is not what it led to.
+            there.picked = picked;
         }
         self.noted = None;
-        let picked = document.picked;
-        let before = std::mem::replace(&mut self.document, document);
-        to.push(Change { document: before.clone(), picked });
-        Some(before)
+        to.push(Change { document: there, picked: document.picked });
+        Some(std::mem::replace(&mut self.document, document))
     }
 }
 
