@@ -386,7 +386,7 @@ fn a_formation_says_where_it_placed_each_top_and_by_which_rule() {
             let m = mesh.metric(at);
             let root = (m.uu * m.vv - m.uv * m.uv).sqrt();
             let inner = m.uu * from.x * to.x + m.uv * (from.x * to.y + from.y * to.x) + m.vv * from.y * to.y;
-            (root * (from.x * to.y - from.y * to.x)).atan2(inner).to_degrees()
+            libm::atan2(root * (from.x * to.y - from.y * to.x), inner).to_degrees()
         };
         let sides = [("left", a, b, c, before.uv(d), 1.0), ("right", b, a, d, mesh.uv(c), -1.0)];
         for (side, at, far, top, other_top, sign) in sides {

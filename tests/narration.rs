@@ -69,7 +69,7 @@ fn told(text: &str) -> Vec<(f64, f64)> {
         let value: f64 = word.parse().unwrap();
         let (mantissa, power) = word.split_once('e').unwrap_or((word, "0"));
         let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len() as i32);
-        (value, 0.5 * 10_f64.powi(power.parse::<i32>().unwrap() - decimals))
+        (value, 0.5 * libm::pow(10.0, f64::from(power.parse::<i32>().unwrap() - decimals)))
     };
     words.map(number).collect()
 }

@@ -6,7 +6,7 @@
 
 mod window_harness;
 
-use eframe::egui::{self, Key, Modifiers, PointerButton, Shape};
+use eframe::egui::{self, Key, Modifiers, PointerButton};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
 use quadfront::app::window::{App, Command, Direction, Goal, Source};
@@ -253,15 +253,15 @@ fn attempts_that_were_taken_back_are_a_tree_with_links_and_reasons() {
     assert_eq!(run(&window).step, first);
 }
 
-/// Opens the menu of a row at its left end: tables may be wider than their docks.
+/// Opens the menu of a row near its left end: tables may be wider than their docks.
 fn open_menu(window: &mut Window, row: egui::Rect) {
-    let pos = row.left_center() + egui::vec2(12.0, 0.0);
+    let pos = egui::pos2(row.left().max(0.0) + 60.0, row.center().y);
     window.hover_at(pos);
-    window.run_steps(2);
+    window.run_steps(3);
     for pressed in [true, false] {
         let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
         window.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
-        window.run_steps(1);
+        window.run_steps(2);
     }
 }
 
@@ -351,42 +351,6 @@ fn rows_and_views_have_the_menu_of_what_they_stand_for() {
     assert_eq!(entries(&mut window, &format!("edge {edge}")), OF_AN_EDGE);
 }
 
-/// All texts that the last frame has painted.
-fn painted(window: &Window) -> Vec<String> {
-    fn add(shape: &Shape, texts: &mut Vec<String>) {
-        match shape {
-            Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, texts)),
-            Shape::Text(text) => texts.push(text.galley.text().to_owned()),
-            _ => {}
-        }
-    }
-    let mut texts = Vec::new();
-    window.output().shapes.iter().for_each(|shape| add(&shape.shape, &mut texts));
-    texts
-}
-
-#[test]
-fn a_candidate_whose_row_is_pointed_at_has_its_name_and_its_reason_in_the_view() {
-    let Some(mut window) = at_the_end("Front") else { return };
-    apply(&mut window, Command::Go(Goal::Step(0)));
-    apply(&mut window, Command::Go(Goal::Kind(EventKind::SideSwapped, Direction::Forward)));
-    let refused = window.state().state.run().moment.as_ref().unwrap().refused();
-    // In a view of the whole mesh they have no room.
-    apply(&mut window, Command::Fit);
-    let is_edge = |reason: &str| !reason.starts_with("swap");
-    let mut seen = 0;
-    for candidate in refused.iter().filter(|candidate| is_edge(&candidate.reason)) {
-        let [from, top] = candidate.ends.map(|n| n.0);
-        let label = format!("{from}\u{2013}{top}  \u{b7}  {}", candidate.reason);
-        assert!(!painted(&window).contains(&label), "{label}");
-        window.get_by_label_contains(&format!("{from}\u{2013}{top}  ")).hover();
-        window.run_steps(3);
-        assert!(painted(&window).contains(&label), "{label}: {:?}", painted(&window));
-        seen += 1;
-    }
-    assert!(seen > 0, "{} candidates", refused.len());
-}
-
 #[test]
 fn the_chain_of_a_row_is_unfolded_and_scrolled_to_and_a_node_leads_to_the_step_that_made_it() {
     let Some(mut window) = at_the_end("Elements") else { return };
@@ -446,6 +410,8 @@ fn the_last_change_of_a_row_is_that_of_its_history() {
     let link = format!("step {}  ", grouped(log.of_node(latest.0)));
     until(&mut window, &link, |window| window.query_all_by_label_contains(&link).next().is_some());
     let newest = window.get_all_by_label_contains("step ").filter(|node| label(node).starts_with("step "));
+    // The heading of a section has a step alone.
+    let newest = newest.filter(|node| label(node).contains("  "));
     let newest = newest.min_by(|a, b| a.rect().top().total_cmp(&b.rect().top())).unwrap();
     assert!(label(&newest).starts_with(&link), "{}", label(&newest));
 }

@@ -138,7 +138,7 @@ pub enum CompareNews {
     Progress(Progress),
     Found(Box<Comparison>),
     /// What both did at a difference, by its place in the list, and why.
-    Told(usize, [Option<Did>; 2]),
+    Told(usize, Box<[Option<Did>; 2]>),
     Fault(Fault),
 }
 
@@ -207,7 +207,7 @@ fn compare([a, b]: [Run; 2], said: &dyn Fn(CompareNews), stop: &Cancel, asked: &
     said(CompareNews::Found(Box::new(comparison)));
     while let Ok(k) = asked.recv() {
         if let Some(difference) = differences.get(k) {
-            said(CompareNews::Told(k, difference.told([&mut a, &mut b])?));
+            said(CompareNews::Told(k, Box::new(difference.told([&mut a, &mut b])?)));
         }
     }
     Ok(())

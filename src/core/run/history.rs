@@ -80,6 +80,9 @@ pub enum Changes {
     },
 }
 
+/// Looks at a step: its number, the state after it, and what it did.
+type Visit<'v> = &'v mut dyn FnMut(u64, &Converter<'static>, Option<&Event>) -> Result<(), Fault>;
+
 impl History {
     /// The history of a run, at step 0, with the usual budget.
     ///
@@ -362,12 +365,7 @@ impl History {
     }
 
     /// As [`replay`](History::replay), until `visit` fails.
-    pub(super) fn replay_while(
-        &self,
-        from: u64,
-        until: u64,
-        visit: &mut dyn FnMut(u64, &Converter<'static>, Option<&Event>) -> Result<(), Fault>,
-    ) -> Result<(), Fault> {
+    pub(super) fn replay_while(&self, from: u64, until: u64, visit: Visit<'_>) -> Result<(), Fault> {
         let mut cursor = self.cursor_before(from, Mesh::default())?;
         while cursor.step < from {
             cursor.advance(&self.run)?;

@@ -74,7 +74,7 @@ impl State {
                 self.view.reveal.ask(Some(Pane::Inspector));
                 self.view.chain.ask(Some(element));
             }
-            Command::ToLargestLoss => self.to_largest_loss(),
+            Command::ToLargestLoss => self.seek_largest_loss(),
             Command::List(kind, query) => self.list(kind, query, false),
             Command::CopyList(kind, query) => self.list(kind, query, true),
             Command::Find(what) => self.find(what),

@@ -118,7 +118,7 @@ impl State {
                 let wanted = run.to_loss.take_if(|wanted| *wanted == told.element);
                 run.chain = Some(told);
                 if wanted.is_some() {
-                    self.to_largest_loss();
+                    self.seek_largest_loss();
                 }
             }
             SessionNews::Hits(hits) => run.hits = hits,

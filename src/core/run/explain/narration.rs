@@ -169,7 +169,7 @@ fn top(event: &Event) -> String {
             format!("top: the edge {} lies across the top edge, so it is swapped for {}", edge(across), edge(new))
         }
         Event::TopSmoothed { nodes } => {
-            format!("top: {} around the left top moved to better places after the swap", are(nodes.into(), "node"))
+            format!("top: after the swap {} moved to better places around the left top", are(nodes.into(), "node"))
         }
         Event::TopFound { ends, swaps: 0 } => {
             format!("top: the edge {} is there already, so all four sides are known", edge(ends))

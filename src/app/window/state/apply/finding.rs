@@ -82,7 +82,7 @@ impl State {
     }
 
     /// Goes to the step that cost the selected quadrilateral most quality, once its decision chain is known.
-    pub(in crate::app::window::state) fn to_largest_loss(&mut self) {
+    pub(in crate::app::window::state) fn seek_largest_loss(&mut self) {
         let is_quad = |e| self.run.moment.as_ref().is_some_and(|m| m.mesh.has_element(e) && m.mesh.is_quad(e));
         let Some(Outlined::Element(element)) = self.document().picked.filter(|picked| match picked {
             Outlined::Element(e) => is_quad(*e),

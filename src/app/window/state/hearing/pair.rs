@@ -124,7 +124,7 @@ impl State {
                 }
                 Ok(CompareNews::Told(place, did)) => {
                     if let Some(shown) = pair.shown.as_mut().filter(|shown| shown.place == place) {
-                        shown.did = Some(did);
+                        shown.did = Some(*did);
                     }
                 }
                 Ok(CompareNews::Fault(fault)) => self.complain(&fault),
