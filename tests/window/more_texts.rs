@@ -169,6 +169,8 @@ fn no_text_of_notes_messages_fields_and_menus_is_cut_or_covered() {
             seen.retain(|fault, _| tab == "Front" || !fault.starts_with("cut"));
             found.extend(seen);
         }
+        harness.get_by_role_and_label(Role::Tab, "Front").click();
+        harness.run_steps(2);
         // Beside the hole in the middle.
         let view = harness.get_by_label_contains("Mesh at step").rect();
         let place = view.min + 0.25 * view.size();
