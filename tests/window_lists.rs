@@ -324,7 +324,7 @@ fn rows_and_views_have_the_menu_of_what_they_stand_for() {
         window.run_steps(1);
     }
     assert_eq!(entries(&mut window, &heading.0), heading.1);
-    window.get_by_label("Nodes").click();
+    window.get_by_role_and_label(egui::Role::Tab, "Nodes").click();
     row(&mut window, "Node 0");
     let at = window.get_by_label("Node 0").rect();
     open_menu(&mut window, at);
@@ -336,7 +336,7 @@ fn rows_and_views_have_the_menu_of_what_they_stand_for() {
     let moment = window.state().state.run().moment.clone().unwrap();
     let base = moment.phase.base().unwrap();
     let segment = moment.front.iter().map(|s| [s.a, s.b]).find(|ends| *ends != [base.a, base.b]).unwrap();
-    window.get_by_label("Front").click();
+    window.get_by_role_and_label(egui::Role::Tab, "Front").click();
     let name = format!("Segment {} \u{2192} {}", segment[0].0, segment[1].0);
     row(&mut window, &name);
     let at = window.get_by_label(&name).rect();
