@@ -86,7 +86,7 @@ pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {
 /// The selection of a base (4.3.3, table 1), and what became of one that was chosen or could not be converted.
 fn selection(event: &Event) -> String {
     match *event {
-        Event::BaseSelected { a, b, class, theta: [at_a, at_b], key, reach, within_reach, picked, .. } => {
+        Event::BaseSelected { a, b, class, theta: [at_a, at_b], key, reach, picked, .. } => {
             let [at_a, at_b] = [at_a, at_b].map(degrees);
             let rect = "\u{3b8}_{rect}";
             let why = match class {
@@ -96,8 +96,8 @@ fn selection(event: &Event) -> String {
                 _ => format!("neither frontal angle, {at_a}\u{b0} nor {at_b}\u{b0}, is below {rect}"),
             };
             let by = if picked { "which you chose, is the base" } else { "is the next base" };
+            let lies = if key < reach { "below" } else { "not below" };
             let [key, reach] = apart(key, reach);
-            let lies = if within_reach { "within" } else { "beyond" };
             format!(
                 "segment {} {by}: class {class}, since {why}; its key {key} is {lies} the reach {reach}",
                 segment([a, b])
