@@ -15,6 +15,7 @@ use quadfront::core::mesh::{ElementId, NodeId};
 use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::explain::{narration, plain};
+use quadfront::core::run::{History, Run};
 use serde_json::Value;
 
 /// Cases that have all kinds of events together, with their parameters.
@@ -117,4 +118,26 @@ fn a_side_is_told_without_its_base_too() {
         }
     });
     assert!(seen > 0);
+}
+
+#[test]
+fn the_transcript_of_any_steps_is_what_a_whole_conversion_tells() {
+    let mut whole = Vec::new();
+    events("example5", &[], |event, base| whole.push(narration(event, base)));
+    let run = Run::of(built_in::named("example5").unwrap().unwrap());
+    let made = run.background(&mut Nobody).unwrap();
+    // So little memory that most events are dropped and told by replay.
+    let mut history = History::of(run, &made, 1 << 16).unwrap();
+    while history.end().is_none() {
+        history.extend(history.log().known() + 64);
+    }
+    let steps = whole.len() as u64;
+    assert_eq!(history.log().known(), steps);
+    assert!((1..=steps).any(|step| history.log().event(step).is_none()), "nothing was dropped");
+    for from in (1..=steps).step_by(113) {
+        let until = from + from % 29;
+        let told = history.transcript(from, until).unwrap();
+        assert_eq!(told, whole[from as usize - 1..until.min(steps) as usize], "from {from} to {until}");
+    }
+    assert!(history.transcript(steps + 1, steps + 9).unwrap().is_empty());
 }

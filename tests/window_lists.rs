@@ -6,7 +6,7 @@
 
 mod window_harness;
 
-use eframe::egui::{self, Key, Modifiers, PointerButton};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Shape};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
 use quadfront::app::window::{App, Command, Direction, Goal, Source};
@@ -349,6 +349,49 @@ fn rows_and_views_have_the_menu_of_what_they_stand_for() {
     let at = window.get_by_label_contains(&format!("{edge}  ")).rect();
     open_menu(&mut window, at);
     assert_eq!(entries(&mut window, &format!("edge {edge}")), OF_AN_EDGE);
+}
+
+/// The texts that were painted in the last frame, but for what is fully transparent.
+fn painted(window: &Window) -> Vec<(String, egui::Rect)> {
+    fn add(shape: &Shape, texts: &mut Vec<(String, egui::Rect)>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, texts)),
+            Shape::Text(text) if text.opacity_factor > 0.0 => {
+                texts.push((text.galley.text().to_owned(), text.visual_bounding_rect()));
+            }
+            _ => {}
+        }
+    }
+    let mut texts = Vec::new();
+    window.output().shapes.iter().for_each(|shape| add(&shape.shape, &mut texts));
+    texts
+}
+
+#[test]
+fn a_candidate_whose_row_is_pointed_at_has_its_name_and_its_reason_in_the_view() {
+    let Some(mut window) = at_the_end("Front") else { return };
+    apply(&mut window, Command::Go(Goal::Step(0)));
+    apply(&mut window, Command::Go(Goal::Kind(EventKind::SideSwapped, Direction::Forward)));
+    let refused = window.state().state.run().moment.as_ref().unwrap().refused();
+    // In a view of the whole mesh the reasons have no room, and the letters of the base stand there.
+    apply(&mut window, Command::Fit);
+    let mut seen = 0;
+    for candidate in refused.iter().filter(|candidate| !candidate.reason.starts_with("swap")) {
+        let [from, top] = candidate.ends.map(|n| n.0);
+        let text = format!("{from}\u{2013}{top}  \u{b7}  {}", candidate.reason);
+        let find = |window: &Window| painted(window).into_iter().find(|painted| painted.0 == text);
+        assert!(find(&window).is_none(), "{text}");
+        let row = format!("{from}\u{2013}{top}  ");
+        window.get_by_label_contains(&row).scroll_to_me();
+        window.run_steps(5);
+        window.get_by_label_contains(&row).hover();
+        window.run_steps(3);
+        let rect = find(&window).unwrap_or_else(|| panic!("{text}: {:?}", painted(&window))).1;
+        let view = window.get_by_role(egui::Role::Canvas).rect();
+        assert!(view.contains_rect(rect), "{rect} in {view}");
+        seen += 1;
+    }
+    assert!(seen > 0, "{} candidates", refused.len());
 }
 
 #[test]

@@ -16,6 +16,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use quadfront::app::window::{App, Arrangement, Command, Direction, Goal, LinkedBy, PairCommand, Source, Which};
 use quadfront::core::convert::EventKind;
 use quadfront::core::mesh::{Mesh, NodeId};
+use quadfront::core::run::compare::Difference;
 use quadfront::core::run::explain::{self, plain};
 use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
@@ -63,7 +64,11 @@ fn go(harness: &mut Window, goal: Goal) {
 
 fn compared(harness: &mut Window) {
     until(harness, "the runs are compared", |harness| {
-        harness.state().state.pair().is_some_and(|pair| pair.comparison.is_some())
+        harness
+            .state()
+            .state
+            .pair()
+            .is_some_and(|pair| pair.comparison.as_ref().is_some_and(|found| found.differences.is_some()))
     });
 }
 
@@ -107,7 +112,7 @@ fn a_fork_with_another_c_differs_first_where_the_event_files_do() {
     for name in ["A: base selected", "B: base selected"] {
         assert!(harness.query_all_by_label_contains(name).count() > 0, "{name}");
     }
-    let reports = &harness.state().state.pair().unwrap().comparison.as_ref().unwrap().reports;
+    let reports = harness.state().state.pair().unwrap().comparison.as_ref().unwrap().reports.as_ref().unwrap();
     for (report, set) in reports.iter().zip(["c=2", "c=1.5"]) {
         let mut program = Process::new(env!("CARGO_BIN_EXE_quadfront"));
         let file = folder.path().join("report.json");
@@ -180,6 +185,27 @@ fn the_runs_go_together_by_step_by_quadrilateral_and_by_phase() {
     assert_eq!(steps(&harness), [9, before[1] - 40]);
 }
 
+/// The decisions in which the two runs differ although their fronts are the same there.
+fn differences(harness: &Window) -> Vec<Difference> {
+    harness.state().state.pair().unwrap().comparison.clone().unwrap().differences.unwrap()
+}
+
+#[test]
+fn the_chain_of_a_quadrilateral_of_the_second_run_brings_the_inspector_to_the_front() {
+    let Some(mut harness) = window() else { return };
+    go(&mut harness, Goal::End);
+    fork(&mut harness);
+    assert_eq!(harness.state().state.active_run(), Which::B);
+    assert!(harness.query_by_label("Decision chain").is_none(), "the inspector is behind another panel");
+    let worst = harness.state().state.of(Which::B).run().moment.as_ref().unwrap().worst.unwrap().0;
+    apply(&mut harness, Command::ShowChain(worst));
+    until(&mut harness, "the chain is told", |harness| {
+        harness.query_all_by_label_contains("Chain, step ").next().is_some()
+    });
+    let picked = Which::ALL.map(|which| harness.state().state.of(which).document().picked);
+    assert_eq!(picked, [None, Some(Outlined::Element(worst))]);
+}
+
 /// The panel with the two runs at a difference: both stand at its steps, and what each did there is told.
 fn stands_at_difference(harness: &mut Window, place: usize) {
     both_settle(harness);
@@ -187,10 +213,10 @@ fn stands_at_difference(harness: &mut Window, place: usize) {
         let shown = harness.state().state.pair().unwrap().shown.as_ref();
         shown.is_some_and(|shown| shown.place == place && shown.did.is_some())
     });
-    let comparison = harness.state().state.pair().unwrap().comparison.clone().unwrap();
-    let difference = &comparison.differences[place];
+    let differences = differences(harness);
+    let difference = &differences[place];
     assert_eq!(steps(harness), difference.steps);
-    let count = comparison.differences.len();
+    let count = differences.len();
     harness.get_by_label(&format!("Difference {} of {count}", place + 1));
     for (k, which) in Which::ALL.into_iter().enumerate() {
         let state = harness.state().state.of(which);
@@ -208,7 +234,7 @@ fn further_differences_are_stepped_through_with_both_reasons_and_then_the_runs_a
     apply(&mut harness, Command::Set("placement", "false".to_owned()));
     both_settle(&mut harness);
     compared(&mut harness);
-    let all = harness.state().state.pair().unwrap().comparison.as_ref().unwrap().differences.clone();
+    let all = differences(&harness);
     assert!(all.len() > 5, "{}", all.len());
     harness.get_by_label("Go there").click();
     harness.run_steps(3);

@@ -48,6 +48,16 @@ fn value(window: &Window, cell: usize, figure: &str) -> f64 {
     sweep(window).value(cell, Figure::named(figure).unwrap()).unwrap()
 }
 
+/// Waits until the second run is open: it is that of a cell.
+fn second_is_the_run_of(window: &mut Window, cell: usize) {
+    until(window, "its run is there", |window| {
+        let state = &window.state().state;
+        let run = state.of(Which::B).run();
+        state.pair().is_some() && run.moment.is_some() && !run.is_busy() && run.recorded
+    });
+    is_the_run_of(window, cell, Which::B);
+}
+
 /// What the window has at the end of a run is what the cell says.
 fn is_the_run_of(window: &mut Window, cell: usize, which: Which) {
     apply(window, Command::Go(Goal::End));
@@ -87,12 +97,7 @@ fn a_cell_of_a_sweep_opens_the_run_with_the_same_figures() {
         // A click opens it as the second run.
         window.get_by_label(&label).click();
         window.run_steps(2);
-        until(&mut window, "its run is there", |window| {
-            let state = &window.state().state;
-            let run = state.of(Which::B).run();
-            state.pair().is_some() && run.moment.is_some() && !run.is_busy() && run.recorded
-        });
-        is_the_run_of(&mut window, cell, Which::B);
+        second_is_the_run_of(&mut window, cell);
         apply(&mut window, Command::Pair(PairCommand::Close));
         // Or in place of the one that is open.
         let number = window.state().state.run().number;
@@ -164,12 +169,7 @@ fn a_sweep_of_63_runs_takes_all_processors_and_each_stop_is_answered_at_once() {
     let cell = (0..63).find(|cell| sweep(&window).cells()[*cell].is_some()).unwrap();
     window.state_mut().apply(Command::Sweep(SweepCommand::OpenBeside(cell)));
     window.run_steps(2);
-    until(&mut window, "its run is there", |window| {
-        let state = &window.state().state;
-        let run = state.of(Which::B).run();
-        state.pair().is_some() && run.moment.is_some() && !run.is_busy() && run.recorded
-    });
-    is_the_run_of(&mut window, cell, Which::B);
+    second_is_the_run_of(&mut window, cell);
 }
 
 #[test]

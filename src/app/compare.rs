@@ -24,38 +24,6 @@ use finished::{Finished, Parted};
 /// The names of the two runs in what is printed.
 const NAMES: [&str; 2] = ["A", "B"];
 
-/// Where two runs differ, and what they end with.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Comparison {
-    /// `None` where they never differ.
-    pub first_difference: Option<FirstDifference>,
-    /// The decisions in which they differ although their fronts are the same there, where they were asked for.
-    pub differences: Vec<Difference>,
-    /// The report of each at its end, with the time that it takes by itself.
-    pub reports: [Report; 2],
-}
-
-impl Comparison {
-    /// Compares two runs, of which these are the histories; with all differences where `all` is set. `report` gives the
-    /// report of each at its end.
-    ///
-    /// # Errors
-    /// A conversion that cannot continue, and cancellation.
-    pub fn of(
-        [a, b]: [&mut History; 2],
-        all: bool,
-        watch: &mut dyn Watch,
-        mut report: impl FnMut(&Run) -> Result<Report, Fault>,
-    ) -> Result<Comparison, Fault> {
-        let first_difference = first_difference([a, b], watch)?;
-        let differences = match &first_difference {
-            Some(first) if all => differences([a, b], first.step, watch)?,
-            _ => Vec::new(),
-        };
-        Ok(Comparison { first_difference, differences, reports: [report(a.run())?, report(b.run())?] })
-    }
-}
-
 /// A difference, and what both did there.
 #[derive(Serialize)]
 struct ToldDifference {
@@ -123,13 +91,18 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
     let mut progress = Progress::new(source.quiet);
     let [mut a, mut b] =
         [History::open(runs[0].clone(), &mut progress)?, History::open(runs[1].clone(), &mut progress)?];
-    let comparison = Comparison::of([&mut a, &mut b], differences.is_some(), &mut progress, |run| {
+    let found = first_difference([&mut a, &mut b], &mut progress)?;
+    let all = match &found {
+        Some(first) if differences.is_some() => self::differences([&mut a, &mut b], first.step, &mut progress)?,
+        _ => Vec::new(),
+    };
+    let report = |run: &Run| {
         let mut progress = Progress::new(source.quiet);
         let mut report = report(run, &mut progress)?;
         report.timing = progress.finish();
-        Ok(report)
-    })?;
-    let all = comparison.differences.as_slice();
+        Ok::<_, Fault>(report)
+    };
+    let reports = &[report(&runs[0])?, report(&runs[1])?];
     let told = differences.map(|n| {
         let first = all
             .iter()
@@ -139,8 +112,7 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
     });
     let told = told.transpose()?;
     progress.finish();
-    let Comparison { first_difference, reports, .. } = &comparison;
-    let first_difference = first_difference.as_ref();
+    let first_difference = found.as_ref();
     let differ = first_difference.is_some();
     if *json {
         let written = WrittenComparison { first_difference, differences: told, reports };

@@ -33,7 +33,9 @@ fn both_settle(harness: &mut Window) {
             run.moment.is_some() && !run.is_busy() && run.recorded
         };
         Which::ALL.into_iter().all(is_there)
-            && state.pair().is_some_and(|pair| pair.is_same || pair.comparison.is_some())
+            && state.pair().is_some_and(|pair| {
+                pair.is_same || pair.comparison.as_ref().is_some_and(|found| found.differences.is_some())
+            })
     });
 }
 
@@ -162,7 +164,9 @@ fn no_text_of_notes_messages_fields_and_menus_is_cut_or_covered() {
             harness.get_by_role_and_label(Role::Tab, tab).click();
             harness.run_steps(4);
             until(&mut harness, "there are rows", |harness| harness.query_all_by_label_contains(row).next().is_some());
-            let place = harness.query_all_by_label_contains(row).next().unwrap().rect().center();
+            // The first one may be scrolled out of the panel, and rows are wider than it.
+            let shown = harness.query_all_by_label_contains(row).nth(2).unwrap().rect();
+            let place = shown.left_center() + eframe::egui::Vec2::new(60.0, 0.0);
             let mut seen = Found::new();
             menu_at(&mut harness, place, &format!("menu of {tab}, {at}"), &mut seen);
             // These tables are wider than their docks, and scroll sideways.

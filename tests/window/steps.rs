@@ -1,9 +1,14 @@
 //! What the timeline and the legend say of steps, and what a stop selects.
 
-use eframe::egui::{Event as Input, Key, Modifiers, PointerButton, Pos2, Vec2};
-use egui_kittest::kittest::Queryable;
+use eframe::egui::accesskit::Live;
+use eframe::egui::{Event as Input, Key, Modifiers, PointerButton, Pos2, Role, Vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
 use quadfront::app::window::{Command, Direction, Goal, ViewLayer};
 use quadfront::core::convert::{Event, EventKind};
+use quadfront::core::kernel::number::grouped;
+use quadfront::core::progress::Nobody;
+use quadfront::core::run::History;
+use quadfront::core::run::explain::plain;
 use quadfront::render::scene::Outlined;
 
 use super::window_harness::{Window, apply, settle, until};
@@ -101,6 +106,81 @@ fn undo_takes_back_what_a_person_changed_and_no_stop_at_a_breakpoint() {
     apply(&mut harness, Command::Pick(None));
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(document(&harness).picked, stopped_at[2]);
+}
+
+#[test]
+fn the_sentence_of_a_step_stands_below_the_buttons_and_leads_to_the_transcript() {
+    let Some(mut harness) = window() else { return };
+    let run = harness.state().state.run().opened.as_ref().unwrap().run.clone();
+    let mut whole = History::open(run, &mut Nobody).unwrap();
+    while whole.end().is_none() {
+        whole.extend(whole.log().known() + 1024);
+    }
+    let end = whole.log().known();
+    let told = |step: u64| plain(&whole.transcript(step, step).unwrap()[0]);
+    let height = harness.get_by_label_contains("Timeline: step").rect().top();
+    for step in [1, end / 2, end] {
+        apply(&mut harness, Command::Go(Goal::Step(step)));
+        harness.run_steps(2);
+        let said = told(step);
+        let sentence = harness.get_by_role_and_label(Role::Status, &said);
+        // Screen readers say it, and nothing moves, however long it is.
+        assert_eq!(sentence.accesskit_node().live(), Live::Polite);
+        assert_eq!(harness.get_by_label_contains("Timeline: step").rect().top(), height);
+    }
+    harness.get_by_role_and_label(Role::Status, &told(end)).click();
+    harness.run_steps(3);
+    // The sentences around the current step, each leading to its step.
+    let row = |step: u64| format!("Step {}: {}", grouped(step), told(step));
+    until(&mut harness, "the transcript", |harness| harness.query_by_label(&row(end)).is_some());
+    harness.run_steps(20);
+    let current = harness.get_by_label(&row(end)).rect();
+    let below = harness.get_by_role_and_label(Role::Tab, "Parameters").rect().top();
+    assert!(current.bottom() <= below, "the current step is in view: {current:?}, {below}");
+    harness.get_by_label(&row(end - 30)).click_accesskit();
+    settle(&mut harness);
+    assert_eq!(step(&harness), end - 30);
+    until(&mut harness, "the steps after it", |harness| harness.query_by_label(&row(end - 25)).is_some());
+    // Earlier ones are told without going there.
+    let page = end - 130;
+    assert!(harness.query_by_label(&row(page)).is_none());
+    harness.get_by_label("Earlier steps").click_accesskit();
+    until(&mut harness, "earlier steps", |harness| harness.query_by_label(&row(page)).is_some());
+    assert_eq!(step(&harness), end - 30);
+    // The run goes elsewhere: so does the transcript.
+    apply(&mut harness, Command::Go(Goal::Step(3)));
+    until(&mut harness, "the first steps", |harness| harness.query_by_label(&row(3)).is_some());
+    assert!(harness.query_by_label("Earlier steps").is_none());
+    // The steps after a change are told anew.
+    apply(&mut harness, Command::Set("placement", "false".to_owned()));
+    let run = harness.state().state.current_run().unwrap();
+    let mut other = History::open(run, &mut Nobody).unwrap();
+    other.extend(80);
+    let changed = (4..=80).find(|step| other.event(*step).unwrap() != whole.event(*step).unwrap()).unwrap();
+    let text = format!("Step {changed}: {}", plain(&other.transcript(changed, changed).unwrap()[0]));
+    until(&mut harness, &text, |harness| harness.query_by_label(&text).is_some());
+}
+
+#[test]
+fn the_view_describes_the_state_for_screen_readers() {
+    let Some(mut harness) = window() else { return };
+    apply(&mut harness, Command::Go(Goal::Kind(EventKind::SideSwapped, Direction::Forward)));
+    harness.run_steps(2);
+    let moment = harness.state().state.run().moment.clone().unwrap();
+    let view = harness.get_by_role(Role::Canvas);
+    let said = view.accesskit_node().description().unwrap();
+    let base = moment.phase.base().unwrap();
+    let mesh = &moment.mesh;
+    let front = mesh.front().count();
+    for part in [
+        format!("The front has {front} segments in {} loops.", moment.loops.len()),
+        format!("The base is {} \u{2192} {}, of class ", base.a.0, base.b.0),
+        plain(moment.narration.as_ref().unwrap()),
+        plain(&moment.about[0]),
+        format!("Next: {}", plain(&moment.next)),
+    ] {
+        assert!(said.contains(&part), "{part} is not in {said}");
+    }
 }
 
 #[test]

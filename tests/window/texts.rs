@@ -163,9 +163,17 @@ fn look_at(case: &str, sizes: &[Vec2]) {
             }
             apply(&mut harness, Command::ToggleTheme);
         }
-        for command in
-            [Command::Notes, Command::Figures, Command::Messages, Command::Help, Command::Palette, Command::SaveMesh]
-        {
+        for command in [
+            Command::Notes,
+            Command::Figures,
+            Command::Messages,
+            Command::Help,
+            Command::Palette,
+            Command::FindField,
+            Command::GoTo,
+            Command::OpenPath,
+            Command::SaveMesh,
+        ] {
             apply(&mut harness, command.clone());
             harness.run_steps(4);
             let what = format!("{case} {} x {}, {}", size.x, size.y, command.name());

@@ -54,6 +54,8 @@ pub enum Command {
     Made(Outlined),
     /// Ask why a segment of the front was or was not chosen.
     Explain([NodeId; 2]),
+    /// Ask what the steps from one to another did, a sentence each.
+    TellTranscript(u64, u64),
     /// Ask for the history of something.
     TellPast(Watched),
     /// Ask for the decision chain of a quadrilateral.
@@ -294,6 +296,7 @@ impl Command {
             self,
             Command::Hover(_)
                 | Command::Explain(_)
+                | Command::TellTranscript(..)
                 | Command::TellPast(_)
                 | Command::TellChain(_)
                 | Command::List(..)

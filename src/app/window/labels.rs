@@ -7,8 +7,9 @@ mod measures;
 mod refused;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Ui, Vec2};
+use eframe::egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Ui, Vec2};
 
 pub use measures::shading;
 
@@ -32,6 +33,16 @@ const LEAST_FOR_IDS: f64 = 34.0;
 const MOST_ELLIPSES: usize = 60;
 /// Ellipses are drawn at this fraction of the unit length.
 const ELLIPSE: f64 = 0.25;
+
+/// How far the plate of a label reaches beyond its text.
+const PLATE: Vec2 = Vec2::new(4.0, 0.5);
+/// The sides of a place at which its name may stand, in the order in which they are tried.
+const NAME_SIDES: [(Align2, Vec2); 4] = [
+    (Align2::CENTER_BOTTOM, Vec2::new(0.0, -16.0)),
+    (Align2::CENTER_TOP, Vec2::new(0.0, 16.0)),
+    (Align2::RIGHT_CENTER, Vec2::new(-20.0, 0.0)),
+    (Align2::LEFT_CENTER, Vec2::new(20.0, 0.0)),
+];
 
 /// How long new labels fade in after a zoom, in seconds.
 const COMING: f64 = 0.12;
@@ -101,6 +112,10 @@ pub fn show(
     if which == ViewRole::Whole {
         over.main_frame(state);
     }
+    if which == ViewRole::Main {
+        over.scale_bar();
+        over.axes();
+    }
     let small = over.small_view(which, &decision);
     if cover.is_some() {
         over.lens_in_space(state);
@@ -131,13 +146,18 @@ pub fn show(
     }
     if which == ViewRole::Main {
         over.far_base(&decision);
-        over.scale_bar();
-        over.axes();
     }
     memory.labels = over.labels;
     if memory.labels.values().any(|since| now - since < COMING) {
         ui.ctx().request_repaint();
     }
+}
+
+/// A rectangle moved as little as puts it into another one.
+fn within(rect: Rect, view: Rect) -> Rect {
+    let least = (view.max - rect.max).min(Vec2::ZERO);
+    let moved = rect.translate(least);
+    moved.translate((view.min - moved.min).max(Vec2::ZERO))
 }
 
 struct Labels<'a> {
@@ -197,17 +217,40 @@ impl Labels<'_> {
         }
         let galley = self.painter.layout_no_wrap(text.to_owned(), font, colour);
         let rect = anchor.anchor_size(at, galley.size());
-        let ground = rect.expand2(Vec2::new(4.0, 0.5));
-        if !self.frame.rect.contains_rect(rect) || self.taken.iter().any(|taken| taken.intersects(ground)) {
-            return false;
+        let is_free = self.frame.rect.contains_rect(rect) && self.is_free(rect);
+        if is_free {
+            self.put(rect, galley, colour);
         }
-        let since = self.before.get(text).copied().or(self.is_new).unwrap_or(f64::NEG_INFINITY);
-        self.labels.insert(text.to_owned(), since);
+        is_free
+    }
+
+    /// Adds the name of a place in the view: beside it, where it covers no earlier label if there is such a side, and
+    /// wholly in the view.
+    fn name(&mut self, place: Pos2, text: &str, font: FontId, colour: Color32) {
+        let galley = self.painter.layout_no_wrap(text.to_owned(), font, colour);
+        let view = self.frame.rect.shrink2(PLATE);
+        let rects = NAME_SIDES.map(|(anchor, away)| within(anchor.anchor_size(place + away, galley.size()), view));
+        let is_clear = |rect: &&Rect| self.is_free(**rect) && !rect.expand2(PLATE).contains(place);
+        let rect = rects.iter().find(is_clear).copied().unwrap_or(rects[0]);
+        self.put(rect, galley, colour);
+    }
+
+    /// Whether a label covers no earlier one.
+    fn is_free(&self, rect: Rect) -> bool {
+        let ground = rect.expand2(PLATE);
+        !self.taken.iter().any(|taken| taken.intersects(ground))
+    }
+
+    /// Draws a label and its plate, and takes its place.
+    fn put(&mut self, rect: Rect, galley: Arc<Galley>, colour: Color32) {
+        let text = galley.text().to_owned();
+        let since = self.before.get(&text).copied().or(self.is_new).unwrap_or(f64::NEG_INFINITY);
+        self.labels.insert(text, since);
         let share = ((self.now - since) / COMING).clamp(0.05, 1.0) as f32;
+        let ground = rect.expand2(PLATE);
         self.painter.rect_filled(ground, 3.0, ink(self.palette.label_plate).gamma_multiply(share));
         self.painter.add(eframe::egui::epaint::TextShape::new(rect.min, galley, colour).with_opacity_factor(share));
         self.taken.push(ground);
-        true
     }
 
     /// The letters A, B, C and D, on the outer side of their nodes.
@@ -261,9 +304,8 @@ impl Labels<'_> {
             let why = self.moment.refused().into_iter().find(|candidate| candidate.is(what));
             let text = why.map_or(text.clone(), |candidate| format!("{text}  ·  {}", candidate.reason));
             let font = if strong { theme::semibold(12.5) } else { theme::regular(12.0) };
-            let Some(at) = self.on_screen(self.lifted(p)) else { continue };
-            let at = at + Vec2::new(0.0, -16.0);
-            self.label(at, Align2::CENTER_BOTTOM, &text, font, ink(self.palette.label));
+            let Some(at) = self.on_screen(self.lifted(p)).filter(|at| self.frame.rect.contains(*at)) else { continue };
+            self.name(at, &text, font, ink(self.palette.label));
         }
     }
 

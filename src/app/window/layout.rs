@@ -60,6 +60,10 @@ enum Room {
     Pair,
 }
 
+/// What is told of the mesh in lists and plots, and what the user has set, in the order of their tabs.
+const LISTS: [Pane; 4] = [Pane::Front, Pane::Elements, Pane::Nodes, Pane::Quality];
+const MARKS: [Pane; 2] = [Pane::Breakpoints, Pane::Bookmarks];
+
 /// A column of the first arrangement.
 struct Column {
     /// Its tabs from top to bottom, with their shares of the height.
@@ -111,8 +115,8 @@ impl Room {
         if matches!(self, Room::Wide | Room::Middle) {
             let groups = vec![
                 // The plots are beside the mesh, in which their bars light elements.
-                (vec![Pane::Front, Pane::Elements, Pane::Nodes, Pane::Quality], 1.0),
-                (vec![Pane::Breakpoints, Pane::Bookmarks], 0.42),
+                (LISTS.to_vec(), 1.0),
+                (MARKS.to_vec(), 0.42),
             ];
             columns.push(Column { groups, width: Some(LEFT) });
         }
@@ -121,47 +125,26 @@ impl Room {
             let groups = vec![(vec![Pane::MetricLens], 1.0), (vec![Pane::Parametric], 1.0)];
             columns.push(Column { groups, width: Some(LENS) });
         }
-        let (inspector, share): (&[Pane], f32) = match self {
+        let (inspector, share) = match self {
             Room::Narrow => (
-                &[
-                    Pane::Inspector,
-                    Pane::Front,
-                    Pane::Elements,
-                    Pane::Nodes,
-                    Pane::Quality,
-                    Pane::Breakpoints,
-                    Pane::Bookmarks,
-                    Pane::History,
-                    Pane::TwoRuns,
-                ],
+                [&[Pane::Inspector], &LISTS[..], &MARKS, &[Pane::History, Pane::TwoRuns]].concat(),
                 210.0 / height.max(420.0),
             ),
-            Room::Pair => (
-                &[
-                    Pane::TwoRuns,
-                    Pane::Sweep,
-                    Pane::Inspector,
-                    Pane::History,
-                    Pane::Front,
-                    Pane::Elements,
-                    Pane::Nodes,
-                    Pane::Quality,
-                    Pane::Breakpoints,
-                    Pane::Bookmarks,
-                ],
-                0.42,
-            ),
-            _ => (&[Pane::Inspector, Pane::History, Pane::TwoRuns], 0.6),
+            Room::Pair => {
+                let first = [Pane::TwoRuns, Pane::Sweep, Pane::Inspector, Pane::History];
+                ([&first[..], &LISTS, &MARKS].concat(), 0.42)
+            }
+            _ => (vec![Pane::Inspector, Pane::History, Pane::TwoRuns], 0.5),
         };
-        let groups = vec![(inspector.to_vec(), 1.0), (vec![Pane::Parameters, Pane::Layers], share)];
+        let groups = vec![(inspector, 1.0), (vec![Pane::Parameters, Pane::Layers], share)];
         columns.push(Column { groups, width: Some(if self == Room::Pair { BESIDE } else { RIGHT }) });
         columns
     }
 }
 
 /// Least and greatest height of the timeline with its buttons in points, and its first height.
-pub const TIMELINE_HEIGHTS: [f32; 2] = [120.0, 420.0];
-const TIMELINE_HEIGHT: f32 = 216.0;
+pub const TIMELINE_HEIGHTS: [f32; 2] = [140.0, 440.0];
+const TIMELINE_HEIGHT: f32 = 236.0;
 
 /// The docks, and the height of the timeline below them.
 pub struct Layout {

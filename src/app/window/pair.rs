@@ -6,12 +6,12 @@ use super::command::{Command, Rules};
 use super::session::{Direction, Source, Wake, words_of};
 use super::state::Progress;
 use crate::app::command_line::Overrides;
-use crate::app::compare::Comparison;
 use crate::app::progress::StageTimes;
 use crate::core::fault::Fault;
 use crate::core::kernel::worded::worded;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::run::compare::Did;
+use crate::core::record::Report;
+use crate::core::run::compare::{Did, Difference, FirstDifference, differences, first_difference};
 use crate::core::run::history::BUDGET;
 use crate::core::run::{History, Run};
 
@@ -136,7 +136,12 @@ impl PairCommand {
 /// What the thread that compares two runs reports.
 pub enum CompareNews {
     Progress(Progress),
-    Found(Box<Comparison>),
+    /// The first difference, or that the runs never differ.
+    First(Option<FirstDifference>),
+    /// The reports at the ends of both, with the time that each takes by itself.
+    Reports(Box<[Report; 2]>),
+    /// The decisions in which they differ although their fronts are the same there.
+    Differences(Vec<Difference>),
     /// What both did at a difference, by its place in the list, and why.
     Told(usize, Box<[Option<Did>; 2]>),
     Fault(Fault),
@@ -197,14 +202,21 @@ fn compare([a, b]: [Run; 2], said: &dyn Fn(CompareNews), stop: &Cancel, asked: &
     let mut watch = new_watch();
     let backgrounds = [a.background(&mut watch)?, b.background(&mut watch)?];
     let [mut a, mut b] = [History::of(a, &backgrounds[0], KEPT)?, History::of(b, &backgrounds[1], KEPT)?];
-    let comparison = Comparison::of([&mut a, &mut b], true, &mut watch, |run| {
+    let first = first_difference([&mut a, &mut b], &mut watch)?;
+    let parting = first.as_ref().map(|first| first.step);
+    said(CompareNews::First(first));
+    let report = |run: &Run| {
         let mut watch = new_watch();
         let mut report = crate::app::compare::report(run, &mut watch)?;
         report.timing = watch.times.finish();
-        Ok(report)
-    })?;
-    let differences = comparison.differences.clone();
-    said(CompareNews::Found(Box::new(comparison)));
+        Ok::<_, Fault>(report)
+    };
+    said(CompareNews::Reports(Box::new([report(a.run())?, report(b.run())?])));
+    let differences = match parting {
+        Some(step) => differences([&mut a, &mut b], step, &mut watch)?,
+        None => Vec::new(),
+    };
+    said(CompareNews::Differences(differences.clone()));
     while let Ok(k) = asked.recv() {
         if let Some(difference) = differences.get(k) {
             said(CompareNews::Told(k, Box::new(difference.told([&mut a, &mut b])?)));

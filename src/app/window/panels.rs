@@ -41,6 +41,7 @@ pub struct PanelStates {
     pub front: front::FrontState,
     pub lists: lists::ListStates,
     pub inspector: inspector::InspectorState,
+    pub history: history::HistoryState,
     pub breakpoints: breakpoints::BreakpointsState,
     pub bookmarks: bookmarks::BookmarksState,
     pub parameters: parameters::ParametersState,

@@ -48,6 +48,8 @@ pub enum Ask {
     Past(Watched),
     /// Report the decision chain of a quadrilateral.
     Chain(ElementId),
+    /// Report what the steps from one to another did, a sentence each.
+    Transcript(u64, u64),
     /// Report the step that ended something.
     Ended(Watched),
     /// Count how often conditions hold.
@@ -87,6 +89,8 @@ pub enum SessionNews {
     Past(Arc<Past>),
     /// The decision chain of a quadrilateral.
     Chain(Arc<ToldChain>),
+    /// What some steps did.
+    Transcript(Arc<Transcript>),
     /// The step that ended something, seen from a step.
     Ended(u64, Watched, Option<u64>),
     /// The steps of the recorded part of the run at which each condition holds.
@@ -129,6 +133,14 @@ pub struct Explained {
     pub told: SegmentFacts,
     /// The step that deferred it, with the reason of its last failure; none unless it is deferred.
     pub deferred: Option<(u64, Option<Why>)>,
+}
+
+/// What some steps did, a sentence each.
+#[derive(Clone, Debug)]
+pub struct Transcript {
+    /// The first of them.
+    pub from: u64,
+    pub sentences: Vec<String>,
 }
 
 /// The history of something up to a step.

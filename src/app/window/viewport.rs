@@ -27,11 +27,12 @@ use super::theme::ink;
 use super::words;
 use crate::core::mesh::ElementId;
 use crate::core::run::Changes;
+use crate::core::run::explain::plain;
 use crate::render::camera::Camera;
 use crate::render::gpu::{Light, Painter, VIEWS, View};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::pick;
-use crate::render::scene::{Form, Outlined, Scene, Shading};
+use crate::render::scene::{Decision, Form, Outlined, Scene, Shading};
 use stage::Stage;
 
 /// A view beside the main one.
@@ -141,6 +142,7 @@ impl Views {
     fn canvas(&self, ui: &Ui, rect: Rect, name: &str, state: &State) -> egui::Response {
         let response = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, spoken(state)));
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(described(state)));
         response
     }
 
@@ -276,6 +278,26 @@ fn spoken(state: &State) -> String {
         Some(moment) => format!("Mesh at step {}, {}", moment.step, words::counted(moment.standing, "quadrilateral")),
         None => "No mesh".to_owned(),
     }
+}
+
+/// The state as text, for screen readers: the front, the base, what the last step did and why, and what comes next.
+fn described(state: &State) -> String {
+    let Some(moment) = &state.run().moment else { return String::new() };
+    let (segments, loops) = (moment.front.len() as u64, moment.loops.len() as u64);
+    let mut said = vec![match segments {
+        0 => "The front is closed.".to_owned(),
+        _ => {
+            let loops = words::counted(loops, "loop");
+            format!("The front has {} in {loops}.", words::counted(segments, "segment"))
+        }
+    }];
+    let base = Decision::of(&moment.phase).base;
+    if let Some(s) = base.and_then(|ends| moment.front.iter().find(|s| [s.a, s.b] == ends)) {
+        said.push(format!("The base is {}, of class {}.", words::segment([s.a, s.b]), s.class));
+    }
+    said.extend(moment.narration.iter().chain(&moment.about).cloned());
+    said.push(format!("Next: {}", moment.next));
+    plain(&said.join(" "))
 }
 
 fn empty(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {

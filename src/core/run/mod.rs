@@ -20,6 +20,7 @@
 //! | the attempts at the quadrilateral under way | [`Tried`] |
 //! | the decision chain of a quadrilateral | [`Chain`] |
 //! | why a segment is chosen, what a node is | [`Selecting`], [`SegmentFacts`], [`NodeFacts`], [`FrontTable`] |
+//! | a sentence for each of a range of steps | [`History::transcript`] |
 //! | what a step did and looked at, by which rule, and what comes next, in words | [`explain`] |
 //!
 //! The state at step k is the state after k steps, with the edits of step k applied: an edit at step k changes what
@@ -45,6 +46,7 @@ mod watch;
 mod chain;
 mod attempts;
 mod find;
+mod transcript;
 pub mod front_table;
 pub mod explain;
 mod listing;

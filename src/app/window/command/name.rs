@@ -23,6 +23,7 @@ impl Command {
             Command::LastTouch(_) => "Last change".into(),
             Command::Made(_) => "Go to creation".into(),
             Command::Explain([a, b]) => format!("Explain {}", words::segment([*a, *b])),
+            Command::TellTranscript(..) => "Transcript".into(),
             Command::TellPast(_) => "History".into(),
             Command::TellChain(_) | Command::ShowChain(_) => "Decision chain".into(),
             Command::ToLargestLoss => "To the largest loss of the selected quadrilateral".into(),

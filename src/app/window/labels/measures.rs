@@ -104,7 +104,7 @@ impl Labels<'_> {
         }
     }
 
-    pub(super) fn scale_bar(&self) {
+    pub(super) fn scale_bar(&mut self) {
         let scale = self.frame.camera.points_per_unit();
         let wanted = 120.0 / scale;
         let power = libm::pow(10.0, libm::floor(libm::log10(wanted)));
@@ -119,10 +119,11 @@ impl Labels<'_> {
         let text = if (1e-4..1e5).contains(&length) { format!("{length}") } else { words::size(length) };
         let text = if text.len() > 8 { words::size(length) } else { text };
         let at = Pos2::new(right + 8.0, y);
-        self.plated(at, Align2::LEFT_CENTER, &text);
+        let rect = self.plated(at, Align2::LEFT_CENTER, &text);
+        self.taken.push(rect.union(Rect::from_x_y_ranges(left..=right, y - 3.0..=y + 3.0)));
     }
 
-    pub(super) fn axes(&self) {
+    pub(super) fn axes(&mut self) {
         let origin = self.frame.rect.right_bottom() + Vec2::new(-42.0, -20.0);
         let stroke = Stroke::new(1.0, ink(self.palette.weak));
         let centre = self.frame.camera.centre;
@@ -135,17 +136,19 @@ impl Labels<'_> {
             let d = Vec2::new(d.x as f32, d.y as f32);
             self.painter.line_segment([origin, origin + 24.0 * d], stroke);
             let text = origin + 32.0 * d;
-            self.plated(text, Align2::CENTER_CENTER, name);
+            let rect = self.plated(text, Align2::CENTER_CENTER, name);
+            self.taken.push(rect.union(Rect::from_two_pos(origin, text)));
         }
     }
 
-    /// A text on a plate, so that it is read over every colour.
-    fn plated(&self, at: Pos2, anchor: Align2, text: &str) {
+    /// A text on a plate, so that it is read over every colour. Returns where it stands.
+    fn plated(&self, at: Pos2, anchor: Align2, text: &str) -> Rect {
         let colour = ink(self.palette.weak);
         let galley = self.painter.layout_no_wrap(text.to_owned(), theme::regular(11.5), colour);
         let rect = anchor.anchor_size(at, galley.size());
         self.painter.rect_filled(rect.expand2(Vec2::new(3.0, 0.0)), 3.0, ink(self.palette.label_plate));
         self.painter.galley(rect.min, galley, colour);
+        rect
     }
 }
 

@@ -45,7 +45,7 @@ impl Behavior<Pane> for Docks<'_> {
             Pane::Quality => panels::plots::show(ui, state, &mut local.plots, commands, palette),
             Pane::Sweep => panels::sweep::show(ui, window, &mut local.sweep, commands, palette),
             Pane::Inspector => panels::inspector::show(ui, state, &mut local.inspector, commands, palette),
-            Pane::History => panels::history::show(ui, state, commands, palette),
+            Pane::History => panels::history::show(ui, state, &mut local.history, commands, palette),
             Pane::Parameters => panels::parameters::show(ui, state, &mut local.parameters, commands, palette),
             Pane::Layers => panels::layers::show(ui, state, commands, palette),
             Pane::TwoRuns => panels::two_runs::show(ui, window, commands, palette),

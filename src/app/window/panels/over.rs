@@ -59,7 +59,7 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
                     missing(ui, state.active(), &local.field, commands, palette);
                 }
                 Overlay::Find => {
-                    let hint = "quad 467, node 12, edge 12-40, segment 104-105, .5 .3, step 812 or nq 100";
+                    let hint = "quad 467, node 12, edge 12-40, segment 4-5, .5 .3, step 812, nq 9";
                     if field(ui, &mut local.field, hint, "Number or coordinates") {
                         commands.push(Command::GoToText(local.field.clone()));
                     }

@@ -5,15 +5,27 @@ use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
 use super::{icon_button, on_click, timeline};
 use crate::app::window::command::{Command, KINDS};
 use crate::app::window::icons;
+use crate::app::window::layout::Pane;
 use crate::app::window::measure::Times;
 use crate::app::window::session::{Direction, Goal, Verdict};
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
+use crate::core::run::explain::plain;
 use crate::render::palette::Palette;
 
 /// The speeds to choose from, in quadrilaterals a second.
 const SPEEDS: [f32; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 30.0, 60.0];
+
+/// The height of the row of buttons.
+const TRANSPORT: f32 = 36.0;
+/// The room at the sides of the sentence of a step, and the height of a line of it.
+const SIDE: f32 = 14.0;
+const LINE: f32 = 17.0;
+/// The width of the longest sentence.
+const LONGEST: f32 = 1240.0;
+/// The sentence before the first step.
+const BEGINNING: &str = "The front is the boundary of the domain. The first step selects a base segment on it.";
 
 /// What the panel keeps for itself.
 #[derive(Default)]
@@ -27,13 +39,17 @@ pub struct TimeState {
 pub fn show(ui: &mut Ui, window: &State, local: &mut TimeState, commands: &mut Vec<Command>, palette: &Palette) {
     let state = window.active();
     let rect = ui.max_rect();
-    let row = Rect::from_min_size(rect.min, Vec2::new(rect.width(), 40.0));
+    let row = Rect::from_min_size(rect.min, Vec2::new(rect.width(), TRANSPORT));
+    let told = Rect::from_min_size(row.left_bottom(), Vec2::new(rect.width(), narration_height(rect.width())));
     ui.scope_builder(egui::UiBuilder::new().max_rect(row.shrink2(Vec2::new(8.0, 0.0))), |ui| {
         ui.horizontal_centered(|ui| transport(ui, state, &local.times, commands, palette));
     });
-    ui.painter().hline(rect.x_range(), row.bottom(), (1.0, ink(palette.line)));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(told.shrink2(Vec2::new(SIDE, 0.0))), |ui| {
+        narration(ui, state, commands, palette);
+    });
+    ui.painter().hline(rect.x_range(), told.bottom(), (1.0, ink(palette.line)));
     progress(ui, row, state, palette);
-    let below = Rect::from_min_max(row.left_bottom(), rect.max);
+    let below = Rect::from_min_max(told.left_bottom(), rect.max);
     ui.scope_builder(egui::UiBuilder::new().max_rect(below), |ui| {
         timeline::show(ui, window, &mut local.timeline, commands, palette);
     });
@@ -161,10 +177,6 @@ fn status(ui: &mut Ui, state: &State, palette: &Palette) {
     let quads = words::counted(moment.standing, "quad");
     let all = state.run().track.last().map(|t| u64::from(t.standing));
     let more = if state.run().recorded { "" } else { "…" };
-    let event = match &moment.event {
-        None => "the front is the boundary; the first step selects a base".to_owned(),
-        Some(event) => words::event(event),
-    };
     let at = format!(
         "**step {}** / {}{more}   ",
         words::grouped(moment.step),
@@ -172,13 +184,31 @@ fn status(ui: &mut Ui, state: &State, palette: &Palette) {
     );
     // Clean-up removes some: the number at the end is no total.
     let end = all.filter(|_| state.run().recorded).map(|all| format!(" ({} at the end)", words::grouped(all)));
-    let text = format!("{at}**{quads}**{}  ·  {event}", end.unwrap_or_default());
+    let text = format!("{at}**{quads}**{}", end.unwrap_or_default());
     // The row has room for two lines.
     let mut job = theme::formula(&text, theme::BODY, ink(palette.text), ink(palette.strong));
     job.wrap.max_width = ui.available_width().max(1.0);
     job.wrap.max_rows = 2;
     let galley = ui.painter().layout_job(job);
     ui.label(galley);
+}
+
+/// The height of the sentence of a step in a window of some width: no step changes it.
+pub fn narration_height(width: f32) -> f32 {
+    let lines = (LONGEST / (width - 2.0 * SIDE).max(1.0)).ceil();
+    LINE * lines + 6.0
+}
+
+/// What the last step did, in a sentence. A click shows the transcript.
+fn narration(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let Some(moment) = &state.run().moment else { return };
+    let text = moment.narration.as_deref().unwrap_or(BEGINNING);
+    let job = theme::formula(text, theme::TABLE, ink(palette.text), ink(palette.strong));
+    let told = ui.add(egui::Label::new(job).wrap().selectable(false).sense(egui::Sense::click()));
+    told.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Status, true, plain(text)));
+    // Screen readers say it when it changes.
+    ui.ctx().accesskit_node_builder(told.id, |node| node.set_live(egui::accesskit::Live::Polite));
+    on_click(&told.on_hover_text("Show the transcript"), Command::Reveal(Pane::History), commands);
 }
 
 /// A thin bar over the row while work is under way.

@@ -3,7 +3,7 @@
 
 mod columns;
 
-use eframe::egui::{self, Align2, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
+use eframe::egui::{self, Align2, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
 
 use crate::app::window::command::Command;
 use crate::app::window::icons;
@@ -345,8 +345,14 @@ impl Drawing<'_> {
         self.painter.extend(Shape::dashed_line(&line, Stroke::new(1.2, ink(palette.accent)), 4.0, 3.0));
         let (text, font) = ("first difference", theme::regular(theme::TIMELINE));
         let text = self.painter.layout_no_wrap(text.to_owned(), font, ink(palette.accent));
-        let fits = x + 4.0 + text.size().x < axis.plot.right();
-        let left = if fits { x + 4.0 } else { x - 4.0 - text.size().x };
+        let head = axis.plot.left() + self.head_column();
+        let sides = [x + 4.0, x - 4.0 - text.size().x].map(|left| Rangef::new(left, left + text.size().x));
+        let fits = |side: &&Rangef| axis.plot.x_range().contains(side.min) && axis.plot.x_range().contains(side.max);
+        // Where there is room on both sides, the play head does not cross it.
+        let is_clear = |side: &&Rangef| !side.expand(2.0).contains(head);
+        let mut in_plot = sides.iter().filter(fits);
+        let side = in_plot.clone().find(is_clear).or_else(|| in_plot.next()).unwrap_or(&sides[0]);
+        let left = side.min;
         self.painter.galley(Pos2::new(left, top + 12.0), text, ink(palette.accent));
     }
 

@@ -3,7 +3,7 @@
 use eframe::egui::{Align, Align2, ComboBox, Grid, Label, Layout, Rect, RichText, ScrollArea, Sense, Ui, Vec2};
 
 use super::{heading, inset, line, note, on_click, part};
-use crate::app::compare::{Comparison, values_that_differ};
+use crate::app::compare::values_that_differ;
 use crate::app::window::command::{Command, Rules};
 use crate::app::window::pair::{Arrangement, LinkedBy, PairCommand, Which};
 use crate::app::window::session::Direction;
@@ -43,8 +43,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             Some(pair) => {
                 runs(ui, state, pair, commands, palette);
                 difference(ui, pair, commands, palette);
-                if let Some(comparison) = &pair.comparison {
-                    ends(ui, comparison, palette);
+                if let Some(reports) = pair.comparison.as_ref().and_then(|comparison| comparison.reports.as_ref()) {
+                    ends(ui, reports, palette);
                 }
                 overlap(ui, pair, palette);
                 ui.add_space(8.0);
@@ -160,18 +160,32 @@ fn difference(ui: &mut Ui, pair: &Pair, commands: &mut Vec<Command>, palette: &P
         }
         None => {
             title(ui, "Comparing", palette);
-            let text = pair.progress.as_ref().map_or_else(|| "Working".to_owned(), words::progress);
-            weak(ui, &format!("{text}…"), palette);
+            going_on(ui, pair, palette);
         }
         Some(comparison) => match (&pair.shown, &comparison.first_difference) {
             (_, None) => {
                 title(ui, "No difference", palette);
                 weak(ui, "Every step of both leads to the same state.", palette);
             }
-            (None, Some(found)) => first_difference(ui, found, &comparison.differences, commands, palette),
-            (Some(shown), Some(_)) => further_difference(ui, shown, &comparison.differences, commands, palette),
+            (None, Some(found)) => {
+                first_difference(ui, pair, found, comparison.differences.as_deref(), commands, palette);
+            }
+            (Some(shown), Some(_)) => {
+                let all = comparison.differences.as_deref().unwrap_or_default();
+                further_difference(ui, pair, shown, all, commands, palette);
+            }
         },
     }
+}
+
+/// What the comparison does, or that it has ended and will tell no more.
+fn going_on(ui: &mut Ui, pair: &Pair, palette: &Palette) {
+    let text = match &pair.progress {
+        Some(progress) => format!("{}…", words::progress(progress)),
+        None if pair.is_comparing() => "Working…".to_owned(),
+        None => "The comparison has ended with an error.".to_owned(),
+    };
+    weak(ui, &text, palette);
 }
 
 fn title(ui: &mut Ui, text: &str, palette: &Palette) {
@@ -187,8 +201,9 @@ fn weak(ui: &mut Ui, text: &str, palette: &Palette) {
 /// The first step after which the states differ.
 fn first_difference(
     ui: &mut Ui,
+    pair: &Pair,
     found: &FirstDifference,
-    all: &[Difference],
+    all: Option<&[Difference]>,
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
@@ -199,13 +214,16 @@ fn first_difference(
         let before = words::counted(found.step - 1, "step");
         weak(ui, &format!("The first {before} lead to the same states, to the last bit."), palette);
     }
-    let further = match all.len() as u64 {
-        0 => "No decision differs where both fronts are the same around the base.".to_owned(),
-        1 => "One decision differs although both fronts are the same around the base.".to_owned(),
-        n => format!("{} decisions differ although both fronts are the same around the base.", words::grouped(n)),
-    };
-    weak(ui, &further, palette);
-    seek(ui, "Go there", all, commands);
+    match all.map(|all| all.len() as u64) {
+        None => going_on(ui, pair, palette),
+        Some(0) => weak(ui, "No decision differs where both fronts are the same around the base.", palette),
+        Some(1) => weak(ui, "One decision differs although both fronts are the same around the base.", palette),
+        Some(n) => {
+            let n = words::grouped(n);
+            weak(ui, &format!("{n} decisions differ although both fronts are the same around the base."), palette);
+        }
+    }
+    seek(ui, "Go there", all.unwrap_or_default(), commands);
     if found.step > 0 {
         decisions(ui, &found.did, palette);
     }
@@ -214,6 +232,7 @@ fn first_difference(
 /// A decision that differs although both fronts are the same there.
 fn further_difference(
     ui: &mut Ui,
+    pair: &Pair,
     shown: &ShownDifference,
     all: &[Difference],
     commands: &mut Vec<Command>,
@@ -231,7 +250,7 @@ fn further_difference(
     seek(ui, "First difference", all, commands);
     match &shown.did {
         Some(did) => decisions(ui, did, palette),
-        None => weak(ui, "Working…", palette),
+        None => going_on(ui, pair, palette),
     }
 }
 
@@ -273,9 +292,8 @@ fn decision(ui: &mut Ui, which: Which, did: Option<&Did>, palette: &Palette) {
 }
 
 /// What both end with, with differences: what is better is green and says so.
-fn ends(ui: &mut Ui, comparison: &Comparison, palette: &Palette) {
+fn ends(ui: &mut Ui, [a, b]: &[Report; 2], palette: &Palette) {
     heading(ui, "At the end", "A, B, B − A", palette);
-    let [a, b] = &comparison.reports;
     Grid::new("ends").num_columns(4).striped(true).spacing(Vec2::new(8.0, 3.0)).show(ui, |ui| {
         for (name, digits) in FIGURES {
             if let Some(figure) = Figure::named(name) {

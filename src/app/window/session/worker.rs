@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
-use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, ToldChain, Tracked, Voice};
+use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, ToldChain, Tracked, Transcript, Voice};
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
@@ -143,6 +143,10 @@ impl Worker {
                 Ask::Made(element) => self.go_back(self.history.made(element), "It exists from the beginning."),
                 Ask::Past(watched) => self.past(watched),
                 Ask::Chain(element) => self.chain(element),
+                Ask::Transcript(from, until) => {
+                    let told = self.history.transcript(from, until).map(|sentences| Transcript { from, sentences });
+                    self.report(told.map(|told| SessionNews::Transcript(Arc::new(told))), 0);
+                }
                 Ask::Ended(watched) => {
                     let step = self.history.step();
                     let ended = self.history.ended(watched);

@@ -63,6 +63,9 @@ impl State {
             Command::LastTouch(what) => self.ask(Ask::Touch(watched(what))),
             Command::Made(what) => self.go_to_creation(what),
             Command::Explain(ends) => self.run.asked = self.inquire(Ask::Explain(ends)).map(|step| (step, ends)),
+            Command::TellTranscript(from, until) => {
+                self.run.asked_transcript = self.inquire(Ask::Transcript(from, until)).map(|_| [from, until]);
+            }
             Command::TellPast(watched) => {
                 self.run.asked_past = self.inquire(Ask::Past(watched)).map(|step| (step, watched));
             }

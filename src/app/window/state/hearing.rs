@@ -100,6 +100,7 @@ impl State {
                 run.born.append(&born);
                 run.change_log = change_log;
                 run.track_epoch += 1;
+                run.forget_transcript_after(from);
                 run.recorded = end;
             }
             SessionNews::Checked(step, verdict) => {
@@ -108,6 +109,7 @@ impl State {
                 }
             }
             SessionNews::Past(past) => run.past = Some(past),
+            SessionNews::Transcript(told) => run.transcript = Some(told),
             SessionNews::Ended(step, watched, ended) => {
                 let missing = run.missing.as_mut();
                 if let Some(missing) = missing.filter(|m| (m.step, m.sought.named()) == (step, Some(watched))) {

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::{Progress, State, Workspace};
-use crate::app::compare::Comparison;
 use crate::app::window::command::Rules;
 use crate::app::window::pair::{Arrangement, Comparing, LinkedBy, Which};
-use crate::core::run::compare::{Did, Overlap};
+use crate::core::record::Report;
+use crate::core::run::compare::{Did, Difference, FirstDifference, Overlap};
 use crate::core::run::{Edit, Run};
 
 /// Two runs.
@@ -23,8 +23,8 @@ pub struct Pair {
     forked: Option<u64>,
     /// The numbers of both runs once B was open.
     pub(super) numbers: Option<[u64; 2]>,
-    /// What the comparison of both found, once it is known.
-    pub comparison: Option<Arc<Comparison>>,
+    /// What the comparison of both has found so far, once the first difference is known.
+    pub comparison: Option<Comparison>,
     /// The difference that is shown in place of the first one.
     pub shown: Option<ShownDifference>,
     /// The steps of the two runs at a difference to which both were sent; until one of them moves on, they are not
@@ -51,6 +51,17 @@ pub struct Pair {
     pub(super) first_rules: Option<Rules>,
     /// Whether both meshes lie in one place, so that one camera shows both; and the numbers of the runs.
     pub(super) is_in_one_place: Option<(bool, [u64; 2])>,
+}
+
+/// What the comparison of two runs has found so far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// `None` where they never differ.
+    pub first_difference: Option<FirstDifference>,
+    /// The report of each at its end, with the time that it takes by itself.
+    pub reports: Option<[Report; 2]>,
+    /// The decisions in which they differ although their fronts are the same there.
+    pub differences: Option<Vec<Difference>>,
 }
 
 /// A decision in which both runs differ although their fronts are the same there.
@@ -105,6 +116,11 @@ impl Pair {
     pub(super) fn forget_comparison(&mut self) {
         (self.comparison, self.progress, self.comparing) = (None, None, None);
         (self.shown, self.apart) = (None, None);
+    }
+
+    /// Whether the comparison still goes on, or waits to be asked about a difference.
+    pub fn is_comparing(&self) -> bool {
+        self.comparing.is_some()
     }
 
     /// The step at which the runs differ first, once it is known.

@@ -10,7 +10,9 @@ use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
 use crate::app::window::lists::Lists;
 use crate::app::window::measure::Measuring;
-use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, ToldChain, Tracked, Verdict};
+use crate::app::window::session::{
+    Explained, Moment, Opened, Past, Session, Source, ToldChain, Tracked, Transcript, Verdict,
+};
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
@@ -125,6 +127,9 @@ pub struct RunState {
     /// The decision chain of the selected quadrilateral; and the question asked last.
     pub(super) chain: Option<Arc<ToldChain>>,
     pub(super) asked_chain: Option<(u64, ElementId)>,
+    /// What some steps did, a sentence each; and which of them were asked for last.
+    pub(super) transcript: Option<Arc<Transcript>>,
+    pub(super) asked_transcript: Option<[u64; 2]>,
     /// What was looked for last, where it is not in the current state.
     pub missing: Option<Missing>,
     /// What is to be found when the run gets to a step.
@@ -177,6 +182,24 @@ impl RunState {
         (self.explained, self.asked) = (None, None);
         (self.past, self.asked_past) = (None, None);
         (self.chain, self.asked_chain, self.to_loss) = (None, None, None);
+    }
+
+    /// Forgets the transcript of steps after one, which are others now.
+    pub(super) fn forget_transcript_after(&mut self, step: u64) {
+        if self.asked_transcript.is_some_and(|[_, until]| until > step) {
+            (self.transcript, self.asked_transcript) = (None, None);
+        }
+    }
+
+    /// What a step did, in a sentence, where the transcript that was told last has it.
+    pub fn sentence(&self, step: u64) -> Option<&str> {
+        let told = self.transcript.as_ref()?;
+        told.sentences.get(usize::try_from(step.checked_sub(told.from)?).ok()?).map(String::as_str)
+    }
+
+    /// Whether the transcript from a step to another has been asked for.
+    pub fn has_asked_for_transcript(&self, from: u64, until: u64) -> bool {
+        self.asked_transcript == Some([from, until])
     }
 
     /// Why a segment of the front was or was not chosen at the current step.

@@ -14,8 +14,9 @@ use crate::render::scene::{self, Decision, Outlined};
 const MARGIN: f64 = 34.0;
 /// Points per unit in the metric lens.
 const LENS: f64 = 92.0;
-/// Length of the base segment in points when the view shows the decision.
-pub(super) const DECISION: f64 = 180.0;
+/// The length of the base segment in points where the view shows the decision: the least, however far its other nodes
+/// are, and the greatest.
+const DECISION: [f64; 2] = [60.0, 180.0];
 
 /// The camera of the view of the plane after a request, and whether it shows the whole mesh.
 pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Camera, bool) {
@@ -30,8 +31,10 @@ pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look
         Some(Look::Fit) => (camera, is_fitted) = (fitted, true),
         Some(Look::Decision) => {
             if let Some([a, b]) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
-                near(&mut camera, moment, [a, b]);
-                is_fitted = false;
+                if let Some((place, scale)) = near(moment, [a, b], size, |mesh, n| mesh.uv(n).extend(0.0)) {
+                    camera.look_at(place.truncate(), scale);
+                    is_fitted = false;
+                }
             }
         }
         // A camera of space does not fit the plane.
@@ -51,7 +54,7 @@ pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look
             if let Some((place, extent)) = extent_of(moment, what, |mesh, n| mesh.uv(n).extend(0.0))
                 && !is_seen_well(&camera, size, place, extent)
             {
-                camera.look_at(place.truncate(), scale_for(camera.points_per_unit(), extent));
+                camera.look_at(place.truncate(), scale_for(camera.points_per_unit(), extent, size));
                 is_fitted = false;
             }
         }
@@ -94,20 +97,42 @@ pub(super) fn extent_of(
 pub(super) fn is_seen_well(camera: &Camera, size: DVec2, place: DVec3, extent: f64) -> bool {
     let at = camera.project(place, size);
     let is_inside = at.cmpgt(DVec2::splat(ROOM)).all() && at.cmplt(size - ROOM).all();
-    is_inside && extent * camera.points_per_unit() >= FOUND[1]
+    let shown = extent * camera.points_per_unit();
+    is_inside && (FOUND[1]..=reach(size)).contains(&shown)
 }
 
-/// The scale at which something has a good size, unless it is larger already.
-pub(super) fn scale_for(scale: f64, extent: f64) -> f64 {
-    scale.max(FOUND[0] / extent)
+/// The scale at which something has a good size, unless it is larger already and has room.
+pub(super) fn scale_for(scale: f64, extent: f64, size: DVec2) -> f64 {
+    scale.max(FOUND[0] / extent).min(reach(size) / extent)
 }
 
-fn near(camera: &mut Camera, moment: &Moment, [a, b]: [NodeId; 2]) {
+/// How far what a view shows may reach from its middle, in points.
+fn reach(size: DVec2) -> f64 {
+    (0.5 * size.min_element() - ROOM).max(ROOM)
+}
+
+/// Where a view looks to show a decision, and the scale: all its nodes if they have room beside a base that can be
+/// read, and the base alone otherwise.
+pub(super) fn near(
+    moment: &Moment,
+    base: [NodeId; 2],
+    size: DVec2,
+    place: impl Fn(&Mesh, NodeId) -> DVec3,
+) -> Option<(DVec3, f64)> {
     let mesh = &moment.mesh;
-    if mesh.has_node(a) && mesh.has_node(b) {
-        let (p, q) = (mesh.uv(a), mesh.uv(b));
-        camera.look_at(0.5 * (p + q), DECISION / p.distance(q).max(f64::MIN_POSITIVE));
+    let decision = Decision::of(&moment.phase);
+    let tops = decision.tops.into_iter().flatten().filter(|_| decision.base == Some(base));
+    let nodes: Vec<NodeId> = base.into_iter().chain(tops).collect();
+    if !nodes.iter().all(|n| mesh.has_node(*n)) {
+        return None;
     }
+    let places: Vec<DVec3> = nodes.into_iter().map(|n| place(mesh, n)).collect();
+    let [least, most] = DECISION.map(|length| length / places[0].distance(places[1]).max(f64::MIN_POSITIVE));
+    let (low, high) = places.iter().fold((places[0], places[0]), |(low, high), p| (low.min(*p), high.max(*p)));
+    let middle = 0.5 * (low + high);
+    let extent = places.iter().map(|p| p.distance(middle)).fold(f64::MIN_POSITIVE, f64::max);
+    let scale = reach(size) / extent;
+    Some(if scale < least { (0.5 * (places[0] + places[1]), least) } else { (middle, scale.min(most)) })
 }
 
 /// The middle of something in the plane, if it exists.
@@ -177,9 +202,10 @@ pub(super) fn other_end(state: &State, moment: &Moment, size: DVec2) -> Option<C
     let whole = Camera::fit(scene::bounds(&moment.mesh)?, size, 14.0);
     let decision = Decision::of(&moment.phase).base.or(state.picked_segment());
     let mut camera = whole;
-    if let (true, Some(ends)) = (state.view().plane.is_fitted, decision) {
-        near(&mut camera, moment, ends);
-        camera.scale *= 0.7;
+    if let Some(ends) = decision.filter(|_| state.view().plane.is_fitted)
+        && let Some((place, scale)) = near(moment, ends, size, |mesh, n| mesh.uv(n).extend(0.0))
+    {
+        camera.look_at(place.truncate(), 0.7 * scale);
     }
     Some(camera)
 }

@@ -3,7 +3,7 @@
 use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
-use super::cameras::{extent_of, is_seen_well, scale_for, zoom};
+use super::cameras::{extent_of, is_seen_well, near, scale_for, zoom};
 use super::{ViewFrame, Views, moved, paint};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
@@ -144,8 +144,15 @@ fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Came
         }
         Some(Look::Decision) => {
             if let Some(ends) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
-                near(&mut camera, moment, ends);
-                is_fitted = false;
+                let found = near(moment, ends, size, |mesh, n| mesh.xyz(n));
+                if let Some(((place, scale), (_, normal))) = found.zip(place_of(moment, Outlined::Edge(ends))) {
+                    // What lies on the far side is turned to the front.
+                    if normal.dot(camera.towards()) < FACING {
+                        camera.face(normal);
+                    }
+                    camera.look_at_place(place, scale);
+                    is_fitted = false;
+                }
             }
         }
         Some(Look::At(what)) => {
@@ -162,7 +169,7 @@ fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Came
                     camera.face(normal);
                 }
                 if is_behind || !is_seen_well(&camera, size, place, extent) {
-                    camera.look_at_place(place, scale_for(camera.points_per_unit(), extent));
+                    camera.look_at_place(place, scale_for(camera.points_per_unit(), extent, size));
                     is_fitted = false;
                 }
             }
@@ -186,14 +193,4 @@ fn place_of(moment: &Moment, what: Outlined) -> Option<(DVec3, DVec3)> {
     let sum = nodes.iter().map(|n| mesh.xyz(*n)).sum::<DVec3>();
     let normal = nodes.iter().map(|n| mesh.normal(*n)).sum::<DVec3>();
     Some((sum / nodes.len() as f64, normal.normalize_or(DVec3::Z)))
-}
-
-/// Shows an edge from near, and from the front if it lies on the far side.
-fn near(camera: &mut Camera, moment: &Moment, ends: [NodeId; 2]) {
-    let Some((place, normal)) = place_of(moment, Outlined::Edge(ends)) else { return };
-    let [a, b] = ends.map(|n| moment.mesh.xyz(n));
-    if normal.dot(camera.towards()) < FACING {
-        camera.face(normal);
-    }
-    camera.look_at_place(place, super::cameras::DECISION / a.distance(b).max(f64::MIN_POSITIVE));
 }

@@ -68,6 +68,7 @@ impl Worker {
             Some(base) => (base.step..).zip(self.history.events(base.step, step)?).collect(),
             None => Vec::new(),
         };
+        let narration = if step > 0 { self.history.transcript(step, step)?.pop() } else { None };
         let is_rolled_back = |told: &(u64, Event)| told.1.kind() == EventKind::RolledBack;
         let attempts = if so_far.iter().any(is_rolled_back) { self.history.attempts()? } else { Vec::new() };
         let state = self.history.state();
@@ -101,6 +102,7 @@ impl Worker {
             standing: state.standing(),
             phase: state.phase().plain(),
             event,
+            narration,
             about,
             mesh: self.copies.of(&state.mesh),
             parameters: state.parameters().clone(),

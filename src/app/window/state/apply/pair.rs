@@ -75,10 +75,10 @@ impl State {
     fn seek_difference(&mut self, direction: Direction) {
         let step = self.run.moment.as_ref().map_or(0, |moment| moment.step);
         let Some(pair) = &mut self.pair else { return };
-        let Some(comparison) = pair.comparison.clone() else {
-            return self.notice("No difference of the two runs is known.".to_owned());
+        let Some(all) = pair.comparison.as_ref().and_then(|comparison| comparison.differences.as_ref()) else {
+            let yet = if pair.is_comparing() { " yet" } else { "" };
+            return self.notice(format!("No further difference of the two runs is known{yet}."));
         };
-        let all = &comparison.differences;
         // On the way to one, the next is the one after it.
         let step = pair.apart.map_or(step, |steps| steps[0]);
         let place = match direction {
@@ -136,10 +136,12 @@ impl State {
             self.apply_alone(command);
             return self.link_cameras(which, moved);
         };
-        // What is open over the window belongs to the first run's state.
+        // What is open over the window, and which panels it shows, belongs to the first run's state.
         pair.other.view.overlay = self.view.overlay;
+        std::mem::swap(&mut pair.other.view.reveal, &mut self.view.reveal);
         pair.other.apply_alone(command);
         self.view.overlay = std::mem::take(&mut pair.other.view.overlay);
+        std::mem::swap(&mut pair.other.view.reveal, &mut self.view.reveal);
         self.lift_messages();
         self.link_cameras(which, moved);
     }

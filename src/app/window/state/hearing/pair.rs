@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::TryRecvError;
 
-use super::super::pair::{Compared, Pair, are_same};
+use super::super::pair::{Compared, Comparison, Pair, are_same};
 use super::super::{RunState, State};
 use crate::app::window::command::Command;
 use crate::app::window::pair::{CompareNews, Comparing, LinkedBy, Which};
@@ -119,8 +119,19 @@ impl State {
         while let Some(comparing) = &pair.comparing {
             match comparing.hear() {
                 Ok(CompareNews::Progress(progress)) => pair.progress = Some(progress),
-                Ok(CompareNews::Found(found)) => {
-                    (pair.comparison, pair.progress) = (Some(Arc::from(found)), None);
+                Ok(CompareNews::First(first_difference)) => {
+                    pair.comparison = Some(Comparison { first_difference, reports: None, differences: None });
+                }
+                Ok(CompareNews::Reports(reports)) => {
+                    if let Some(comparison) = &mut pair.comparison {
+                        comparison.reports = Some(*reports);
+                    }
+                }
+                Ok(CompareNews::Differences(all)) => {
+                    pair.progress = None;
+                    if let Some(comparison) = &mut pair.comparison {
+                        comparison.differences = Some(all);
+                    }
                 }
                 Ok(CompareNews::Told(place, did)) => {
                     if let Some(shown) = pair.shown.as_mut().filter(|shown| shown.place == place) {
