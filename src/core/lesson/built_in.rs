@@ -17,7 +17,27 @@ macro_rules! lessons {
 }
 
 lessons![
+    "figure-4",
+    "figure-9",
+    "figure-11",
+    "figure-12",
+    "figure-13",
+    "figure-3",
+    "figure-5",
+    "figure-6",
+    "figure-7",
+    "figure-8",
+    "side-edges",
     "figure-14",
+    "figure-15",
+    "figure-10",
+    "figure-16",
+    "figure-17",
+    "figure-18",
+    "figure-19",
+    "parity",
+    "example1",
+    "predict",
 ];
 
 /// The lesson of the tour with this name, if any.

@@ -71,7 +71,8 @@ fn case(value: &Value<'_>, folder: &Path) -> Result<Case, Fault> {
     let names = || built_in::all().map(|(name, _)| name);
     let fault = value.fault(format!("There is no case \"{}\"", name.escape_debug()));
     Err(fault.remedy(suggestion(name, names()).unwrap_or_else(|| {
-        "quadfront cases lists the built-in ones; one of your own is named by its path, such as \"plate.toml\"".to_owned()
+        "quadfront cases lists the built-in ones; one of your own is named by its path, such as \"plate.toml\""
+            .to_owned()
     })))
 }
 

@@ -9,6 +9,7 @@
 //! | where a part stands | [`Go`] |
 //! | what it frames and lights | [`Names`], [`Things`] |
 //! | a part at its state, with its questions | [`Scene`] |
+//! | a lesson as text | [`page()`] |
 //! | the decisions that led to a state | [`decisions`] |
 //! | the lessons of the tour | [`built_in`] |
 
@@ -22,12 +23,14 @@ mod head;
 mod parts;
 mod things;
 mod scene;
+mod page;
 pub mod built_in;
 
 use std::path::Path;
 
 pub use go::Go;
 pub use names::{Letter, Name, Names, Point, Set};
+pub use page::page;
 pub use parts::{Ask, Part};
 pub use scene::{Decision, Scene, Shown, decisions};
 pub use text::{Block, Piece};

@@ -130,9 +130,8 @@ impl Names {
             if NUMBERED.contains(&head) {
                 let number = if tail.is_empty() { words.next() } else { Some(tail) };
                 let number = number.and_then(|number| number.parse::<u32>().ok());
-                let number = number.ok_or_else(|| {
-                    Fault::new(format!("A number is missing after \"{head}\"")).remedy(example)
-                })?;
+                let number = number
+                    .ok_or_else(|| Fault::new(format!("A number is missing after \"{head}\"")).remedy(example))?;
                 names.push(numbered(head, number).ok_or_else(unknown)?);
                 continue;
             }
@@ -176,15 +175,14 @@ mod tests {
         let node = |n| Point::Node(NodeId(n));
         let names = |text: &str| Names::parse(text).unwrap().names;
         assert_eq!(names("C D"), [Name::Point(Point::Letter(Letter::C)), Name::Point(Point::Letter(Letter::D))]);
-        assert_eq!(names("base, A-B"), [
-            Name::Set(Set::Base),
-            Name::Edge([Point::Letter(Letter::A), Point::Letter(Letter::B)])
-        ]);
-        assert_eq!(names("12 12-40 node 3"), [
-            Name::Point(node(12)),
-            Name::Edge([node(12), node(40)]),
-            Name::Point(node(3))
-        ]);
+        assert_eq!(
+            names("base, A-B"),
+            [Name::Set(Set::Base), Name::Edge([Point::Letter(Letter::A), Point::Letter(Letter::B)])]
+        );
+        assert_eq!(
+            names("12 12-40 node 3"),
+            [Name::Point(node(12)), Name::Edge([node(12), node(40)]), Name::Point(node(3))]
+        );
         assert_eq!(names("class 2,class3"), [Name::Class(2), Name::Class(3)]);
         assert_eq!(names("triangle 4 quad7"), [Name::Element(ElementId(4)), Name::Element(ElementId(7))]);
         for text in ["", ",", "class", "class 5", "class x", "E", "1-", "-", "quad -1", "99999999999"] {

@@ -77,7 +77,9 @@ pub(super) fn read(text: &str, first: usize, file: &str) -> Result<Vec<Part>, Fa
             continue;
         }
         if !part.asks.is_empty() {
-            return Err(Fault::new("Text follows a question").at(place(at)).remedy("Begin a new part with # before it"));
+            return Err(Fault::new("Text follows a question")
+                .at(place(at))
+                .remedy("Begin a new part with # before it"));
         }
         if line.starts_with("$$") {
             let (block, next) = equation(&lines, at).map_err(|(fault, index)| fault.at(place(index)))?;
@@ -167,8 +169,9 @@ fn ask(line: &str, at: usize) -> Result<Ask, Fault> {
     match (kind.names_its_subject(), ask.of.is_some()) {
         (true, false) => Err(Fault::new(format!("A question of the kind {name} says what it is about"))
             .remedy("Write for example {of: \"7-4\"}")),
-        (false, true) => Err(Fault::new(format!("A question of the kind {name} is about the next step"))
-            .remedy("Leave \"of\" out")),
+        (false, true) => {
+            Err(Fault::new(format!("A question of the kind {name} is about the next step")).remedy("Leave \"of\" out"))
+        }
         _ => Ok(ask),
     }
 }
@@ -202,7 +205,8 @@ fn equation(lines: &[&str], first: usize) -> Result<(Block, usize), (Fault, usiz
                 tex.push_str(line.trim());
             }
             _ => {
-                let fault = Fault::new("The equation has no end").remedy("Write $$ after it, before the next blank line");
+                let fault =
+                    Fault::new("The equation has no end").remedy("Write $$ after it, before the next blank line");
                 return Err((fault, first));
             }
         }

@@ -100,11 +100,11 @@ fn of_state(part: &Part, history: &mut History) -> Result<Scene, Fault> {
             Piece::Plain(text) | Piece::Emphasis(text) | Piece::Code(text) => (text.clone(), None),
             Piece::Lit(text) => (text.clone(), Some(light.clone())),
             Piece::Named(text, names) => (text.clone(), Some(Things::named(names, &subject)?)),
-            Piece::Value(quantity) => {
+            Piece::Value(quantity) | Piece::LitValue(quantity) => {
                 let value = quantity.text(&subject).ok_or_else(|| {
                     Fault::new(format!("At step {step} there is no {}", quantity.name())).remedy("Go to another step")
                 })?;
-                (value, None)
+                (value, matches!(piece, Piece::LitValue(_)).then(|| light.clone()))
             }
         };
         Ok(Shown { text, piece: piece.clone(), lights })

@@ -23,6 +23,8 @@ pub enum Piece {
     Named(String, Names),
     /// A number of the state.
     Value(Quantity),
+    /// A number of the state, lit as the text around it.
+    LitValue(Quantity),
 }
 
 /// A block of text.
@@ -114,7 +116,8 @@ impl Reading {
         while let Some((before, after)) = rest.split_once("{{") {
             let Some((name, after)) = after.split_once("}}") else { break };
             self.plain(before);
-            self.pieces.push(Piece::Value(quantity(name)?));
+            let quantity = quantity(name)?;
+            self.pieces.push(if self.bold > 0 { Piece::LitValue(quantity) } else { Piece::Value(quantity) });
             rest = after;
         }
         self.plain(rest);
@@ -141,9 +144,9 @@ impl Reading {
 /// What a link lights.
 fn target(url: &str) -> Result<Names, Fault> {
     let example = "Write for example [three edges](light:crossings)";
-    let names = url.strip_prefix("light:").ok_or_else(|| {
-        Fault::new("A link in a lesson lights something, and leads nowhere").remedy(example)
-    })?;
+    let names = url
+        .strip_prefix("light:")
+        .ok_or_else(|| Fault::new("A link in a lesson lights something, and leads nowhere").remedy(example))?;
     Names::parse(&names.replace("%20", " "))
 }
 
@@ -162,7 +165,7 @@ pub(super) fn words(blocks: &[Block]) -> usize {
     let text_of = |piece: &Piece| match piece {
         Piece::Plain(text) | Piece::Emphasis(text) | Piece::Code(text) | Piece::Lit(text) => text.clone(),
         Piece::Named(text, _) => text.clone(),
-        Piece::Value(_) => "0".to_owned(),
+        Piece::Value(_) | Piece::LitValue(_) => "0".to_owned(),
     };
     let is_text = |block: &&Block| !matches!(block, Block::Equation { .. });
     let texts = blocks.iter().filter(is_text).map(|block| block.pieces().iter().map(text_of).collect::<String>());
@@ -195,7 +198,9 @@ mod tests {
             Block::Item(vec![plain("b")]),
         ];
         assert_eq!(blocks.map_err(|(fault, _)| fault), Ok(expected));
-        for text in ["<b>x</b>", "![a](b)", "```\nx\n```", "> x", "1. x", "---", "[a](https://b.c)", "{{theta}}", "[a](light:)"] {
+        for text in
+            ["<b>x</b>", "![a](b)", "```\nx\n```", "> x", "1. x", "---", "[a](https://b.c)", "{{theta}}", "[a](light:)"]
+        {
             assert!(read(text).is_err(), "{text}");
         }
         let (_, at) = read("a\n\nb <i>").unwrap_err();
@@ -204,8 +209,8 @@ mod tests {
 
     #[test]
     fn words_are_counted_without_signs_and_equations() {
-        let mut blocks = read("A \u{2192} B, of {{NQ}} **two words**.").unwrap();
+        let mut blocks = read("A \u{2192} B, of {{NQ}} **two {{step}} words**.").unwrap();
         blocks.push(Block::Equation { tex: "a b c".to_owned(), says: Vec::new() });
-        assert_eq!(words(&blocks), 6);
+        assert_eq!(words(&blocks), 7);
     }
 }

@@ -5,6 +5,7 @@ use super::subject::Subject;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
+use crate::core::question::swapped;
 use crate::core::run::{Changes, FrontTable, Watched};
 
 /// What is framed or lit.
@@ -192,7 +193,7 @@ impl Things {
                     self.line(mesh, ends);
                 }
             }
-            Event::Enhanced { new } => self.line(mesh, new),
+            Event::Enhanced { new } => self.edges.extend(swapped(mesh, new)),
             Event::Split { node, gone, .. } => self.line(mesh, [node, gone]),
             Event::Seamed { .. } | Event::TransitionSeamed { .. } | Event::SeamRefused { .. } => self.corner(subject),
             _ => {}
@@ -210,9 +211,11 @@ impl Things {
             _ => None,
         };
         let Some((at, ends)) = subject.next.and_then(of).or_else(|| subject.last.and_then(of)) else { return };
-        self.edges.extend(ends.map(|end| [at, end]).into_iter().filter(|[at, end]| {
-            mesh.has_node(*at) && mesh.has_node(*end) && mesh.are_joined(*at, *end)
-        }));
+        self.edges.extend(
+            ends.map(|end| [at, end])
+                .into_iter()
+                .filter(|[at, end]| mesh.has_node(*at) && mesh.has_node(*end) && mesh.are_joined(*at, *end)),
+        );
     }
 }
 

@@ -116,9 +116,7 @@ impl Answer {
             });
         }
         match (kind, Sought::parse(text)) {
-            (Kind::Count, Ok(Sought::Step(n))) => {
-                u32::try_from(n).map(Answer::Number).map_err(|_| wrong("4"))
-            }
+            (Kind::Count, Ok(Sought::Step(n))) => u32::try_from(n).map(Answer::Number).map_err(|_| wrong("4")),
             (Kind::Count, _) => Err(wrong("4")),
             (Kind::Node, Ok(Sought::Node(node))) => Ok(Answer::Node(node)),
             (Kind::Node, Ok(Sought::Step(n))) => {

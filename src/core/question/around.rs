@@ -9,7 +9,7 @@ use crate::core::run::explain::{angles_apart, angles_of_swap, edge};
 use crate::core::run::{EdgeFacts, EdgeKind};
 
 /// The edge that a swap replaces by a new one, found before the swap: both new ends see it.
-pub(super) fn swapped(mesh: &Mesh, [c, d]: [NodeId; 2]) -> Option<[NodeId; 2]> {
+pub(in crate::core) fn swapped(mesh: &Mesh, [c, d]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     let around = mesh.fan(c).filter(|&h| mesh.is_triangle(h.element())).map(|h| mesh.next(h));
     let across = around.filter(|&h| mesh.live_twin(h).is_some_and(|t| mesh.apex(t) == d));
     across.map(|h| mesh.ends(h)).next()
@@ -36,7 +36,8 @@ pub(super) fn edge_is_swapped(mesh: &Mesh, right: [NodeId; 2], answer: [NodeId; 
     let [from, to] = angles_apart(before, after);
     let falls = after < before;
     let verb = if falls { "falls" } else { "does not fall" };
-    let change = format!("With a swap of {name} the largest angle of its two triangles {verb}: {from}\u{b0} to {to}\u{b0}.");
+    let change =
+        format!("With a swap of {name} the largest angle of its two triangles {verb}: {from}\u{b0} to {to}\u{b0}.");
     if is_right {
         Judged::right(rule, vec![change])
     } else if falls {
@@ -54,7 +55,9 @@ pub(super) fn hints_to_swap(mesh: &Mesh, quad: Option<ElementId>) -> Vec<Hint> {
     for node in mesh.quad(quad) {
         for h in mesh.fan(node).filter(|&h| mesh.live_twin(h).is_some() && mesh.is_triangle(h.element())) {
             let ends = mesh.ends(h);
-            let is_new = !labels.iter().any(|(known, _): &([NodeId; 2], String)| known.contains(&ends[0]) && known.contains(&ends[1]));
+            let is_new = !labels
+                .iter()
+                .any(|(known, _): &([NodeId; 2], String)| known.contains(&ends[0]) && known.contains(&ends[1]));
             if let Some([before, after]) = angles_of_swap(mesh, ends).filter(|_| is_new && mesh.can_swap(h).is_ok()) {
                 labels.push((ends, format!("{}\u{b0} to {}\u{b0}", degrees(before), degrees(after))));
             }
@@ -86,7 +89,9 @@ pub(super) fn node_is_removed(mesh: &Mesh, right: NodeId, purpose: Purpose, answ
     let why = if mesh.is_fixed(answer) {
         format!("Node {name} lies on the boundary, so it is fixed.")
     } else if triangles < all {
-        format!("Node {name} has a quadrilateral, which is dead: only nodes with live triangles all around are removed.")
+        format!(
+            "Node {name} has a quadrilateral, which is dead: only nodes with live triangles all around are removed."
+        )
     } else if !(3..=4).contains(&triangles) {
         format!("Node {name} has {triangles} triangles: only nodes with three or four are removed.")
     } else if mesh.can_delete_node(answer).is_err() {

@@ -9,6 +9,7 @@ use super::rule::Rule;
 use super::{around, entity, selection, side, top};
 use crate::core::convert::{Converter, Event, LookedAt, Purpose};
 use crate::core::fault::{Fault, FaultKind};
+use crate::core::kernel::number::{degrees, fixed};
 use crate::core::mesh::NodeId;
 use crate::core::run::explain::{about, narration};
 use crate::core::run::{Corner, History, Selecting, Watched};
@@ -31,7 +32,7 @@ enum Matter {
     /// What becomes of the top edge.
     Top { event: Event },
     /// Yes or no, with the reason.
-    Whether { right: bool, why: Vec<String> },
+    Whether { right: bool, why: Vec<String>, hints: Vec<Hint> },
     /// A number, with the reason.
     Count { right: u32, why: Vec<String> },
     /// The class of a frontal angle.
@@ -117,14 +118,18 @@ impl Asked {
     /// Another state, or an answer of another kind: an edge where a choice is asked for.
     pub fn judge(&self, state: &Converter<'_>, answer: Answer) -> Result<Judged, Fault> {
         if state.counts.steps != self.step {
-            return Err(Fault::new(format!("This question is asked at step {}", self.step)).of_kind(FaultKind::Parameter));
+            return Err(
+                Fault::new(format!("This question is asked at step {}", self.step)).of_kind(FaultKind::Parameter)
+            );
         }
         let mesh = &state.mesh;
         let judged = match (&self.matter, answer) {
             (Matter::Segment { selecting, right }, Answer::Edge(ends)) => {
                 selection::segment_is_next(selecting, state, *right, ends)
             }
-            (Matter::Class { selecting, base }, Answer::Choice(choice)) => selection::class_is(selecting, *base, choice),
+            (Matter::Class { selecting, base }, Answer::Choice(choice)) => {
+                selection::class_is(selecting, *base, choice)
+            }
             (Matter::Side { .. }, Answer::Edge(ends)) => match (&self.looked_at.candidates, &self.looked_at.base) {
                 (Some(tried), Some(base)) => side::edge_is_side(tried, base, ends),
                 _ => return Err(self.other_answer()),
@@ -150,7 +155,7 @@ impl Asked {
                 };
                 Judged::of(choice == top::right(event), self.rule, vec![why])
             }
-            (Matter::Whether { right, why }, Answer::Choice(choice)) => {
+            (Matter::Whether { right, why, .. }, Answer::Choice(choice)) => {
                 Judged::of(choice == Choice::of(*right), self.rule, why.clone())
             }
             (Matter::Count { right, why }, Answer::Number(number)) => {
@@ -181,8 +186,7 @@ impl Asked {
             Matter::Beside { .. } => around::hints_to_swap(mesh, state.phase().last_formed()),
             Matter::Node { .. } => around::hints_to_node(),
             Matter::Angle { node, theta, .. } => entity::hints_to_angle(*node, *theta, &self.looked_at.parameters),
-            Matter::Whether { .. } if self.kind == Kind::Live => entity::hints_to_live(),
-            Matter::Whether { .. } => vec![Hint::of(bounds(self.kind, &self.looked_at))],
+            Matter::Whether { hints, .. } => hints.clone(),
             Matter::Count { .. } => {
                 vec![Hint::of("Count the triangles between the base, both sides and the top.")]
             }
@@ -213,15 +217,17 @@ impl Asked {
 }
 
 /// What decides about yes and no, with its bounds.
-fn bounds(kind: Kind, before: &LookedAt) -> String {
+fn bounds(event: &Event, before: &LookedAt) -> String {
     let parameters = &before.parameters;
-    match kind {
-        Kind::Seam => format!(
-            "A seam needs a frontal angle of at most \u{3b8}_{{seam}} = {}\u{b0}, and no element may be turned over or become \
-             too poor.",
-            parameters.theta_seam.to_degrees().round()
-        ),
-        Kind::Split => format!(
+    match event {
+        Event::Seamed { corner, .. } | Event::TransitionSeamed { corner, .. } | Event::SeamRefused { corner, .. } => {
+            format!(
+                "The angle is {}\u{b0}, and up to {}\u{b0} may be seamed here, if no element is turned over or becomes too poor.",
+                degrees(corner.angle),
+                degrees(corner.widest)
+            )
+        }
+        event if event.is_about_a_split() => format!(
             "A split needs a triangle of a metric area below \u{3b5}_{{1}} = {}, more than \u{3b5}_{{2}} = {} times as wide as \
              high, and two even loops.",
             parameters.eps1, parameters.eps2
@@ -231,7 +237,8 @@ fn bounds(kind: Kind, before: &LookedAt) -> String {
             format!(
                 "It must be strictly convex, of a quality of at least {}, with no new edge longer than {}, and every loop must \
                  stay even.",
-                gates.quality, gates.length
+                gates.quality,
+                fixed(gates.length, 1)
             )
         }
     }
@@ -250,7 +257,7 @@ fn of_the_state(state: &Converter<'_>, kind: Kind, subject: Watched) -> Result<M
             .of_kind(FaultKind::Parameter)
             .remedy("Write for example of: \"7-4\" or of: \"triangle 3\"")
     })?;
-    Ok(Matter::Whether { right, why: vec![why] })
+    Ok(Matter::Whether { right, why: vec![why], hints: entity::hints_to_live() })
 }
 
 /// A question that the next step answers.
@@ -294,7 +301,8 @@ fn of_the_step(history: &mut History, kind: Kind, looked_at: &LookedAt) -> Resul
                 event,
                 Event::Formed { .. } | Event::Seamed { .. } | Event::TransitionSeamed { .. } | Event::Split { .. }
             );
-            Matter::Whether { right, why: reasons(history, &event, base, looked_at)? }
+            let hints = vec![Hint::of(bounds(&event, looked_at))];
+            Matter::Whether { right, why: reasons(history, &event, base, looked_at)?, hints }
         }
     })
 }
@@ -310,10 +318,15 @@ fn reasons(
     history.seek(step + 1)?;
     let told = about(event, before, history.state());
     history.seek(step)?;
-    let slender = before.narrow.as_ref().map_or(0, |narrow| narrow.slender.len());
-    // Of a split the last sentences are about the slender triangles, one each.
-    let decisive = if event.is_about_a_split() { told.len().saturating_sub(slender) } else { 0 };
     let mut why = vec![narration(event, base)];
-    why.extend(told.into_iter().skip(decisive).take(1));
+    why.extend(told.get(decisive(event, before, told.len())).cloned());
     Ok(why)
+}
+
+/// The place of the sentence that tells what decided. Of a split the last sentences are about the slender triangles, one
+/// each, and the first triangle with a side that splits the front decides; without one, the first.
+fn decisive(event: &Event, before: &LookedAt, sentences: usize) -> usize {
+    let Some(narrow) = before.narrow.as_ref().filter(|_| event.is_about_a_split()) else { return 0 };
+    let splits = narrow.slender.iter().position(|slender| slender.sides.iter().any(|side| side.splits()));
+    (sentences + splits.unwrap_or(0)).saturating_sub(narrow.slender.len())
 }

@@ -78,7 +78,12 @@ pub(super) fn right_angle_class(corner: Corner) -> Choice {
 }
 
 /// Judges the class of a frontal angle.
-pub(super) fn angle_is(node: NodeId, (theta, corner): (f64, Corner), parameters: &Parameters, answer: Choice) -> Judged {
+pub(super) fn angle_is(
+    node: NodeId,
+    (theta, corner): (f64, Corner),
+    parameters: &Parameters,
+    answer: Choice,
+) -> Judged {
     let bound = |bound: f64, name: &str, sign: &str| {
         let [theta, bound] = angles_apart(theta, bound);
         format!("{theta}\u{b0} {sign} \u{3b8}_{{{name}}} = {bound}\u{b0}")

@@ -75,10 +75,7 @@ impl Kind {
                 _ => false,
             },
             Kind::Seam => {
-                matches!(
-                    event.kind(),
-                    EventKind::Seamed | EventKind::TransitionSeamed | EventKind::SeamRefused
-                )
+                matches!(event.kind(), EventKind::Seamed | EventKind::TransitionSeamed | EventKind::SeamRefused)
             }
             Kind::Split => event.is_about_a_split(),
             Kind::Count => event.kind() == EventKind::Formed,
@@ -90,7 +87,9 @@ impl Kind {
     pub(super) fn asks_before(self) -> &'static str {
         match self {
             Kind::Segment | Kind::Class => "before a step that selects a base, such as base_selected#1-1",
-            Kind::Edge => "before a step that prepares a side or swaps an edge, such as side_chosen#1-1 or top_swapped#1-1",
+            Kind::Edge => {
+                "before a step that prepares a side or swaps an edge, such as side_chosen#1-1 or top_swapped#1-1"
+            }
             Kind::Node => "before a step that removes a node, such as node_removed#1-1",
             Kind::Top => "before a step that recovers the top edge, such as top_found#1-1 or top_swapped#1-1",
             Kind::Form => "before a step that forms a quadrilateral or takes one back, such as formed#1-1",

@@ -25,6 +25,7 @@ mod asked;
 mod drawn;
 
 pub use answer::{Answer, Choice};
+pub(in crate::core) use around::swapped;
 pub use asked::Asked;
 pub use drawn::{Drawn, draw};
 pub use judged::{Hint, Judged, Verdict};

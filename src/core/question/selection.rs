@@ -86,7 +86,9 @@ fn is_the_same_but_for_rounding(table: &FrontTable, one: &Row, other: &Row) -> b
 fn not_on_front(state: &Converter<'_>, ends: [NodeId; 2]) -> String {
     let name = edge(ends);
     match EdgeFacts::of(&state.mesh, ends[0], ends[1]).map(|facts| facts.kind) {
-        Some(EdgeKind::Live) => format!("{name} lies between two live triangles, and a base is a segment of the front."),
+        Some(EdgeKind::Live) => {
+            format!("{name} lies between two live triangles, and a base is a segment of the front.")
+        }
         Some(_) => format!("{name} has no live triangle beside it any more, and a base is a segment of the front."),
         None => format!("No edge joins {name} at this step."),
     }

@@ -33,7 +33,8 @@ pub(super) fn edge_is_side(tried: &Candidates, base: &Base, answer: [NodeId; 2])
     // An edge that is there comes before one that a swap would make.
     let Some(candidate) = tried.edges.iter().find(of) else {
         let [letter, which] = letter_and_name(tried.side);
-        let no = format!("{} does not begin at {letter}, node {}, where the {which} side begins.", edge(answer), from.0);
+        let no =
+            format!("{} does not begin at {letter}, node {}, where the {which} side begins.", edge(answer), from.0);
         return Judged::wrong(RULE, vec![no]);
     };
     let reason = candidate.passed.map_or(String::new(), |why| passed(why, candidate, tried));

@@ -54,7 +54,8 @@ pub(super) fn edge_is_swapped(
         return Judged::right(RULE, vec![why]);
     }
     let Some(ends) = crossings.iter().copied().find(|ends| is(*ends)) else {
-        let there = if mesh.are_joined(answer[0], answer[1]) { "does not cross" } else { "is no edge, and does not cross" };
+        let there =
+            if mesh.are_joined(answer[0], answer[1]) { "does not cross" } else { "is no edge, and does not cross" };
         return Judged::wrong(RULE, vec![format!("{name} {there} the top edge {line}.")]);
     };
     if let Some(reason) = not_convex(mesh, ends) {
@@ -110,7 +111,8 @@ pub(super) fn hints(mesh: &Mesh, top: [NodeId; 2], crossings: &[[NodeId; 2]]) ->
         return vec![Hint::of(format!("Look whether an edge joins the tops {line}."))];
     }
     let across = crossings.iter().zip(1..).map(|(ends, place)| (*ends, format!("{place}")));
-    let first = Hint { text: format!("From C on, {line} is crossed by {}.", names.join(", ")), labels: across.collect() };
+    let first =
+        Hint { text: format!("From C on, {line} is crossed by {}.", names.join(", ")), labels: across.collect() };
     let verdicts = crossings.iter().map(|ends| {
         let text = match not_convex(mesh, *ends) {
             Some(_) => "not convex",
