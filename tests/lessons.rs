@@ -57,7 +57,10 @@ fn lessons_ask_after_every_second_part_and_shout_at_nobody() {
     });
     for (name, text) in built_in::LESSONS {
         assert!(!text.contains('!'), "{name}");
-        assert!(text.lines().all(|line| line.starts_with("$$") || line.starts_with(['#', '?']) || line.chars().count() <= 120));
+        assert!(
+            text.lines()
+                .all(|line| line.starts_with("$$") || line.starts_with(['#', '?']) || line.chars().count() <= 120)
+        );
     }
 }
 

@@ -3,12 +3,14 @@
 use crate::core::convert::{Converter, Event, EventKind, Phase};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, NodeId};
-use crate::core::run::{Changes, History};
+use crate::core::run::{History, Log};
 
 /// A state of a run, with what is before and after it.
 pub(super) struct Subject<'h> {
     /// The state.
     pub state: &'h Converter<'static>,
+    /// What the steps did.
+    pub log: &'h Log,
     /// The corners A, B, C and D, as far as they are known.
     pub corners: [Option<NodeId>; 4],
     /// The last quadrilateral that was formed, where it stands.
@@ -17,12 +19,10 @@ pub(super) struct Subject<'h> {
     pub last: Option<Event>,
     /// What the next step does.
     pub next: Option<Event>,
-    /// What the last step changed.
-    pub changes: Changes,
 }
 
 impl Subject<'_> {
-    /// The current state of a history, which is visited anew.
+    /// The current state of a history.
     ///
     /// # Errors
     /// A step of the replay failed.
@@ -31,18 +31,9 @@ impl Subject<'_> {
         history.extend(step + 1);
         let last = history.event(step)?;
         let next = history.event(step + 1)?;
-        let changes = match step.checked_sub(1) {
-            Some(before) => {
-                history.seek(before)?;
-                history.take_changes();
-                history.seek(step)?;
-                history.take_changes()
-            }
-            None => Changes::Some { nodes: Vec::new(), elements: Vec::new() },
-        };
         let formed = history.log().last_of(step, |kind| kind == EventKind::Formed);
         let formed = formed.map(|step| history.event(step)).transpose()?.flatten();
-        let state = history.state();
+        let (state, log) = (history.state(), history.log());
         let mesh = &state.mesh;
         let quad = match formed {
             Some(Event::Formed { element, .. }) if mesh.has_element(element) && mesh.is_quad(element) => Some(element),
@@ -59,7 +50,7 @@ impl Subject<'_> {
             }
             (None, None) => [None; 4],
         };
-        Ok(Subject { state, corners, quad, last, next, changes })
+        Ok(Subject { state, log, corners, quad, last, next })
     }
 
     /// The base of the quadrilateral under way; none between two of them.

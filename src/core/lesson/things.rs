@@ -6,7 +6,7 @@ use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, NodeId};
 use crate::core::question::swapped;
-use crate::core::run::{Changes, FrontTable, Watched};
+use crate::core::run::{FrontTable, LastChanges, Watched};
 
 /// What is framed or lit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -124,13 +124,7 @@ impl Things {
             Set::Top => join(c, d),
             Set::Crossings => self.edges.extend(subject.state.top_crossings().into_iter().flatten()),
             Set::Candidates => self.candidates(subject),
-            Set::Changed => match &subject.changes {
-                Changes::Everything => self.elements.extend(mesh.elements()),
-                Changes::Some { nodes, elements } => {
-                    self.nodes.extend(nodes.iter().filter(|n| mesh.has_node(**n)));
-                    self.elements.extend(elements.iter().filter(|e| mesh.has_element(**e)));
-                }
-            },
+            Set::Changed => self.changed(subject),
             Set::Front => self.edges.extend(mesh.front().map(|h| mesh.ends(h))),
             Set::Loop => {
                 if let Some(start) = loop_start(subject) {
@@ -153,6 +147,18 @@ impl Things {
                 let is_inner = |n: &NodeId| !mesh.is_fixed(*n);
                 self.nodes.extend(mesh.nodes().filter(is_inner).filter(|&n| !mesh.is_regular(n)));
             }
+        }
+    }
+
+    /// What the last step changed, as far as it is still there.
+    fn changed(&mut self, subject: &Subject<'_>) {
+        let (mesh, step) = (&subject.state.mesh, subject.state.counts.steps);
+        let mut last = LastChanges::default();
+        last.follow(subject.log.changes(), step);
+        // Step 0 changed nothing.
+        if step > 0 {
+            self.nodes.extend(mesh.nodes().filter(|n| last.of_node(n.0) == step));
+            self.elements.extend(mesh.elements().filter(|e| last.of_element(e.0) == step));
         }
     }
 

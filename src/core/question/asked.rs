@@ -123,6 +123,15 @@ impl Asked {
             );
         }
         let mesh = &state.mesh;
+        let named: &[NodeId] = match &answer {
+            Answer::Edge(ends) => ends,
+            Answer::Node(node) => std::slice::from_ref(node),
+            Answer::Choice(_) | Answer::Number(_) => &[],
+        };
+        if let Some(absent) = named.iter().find(|node| !mesh.has_node(**node)) {
+            let why = format!("Node {} does not exist at this step.", absent.0);
+            return Ok(Judged::wrong(self.rule, vec![why]));
+        }
         let judged = match (&self.matter, answer) {
             (Matter::Segment { selecting, right }, Answer::Edge(ends)) => {
                 selection::segment_is_next(selecting, state, *right, ends)

@@ -10,6 +10,7 @@
 //! | right, partly right or wrong, and why | [`Judged`], [`Verdict`] |
 //! | hints: labels first, then what they mean | [`Hint`] |
 //! | the rules that answers are about | [`Rule`] |
+//! | what was answered so far, by rule, as CSV | [`Score`] |
 //! | questions drawn from a run by a seed | [`draw`] |
 
 mod rule;
@@ -23,6 +24,7 @@ mod around;
 mod entity;
 mod asked;
 mod drawn;
+mod score;
 
 pub use answer::{Answer, Choice};
 pub(in crate::core) use around::swapped;
@@ -31,3 +33,4 @@ pub use drawn::{Drawn, draw};
 pub use judged::{Hint, Judged, Verdict};
 pub use kind::Kind;
 pub use rule::Rule;
+pub use score::{Given, Score, Tally};

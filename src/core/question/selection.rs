@@ -59,6 +59,9 @@ pub(super) fn segment_is_next(
 
 /// The rule that a segment which comes first is known by: its class, or its key where its class has others.
 fn rule_of(table: &FrontTable, row: &Row) -> Rule {
+    if table.parameters().selection != Selection::Table1 {
+        return Rule::Front;
+    }
     let rivals = table.rows.iter().filter(|other| table.competes(other) && other.class == row.class);
     if rivals.count() > 1 { Rule::HValue } else { Rule::Table1 }
 }
