@@ -1,5 +1,5 @@
-//! Promise: every lesson of the tour resolves against its run, its questions have answers that the next step gives, and a
-//! wrong answer gets a reason. Its pages in `tests/snapshots` were read beside the paper. A file that is no lesson is
+//! Promise: every lesson of the tour resolves against its run, its questions have answers that the next step gives, and
+//! a wrong answer gets a reason. Its pages in `tests/snapshots` were read beside the paper. A file that is no lesson is
 //! refused with its line, and never ends the program.
 //!
 //! A change of lessons or words writes the pages anew: `INSTA_UPDATE=always cargo test --locked --no-default-features

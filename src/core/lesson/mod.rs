@@ -1,6 +1,6 @@
 //! Lessons: a text beside a run, in parts that each stand at a state, light what they speak of and ask what comes next.
-//! A lesson is a file that teachers write (docs/lessons.md); the tour is made of such files. Here they are read, strictly,
-//! and resolved against a run; nothing here draws.
+//! A lesson is a file that teachers write (docs/lessons.md); the tour is made of such files. Here they are read,
+//! strictly, and resolved against a run; nothing here draws.
 //!
 //! | what | where |
 //! |---|---|

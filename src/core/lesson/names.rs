@@ -1,5 +1,5 @@
-//! Names of what a lesson frames, lights or asks about: nodes and edges by number, the paper's letters A, B, C and D, and
-//! sets that the state knows.
+//! Names of what a lesson frames, lights or asks about: nodes and edges by number, the paper's letters A, B, C and D,
+//! and sets that the state knows.
 //!
 //! ```text
 //! names = name { ( "," | " " ) name }

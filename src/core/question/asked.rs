@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::answer::{Answer, Choice};
+use super::answer::Answer;
+use super::choice::Choice;
 use super::judged::{Hint, Judged};
 use super::kind::Kind;
 use super::rule::Rule;
@@ -332,8 +333,8 @@ fn reasons(
     Ok(why)
 }
 
-/// The place of the sentence that tells what decided. Of a split the last sentences are about the slender triangles, one
-/// each, and the first triangle with a side that splits the front decides; without one, the first.
+/// The place of the sentence that tells what decided. Of a split the last sentences are about the slender triangles,
+/// one each, and the first triangle with a side that splits the front decides; without one, the first.
 fn decisive(event: &Event, before: &LookedAt, sentences: usize) -> usize {
     let Some(narrow) = before.narrow.as_ref().filter(|_| event.is_about_a_split()) else { return 0 };
     let splits = narrow.slender.iter().position(|slender| slender.sides.iter().any(|side| side.splits()));

@@ -1,6 +1,6 @@
 //! What an edge, an element or a node is, as the state says it: live or dead, and the class of a frontal angle.
 
-use super::answer::Choice;
+use super::choice::Choice;
 use super::judged::{Hint, Judged};
 use super::rule::Rule;
 use crate::core::case::Parameters;

@@ -1,6 +1,6 @@
 //! The kinds of questions, and at which states each can be asked.
 
-use super::answer::Choice;
+use super::choice::Choice;
 use super::rule::Rule;
 use crate::core::convert::{Event, EventKind, Phase, Purpose};
 use crate::core::kernel::worded::worded;

@@ -1,5 +1,5 @@
-//! Questions about what a run does next: which can be asked at a state, the right answer, and the judgement of any answer
-//! with its reason. The right answer is what the next step does, or what the state is; no file holds one. Reasons are
+//! Questions about what a run does next: which can be asked at a state, the right answer, and the judgement of any
+//! answer with its reason. The right answer is what the next step does, or what the state is; no file holds one. Reasons are
 //! those of `run/explain`, so that the inspector, a lesson and a prediction say the same.
 //!
 //! | what | where |
@@ -14,6 +14,7 @@
 //! | questions drawn from a run by a seed | [`draw`] |
 
 mod rule;
+mod choice;
 mod kind;
 mod answer;
 mod judged;
@@ -26,9 +27,10 @@ mod asked;
 mod drawn;
 mod score;
 
-pub use answer::{Answer, Choice};
+pub use answer::Answer;
 pub(in crate::core) use around::swapped;
 pub use asked::Asked;
+pub use choice::Choice;
 pub use drawn::{Drawn, draw};
 pub use judged::{Hint, Judged, Verdict};
 pub use kind::Kind;

@@ -1,6 +1,6 @@
 //! Which segment comes next, and of which class it is (paper 4.3.3, table 1).
 
-use super::answer::Choice;
+use super::choice::Choice;
 use super::judged::{Hint, Judged};
 use super::rule::Rule;
 use crate::core::case::Selection;

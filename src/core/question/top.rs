@@ -1,6 +1,6 @@
 //! What happens to the top edge (paper 4.3.4, definition of the top edge).
 
-use super::answer::Choice;
+use super::choice::Choice;
 use super::judged::{Hint, Judged};
 use super::rule::Rule;
 use crate::core::convert::{Event, EventKind};

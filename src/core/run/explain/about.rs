@@ -194,8 +194,8 @@ fn closed(before: &LookedAt) -> Vec<String> {
     )]
 }
 
-/// The largest metric angle of the two triangles at a live edge, and that of the two triangles that its swap would give,
-/// in radians; `None` where the edge is not live.
+/// The largest metric angle of the two triangles at a live edge, and that of the two triangles that its swap would
+/// give, in radians; `None` where the edge is not live.
 pub fn angles_of_swap(mesh: &Mesh, [a, b]: [NodeId; 2]) -> Option<[f64; 2]> {
     let h = mesh.half_edge_between(a, b).filter(|&h| mesh.is_triangle(h.element()))?;
     let (c, d) = (mesh.apex(h), mesh.apex(mesh.live_twin(h)?));
