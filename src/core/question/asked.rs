@@ -232,21 +232,22 @@ fn bounds(event: &Event, before: &LookedAt) -> String {
     match event {
         Event::Seamed { corner, .. } | Event::TransitionSeamed { corner, .. } | Event::SeamRefused { corner, .. } => {
             format!(
-                "The angle is {}\u{b0}, and up to {}\u{b0} may be seamed here, if no element is turned over or becomes too poor.",
+                "The angle is {}\u{b0}, and up to {}\u{b0} may be seamed here, if no element is turned over or \
+                 becomes too poor.",
                 degrees(corner.angle),
                 degrees(corner.widest)
             )
         }
         event if event.is_about_a_split() => format!(
-            "A split needs a triangle of a metric area below \u{3b5}_{{1}} = {}, more than \u{3b5}_{{2}} = {} times as wide as \
-             high, and two even loops.",
+            "A split needs a triangle of a metric area below \u{3b5}_{{1}} = {}, more than \u{3b5}_{{2}} = {} times \
+             as wide as high, and two even loops.",
             parameters.eps1, parameters.eps2
         ),
         _ => {
             let [gates, _] = before.gates;
             format!(
-                "It must be strictly convex, of a quality of at least {}, with no new edge longer than {}, and every loop must \
-                 stay even.",
+                "It must be strictly convex, of a quality of at least {}, with no new edge longer than {}, and \
+                 every loop must stay even.",
                 gates.quality,
                 fixed(gates.length, 1)
             )

@@ -108,7 +108,8 @@ pub(super) fn hints_to_angle(node: NodeId, theta: f64, parameters: &Parameters) 
     vec![
         Hint::of(format!("The angle at node {} is {angle}\u{b0}, measured inside the live region.", node.0)),
         Hint::of(format!(
-            "The bounds are \u{3b8}_{{seam}} = {seam}\u{b0}, \u{3b8}_{{rect}} = {rect}\u{b0} and \u{3b8}_{{revr}} = {revr}\u{b0}."
+            "The bounds are \u{3b8}_{{seam}} = {seam}\u{b0}, \u{3b8}_{{rect}} = {rect}\u{b0} and \u{3b8}_{{revr}} = \
+             {revr}\u{b0}."
         )),
     ]
 }

@@ -121,8 +121,8 @@ fn why_class(table: &FrontTable, row: &Row) -> String {
         _ => "neither is",
     };
     format!(
-        "The frontal angles of {} are {at_a}\u{b0} at A and {at_b}\u{b0} at B: {below} below \u{3b8}_{{rect}} = {rect}\u{b0}, \
-         so it is of class {}.",
+        "The frontal angles of {} are {at_a}\u{b0} at A and {at_b}\u{b0} at B: {below} below \u{3b8}_{{rect}} = \
+         {rect}\u{b0}, so it is of class {}.",
         segment([row.a, row.b]),
         row.class
     )

@@ -63,14 +63,14 @@ pub(super) fn hints(tried: &Candidates, base: &Base) -> Vec<Hint> {
     let [theta, rect] = angles_apart(tried.theta, tried.theta_rect);
     if tried.theta < tried.theta_rect {
         return vec![Hint::of(format!(
-            "The frontal angle at {letter} is {theta}\u{b0}, below \u{3b8}_{{rect}} = {rect}\u{b0}: the {which} side is on the \
-             front."
+            "The frontal angle at {letter} is {theta}\u{b0}, below \u{3b8}_{{rect}} = {rect}\u{b0}: the {which} \
+             side is on the front."
         ))];
     }
     let target = degrees(tried.target);
     let first = format!(
-        "The frontal angle at {letter} is {theta}\u{b0}, not below \u{3b8}_{{rect}} = {rect}\u{b0}. The direction aimed at is \
-         {target}\u{b0} from the base."
+        "The frontal angle at {letter} is {theta}\u{b0}, not below \u{3b8}_{{rect}} = {rect}\u{b0}. The direction \
+         aimed at is {target}\u{b0} from the base."
     );
     let from = base.node(tried.side);
     let there = tried.edges.iter().filter(|candidate| candidate.swap.is_none());
