@@ -299,10 +299,11 @@ fn whatever_is_wrong_is_one_line_with_exit_2() {
     write("unknown.toml", b"version = 1\ntitel = \"A\"\n");
     write("binary.toml", &[0xff, 0xfe, 0x00]);
     write("empty.toml", b"");
+    write("odd.md", b"+++\ntitle = \"T\"\ncase = \"figure-5\"\n+++\n# One {goo: \"end\"}\nText.\n");
     write("empty.msh", b"");
     write("noise.msh", b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 99999999999999 1 1\n");
     std::fs::create_dir(folder.path().join("folder.toml")).unwrap();
-    let lines: [(&[&str], &str); 20] = [
+    let lines: [(&[&str], &str); 22] = [
         (&["convert", "exampel1"], "nearest built-in case is \"example1\""),
         (&["convert", "unknown.toml"], "unknown.toml, line 2: The key \"titel\" is not known"),
         (&["convert", "binary.toml"], "not text"),
@@ -323,6 +324,8 @@ fn whatever_is_wrong_is_one_line_with_exit_2() {
         (&["convert", "uniform", "--set", "size=1"], "size_scale"),
         (&["convert", "uniform", "--report", "a", "--events", "a"], "same target"),
         (&["cases", "gaer"], "\"gear\""),
+        (&["lesson", "figure-41"], "\"figure-4\""),
+        (&["lesson", "odd.md"], "odd.md, line 5: There is no attribute \"goo\""),
     ];
     for (arguments, words) in lines {
         let (code, out, err) = said(&run(arguments, folder.path()));
@@ -354,6 +357,27 @@ fn every_built_in_case_is_listed_with_its_title() {
     assert!(names.iter().zip(lines).all(|(name, line)| line.starts_with(name)));
     let (cases, figures) = list.split_once("Figures of the paper").unwrap();
     assert!(!cases.contains("figure-") && figures.contains("figure-19"), "{list}");
+}
+
+#[test]
+fn lessons_are_listed_printed_and_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, list, _) = said(&run(&["lesson", "--list"], folder.path()));
+    let (_, json, _) = said(&run(&["lesson", "--json"], folder.path()));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(list.lines().count(), json.as_array().unwrap().len());
+    assert_eq!(said(&run(&["lesson"], folder.path())).1, list);
+    let (_, template, _) = said(&run(&["lesson", "--template"], folder.path()));
+    std::fs::write(folder.path().join("mine.md"), template).unwrap();
+    let (code, page, err) = said(&run(&["lesson", "mine.md", "--answers"], folder.path()));
+    assert!(code == 0 && page.contains("answer: 0\u{2013}6.") && page.contains("Step 1: Segment 0"), "{page}{err}");
+    let (_, hidden, _) = said(&run(&["lesson", "mine.md"], folder.path()));
+    assert!(!hidden.contains("answer:") && hidden.contains("? Which edge becomes the left side?"), "{hidden}");
+    let (_, json, _) = said(&run(&["lesson", "mine.md", "--json"], folder.path()));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let question = &json["parts"][0]["questions"][0];
+    assert_eq!((question["kind"].as_str(), question["answer"].as_str()), (Some("edge"), Some("0-6")));
+    assert_eq!(json["parts"][0]["light"]["edges"][0], serde_json::json!([0, 1]));
 }
 
 #[cfg(unix)]

@@ -72,6 +72,59 @@ fn sorted(elements: impl Iterator<Item = Vec<u32>>) -> Vec<Vec<u32>> {
 }
 
 #[test]
+fn figure_3_a_swap_and_a_division_make_a_side_and_four_triangles_become_a_quadrilateral() {
+    with_figure("figure-3", |mut converter| {
+        let events = step_until(&mut converter, |e| matches!(e, Event::Formed { .. }));
+        let kinds: Vec<&str> = events.iter().map(|event| event.kind().name()).collect();
+        let expected = [
+            "base_selected",
+            "side_chosen",
+            "side_swapped",
+            "side_divided",
+            "top_swapped",
+            "top_smoothed",
+            "top_found",
+            "formed",
+        ];
+        assert_eq!(kinds, expected);
+        let Some(Event::Formed { nodes, merged, ref swallowed, .. }) = events.last().copied() else { panic!() };
+        assert_eq!((nodes.map(|n| n.0), merged, swallowed.to_vec()), ([0, 1, 12, 6], 4, vec![NodeId(10)]));
+        converter.mesh.check().unwrap();
+    });
+}
+
+#[test]
+fn figure_4_the_front_runs_between_quadrilaterals_and_triangles_and_along_the_boundary_of_triangles() {
+    let mesh = mesh_of("figure-4");
+    let live: Vec<_> = mesh.elements().filter(|&e| mesh.is_triangle(e)).collect();
+    assert_eq!((live.len(), mesh.elements().count() - live.len()), (14, 5));
+    // A side of exactly one live triangle.
+    let sides = |e| {
+        let nodes: Vec<u32> = mesh.corners(e).map(|n| n.0).collect();
+        [0, 1, 2].map(|k| [nodes[k], nodes[(k + 1) % 3]])
+    };
+    let all: Vec<[u32; 2]> = live.iter().flat_map(|&e| sides(e)).collect();
+    let mut alone: Vec<[u32; 2]> = all.iter().copied().filter(|[a, b]| !all.contains(&[*b, *a])).collect();
+    let mut front: Vec<[u32; 2]> = mesh.front().map(|h| mesh.ends(h).map(|n| n.0)).collect();
+    alone.sort_unstable();
+    front.sort_unstable();
+    assert_eq!(front, alone);
+    assert!(front.contains(&[7, 8]) && front.contains(&[9, 14]) && !front.contains(&[7, 12]));
+}
+
+#[test]
+fn figure_11_the_h_value_is_the_mean_of_the_smaller_sizes_at_both_ends() {
+    with_figure("figure-11", |mut converter| {
+        let (before, event) = step_to(&mut converter, |e| matches!(e, Event::BaseSelected { .. }));
+        let Event::BaseSelected { a, b, h_value, .. } = event else { panic!() };
+        // h2 = 0.5 + 0.1 x is smaller than h1 = 1 + 0.15 x everywhere.
+        let size = |n| 0.5 + 0.1 * before.uv(n).x;
+        assert!((h_value - 0.5 * (size(a) + size(b))).abs() < 1e-12);
+        assert!(size(a) != size(b));
+    });
+}
+
+#[test]
 fn figure_5_two_triangles_are_swapped_where_both_new_angles_stay_below_180_degrees() {
     with_figure("figure-5", |mut converter| {
         let (before, event) = step_to(&mut converter, |e| matches!(e, Event::TopSwapped { .. }));

@@ -49,6 +49,8 @@ pub(super) enum Command {
     Render(RenderArguments),
     /// Write the notes on the bookmarked steps of a run as one page (HTML), with a figure of each
     Notes(NotesArguments),
+    /// List the lessons of the tour; check a lesson, one of your own too, and print it
+    Lesson(LessonArguments),
     /// List the built-in cases
     Cases(CasesArguments),
 }
@@ -370,6 +372,25 @@ pub(super) struct NotesArguments {
     /// Write the page (.html), or - for standard output
     #[arg(short, long, value_name = "FILE")]
     pub out: Target,
+}
+
+#[derive(Args)]
+pub(super) struct LessonArguments {
+    /// Print it, or the list, as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Print each question with its answer and the reason
+    #[arg(long, requires = "lesson", conflicts_with = "json")]
+    pub answers: bool,
+    /// List the lessons of the tour; that is what happens without a lesson too
+    #[arg(long, conflicts_with_all = ["lesson", "answers"])]
+    pub list: bool,
+    /// Print a lesson to begin with, for a file of your own
+    #[arg(long, conflicts_with_all = ["lesson", "json", "answers", "list"])]
+    pub template: bool,
+    /// A lesson of the tour, or the file of one (.md)
+    #[arg(value_name = "LESSON")]
+    pub lesson: Option<String>,
 }
 
 #[derive(Args)]

@@ -9,6 +9,7 @@ mod figure;
 mod convert;
 mod check;
 mod cases;
+mod lesson;
 mod compare;
 mod reduce;
 mod sweep;
@@ -71,6 +72,7 @@ pub fn run() -> ExitCode {
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Notes(arguments) => notes::notes(arguments).map(|()| ExitCode::SUCCESS),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
+        Command::Lesson(arguments) => lesson::lesson(arguments).map(|()| ExitCode::SUCCESS),
         Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),
     };
     if INTERRUPT.is_asked() {

@@ -16,5 +16,7 @@ pub mod front;
 pub mod prepare;
 pub mod convert;
 pub mod run;
+pub mod question;
+pub mod lesson;
 pub mod record;
 pub mod reduce;

@@ -45,10 +45,13 @@ cases![
 cases![
     FIGURES,
     "figures/",
+    "figure-3",
+    "figure-4",
     "figure-5",
     "figure-6",
     "figure-7",
     "figure-8",
+    "figure-11",
     "figure-12",
     "figure-13",
     "figure-14",

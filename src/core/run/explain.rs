@@ -17,7 +17,7 @@ mod about;
 mod next;
 mod narration;
 
-pub use about::about;
+pub use about::{about, angles_of_swap};
 pub use event::{attempt, event, why_rolled_back};
 pub use narration::narration;
 pub use next::next;

@@ -194,10 +194,11 @@ fn closed(before: &LookedAt) -> Vec<String> {
     )]
 }
 
-/// The largest angles before and after a swap.
-fn enhanced([c, d]: [NodeId; 2], mesh: &Mesh) -> Option<String> {
-    let h = mesh.half_edge_between(c, d)?;
-    let (a, b) = (mesh.apex(h), mesh.apex(mesh.twin(h)?));
+/// The largest metric angle of the two triangles at a live edge, and that of the two triangles that its swap would
+/// give, in radians; `None` where the edge is not live.
+pub fn angles_of_swap(mesh: &Mesh, [a, b]: [NodeId; 2]) -> Option<[f64; 2]> {
+    let h = mesh.half_edge_between(a, b).filter(|&h| mesh.is_triangle(h.element()))?;
+    let (c, d) = (mesh.apex(h), mesh.apex(mesh.live_twin(h)?));
     let largest = |triangles: [[NodeId; 3]; 2]| {
         let angles = triangles.into_iter().flat_map(|[p, q, r]| {
             [[p, q, r], [q, r, p], [r, p, q]].map(|[at, from, to]| {
@@ -208,8 +209,16 @@ fn enhanced([c, d]: [NodeId; 2], mesh: &Mesh) -> Option<String> {
         });
         angles.fold(0.0, f64::max)
     };
-    let [after, before] = angles_apart(largest([[c, d, a], [d, c, b]]), largest([[a, b, d], [b, a, c]]));
-    let old = edge([a, b]);
+    Some([largest([[a, b, c], [b, a, d]]), largest([[d, c, a], [c, d, b]])])
+}
+
+/// The largest angles before and after a swap.
+fn enhanced(new: [NodeId; 2], mesh: &Mesh) -> Option<String> {
+    let h = mesh.half_edge_between(new[0], new[1])?;
+    let old = edge([mesh.apex(h), mesh.apex(mesh.twin(h)?)]);
+    // Seen from the new edge, the old one is the swap.
+    let [after, before] = angles_of_swap(mesh, new)?;
+    let [after, before] = angles_apart(after, before);
     Some(format!(
         "With {old} the largest angle of the two triangles was {before}\u{b0}; now it is {after}\u{b0} (4.3.6, ii)."
     ))

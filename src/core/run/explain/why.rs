@@ -58,6 +58,14 @@ impl Selecting {
         told.why = sentences(self, &told, state);
         Some(told)
     }
+
+    /// What puts a segment at its place in the order, as the front is: the first sentence names the rule that decides.
+    pub fn decided(&self, told: &SegmentFacts) -> Vec<String> {
+        match told.verdict {
+            Verdict::First => first(&self.table, &told.row, Tense::Present),
+            _ => not_first(&self.table, told, Tense::Present),
+        }
+    }
 }
 
 /// Why a segment was or was not selected, or would or would not be selected now.

@@ -1,0 +1,184 @@
+//! Promise: at any state of a run any answer to a question is judged as the event that follows says: right for what the
+//! step does, partly right for a segment of the same class, wrong with a reason for all others. The same seed draws the
+//! same questions.
+#![allow(clippy::unwrap_used)]
+
+use quadfront::core::case::built_in;
+use quadfront::core::convert::{Event, Phase};
+use quadfront::core::front::Side;
+use quadfront::core::mesh::{Mesh, NodeId};
+use quadfront::core::progress::Nobody;
+use quadfront::core::question::{Answer, Asked, Choice, Kind, Rule, Score, Verdict, draw};
+use quadfront::core::run::{History, Run};
+
+fn history(name: &str, set: &[(&str, &str)]) -> History {
+    let mut case = built_in::named(name).unwrap().unwrap();
+    for (key, value) in set {
+        case.parameters.set(key, value).unwrap();
+    }
+    let mut history = History::open(Run::of(case), &mut Nobody).unwrap();
+    history.extend(u64::MAX);
+    history
+}
+
+/// The class and the key of a front segment, from angles and lengths alone: table 1 with metric length times H.
+fn class_and_key(mesh: &Mesh, [a, b]: [NodeId; 2]) -> (u8, f64) {
+    let h = mesh.front_between(a, b).unwrap();
+    let below = Side::BOTH.map(|side| mesh.frontal_angle(h, side).to_degrees() < 135.0);
+    let class = match below {
+        [true, true] => 1,
+        [true, false] => 2,
+        [false, true] => 3,
+        [false, false] => 4,
+    };
+    (class, mesh.distance(a, b) * 0.5 * (mesh.smallest_size(a) + mesh.smallest_size(b)))
+}
+
+#[test]
+fn every_segment_of_a_front_is_judged_by_its_class_and_its_key() {
+    let mut history = history("example1", &[("size_scale", "2")]);
+    let selections: Vec<u64> = (1..=history.log().known())
+        .filter(|step| matches!(history.log().event(*step), Some(Event::BaseSelected { .. })))
+        .collect();
+    let (mut right, mut partly, mut wrong) = (0, 0, 0);
+    for step in selections.iter().step_by(5) {
+        history.seek(step - 1).unwrap();
+        let Some(Event::BaseSelected { a, b, .. }) = history.event(*step).unwrap() else { panic!() };
+        let asked = Asked::of(&mut history, Kind::Segment, None).unwrap();
+        assert_eq!((asked.answer(), asked.step, history.step()), (Answer::Edge([a, b]), step - 1, step - 1));
+        let state = history.state();
+        let (class, key) = class_and_key(&state.mesh, [a, b]);
+        for h in state.mesh.front() {
+            let ends = state.mesh.ends(h);
+            let judged = asked.judge(state, Answer::Edge(ends)).unwrap();
+            let (its, its_key) = class_and_key(&state.mesh, ends);
+            assert!(!judged.why.is_empty() && judged.why.len() <= 2, "{judged:?}");
+            match judged.verdict {
+                Verdict::Right if ends == [a, b] => right += 1,
+                Verdict::Right => assert!(its == class && (its_key - key).abs() <= 1e-8 * key, "{judged:?}"),
+                Verdict::Partly => {
+                    assert!(its == class && judged.rule == Rule::HValue, "{judged:?}");
+                    partly += 1;
+                }
+                Verdict::Wrong => {
+                    assert!(its != class || state.mesh.is_deferred(h), "{class} {its} {judged:?}");
+                    wrong += 1;
+                }
+            }
+            // A segment that is pointed at has no direction.
+            let turned = asked.judge(state, Answer::Edge([ends[1], ends[0]])).unwrap();
+            assert_eq!(turned.verdict, judged.verdict);
+        }
+        let inner = state.mesh.edges().map(|h| state.mesh.ends(h)).find(|[a, b]| state.mesh.is_live_edge(*a, *b));
+        if let Some(inner) = inner {
+            let judged = asked.judge(state, Answer::Edge(inner)).unwrap();
+            assert_eq!((judged.verdict, judged.rule), (Verdict::Wrong, Rule::LiveAndDead));
+        }
+    }
+    assert!(right > 10 && partly > 100 && wrong > 100, "{right} {partly} {wrong}");
+}
+
+#[test]
+fn whatever_a_step_answers_can_be_asked_before_it_and_nothing_else() {
+    for (name, set) in [("example1", [("size_scale", "2")]), ("crack", [("size_scale", "3")])] {
+        let mut history = history(name, &set);
+        let mut met: Vec<Kind> = Vec::new();
+        for step in 0..history.log().known() {
+            history.seek(step).unwrap();
+            let kinds = Asked::kinds_at(&mut history).unwrap();
+            for kind in Kind::ALL.into_iter().filter(|kind| !kind.is_of_state()) {
+                let asked = Asked::of(&mut history, kind, None);
+                assert_eq!(asked.is_ok(), kinds.contains(&kind), "{name}, step {step}, {}", kind.name());
+                assert_eq!(history.step(), step);
+                let Ok(asked) = asked else { continue };
+                met.push(kind);
+                let state = history.state();
+                let judged = asked.judge(state, asked.answer()).unwrap();
+                assert_eq!(judged.verdict, Verdict::Right, "{name}, step {step}, {}: {judged:?}", kind.name());
+                assert!(judged.why.iter().all(|why| why.ends_with('.')), "{name}, step {step}: {judged:?}");
+                for choice in kind.choices().iter().filter(|choice| Answer::Choice(**choice) != asked.answer()) {
+                    let judged = asked.judge(state, Answer::Choice(*choice)).unwrap();
+                    assert!(judged.verdict != Verdict::Right && !judged.why.is_empty(), "{name}, step {step}");
+                }
+            }
+        }
+        let seldom = [Kind::Split, Kind::Node, Kind::Seam];
+        let missing: Vec<_> = Kind::ALL
+            .into_iter()
+            .filter(|kind| !kind.is_of_state() && !seldom.contains(kind) && !met.contains(kind))
+            .collect();
+        assert!(missing.is_empty(), "{name}: {missing:?}");
+    }
+}
+
+#[test]
+fn the_same_seed_draws_the_same_questions_and_another_seed_others() {
+    let kinds = [Kind::Segment, Kind::Edge, Kind::Top, Kind::Seam, Kind::Form];
+    let mut history = history("example1", &[("size_scale", "2")]);
+    history.seek(40).unwrap();
+    let mut drawn = |seed| draw(&mut history, &kinds, seed, 12).unwrap();
+    let first = drawn(7);
+    assert_eq!(first, drawn(7));
+    assert_ne!(first, drawn(8));
+    assert_eq!(first.len(), 12);
+    assert!(first.windows(2).all(|pair| pair[0].step < pair[1].step), "each step is asked about once");
+    assert_eq!(history.step(), 40, "the state is as it was");
+    for question in first {
+        history.seek(question.step).unwrap();
+        Asked::of(&mut history, question.kind, None).unwrap();
+    }
+    let all = draw(&mut history, &[Kind::Split], 1, 1_000_000).unwrap();
+    let splits = (1..=history.log().known()).filter(|step| history.log().event(*step).unwrap().is_about_a_split());
+    assert_eq!(all.len(), splits.count(), "no more than there are");
+    assert!(draw(&mut history, &[], 1, 5).unwrap().is_empty());
+}
+
+#[test]
+fn an_answer_of_another_kind_or_at_another_state_is_refused() {
+    let mut history = history("figure-14", &[]);
+    let asked = Asked::of(&mut history, Kind::Segment, None).unwrap();
+    assert!(asked.judge(history.state(), Answer::Choice(Choice::Yes)).is_err());
+    assert!(asked.judge(history.state(), Answer::Number(1)).is_err());
+    history.seek(3).unwrap();
+    assert!(asked.judge(history.state(), asked.answer()).is_err());
+    let asked = Asked::of(&mut history, Kind::Edge, None).unwrap();
+    // Nodes that do not exist, an edge that is none.
+    for ends in [[900, 901], [0, 0], [0, 3]] {
+        let judged = asked.judge(history.state(), Answer::Edge(ends.map(NodeId))).unwrap();
+        assert_eq!(judged.verdict, Verdict::Wrong);
+    }
+    history.seek(u64::MAX).unwrap();
+    assert_eq!(*history.state().phase(), Phase::Done);
+    assert!(Asked::kinds_at(&mut history).unwrap().is_empty());
+    for (kind, text) in
+        [(Kind::Class, "5"), (Kind::Top, "gone"), (Kind::Edge, "7"), (Kind::Node, "1-2"), (Kind::Count, "-1")]
+    {
+        assert!(Answer::parse(kind, text).is_err(), "{text}");
+    }
+}
+
+#[test]
+fn a_score_counts_first_answers_and_tells_which_rules_are_missed() {
+    let mut history = history("figure-14", &[]);
+    let mut score = Score::default();
+    // The base is right, the edge across the top wrong, and then right: too late.
+    for (step, kind, text) in
+        [(0, Kind::Segment, "0-1"), (3, Kind::Edge, "0-1"), (3, Kind::Edge, "6-9"), (4, Kind::Node, "9")]
+    {
+        history.seek(step).unwrap();
+        let asked = Asked::of(&mut history, kind, None).unwrap();
+        let answer = Answer::parse(kind, text).unwrap();
+        let judged = asked.judge(history.state(), answer).unwrap();
+        score.note(&asked, answer, &judged, 1);
+    }
+    let tally = score.tally();
+    assert_eq!((tally.right, tally.partly, tally.wrong, score.streak()), (2, 0, 1, 1));
+    assert_eq!(tally.share(), Some(2.0 / 3.0));
+    let top = score.by_rule().into_iter().find(|(rule, _)| *rule == Rule::TopEdge).unwrap().1;
+    assert_eq!((top.right, top.wrong), (1, 1));
+    let expected = "step,kind,answer,right,verdict,rule,hints\n\
+                    0,segment,0-1,0-1,right,front,1\n\
+                    3,edge,0-1,6-9,wrong,top-edge,1\n\
+                    4,node,9,9,right,top-edge,1\n";
+    assert_eq!(score.csv(), expected);
+}
