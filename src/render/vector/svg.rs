@@ -148,9 +148,8 @@ fn draw(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, numbe
 fn areas(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, role: Role) {
     let Some(fill) = figure(role, look.ink).fill else { return };
     let mut path = Path::default();
-    for area in picture.areas.iter().filter(|a| a.role == role && frame.sees(&a.corners)) {
-        let corners = if area.corners[2] == area.corners[3] { &area.corners[..3] } else { &area.corners[..] };
-        path.walk(corners.iter().map(|p| frame.place(*p)), true);
+    for area in picture.areas.iter().filter(|a| a.role == role && frame.sees(&a.outline)) {
+        path.walk(area.outline.iter().map(|p| frame.place(*p)), true);
     }
     if fill == HATCH && !path.is_empty() {
         page.define_hatch();
