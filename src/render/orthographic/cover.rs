@@ -55,6 +55,14 @@ impl Half {
     }
 }
 
+/// A face as its triangles; one without area in the picture has none.
+#[derive(Clone, Debug, Default)]
+struct Face {
+    halves: SmallVec<[u32; 2]>,
+    /// Whether one triangle is seen from the other side than the other one: its corners are not its outline.
+    is_folded: bool,
+}
+
 /// What is seen of a face.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SeenFace {
@@ -76,8 +84,7 @@ pub enum OnFaces {
 /// The faces of a mesh in a picture.
 pub struct Cover {
     halves: Vec<Half>,
-    /// The triangles of each face; one without area in the picture has none.
-    of_face: Vec<SmallVec<[u32; 2]>>,
+    faces: Vec<Face>,
     tree: RTree<GeomWithData<Rectangle<[f64; 2]>, u32>>,
     lattice: Lattice,
     in_plane: f64,
@@ -87,25 +94,26 @@ pub struct Cover {
 impl Cover {
     /// Faces with three or four corners, in the coordinates of the picture.
     pub fn of(faces: impl Iterator<Item = SmallVec<[DVec3; 4]>>) -> Cover {
-        let (mut halves, mut of_face): (Vec<Half>, Vec<SmallVec<[u32; 2]>>) = (Vec::new(), Vec::new());
+        let (mut halves, mut made) = (Vec::new(), Vec::new());
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for face in faces {
-            let mut own = SmallVec::new();
+            let (mut own, mut sides) = (Face::default(), [false; 2]);
             if face.iter().all(|p| p.is_finite()) {
                 face.iter().for_each(|p| (low, high) = (low.min(*p), high.max(*p)));
                 for corners in triangles(&face) {
-                    if let Some(half) = as_seen(corners) {
-                        own.push(halves.len() as u32);
+                    if let Some((half, is_turned)) = as_seen(corners) {
+                        own.halves.push(halves.len() as u32);
                         halves.push(half);
+                        sides[usize::from(is_turned)] = true;
                     }
                 }
             }
-            of_face.push(own);
+            made.push(Face { is_folded: sides == [true; 2], ..own });
         }
         let size = if halves.is_empty() { 0.0 } else { (high - low).max_element() };
         let lattice = Lattice::over(low.truncate(), high.truncate());
         let tree = RTree::bulk_load(halves.iter().enumerate().map(|(k, half)| boxed(half, k as u32)).collect());
-        Cover { halves, of_face, tree, lattice, in_plane: IN_PLANE * size, narrow: NARROW * size }
+        Cover { halves, faces: made, tree, lattice, in_plane: IN_PLANE * size, narrow: NARROW * size }
     }
 
     /// The triangles whose boxes meet a box, in their order.
@@ -209,13 +217,13 @@ fn triangles(face: &[DVec3]) -> SmallVec<[[DVec3; 3]; 2]> {
     if !agree(first) && agree(second) { second.into() } else { first.into() }
 }
 
-/// A triangle anticlockwise in the picture; none where it has no area there.
-fn as_seen([a, b, c]: [DVec3; 3]) -> Option<Half> {
+/// A triangle anticlockwise in the picture, and whether it was turned for that; none where it has no area there.
+fn as_seen([a, b, c]: [DVec3; 3]) -> Option<(Half, bool)> {
     let [p, q, r] = [a, b, c].map(|p| robust::Coord { x: p.x, y: p.y });
     let turn = robust::orient2d(p, q, r);
     let normal = (b - a).cross(c - a).length();
     let corners = if turn > 0.0 { [a, b, c] } else { [a, c, b] };
-    (turn != 0.0 && normal > 0.0).then_some(Half { corners, normal })
+    (turn != 0.0 && normal > 0.0).then_some((Half { corners, normal }, turn < 0.0))
 }
 
 /// A triangle with its box, for the tree.
@@ -223,4 +231,55 @@ fn boxed(half: &Half, number: u32) -> GeomWithData<Rectangle<[f64; 2]>, u32> {
     let [a, b, c] = half.corners.map(|p| p.truncate());
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     GeomWithData::new(Rectangle::from_corners(low.to_array(), high.to_array()), number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(x: f64, y: f64, z: f64) -> DVec3 {
+        DVec3::new(x, y, z)
+    }
+
+    fn cover(faces: &[&[DVec3]]) -> Cover {
+        Cover::of(faces.iter().map(|face| face.iter().copied().collect()))
+    }
+
+    #[test]
+    fn the_diagonal_of_a_swap_is_not_hidden_by_the_two_triangles_that_it_passes_below() {
+        // A ridge from b to c; the diagonal from a to d lies below it.
+        let [a, b, c, d] = [place(-1.0, 0.0, 0.0), place(0.0, -1.0, 1.0), place(0.0, 1.0, 1.0), place(1.0, 0.0, 0.0)];
+        let ridge: [&[DVec3]; 2] = [&[a, b, c], &[b, d, c]];
+        let parts = |faces: &[&[DVec3]], on| cover(faces).parts([a, d], on);
+        assert_eq!(parts(&ridge, OnFaces::Diagonal), [([0.0, 1.0], false)]);
+        assert_eq!(parts(&ridge, OnFaces::Along), [([0.0, 1.0], true)]);
+        let above: &[DVec3] =
+            &[place(-2.0, -2.0, 5.0), place(0.0, -2.0, 5.0), place(0.0, 2.0, 5.0), place(-2.0, 2.0, 5.0)];
+        let hidden = parts(&[ridge[0], ridge[1], above], OnFaces::Diagonal);
+        assert_eq!(hidden, [([0.0, 0.5], true), ([0.5, 1.0], false)]);
+    }
+
+    #[test]
+    fn a_quadrilateral_with_a_corner_that_turns_inwards_is_divided_within() {
+        let dart = [place(3.0, 0.0, 0.0), place(-1.0, 2.0, 0.0), place(0.0, 0.0, 0.0), place(-1.0, -2.0, 0.0)];
+        for k in 0..4 {
+            let mut face = dart;
+            face.rotate_left(k);
+            let halves = triangles(&face);
+            let area = |[a, b, c]: [DVec3; 3]| 0.5 * (b - a).truncate().perp_dot((c - a).truncate());
+            assert!(halves.iter().all(|half| area(*half) > 0.0), "{k}: {halves:?}");
+            assert_eq!(cover(&[&face]).seen(0), SeenFace::Whole, "{k}");
+        }
+    }
+
+    #[test]
+    fn faces_at_the_same_place_and_places_without_end_hide_nothing() {
+        let face = [place(0.0, 0.0, 0.0), place(1.0, 0.0, 0.0), place(1.0, 1.0, 0.0), place(0.0, 1.0, 0.0)];
+        let endless = [place(f64::NAN, 0.0, 0.0), place(1.0, 0.0, 9.0), place(1.0, 1.0, 9.0)];
+        let cover = cover(&[&face, &face, &endless]);
+        assert_eq!((cover.seen(0), cover.seen(1), cover.seen(2)), (SeenFace::Whole, SeenFace::Whole, SeenFace::Whole));
+        assert_eq!(cover.parts([endless[0], face[1]], OnFaces::Along), [([0.0, 1.0], false)]);
+        let point = [place(0.5, 0.5, -1.0), place(0.5, 0.5, -2.0)];
+        assert_eq!(cover.parts(point, OnFaces::Along), [([0.0, 1.0], true)], "a line seen from its end");
+    }
 }

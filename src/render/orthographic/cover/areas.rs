@@ -9,7 +9,7 @@ use i_overlay::i_float::int::point::IntPoint;
 use i_overlay::i_shape::int::shape::IntShapes;
 use smallvec::SmallVec;
 
-use super::{Cover, Half, NARROW, SeenFace};
+use super::{Cover, Face, Half, NARROW, SeenFace};
 
 /// The side of the picture in steps of the lattice.
 const STEPS: f64 = 536_870_912.0;
@@ -58,10 +58,10 @@ enum Left {
 impl Cover {
     /// What is seen of a face.
     pub fn seen(&self, face: usize) -> SeenFace {
-        let own = &self.of_face[face];
+        let Face { halves: own, is_folded } = &self.faces[face];
         let mut left: SmallVec<[Left; 2]> = own.iter().map(|k| self.left(*k)).collect();
         let halves = own.iter().map(|k| &self.halves[*k as usize]);
-        if left.iter().all(|left| matches!(left, Left::Whole)) {
+        if !is_folded && left.iter().all(|left| matches!(left, Left::Whole)) {
             return SeenFace::Whole;
         }
         let outlines = halves.zip(left.drain(..)).map(|(half, left)| match left {
